@@ -41,7 +41,7 @@ std::string unknown_word(const CLI::App& program, int argc, char** argv) {
   const CLI::App* command = nullptr;
   std::vector<std::string> commands, options;
   for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; })) {
-    commands.push_back(sub->get_name());
+    if (!sub->get_group().empty()) commands.push_back(sub->get_name());
     if (argc > 1 && sub->get_name() == argv[1]) command = sub;
   }
   const auto said = [](const char* kind, const std::string& word, const std::vector<std::string>& known) {
@@ -78,7 +78,7 @@ int parse_and_work(int argc, char** argv) {
   CLI::App program{"Catena: see a scientific field and feel it with a hand."};
   program.name("catena");
   program.require_subcommand(1);
-  program.set_version_flag("--version", std::string("catena ") + kCatenaVersion);
+  program.set_version_flag("--version", std::string("catena ") + kVersion);
   Work chosen;
   int view_exit_code = 0;
   add_render(program, chosen);
@@ -93,6 +93,7 @@ int parse_and_work(int argc, char** argv) {
   add_devices(program, chosen);
   add_study(program, chosen);
   add_view(program, chosen, view_exit_code);
+  add_documents(program, chosen);
   add_memory_limit(program);
   for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     refuse_empty_numbers(*command);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/base/version.h"
 #include "engine/scene/scene.h"
 
 namespace CLI {
@@ -12,8 +13,6 @@ class App;
 }
 
 namespace catena::app {
-
-inline constexpr const char* kCatenaVersion = "0.1.0";
 
 /// A subcommand's work; the exit code of a success is 0. An Error means bad input: exit code 2, or 1 where it is the machine's.
 using Work = std::function<Outcome()>;
@@ -30,6 +29,7 @@ void add_tradeoff(CLI::App& program, Work& chosen);
 void add_feel(CLI::App& program, Work& chosen);
 void add_devices(CLI::App& program, Work& chosen);
 void add_study(CLI::App& program, Work& chosen);
+void add_documents(CLI::App& program, Work& chosen);
 void add_view(CLI::App& program, Work& chosen, int& exit_code);
 
 /// A failure of the machine, not of the input, or a replay that does not repeat its recording: exit code 1.

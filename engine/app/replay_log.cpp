@@ -137,7 +137,7 @@ Result<log::LogHeader> log_header(const std::string& scene_path, const std::vect
   }
   header.fields = field_options;
   header.device = device;
-  header.catena_version = kCatenaVersion;
+  header.catena_version = kVersion;
   header.rate_hz = rate_hz;
   return header;
 }

@@ -1,6 +1,8 @@
 #include "engine/base/helper_process.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
+#include <link.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -21,6 +23,8 @@ namespace catena {
 namespace {
 
 constexpr int kFirstDescriptor = 3;
+/// Where `cmake --install` puts the helpers: seen from bin and lib, and with one ".." more from lib/MACHINE.
+constexpr const char* kInstalled = "../libexec/catena";
 /// Under the sanitizers a helper tells what they found.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kKeepsErrors = true;
@@ -55,9 +59,22 @@ std::string too_few_descriptors() {
 }
 
 std::string helper_path(const std::string& name) {
+  namespace fs = std::filesystem;
   std::error_code code;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
-  return (self.parent_path() / name).string();
+  std::vector<fs::path> places;
+  const auto look_in = [&](const fs::path& folder) {
+    for (const fs::path& at : {folder, folder / kInstalled, folder / ".." / kInstalled}) places.push_back(at / name);
+  };
+  // the shared library that this is a part of, so that both are of one version; the program itself has no name there
+  Dl_info info;
+  link_map* map = nullptr;
+  if (::dladdr1(reinterpret_cast<const void*>(&helper_path), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 &&
+      map != nullptr && map->l_name[0] != '\0')
+    look_in(fs::canonical(map->l_name, code).parent_path());
+  look_in(fs::read_symlink("/proc/self/exe", code).parent_path());
+  for (const fs::path& place : places)
+    if (::access(place.c_str(), X_OK) == 0) return place.lexically_normal().string();
+  return places.front().string();
 }
 
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {

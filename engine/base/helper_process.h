@@ -1,5 +1,6 @@
-/// Programs of Catena that do one thing in a process of their own. They lie beside the program that starts them, get no environment and
-/// no descriptors but the ones that they are given, and die with the thread that started them (they ask for that themselves).
+/// Programs of Catena that do one thing in a process of their own. They lie beside the program that starts them or in the libexec folder
+/// of what is installed, get no environment and no descriptors but the ones that they are given, and die with the thread that started them
+/// (they ask for that themselves).
 #pragma once
 #include <sys/types.h>
 
@@ -11,7 +12,8 @@
 
 namespace catena {
 
-/// NAME in the folder of the running program.
+/// NAME in the folder of libcatena.so where a program uses that, or of the running program, or in ../libexec/catena or ../../libexec/catena
+/// seen from there: the first that can be started, else the first of these places.
 std::string helper_path(const std::string& name);
 
 /// "at most 6 files may be open at a time (ulimit -n), expected at least 128": for an error of the machine.

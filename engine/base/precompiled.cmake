@@ -1,11 +1,11 @@
 # What almost every file includes is parsed once: the standard library, GLM's vectors, fmt. GCC takes a precompiled header only for
 # the very options that it was made with, so files with options of their own are named in catena_without_precompiled().
-add_library(catena_precompiled OBJECT ${CMAKE_SOURCE_DIR}/engine/base/precompiled.cpp)
+add_library(catena_precompiled OBJECT ${PROJECT_SOURCE_DIR}/engine/base/precompiled.cpp)
 target_link_libraries(catena_precompiled PUBLIC catena_flags)
 target_precompile_headers(catena_precompiled PRIVATE
   <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map> <memory> <mutex>
   <optional> <random> <set> <span> <sstream> <string> <string_view> <thread> <utility> <vector>
-  <fmt/format.h> ${CMAKE_SOURCE_DIR}/engine/base/vec.h)
+  <fmt/format.h> ${PROJECT_SOURCE_DIR}/engine/base/vec.h)
 
 function(catena_precompile TARGET)
   target_precompile_headers(${TARGET} REUSE_FROM catena_precompiled)

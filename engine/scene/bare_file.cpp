@@ -281,13 +281,10 @@ void adopt_loaded(const BareFile& bare, Scene& scene) {
   });
 }
 
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
-  CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors));
-  CATENA_TRY(Scene scene, parse_scene(bare.text, path));
-  adopt_loaded(bare, scene);
-  if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
-  for (const std::string& note : bare.field.notes) scene.notes.push_back(path + ": " + note);
-  // the text is nowhere: its lines would say nothing
+namespace {
+
+/// The text that made the scene is nowhere: its lines would say nothing.
+void forget_all_lines(Scene& scene) {
   forget_lines<FieldSource>(scene);
   forget_lines<MeshSource>(scene);
   forget_lines<SurfaceMesh>(scene);
@@ -296,6 +293,33 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid, c
   forget_lines<StreamlineSet>(scene);
   forget_lines<DrawnCurves>(scene);
   forget_lines<DrawnPoints>(scene);
+}
+
+}  // namespace
+
+Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors) {
+  if (grid.get() == nullptr || !grid.get()->is_grid())
+    return Error{"a formula does not say what of it is worth seeing; a grid was expected (sample_on_grid), or a scene"};
+  FieldOverride with{"field", {}, {}, grid};
+  const std::string name = "\"field\"";
+  const FirstLook look = grid.scalar ? first_look(name, *grid.scalar->grid(), {}, colors) : first_look(name, *grid.vector->grid(), colors);
+  if (look.labels) with.given.scalar = grid.scalar->grid()->interpolated(field::Interpolation::nearest);
+  // `fields` has more of them, each after a comma
+  const std::string more = look.fields.empty() ? look.fields : look.fields.substr(1);
+  CATENA_TRY(Scene scene, parse_scene("{\"fields\": {" + more + "},\n" + look.parts + "}", "field", {with}));
+  scene.notes.push_back("field " + look.note);
+  forget_all_lines(scene);
+  CATENA_CHECK(use_drawn_field(scene, find_field(scene, "field"), {}));
+  return scene;
+}
+
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
+  CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors));
+  CATENA_TRY(Scene scene, parse_scene(bare.text, path));
+  adopt_loaded(bare, scene);
+  if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
+  for (const std::string& note : bare.field.notes) scene.notes.push_back(path + ": " + note);
+  forget_all_lines(scene);
   if (bare.field.get() != nullptr)
     CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(grid.empty() ? bare.field.get()->name() : grid)), {}));
   return scene;

@@ -108,7 +108,8 @@ Result<std::vector<std::string>> files_of(std::string_view text, const std::stri
 std::vector<std::string> files_of(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
   std::vector<std::string> files;
   for (const json::Node* name : file_names(root)) files.push_back(resolved_path(path, name->string));
-  for (const FieldOverride& with : overrides) files.push_back(with.file);
+  for (const FieldOverride& with : overrides)
+    if (!with.file.empty()) files.push_back(with.file);
   return files;
 }
 

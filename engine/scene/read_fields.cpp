@@ -5,6 +5,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/steps.h"
 #include "engine/scene/units.h"
@@ -247,19 +248,42 @@ Outcome read_source(const std::string& scene_path, int scene_step, const json::N
 
 // ---- --field NAME=FILE[:GRID] ----
 
+/// The field of that name; a new one where there is none.
+FieldSource& source_named(Scene& scene, const std::string& name) {
+  Entity entity = find_field(scene, name);
+  if (!entity) {
+    entity = scene.world.create();
+    scene.world.emplace<Name>(entity, {name});
+    scene.world.emplace<FieldSource>(entity);
+  }
+  return scene.world.get<FieldSource>(entity);
+}
+
+/// What the program has made in the place of a file.
+Outcome take_given(Scene& scene, const FieldOverride& with) {
+  if (!is_name(with.name)) return Error{"field " + in_quotes(with.name) + ": a name like [a-z][a-z0-9_]* was expected"};
+  FieldSource& source = source_named(scene, with.name);
+  const FieldSource usual;
+  source.file.reset();
+  source.label.reset();
+  source.analytic.clear();
+  source.loaded = with.given;
+  source.drawn = {};
+  find_labels(source);
+  const Bounds bounds = with.given.get()->world_bounds();
+  const double lo = std::min({bounds.lo.x, bounds.lo.y, bounds.lo.z}), hi = std::max({bounds.hi.x, bounds.hi.y, bounds.hi.z});
+  source.box = lo < hi ? std::array{lo, hi} : usual.box;
+  return Done{};
+}
+
 Outcome apply_override(Scene& scene, const FieldOverride& with) {
+  if (with.given.get() != nullptr) return take_given(scene, with);
   const std::string text = "--field " + with.name + "=" + with.file + (with.grid.empty() ? "" : ":" + with.grid);
   const auto failed = [&](const std::string& what) { return Error{one_line(text + ": " + what)}; };
   if (!is_name(with.name)) return failed(in_quotes(with.name) + " is no name; a name like [a-z][a-z0-9_]* was expected");
   if (const std::string fault = field_fault(with.file); !fault.empty()) return failed("file " + fault);
 
-  Entity entity = find_field(scene, with.name);
-  if (!entity) {
-    entity = scene.world.create();
-    scene.world.emplace<Name>(entity, {with.name});
-    scene.world.emplace<FieldSource>(entity);
-  }
-  FieldSource& source = scene.world.get<FieldSource>(entity);
+  FieldSource& source = source_named(scene, with.name);
   LoadRequest request = source.file.value_or(LoadRequest{});
   if (field::needs_layout(with.file) && !request.raw)
     return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");

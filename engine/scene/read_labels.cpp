@@ -169,7 +169,7 @@ Outcome check_label_sources(const Scene& scene) {
     if (!outcome || !source.label) return;
     const json::Node& where = json::member_or(source.where, "of");
     const Entity of = find_field(scene, source.label->of);
-    if (of && scene.world.get<FieldSource>(of).file) return;
+    if (of && (scene.world.get<FieldSource>(of).file || scene.world.get<FieldSource>(of).loaded.get() != nullptr)) return;
     std::vector<std::string_view> names;
     scene.world.each<FieldSource>([&](Entity e, const FieldSource& other) {
       if (other.file) names.push_back(scene.world.get<Name>(e).value);

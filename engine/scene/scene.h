@@ -56,9 +56,10 @@ struct Scene {
   std::map<CurveKey, flow::CurvePtr> curves;
 };
 
-/// "--field NAME=FILE[:GRID]": replaces the source of a named field, or adds one.
+/// "--field NAME=FILE[:GRID]": replaces the source of a named field, or adds one. Or a program gives the field itself.
 struct FieldOverride {
   std::string name, file, grid;
+  field::AnyField given{};  ///< made by the program: `file` and `grid` are not looked at. Not a grid: drawn from samples of its bounds
 };
 
 /// "error=2,hand_time=5": a plan as the command line has it. The error begins with the words.
@@ -72,6 +73,9 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path, const 
 /// a triangle mesh as it is, curves in the colours of their directions, points as balls; the camera is fitted to what can be seen. `colors`
 /// may name a colour map and a range: a scalar grid is then a volume whose opacity follows the range, lines show the speed by them.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
+
+/// The same of a grid that a program gives: the field "field" of the scene. An error where it is no grid, or has no finite value.
+Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
 
 /// What such a file looks like, and why, in one sentence, and what of it is not as it was; nothing of a mesh and of a file that cannot be
 /// shown.

@@ -266,6 +266,14 @@ Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& set
   return p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
 }
 
+DrawnImage Renderer::image() const {
+  CATENA_ASSERT(parts_->drawn != 0);
+  const vk::Image& shown = parts_->shown();
+  const VkExtent3D& size = shown.info().extent;
+  return {shown.handle(), shown.info().format,        {size.width, size.height},
+          shown.layout,   parts_->device->timeline(), parts_->device->submitted()};
+}
+
 Result<Picture> Renderer::read_back() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kPictureFormat);

@@ -79,6 +79,19 @@ struct Picked {
   double depth = 0;
 };
 
+/// The last picture where it lies on the device: straight alpha, display values. Good until the next call of the renderer.
+/// `layout` is the image's now, TRANSFER_SRC_OPTIMAL unless a window was painted since; who moves it to another one moves it back. Its
+/// usage allows copies from it. All writes to it are done and visible once `timeline`, a timeline semaphore of the device, has reached
+/// `value`; draw() has waited for that, so that other queues of the same family need wait for nothing.
+struct DrawnImage {
+  VkImage image = VK_NULL_HANDLE;
+  VkFormat format = VK_FORMAT_UNDEFINED;
+  VkExtent2D extent{};
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkSemaphore timeline = VK_NULL_HANDLE;
+  std::uint64_t value = 0;
+};
+
 class Renderer {
  public:
   static Result<std::unique_ptr<Renderer>> create(const vk::DeviceOptions& options);
@@ -88,6 +101,8 @@ class Renderer {
 
   /// Draws and waits for the fence of the finished colour image.
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
+  /// The last picture on the device, for a program that draws with the same device (vk::VulkanMaker).
+  DrawnImage image() const;
   /// The last picture, straight alpha.
   Result<Picture> read_back();
   /// Its image, on the device, for who copies it on: in the layout TRANSFER_SRC, until the next draw.

@@ -57,22 +57,6 @@ bool matches(const VkPhysicalDeviceProperties& properties, const std::string& ch
   return lower(properties.deviceName).find(lower(choice)) != std::string::npos;
 }
 
-/// The features that Catena asks for; the chain points into itself, so it does not move.
-struct Features {
-  VkPhysicalDeviceFeatures2 core{};
-  VkPhysicalDeviceVulkan12Features v12{};
-  VkPhysicalDeviceVulkan13Features v13{};
-  Features() {
-    core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    core.pNext = &v12;
-    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    v12.pNext = &v13;
-    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  }
-  Features(const Features&) = delete;
-  Features& operator=(const Features&) = delete;
-};
-
 bool has_extension(VkPhysicalDevice physical, const char* name) {
   std::uint32_t count = 0;
   if (vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr) != VK_SUCCESS) return false;
@@ -97,12 +81,39 @@ std::optional<std::uint32_t> find_queue(VkPhysicalDevice physical, VkSurfaceKHR 
   return std::nullopt;
 }
 
-/// Empty when the device will do, else what it lacks.
-std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties, VkSurfaceKHR surface) {
-  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
-  if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
-  if (surface && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-  Features features;
+}  // namespace
+
+DeviceFeatures::DeviceFeatures() {
+  core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  core.pNext = &v12;
+  v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  v12.pNext = &v13;
+  v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+}
+
+void require(DeviceFeatures& features) {
+  features.core.features.shaderClipDistance = VK_TRUE;
+  features.core.features.independentBlend = VK_TRUE;
+  features.v12.timelineSemaphore = VK_TRUE;
+  features.v12.scalarBlockLayout = VK_TRUE;
+  features.v13.dynamicRendering = VK_TRUE;
+  features.v13.synchronization2 = VK_TRUE;
+  features.v13.maintenance4 = VK_TRUE;  // glslang writes LocalSizeId for Vulkan 1.3
+}
+
+std::vector<const char*> required_extensions(bool presents) {
+  std::vector<const char*> names{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  if (presents) names.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  return names;
+}
+
+std::string lacks(VkPhysicalDevice physical, VkSurfaceKHR surface) {
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(physical, &properties);
+  if (properties.apiVersion < kApiVersion) return "Vulkan 1.3";
+  for (const char* name : required_extensions(surface != VK_NULL_HANDLE))
+    if (!has_extension(physical, name)) return name;
+  DeviceFeatures features;
   vkGetPhysicalDeviceFeatures2(physical, &features.core);
   if (!features.core.features.shaderClipDistance) return "shaderClipDistance";
   if (!features.core.features.independentBlend) return "independentBlend";
@@ -114,6 +125,8 @@ std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& p
   if (!find_queue(physical, surface)) return surface ? "a queue that draws and presents" : "a queue that draws";
   return {};
 }
+
+namespace {
 
 Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
   std::uint32_t count = 0;
@@ -170,7 +183,7 @@ Outcome Device::choose_physical(const std::string& choice) {
   for (VkPhysicalDevice candidate : devices) {
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(candidate, &properties);
-    const std::string missing = lacks(candidate, properties, instance_->surface());
+    const std::string missing = lacks(candidate, instance_->surface());
     seen += fmt::format("{}{}{}", seen.empty() ? "" : ", ", properties.deviceName, missing.empty() ? "" : " (without " + missing + ")");
     if (!missing.empty() || !matches(properties, choice)) continue;
     if (preference(properties.deviceType) > best) {
@@ -190,7 +203,7 @@ Outcome Device::take_physical() {
   CATENA_VK(maker_.physical(instance_->handle(), &physical_), "choose the device that was asked for");
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical_, &properties);
-  const std::string missing = lacks(physical_, properties, instance_->surface());
+  const std::string missing = lacks(physical_, instance_->surface());
   if (!missing.empty()) return Error{fmt::format("the device {} that was chosen lacks {}", properties.deviceName, missing)};
   return Done{};
 }
@@ -222,16 +235,9 @@ Outcome Device::create_device() {
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
 
-  Features features;
-  features.core.features.shaderClipDistance = VK_TRUE;
-  features.core.features.independentBlend = VK_TRUE;
-  features.v12.timelineSemaphore = VK_TRUE;
-  features.v12.scalarBlockLayout = VK_TRUE;
-  features.v13.dynamicRendering = VK_TRUE;
-  features.v13.synchronization2 = VK_TRUE;
-  features.v13.maintenance4 = VK_TRUE;  // glslang writes LocalSizeId for Vulkan 1.3
-  std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
-  if (instance_->surface()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  DeviceFeatures features;
+  require(features);
+  const std::vector<const char*> extensions = required_extensions(instance_->surface() != VK_NULL_HANDLE);
 
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
@@ -348,7 +354,7 @@ Result<std::vector<std::string>> list_devices() {
   for (VkPhysicalDevice device : devices) {
     VkPhysicalDeviceProperties p{};
     vkGetPhysicalDeviceProperties(device, &p);
-    const std::string missing = lacks(device, p, VK_NULL_HANDLE);
+    const std::string missing = lacks(device);
     lines.push_back(fmt::format("{} ({}), Vulkan {}.{}{}", p.deviceName, type_name(p.deviceType), VK_API_VERSION_MAJOR(p.apiVersion),
                                 VK_API_VERSION_MINOR(p.apiVersion), missing.empty() ? "" : ", unusable: no " + missing));
   }

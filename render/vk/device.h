@@ -17,6 +17,7 @@
 
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
+#include "render/vk/requirements.h"
 
 namespace catena::render::vk {
 
@@ -105,6 +106,9 @@ class Device {
   VkResult pretended(DriverCall call) const { return fail_ ? fail_(call) : VK_SUCCESS; }
   PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
 
+  /// Its one timeline semaphore, and the value that the last submission reaches.
+  VkSemaphore timeline() const { return timeline_; }
+  std::uint64_t submitted() const { return submitted_; }
   /// Submits and returns the timeline value that is reached when the work is done. Optional binary semaphores for a swapchain.
   Result<std::uint64_t> submit(VkCommandBuffer commands, VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
   Outcome wait(std::uint64_t value);

@@ -14,7 +14,7 @@ Result<Recording> Recording::open(const std::string& path, RecordedScene scene, 
   header.fields = std::move(scene.fields);
   header.about = std::move(scene.about);
   header.device = hand.device->capabilities().name;
-  header.catena_version = kCatenaVersion;
+  header.catena_version = kVersion;
   header.rate_hz = hand.settings.rate_hz;
   CATENA_TRY(recording.writer_, haptics::log::LogWriter::open(path, std::move(header), scene.inputs));
   recording.path_ = path;

@@ -41,7 +41,7 @@ constexpr const char* kSanitised = "";
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> about_this_machine() {
-  return {{"version", kCatenaVersion},
+  return {{"version", kVersion},
           {"build", fmt::format("GCC {}, {}{}", __VERSION__, kOptimised, kSanitised)},
           {"processor", processor_name()},
           {"cores", std::to_string(std::thread::hardware_concurrency())},

@@ -72,7 +72,7 @@ class Recordings {
     header.scene_path = study_.path;
     header.scene_text = text;
     header.device = "simulated hand";
-    header.catena_version = kCatenaVersion;
+    header.catena_version = kVersion;
     header.rate_hz = study::kSimulatedRateHz;
     header.about = about_trial(study_, trial);
     place_ = (fs::path(folder_) / study::recording_name(trial)).string();

@@ -30,7 +30,7 @@ if(NOT CATENA_SANITIZE MATCHES "thread")
     PROGRAM LABELS usb)
   # preloaded into the programs that these tests start
   add_library(catena_inherited_node MODULE haptics/device/usbfs/inherited_node.cpp)
-  set_target_properties(catena_inherited_node PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+  set_target_properties(catena_inherited_node PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
   target_link_libraries(catena_inherited_node PRIVATE ${CMAKE_DL_LIBS})
   add_dependencies(test_haptics_device_usb catena_inherited_node)
   unset(CMAKE_CROSSCOMPILING_EMULATOR)

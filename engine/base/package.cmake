@@ -1,0 +1,107 @@
+# Catena as a part of other programs: libcatena.so of the rooms' own objects (nothing is compiled twice), the targets catena::field,
+# catena::flow, catena::haptics and catena::render, what is installed, and what `find_package(catena)` reads. The program itself holds the
+# rooms; it does not use the library. The readers' programs stay apart, so that OpenVDB and VTK are in neither.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+option(CATENA_LIBRARY "build libcatena.so, which is installed with its headers" ON)
+set(CATENA_HELPERS_FOLDER ${CMAKE_INSTALL_LIBEXECDIR}/catena)  # engine/base/helper_process.cpp looks there
+
+# ---- programs, scenes, documents ----
+get_property(helpers GLOBAL PROPERTY CATENA_HELPERS)
+install(TARGETS catena RUNTIME COMPONENT catena)
+install(TARGETS ${helpers} RUNTIME DESTINATION ${CATENA_HELPERS_FOLDER} COMPONENT catena)
+install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catena COMPONENT catena PATTERN pictures EXCLUDE PATTERN system EXCLUDE)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena PATTERN examples EXCLUDE)
+install(FILES README.md LICENSE SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena)
+
+if(NOT CATENA_LIBRARY OR CATENA_SANITIZE)
+  return()
+endif()
+
+# ---- what can be seen of it: the names that the public headers declare ----
+set(list engine/base/public_headers.txt)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
+file(STRINGS ${list} CATENA_PUBLIC_HEADERS REGEX "^[^#]")
+set(patterns "")
+foreach(header ${CATENA_PUBLIC_HEADERS})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+  file(READ ${header} text)
+  string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+  string(REGEX MATCHALL "namespace catena[a-z_:]* " spaces "${text}")
+  string(REGEX MATCHALL "(class|struct) [A-Z][A-Za-z0-9]*" types "${text}")
+  string(REGEX MATCHALL "[ *&][a-z][a-z0-9_]*\\(" functions "${text}")
+  list(REMOVE_DUPLICATES spaces)
+  foreach(space ${spaces})
+    string(REGEX REPLACE "namespace ([a-z_:]*) " "\\1" space ${space})
+    foreach(type ${types})
+      string(REGEX REPLACE ".* " "" type ${type})
+      list(APPEND patterns "${space}::${type}::*" "\"vtable for ${space}::${type}\"" "\"typeinfo for ${space}::${type}\""
+        "\"typeinfo name for ${space}::${type}\"")
+    endforeach()
+    foreach(function ${functions})
+      string(REGEX REPLACE "[ *&(]" "" function ${function})
+      list(APPEND patterns "${space}::${function}[!a-zA-Z0-9_]*")
+    endforeach()
+  endforeach()
+endforeach()
+list(SORT patterns)
+list(REMOVE_DUPLICATES patterns)
+string(REPLACE ";" ";\n    " patterns "${patterns}")
+set(node CATENA_${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/exports.map
+  CONTENT "${node} {\n  global:\n  extern \"C++\" {\n    ${patterns};\n  };\n  local: *;\n};\n")
+
+# ---- the library ----
+set(objects "")
+set(third_party "")
+get_property(rooms GLOBAL PROPERTY CATENA_ROOMS)
+foreach(room ${rooms})
+  if(NOT room MATCHES "^catena_(engine_(vdb|vtk|reader|web)|render_(compile|xr))$")
+    get_target_property(libraries ${room} CATENA_THIRD_PARTY)
+    list(APPEND objects $<TARGET_OBJECTS:${room}>)
+    list(APPEND third_party ${libraries})
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES third_party)
+add_library(catena_library SHARED ${objects})
+target_link_libraries(catena_library PRIVATE ${third_party} fmt::fmt Threads::Threads ${CMAKE_DL_LIBS} INTERFACE glm::glm)
+set_target_properties(catena_library PROPERTIES OUTPUT_NAME catena EXPORT_NAME library LINKER_LANGUAGE CXX LINK_DEPENDS ${PROJECT_BINARY_DIR}/exports.map
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+target_link_options(catena_library PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/exports.map -Wl,--no-undefined -Wl,--as-needed
+  -Wl,-z,relro,-z,now,-z,noexecstack)
+target_include_directories(catena_library INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/catena>)
+target_compile_features(catena_library INTERFACE cxx_std_20)
+add_dependencies(catena_library ${helpers})
+
+# Parts of it by what they are for: one library is behind all of them.
+function(catena_part NAME)
+  add_library(catena_part_${NAME} INTERFACE)
+  add_library(catena::${NAME} ALIAS catena_part_${NAME})
+  set_target_properties(catena_part_${NAME} PROPERTIES EXPORT_NAME ${NAME})
+  target_link_libraries(catena_part_${NAME} INTERFACE ${ARGN})
+endfunction()
+add_library(catena::library ALIAS catena_library)
+catena_part(field catena_library)
+catena_part(flow catena_part_field)
+catena_part(haptics catena_part_flow)
+target_compile_options(catena_part_haptics INTERFACE -ffp-contract=off)  # a tick repeats to the bit
+catena_part(render catena_part_field Vulkan::Vulkan)
+
+# ---- what is installed of it ----
+install(TARGETS catena_library catena_part_field catena_part_flow catena_part_haptics catena_part_render EXPORT catena
+  LIBRARY COMPONENT library NAMELINK_COMPONENT development)
+foreach(header ${CATENA_PUBLIC_HEADERS})
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/catena/${folder} COMPONENT development)
+endforeach()
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/catena)
+install(EXPORT catena NAMESPACE catena:: DESTINATION ${package} COMPONENT development)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/catena-config-version.cmake COMPATIBILITY SameMinorVersion)
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/catena-config.cmake CONTENT
+  "include(CMakeFindDependencyMacro)\nfind_dependency(glm)\nfind_dependency(Vulkan)\ninclude(\${CMAKE_CURRENT_LIST_DIR}/catena.cmake)\n")
+install(FILES ${PROJECT_BINARY_DIR}/catena-config.cmake ${PROJECT_BINARY_DIR}/catena-config-version.cmake DESTINATION ${package}
+  COMPONENT development)
+install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+
+include(engine/python/python.cmake)
+include(engine/base/deb.cmake)

@@ -1,0 +1,8 @@
+/// The version of Catena, semantic: before 1.0 a change of what headers promise raises the middle number. CMake reads it from here.
+#pragma once
+
+namespace catena {
+
+inline constexpr const char* kVersion = "0.1.0";
+
+}  // namespace catena

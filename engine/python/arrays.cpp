@@ -1,0 +1,155 @@
+/// catena.field: NumPy arrays as grids, read where they lie, whatever their type and their strides.
+#include <array>
+#include <cstring>
+
+#include "engine/field/from_layers.h"
+#include "engine/field/load.h"
+#include "engine/python/module.h"
+
+namespace catena::python {
+namespace {
+
+/// An array seen as voxels: index i, j, k and component c lie at base + i sx + j sy + k sz + c sc bytes.
+struct Voxels {
+  const char* base = nullptr;
+  field::Index3 size{0, 0, 0};
+  py::ssize_t sx = 0, sy = 0, sz = 0, sc = 0;
+  bool vectors = false;
+};
+
+template <class T>
+void read_layers(const Voxels& v, int z, std::span<float> out) {
+  const int components = v.vectors ? 3 : 1;
+  std::size_t n = 0;
+  for (int k = z; n < out.size(); ++k)
+    for (int j = 0; j < v.size.y; ++j) {
+      const char* row = v.base + k * v.sz + j * v.sy;
+      for (int i = 0; i < v.size.x; ++i, row += v.sx)
+        for (int c = 0; c < components; ++c) {
+          T value;
+          std::memcpy(&value, row + c * v.sc, sizeof value);
+          out[n++] = static_cast<float>(value);
+        }
+    }
+}
+
+using Reader = void (*)(const Voxels&, int, std::span<float>);
+Reader reader_of(const py::dtype& type) {
+  if (type.byteorder() == '>') return nullptr;
+  switch (type.kind() * 16 + static_cast<int>(type.itemsize())) {
+    case 'f' * 16 + 4:
+      return read_layers<float>;
+    case 'f' * 16 + 8:
+      return read_layers<double>;
+    case 'b' * 16 + 1:
+    case 'u' * 16 + 1:
+      return read_layers<std::uint8_t>;
+    case 'i' * 16 + 1:
+      return read_layers<std::int8_t>;
+    case 'u' * 16 + 2:
+      return read_layers<std::uint16_t>;
+    case 'i' * 16 + 2:
+      return read_layers<std::int16_t>;
+    case 'u' * 16 + 4:
+      return read_layers<std::uint32_t>;
+    case 'i' * 16 + 4:
+      return read_layers<std::int32_t>;
+    case 'u' * 16 + 8:
+      return read_layers<std::uint64_t>;
+    case 'i' * 16 + 8:
+      return read_layers<std::int64_t>;
+    default:
+      return nullptr;
+  }
+}
+
+Voxels voxels_of(const py::array& array, const std::string& axes, const std::string& name) {
+  if (axes != "zyx" && axes != "xyz") throw Failure(Error{name + ": axes is \"" + axes + "\"; \"zyx\" or \"xyz\" was expected"});
+  Voxels v;
+  v.vectors = array.ndim() == 4 && array.shape(3) == 3;
+  if (array.ndim() != 3 && !v.vectors)
+    throw Failure(
+        Error{name + ": the array has " + std::to_string(array.ndim()) + " dimensions; three were expected, or a fourth of 3 for vectors"});
+  const auto at = [&](int axis) { return axes == "xyz" ? axis : 2 - axis; };
+  for (int axis = 0; axis < 3; ++axis)
+    if (array.shape(axis) > 65536) throw Failure(Error{name + ": an axis has more than 65536 voxels"});
+  v.base = static_cast<const char*>(array.data());
+  v.size = {static_cast<int>(array.shape(at(0))), static_cast<int>(array.shape(at(1))), static_cast<int>(array.shape(at(2)))};
+  v.sx = array.strides(at(0)), v.sy = array.strides(at(1)), v.sz = array.strides(at(2));
+  v.sc = v.vectors ? array.strides(3) : 0;
+  return v;
+}
+
+field::Mapping mapping_of(const py::object& affine, const std::string& name) {
+  if (affine.is_none()) return {};
+  const auto m = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(affine);
+  if (!m || m.ndim() != 2 || m.shape(0) != 4 || m.shape(1) != 4)
+    throw Failure(Error{name + ": the affine is no 4 x 4 matrix; the map from (i, j, k, 1) to the world was expected"});
+  Mat3 linear{1.0};
+  Vec3 origin{0.0};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) linear[column][row] = m.at(row, column);
+    origin[row] = m.at(row, 3);
+  }
+  return field::Mapping::from_linear(linear, origin);
+}
+
+Field with_interpolation(Field field, const std::string& words, const std::string& name) {
+  const auto chosen = words == "linear"    ? field::Interpolation::linear
+                      : words == "nearest" ? field::Interpolation::nearest
+                                           : field::Interpolation::cubic;
+  if (chosen == field::Interpolation::cubic && words != "cubic")
+    throw Failure(Error{name + ": interpolation is \"" + words + "\"; \"linear\", \"nearest\" or \"cubic\" was expected"});
+  if (chosen == field::Interpolation::linear) return field;
+  if (field.any.vector) {
+    if (chosen == field::Interpolation::nearest) throw Failure(Error{name + ": vectors are not read by the nearest voxel"});
+    field.any.vector = take(field.any.vector->grid()->cubic());
+  } else if (chosen == field::Interpolation::cubic) {
+    field.any.scalar = take(field.any.scalar->grid()->cubic());
+  } else {
+    field.any.scalar = field.any.scalar->grid()->interpolated(chosen);
+  }
+  return field;
+}
+
+Field from_array(const py::array& array, const std::string& axes, const py::object& affine, const std::string& name,
+                 const std::string& interpolation) {
+  const Reader reader = reader_of(array.dtype());
+  if (reader == nullptr)
+    throw Failure(Error{name + ": the array holds " + py::cast<std::string>(py::str(array.dtype())) +
+                        "; real numbers of this machine's byte order were expected (astype)"});
+  const Voxels voxels = voxels_of(array, axes, name);
+  const field::Mapping mapping = mapping_of(affine, name);
+  const py::gil_scoped_release unlocked;
+  field::Layers layers;
+  layers.size = voxels.size;
+  layers.vectors = voxels.vectors;
+  layers.read = [&](int z, std::span<float> out) { reader(voxels, z, out); };
+  return with_interpolation({take(field::make_grid(name, mapping, layers))}, interpolation, name);
+}
+
+}  // namespace
+
+Field field_of(const py::handle& value, const std::string& name) {
+  if (py::isinstance<Field>(value)) return py::cast<Field>(value);
+  const py::array array = py::array::ensure(py::reinterpret_borrow<py::object>(value));
+  if (!array) throw Failure(Error{name + ": a Field or an array was expected"});
+  return from_array(array, "zyx", py::none(), name, "linear");
+}
+
+void add_arrays(py::module_& m) {
+  m.def("_from_array", from_array, py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("name"), py::arg("interpolation"));
+  m.def(
+      "_from_file",
+      [](const std::string& path, const std::string& grid, int step, const std::string& interpolation) {
+        const py::gil_scoped_release unlocked;
+        field::LoadRequest request;
+        request.path = path;
+        request.grid = grid;
+        request.step = step;
+        return with_interpolation({take(field::load(request))}, interpolation, path);
+      },
+      py::arg("path"), py::arg("grid"), py::arg("step"), py::arg("interpolation"));
+}
+
+}  // namespace catena::python

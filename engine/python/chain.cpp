@@ -1,0 +1,166 @@
+/// catena.Chain: what a hand feels along positions of its probe, tick by tick, exactly as `catena replay` computes it.
+#include <memory>
+#include <optional>
+
+#include "engine/python/module.h"
+#include "haptics/chain/tick.h"
+#include "haptics/device/registry.h"
+#include "haptics/extract/extract.h"
+#include "haptics/servo/limits_for.h"
+
+namespace catena::python {
+namespace {
+
+using exchange::HapticState;
+
+/// As `replay`: a scene that names its device is felt as that device would give it.
+haptics::Limits limits_of(const scene::Scene& scene) {
+  if (!scene.device) return {};
+  const haptics::DeviceSettings settings = take(haptics::read_device_settings(*scene.device, scene.path));
+  return haptics::limits_for(haptics::nominal_capabilities(settings.type), settings);
+}
+
+/// N ticks as arrays.
+struct Ticks {
+  py::array_t<double> t, proxies, forces, link_forces, gaps;
+  py::array_t<std::uint8_t> statuses;
+
+  Ticks(py::ssize_t n, py::ssize_t links)
+      : t(n),
+        proxies({n, links, py::ssize_t(3)}),
+        forces({n, py::ssize_t(3)}),
+        link_forces({n, links, py::ssize_t(3)}),
+        gaps({n, links}),
+        statuses({n, links}) {}
+};
+
+/// Where the next tick's numbers go.
+struct Rows {
+  double *t, *proxies, *forces, *link_forces, *gaps;
+  std::uint8_t* statuses;
+  explicit Rows(Ticks& ticks)
+      : t(ticks.t.mutable_data()),
+        proxies(ticks.proxies.mutable_data()),
+        forces(ticks.forces.mutable_data()),
+        link_forces(ticks.link_forces.mutable_data()),
+        gaps(ticks.gaps.mutable_data()),
+        statuses(ticks.statuses.mutable_data()) {}
+
+  static void put(double*& to, const Vec3& v) { *to++ = v.x, *to++ = v.y, *to++ = v.z; }
+  void add(const HapticState& state) {
+    *t++ = state.t_s;
+    put(forces, state.force_n);
+    for (int i = 0; i < state.link_count; ++i) {
+      const exchange::LinkReport& link = state.links[static_cast<std::size_t>(i)];
+      put(proxies, link.proxy);
+      put(link_forces, link.force_n);
+      *gaps++ = link.gap;
+      *statuses++ = static_cast<std::uint8_t>(link.status);
+    }
+  }
+};
+
+class Chain {
+ public:
+  Chain(const py::object& scene, const py::dict& fields, double rate_hz) : rate_hz_(rate_hz) {
+    if (!(rate_hz > 0) || !std::isfinite(rate_hz)) throw Failure(Error{"rate_hz is not positive; ticks a second were expected"});
+    scene::Scene read = scene_of(scene, fields);
+    const py::gil_scoped_release unlocked;
+    program_ = take(haptics::extract_program(read, limits_of(read)));
+    reset();
+  }
+
+  void reset() {
+    state_ = std::make_unique<haptics::ChainState>();
+    scratch_ = std::make_unique<haptics::ChainScratch>();
+    hash_ = {};
+    ticks_ = 0;
+  }
+
+  Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
+    const std::vector<Vec3> places = points_of(positions, "positions");
+    const auto t = column<double>(times, places.size(), "t");
+    const auto pressed = column<std::uint32_t>(buttons, places.size(), "buttons");
+    Ticks out(static_cast<py::ssize_t>(places.size()), static_cast<py::ssize_t>(program_->links.size()));
+    Rows rows(out);
+    const py::gil_scoped_release unlocked;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      haptics::ProbeSample probe;
+      probe.t_s = t ? (*t)[i] : next_t_s();
+      probe.position = places[i];
+      if (pressed) probe.buttons = (*pressed)[i];
+      haptics::tick(*program_, probe, *state_, *scratch_, last_);
+      hash_.add(last_);
+      ++ticks_;
+      rows.add(last_);
+    }
+    return out;
+  }
+
+  std::vector<std::string> links() const {
+    std::vector<std::string> names;
+    for (const haptics::Link& link : program_->links) names.push_back(link.name);
+    return names;
+  }
+  double metres_per_unit() const { return program_->metres_per_unit; }
+  std::uint64_t ticks() const { return ticks_; }
+  std::uint64_t state_hash() const { return hash_.value(); }
+
+ private:
+  double next_t_s() const { return static_cast<double>(ticks_) / rate_hz_; }
+
+  template <class T>
+  static std::optional<std::vector<T>> column(const py::object& from, std::size_t rows, const std::string& what) {
+    if (from.is_none()) return std::nullopt;
+    const auto array = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(from);
+    if (!array || array.size() != static_cast<py::ssize_t>(rows))
+      throw Failure(Error{what + " does not have one number for each position; " + std::to_string(rows) + " were expected"});
+    return std::vector<T>(array.data(), array.data() + rows);
+  }
+
+  double rate_hz_;
+  std::shared_ptr<const haptics::Program> program_;
+  std::unique_ptr<haptics::ChainState> state_;
+  std::unique_ptr<haptics::ChainScratch> scratch_;
+  haptics::StateHash hash_;
+  HapticState last_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace
+
+void add_chain(py::module_& m) {
+  py::class_<Ticks>(m, "Ticks", "What N ticks of a chain of L links said.")
+      .def_readonly("t", &Ticks::t, "(N,): seconds.")
+      .def_readonly("proxies", &Ticks::proxies, "(N, L, 3): every link's proxy, world units; the last one is where the hand is held.")
+      .def_readonly("forces", &Ticks::forces, "(N, 3): the force on the hand, newtons, world axes.")
+      .def_readonly("link_forces", &Ticks::link_forces, "(N, L, 3): every link's share before the limit, newtons.")
+      .def_readonly("gaps", &Ticks::gaps, "(N, L): the distance of a link's proxy from its probe, world units.")
+      .def_readonly("statuses", &Ticks::statuses, "(N, L) of uint8: indices into catena.STATUSES.");
+  py::class_<Chain>(m, "Chain",
+                    "The chain of proxies of a scene, felt by a probe that the caller moves. It remembers from tick to tick: run() goes on "
+                    "where it was. One thread at a time.")
+      .def(py::init<const py::object&, const py::dict&, double>(), py::arg("scene"), py::arg("fields") = py::dict(),
+           py::arg("rate_hz") = 1000.0,
+           "scene: a path, or a dict as a scene file has it. fields: names and the Fields or arrays (z, y, x) that stand for "
+           "them.\nrate_hz: "
+           "ticks a second, where run() is given no times. A scene with a \"device\" is felt within its limits.")
+      .def("run", &Chain::run, py::arg("positions"), py::arg("t") = py::none(), py::arg("buttons") = py::none(),
+           "A tick for each position.\n\npositions: (N, 3) or (3,), world units. t: (N,), seconds, rising; None: evenly at rate_hz. "
+           "buttons: (N,), whole numbers, bit 0 is button 1.\nReturns Ticks. The same positions give the same bits as `catena replay`.")
+      .def(
+          "step", [](Chain& chain, const Points& position) { return chain.run(position, py::none(), py::none()); }, py::arg("position"),
+          "One tick: run() of one position.\n\nposition: (3,), world units. Returns Ticks with N = 1.")
+      .def("reset", &Chain::reset, "Forgets all ticks: the next one is the first.")
+      .def_property_readonly("links", &Chain::links, "The names of the L links, in order.")
+      .def_property_readonly("metres_per_unit", &Chain::metres_per_unit, "Metres of the hand a world unit.")
+      .def_property_readonly("ticks", &Chain::ticks, "How many ticks there were since the start.")
+      .def_property_readonly("state_hash", &Chain::state_hash,
+                             "A number of all that the ticks said, to the bit: `catena replay --stats` has it too.");
+  py::list words;
+  for (int i = 0; i <= static_cast<int>(exchange::Status::bad_probe); ++i)
+    words.append(exchange::status_word(static_cast<exchange::Status>(i)));
+  m.attr("STATUSES") = py::tuple(words);
+}
+
+}  // namespace catena::python

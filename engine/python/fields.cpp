@@ -1,0 +1,115 @@
+/// catena.Field and catena.analytic: samples and gradients at many places at once.
+#include <limits>
+
+#include "engine/field/analytic.h"
+#include "engine/field/load.h"
+#include "engine/python/module.h"
+
+namespace catena::python {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+py::array_t<double> sample(const Field& field, const Points& points) {
+  const std::vector<Vec3> places = points_of(points, "points");
+  const auto count = static_cast<py::ssize_t>(places.size());
+  py::array_t<double> values = field.any.vector ? py::array_t<double>({count, py::ssize_t(3)}) : py::array_t<double>(count);
+  double* to = values.mutable_data();
+  const py::gil_scoped_release unlocked;
+  field::Cursor cursor;
+  for (const Vec3& p : places) {
+    if (field.any.vector) {
+      const field::VectorSample s = field.any.vector->sample(p, cursor);
+      for (int i = 0; i < 3; ++i) *to++ = s.inside ? s.value[i] : kNan;
+    } else {
+      const field::ScalarSample s = field.any.scalar->sample(p, cursor);
+      *to++ = s.inside ? s.value : kNan;
+    }
+  }
+  return values;
+}
+
+py::array_t<double> gradient(const Field& field, const Points& points) {
+  if (!field.any.scalar) throw Failure(Error{"a vector field has no gradient here; a scalar field was expected"});
+  std::vector<Vec3> places = points_of(points, "points");
+  {
+    const py::gil_scoped_release unlocked;
+    field::Cursor cursor;
+    for (Vec3& p : places) {
+      const field::ScalarSample s = field.any.scalar->sample(p, cursor);
+      p = s.inside ? s.gradient : Vec3(kNan);
+    }
+  }
+  return array_of(places);
+}
+
+Field analytic(const std::string& name, double scale, const std::string& part, const Points& center) {
+  field::AnalyticParameters parameters;
+  parameters.scale = scale;
+  parameters.part = part;
+  parameters.center = vec3_of(center, "center");
+  return {take(field::make_analytic(name, parameters))};
+}
+
+void save(const Field& field, const std::string& path) {
+  if (!field.any.get()->is_grid()) throw Failure(Error{"a formula has no voxels to write; a grid was expected"});
+  const py::gil_scoped_release unlocked;
+  take(field::write_vdb(path, {{field.any, field.any.get()->name()}}));
+}
+
+std::string text(const Field& field) {
+  return "<catena.Field " + field.any.get()->name() + (field.any.vector ? ", vectors" : ", scalars") +
+         (field.any.get()->is_grid() ? ", a grid>" : ", a formula>");
+}
+
+}  // namespace
+
+void add_fields(py::module_& m) {
+  py::class_<Field>(
+      m, "Field",
+      "A scalar or vector field in world coordinates: a grid, or a formula. It does not change; any number of threads may use it.")
+      .def("sample", sample, py::arg("points"),
+           "Values at world places.\n\npoints: (N, 3) or (3,), world units.\nReturns (N,) of a scalar field, (N, 3) of a vector field "
+           "(components along the world's axes), in the field's unit;\nNaN outside of the domain.")
+      .def("gradient", gradient, py::arg("points"),
+           "Gradients of a scalar field at world places: exact derivatives of what sample() gives.\n\npoints: (N, 3) or (3,), world "
+           "units.\nReturns (N, 3), field units per world unit; NaN outside of the domain.")
+      .def("save", save, py::arg("path"), "Writes a grid to a .vdb file, whole or not at all.")
+      .def_property_readonly(
+          "name", [](const Field& f) { return f.any.get()->name(); }, "The grid's or the formula's name.")
+      .def_property_readonly(
+          "is_vector", [](const Field& f) { return f.any.vector != nullptr; }, "True for three components a place.")
+      .def_property_readonly(
+          "is_grid", [](const Field& f) { return f.any.get()->is_grid(); }, "False for formulas.")
+      .def_property_readonly(
+          "bounds",
+          [](const Field& f) {
+            const Bounds b = f.any.get()->world_bounds();
+            return array_of({b.lo, b.hi});
+          },
+          "(2, 3): the lowest and the highest corner of the domain's box, world units.")
+      .def_property_readonly(
+          "range",
+          [](const Field& f) -> py::object {
+            if (f.any.scalar) return py::make_tuple(f.any.scalar->min_value(), f.any.scalar->max_value());
+            if (const field::VectorGrid* grid = f.any.vector->grid()) return py::make_tuple(grid->stats().min, grid->stats().max);
+            return py::none();
+          },
+          "(least, most) of the values; of a vector grid of their lengths; None for a vector formula.")
+      .def_property_readonly(
+          "bytes", [](const Field& f) { return f.any.get()->bytes(); }, "Memory that the grid holds, bytes.")
+      .def("__repr__", text);
+  m.def("analytic", analytic, py::arg("name"), py::arg("scale") = 1.0, py::arg("part") = "", py::arg("center") = std::array<double, 3>{},
+        "A field by formula: \"sphere\", \"helix\", \"hill\", \"left-ventricle\", ... (analytic_names()).\n\nscale: multiplies values. "
+        "part: of \"left-ventricle\": density, transmural or fibre. center: (3,), world place of the formula's origin.");
+  m.def(
+      "analytic_names",
+      [] {
+        std::vector<std::string> names;
+        for (const std::string_view name : field::analytic_names()) names.emplace_back(name);
+        return names;
+      },
+      "The names that analytic() takes.");
+}
+
+}  // namespace catena::python

@@ -1,0 +1,86 @@
+#include "engine/python/module.h"
+
+#include "engine/base/version.h"
+#include "engine/scene/scene.h"
+
+namespace catena::python {
+
+std::vector<Vec3> points_of(const Points& array, const std::string& what) {
+  const bool one = array.ndim() == 1 && array.shape(0) == 3;
+  if (!one && !(array.ndim() == 2 && array.shape(1) == 3)) {
+    std::string shape;
+    for (py::ssize_t i = 0; i < array.ndim(); ++i) shape += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+    throw Failure(Error{what + " has the shape (" + shape + "); (N, 3) or (3,) was expected"});
+  }
+  const std::size_t count = one ? 1 : static_cast<std::size_t>(array.shape(0));
+  std::vector<Vec3> points(count);
+  const double* from = array.data();
+  for (Vec3& p : points) p = {from[0], from[1], from[2]}, from += 3;
+  return points;
+}
+
+Vec3 vec3_of(const Points& array, const std::string& what) {
+  const std::vector<Vec3> points = points_of(array, what);
+  if (points.size() != 1) throw Failure(Error{what + " is several points; one, (3,), was expected"});
+  return points[0];
+}
+
+py::array_t<double> array_of(const std::vector<Vec3>& points) {
+  py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t(3)});
+  double* to = array.mutable_data();
+  for (const Vec3& p : points)
+    for (int i = 0; i < 3; ++i) *to++ = p[i];
+  return array;
+}
+
+scene::Scene scene_of(const py::object& what, const py::dict& fields) {
+  std::vector<scene::FieldOverride> given;
+  for (const auto& [key, value] : fields) {
+    const std::string name = py::cast<std::string>(key);
+    given.push_back({name, {}, {}, field_of(value, name).any});
+  }
+  if (py::isinstance<Field>(what) || py::isinstance<py::array>(what)) {
+    if (!given.empty()) throw Failure(Error{"a field alone has no use for others; a scene was expected with them"});
+    const Field field = field_of(what, "field");
+    const py::gil_scoped_release unlocked;
+    return take(scene::scene_for_field(field.any));
+  }
+  if (py::isinstance<py::dict>(what)) {
+    const std::string text = py::cast<std::string>(py::module_::import("json").attr("dumps")(what));
+    const py::gil_scoped_release unlocked;
+    return take(scene::parse_scene(text, "scene", given));
+  }
+  const std::string path = py::cast<std::string>(py::module_::import("os").attr("fspath")(what));
+  const py::gil_scoped_release unlocked;
+  if (path.ends_with(".json")) return take(scene::read_scene(path, given));
+  if (!given.empty()) throw Failure(Error{path + ": a data file has no use for other fields; a scene was expected with them"});
+  return take(scene::scene_for_file(path));
+}
+
+}  // namespace catena::python
+
+PYBIND11_MODULE(_catena, m) {
+  namespace py = pybind11;
+  using catena::python::Failure;
+  m.doc() = "See and feel scientific fields: the parts of Catena's library.";
+  m.attr("__version__") = catena::kVersion;
+  static const py::object error = py::reinterpret_borrow<py::object>(PyErr_NewExceptionWithDoc(
+      "catena.Error", "What was given cannot be used: the one line that the program catena would print.", PyExc_ValueError, nullptr));
+  static const py::object machine_error = py::reinterpret_borrow<py::object>(PyErr_NewExceptionWithDoc(
+      "catena.MachineError", "This machine does not give what is needed (memory, a Vulkan device).", error.ptr(), nullptr));
+  m.attr("Error") = error;
+  m.attr("MachineError") = machine_error;
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Failure& failure) {
+      PyErr_SetString((failure.machine ? machine_error : error).ptr(), failure.what());
+    }
+  });
+  catena::python::add_fields(m);
+  catena::python::add_arrays(m);
+  catena::python::add_curves(m);
+  catena::python::add_chain(m);
+  catena::python::add_pictures(m);
+  catena::python::add_tables(m);
+}

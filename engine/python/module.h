@@ -1,0 +1,58 @@
+/// The Python module `catena._catena`: what its files share. Every function that takes long releases the interpreter's lock; an error is
+/// raised as catena.Error with the one line that the program would print. Arrays that come back own their memory.
+#pragma once
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/field/field.h"
+#include "engine/scene/scene.h"
+
+namespace catena::python {
+
+namespace py = pybind11;
+
+/// Becomes catena.Error, or catena.MachineError where the machine does not give what is needed.
+struct Failure : std::runtime_error {
+  explicit Failure(const Error& error) : std::runtime_error(error.message), machine(error.machine) {}
+  bool machine;
+};
+
+template <class T>
+T take(Result<T> result) {
+  if (!result) throw Failure(result.error());
+  return std::move(*result);
+}
+
+/// A field as Python holds it.
+struct Field {
+  field::AnyField any;
+};
+
+/// N x 3 doubles, or three of them; another shape is an error that names `what`.
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+std::vector<Vec3> points_of(const Points& array, const std::string& what);
+py::array_t<double> array_of(const std::vector<Vec3>& points);
+Vec3 vec3_of(const Points& array, const std::string& what);
+
+/// A Field, or an array that becomes one as catena.field(array) says.
+Field field_of(const py::handle& value, const std::string& name);
+
+/// A scene of a path (a scene file or a data file), a dict as the scene file's object, a Field or an array. `fields`: names and Fields or
+/// arrays that the scene uses.
+scene::Scene scene_of(const py::object& what, const py::dict& fields);
+
+void add_fields(py::module_& m);
+void add_arrays(py::module_& m);
+void add_curves(py::module_& m);
+void add_chain(py::module_& m);
+void add_pictures(py::module_& m);
+void add_tables(py::module_& m);
+
+}  // namespace catena::python

@@ -1,0 +1,221 @@
+/// Catena as other programs get it: installed below the build folder, with programs built against that which know nothing of this tree.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace package_test {
+
+namespace fs = std::filesystem;
+namespace test = catena::test;
+
+const std::string& prefix() {
+  static const std::string path = test::binary_dir() + "/installed";
+  return path;
+}
+
+std::string words_of(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += word + " ";
+  return all;
+}
+
+/// CMake itself; what it prints is told where it fails.
+void cmake(const std::vector<std::string>& arguments) {
+  const test::ProgramResult result = test::run_program(CATENA_CMAKE, arguments);
+  ASSERT_EQ(result.exit_code, 0) << "cmake " << words_of(arguments) << "\n" << result.out.substr(0, 8000) << result.err.substr(0, 4000);
+}
+
+/// Builds a project against what is installed. The folder is kept: what has not changed is not built again.
+void build_outside(const std::string& source, const std::string& name) {
+  const std::string folder = test::binary_dir() + "/outside/" + name;
+  std::vector<std::string> configure{
+      "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + prefix(), "-DCMAKE_BUILD_TYPE=None"};
+  if (std::string(CATENA_LAUNCHER).size() > 0) configure.push_back(std::string("-DCMAKE_CXX_COMPILER_LAUNCHER=") + CATENA_LAUNCHER);
+  ASSERT_NO_FATAL_FAILURE(cmake(configure));
+  cmake({"--build", folder, "--parallel", "2"});
+}
+
+std::vector<std::string> public_headers() {
+  std::vector<std::string> headers;
+  std::ifstream in(test::source_dir() + "/engine/base/public_headers.txt");
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty() && line[0] != '#') headers.push_back(line);
+  return headers;
+}
+
+void write_if_changed(const std::string& path, const std::string& text) {
+  if (!test::exists(path) || test::read_file(path) != text) test::write_file(path, text);
+}
+
+struct Package : testing::Test {
+  static void SetUpTestSuite() { cmake({"--install", test::binary_dir(), "--prefix", prefix()}); }
+  test::TemporaryFolder folder;
+
+  /// An example that was built by build_outside.
+  static test::ProgramResult example(const std::string& name, const std::vector<std::string>& arguments = {}) {
+    return test::run_program(test::binary_dir() + "/outside/examples/" + name, arguments);
+  }
+};
+
+TEST_F(Package, PublicHeadersIncludeOnlyPublicOnesAndFewLibraries) {
+  const std::vector<std::string> headers = public_headers();
+  const std::set<std::string> all(headers.begin(), headers.end());
+  EXPECT_EQ(all.size(), headers.size()) << "a header is listed twice";
+  const std::regex include(R"(\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+  for (const std::string& header : headers) {
+    ASSERT_TRUE(test::exists(test::source_dir() + "/" + header)) << header;
+    std::istringstream in(test::read_file(test::source_dir() + "/" + header));
+    for (std::string line; std::getline(in, line);) {
+      std::smatch match;
+      if (!std::regex_match(line, match, include)) continue;
+      const std::string path = match[2];
+      if (match[1] == "\"") {
+        EXPECT_TRUE(all.contains(path)) << header << " includes " << path << ", which is not public";
+      } else if (path.find('/') != std::string::npos || path.ends_with(".h")) {
+        EXPECT_TRUE(path.starts_with("glm/") || path.starts_with("fmt/") || path == "vulkan/vulkan.h")
+            << header << " includes " << path << ": GLM, fmt and Vulkan were expected";
+      }
+    }
+  }
+}
+
+TEST_F(Package, TheyAndNoOthersAreInstalledAndStandAlone) {
+  const std::vector<std::string> headers = public_headers();
+  std::set<std::string> installed;
+  const std::string at = prefix() + "/include/catena";
+  for (const auto& entry : fs::recursive_directory_iterator(at))
+    if (entry.is_regular_file()) installed.insert(fs::relative(entry.path(), at).string());
+  EXPECT_EQ(installed, std::set<std::string>(headers.begin(), headers.end()));
+
+  const std::string project = test::binary_dir() + "/outside/headers-alone";
+  fs::create_directories(project);
+  std::string text = "cmake_minimum_required(VERSION 3.25)\nproject(alone CXX)\nfind_package(catena REQUIRED)\nadd_library(alone OBJECT";
+  for (const std::string& header : headers) {
+    const std::string file = std::regex_replace(header, std::regex("[/.]"), "_") + ".cpp";
+    write_if_changed(project + "/" + file, "#include \"" + header + "\"\n");
+    text += "\n  " + file;
+  }
+  text +=
+      ")\ntarget_link_libraries(alone catena::haptics catena::render)\ntarget_compile_options(alone PRIVATE -O0 -Wall -Wextra -Werror)\n";
+  write_if_changed(project + "/CMakeLists.txt", text);
+  build_outside(project, "headers");
+}
+
+TEST_F(Package, TheLibraryShowsOnlyWhatPublicHeadersDeclare) {
+  std::string text;
+  for (const std::string& header : public_headers()) text += test::read_file(test::source_dir() + "/" + header);
+  std::set<std::string> words;
+  const std::regex word("[A-Za-z_][A-Za-z0-9_]*");
+  for (std::sregex_iterator it(text.begin(), text.end(), word), end; it != end; ++it) words.insert(it->str());
+  const test::ProgramResult names =
+      test::run_program("/usr/bin/nm", {"-DC", "--defined-only", prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"});
+  ASSERT_EQ(names.exit_code, 0) << names.err;
+  std::istringstream in(names.out);
+  const std::regex symbol(
+      R"(\S+ (\S) (?:(?:vtable|typeinfo|typeinfo name|non-virtual thunk) (?:for|to) )?catena::((?:[a-z_]+::)*)(\w+).*)");
+  int seen = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find(" A CATENA_") != std::string::npos) continue;  // the version itself
+    std::smatch match;
+    ASSERT_TRUE(std::regex_match(line, match, symbol)) << line;
+    EXPECT_TRUE(words.contains(match[3])) << line << ": no public header has this name";
+    EXPECT_NE(match[2], "app::") << line;
+    ++seen;
+  }
+  EXPECT_GT(seen, 500);
+}
+
+TEST_F(Package, TheLibraryIsFoundByItsSoname) {
+  const test::ProgramResult elf = test::run_program("/usr/bin/readelf", {"-d", prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"});
+  EXPECT_NE(elf.out.find("[libcatena.so." CATENA_SOVERSION "]"), std::string::npos) << elf.out;
+  for (const char* heavy : {"openvdb", "libvtk", "libITK", "glfw", "imgui"}) EXPECT_EQ(elf.out.find(heavy), std::string::npos) << heavy;
+}
+
+TEST_F(Package, ExamplesRunOutsideOfTheTree) {
+  ASSERT_NO_FATAL_FAILURE(build_outside(prefix() + "/" + CATENA_DOCDIR + "/examples", "examples"));
+  // 500 N/m times 0.05 m a unit times 0.3 of a unit; the proxy on its ball of 0.5
+  EXPECT_EQ(example("constraint").out, "probe at 0.200, proxy at 0.500, force 7.500 N\n");
+  const test::ProgramResult loop = example("own_loop");
+  EXPECT_EQ(loop.exit_code, 0) << loop.err;
+  EXPECT_NE(loop.out.find("line: OK"), std::string::npos) << loop.out;
+  EXPECT_NE(loop.out.find("skin: OK"), std::string::npos) << loop.out;
+  EXPECT_EQ(example("function").out.substr(0, 9), "OK: proxy");
+  // at rest: 100 N/m (-0.01 - z) of the hand's spring is what the floor gives
+  const test::ProgramResult device = example("device");
+  double z = 0, force = 0;
+  ASSERT_EQ(std::sscanf(device.out.c_str(), "after 3000 ticks the hand is at %lf m, the floor pushes with %lf N", &z, &force), 2)
+      << device.out << device.err;
+  EXPECT_LT(z, 0);
+  EXPECT_NEAR(force, 100 * (0.01 + z), 0.02);
+  EXPECT_EQ(example("embedding").out, "an image of 160 x 120, TRANSFER_SRC_OPTIMAL, timeline reached\n");
+
+  // a .vdb file is read by a helper: that of the installed folder
+  const std::string vdb = folder / "hill.vdb", png = folder / "hill.png";
+  const test::ProgramResult made = test::run_program(prefix() + "/bin/catena", {"generate", "hill", "-o", vdb, "--resolution", "16"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_FALSE(test::exists(prefix() + "/bin/catena-read"));
+  const test::ProgramResult picture = example("picture", {vdb, png});
+  EXPECT_EQ(picture.exit_code, 0) << picture.err;
+  EXPECT_EQ(test::read_file(png).substr(1, 3), "PNG");
+  const test::ProgramResult none = example("picture", {folder / "none.vdb", png});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
+}
+
+TEST_F(Package, EveryCommandHasAManualPageWithItsOptions) {
+  const std::string manual = prefix() + "/" + CATENA_MANDIR + "/man1/";
+  const test::ProgramResult help = test::run_catena({"--help"});
+  const std::size_t at = help.out.find("Subcommands:");
+  ASSERT_NE(at, std::string::npos) << help.out;
+  EXPECT_EQ(help.out.find("documents"), std::string::npos);
+  std::istringstream in(help.out.substr(at));
+  std::string line;
+  std::getline(in, line);
+  int commands = 0;
+  while (std::getline(in, line) && line.starts_with("  ") && line[2] != ' ') {
+    const std::string name = line.substr(2, line.find(' ', 2) - 2);
+    ASSERT_TRUE(test::exists(manual + "catena-" + name + ".1")) << name;
+    EXPECT_NE(test::read_file(manual + "catena.1").find("catena\\-" + name + "(1)"), std::string::npos) << name;
+    ++commands;
+  }
+  EXPECT_GE(commands, 10);
+  const std::string page = test::read_file(manual + "catena-render.1");
+  for (const char* words : {".SH NAME\ncatena\\-render \\- ", "\\fB\\-\\-size\\fR", ".SH EXIT STATUS"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+}
+
+TEST_F(Package, TheShellCompletesCommandsAndOptions) {
+  const auto completed = [](const std::string& words, int at) {
+    const std::string script = "source " + prefix() + "/" + CATENA_DATADIR + "/bash-completion/completions/catena && COMP_WORDS=(" + words +
+                               ") COMP_CWORD=" + std::to_string(at) + " && _catena && echo \"${COMPREPLY[@]}\"";
+    const test::ProgramResult result = test::run_program("/bin/bash", {"-c", script});
+    EXPECT_EQ(result.err, "");
+    return result.out;
+  };
+  EXPECT_EQ(completed("catena ren", 1), "render\n");
+  EXPECT_EQ(completed("catena replay --prob", 2), "--probe\n");
+  EXPECT_NE(completed("catena study r", 2).find("run"), std::string::npos);
+  EXPECT_EQ(completed("catena docu", 1), "\n");
+}
+
+TEST_F(Package, ProjectsCanHoldTheSources) {
+  const std::string project = folder / "project";
+  fs::create_directories(project);
+  fs::create_directory_symlink(test::source_dir(), project + "/catena");
+  test::write_file(project + "/main.cpp", "int main() {}\n");
+  test::write_file(project + "/CMakeLists.txt",
+                   "cmake_minimum_required(VERSION 3.25)\nproject(outer CXX)\nadd_subdirectory(catena)\nadd_executable(main main.cpp)\n"
+                   "target_link_libraries(main PRIVATE catena::field catena::flow catena::haptics catena::render)\n");
+  cmake({"-S", project, "-B", folder / "build", "-G", "Ninja"});
+}
+
+}  // namespace package_test

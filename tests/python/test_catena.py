@@ -1,0 +1,280 @@
+"""The Python module as a user has it: run by ctest with the build's module in PYTHONPATH, CATENA the program, SOURCE the checkout."""
+import csv
+import inspect
+import json
+import os
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import catena
+
+SOURCE, PROGRAM = os.environ["SOURCE"], os.environ["CATENA"]
+os.environ["PATH"] = os.path.dirname(PROGRAM) + ":" + os.environ["PATH"]
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False)
+
+
+def ball(n=33):
+    """Distances from the middle, times the index's own scale: z, y, x."""
+    z, y, x = np.ogrid[:n, :n, :n]
+    middle = n // 2
+    return np.sqrt((x - middle) ** 2 + (y - middle) ** 2 + (z - middle) ** 2)
+
+
+class Fields(unittest.TestCase):
+    def test_arrays_of_all_kinds_hold_the_same_values(self):
+        a = np.arange(4 * 5 * 6).reshape(4, 5, 6)
+        places = np.array([[x, y, z] for z in range(4) for y in range(5) for x in range(6)], float)
+        for kind in "float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64".split():
+            np.testing.assert_array_equal(catena.field(a.astype(kind)).sample(places), a.ravel(), kind)
+        # strides of every kind are read where they lie
+        np.testing.assert_array_equal(catena.field(a.T, axes="xyz").sample(places), a.ravel())
+        np.testing.assert_array_equal(catena.field(np.asfortranarray(a)).sample(places), a.ravel())
+        np.testing.assert_array_equal(catena.field(a[::-1, :, ::2]).sample([[1, 2, 0]]), [a[3, 2, 2]])
+        np.testing.assert_array_equal(a, np.arange(120).reshape(4, 5, 6))
+
+    def test_the_affine_maps_voxels_to_the_world(self):
+        affine = np.array([[0, -2, 0, 10], [3, 0, 0, -4], [0, 0, 0.5, 1], [0, 0, 0, 1]], float)
+        a = np.random.default_rng(1).random((5, 6, 7)).astype(np.float32)
+        f = catena.field(a, axes="xyz", affine=affine)
+        for voxel in ((0, 0, 0), (4, 5, 6), (2, 3, 1)):
+            world = affine @ np.array([*voxel, 1.0])
+            self.assertAlmostEqual(f.sample(world[:3])[0], a[voxel], places=6)
+
+    def test_gradients_are_derivatives_and_vectors_keep_their_components(self):
+        z, y, x = np.mgrid[:4, :5, :6].astype(float)
+        f = catena.field(2 * x - 3 * y + 0.5 * z)
+        np.testing.assert_allclose(f.gradient([[1.5, 2.25, 1.1]]), [[2, -3, 0.5]])
+        v = catena.field(np.stack([x, 10 * y, 100 * z], axis=3))
+        self.assertTrue(v.is_vector)
+        np.testing.assert_allclose(v.sample([1.5, 2.5, 0.5]), [[1.5, 25, 50]])
+        self.assertTrue(np.isnan(f.sample([[99, 0, 0]])).all())
+
+    def test_one_copy_is_all(self):
+        # a program apart: the peak of this one is already higher
+        code = ("import numpy as np, catena, resource\n"
+                "a = np.random.default_rng(1).random((200, 200, 200))\n"  # 64 MB; the field holds 32 MB
+                "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+                "f = catena.field(a)\n"
+                "print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / f.bytes)\n")
+        done = subprocess.run([os.sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertLess(float(done.stdout), 2)
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = f"{folder}/a.vdb"
+            self.assertEqual(run("generate", "sphere", "-o", path, "--resolution", "16").returncode, 0)
+            f = catena.field(path)
+            self.assertTrue(f.is_grid)
+            f.save(f"{folder}/b.vdb")
+            np.testing.assert_array_equal(catena.field(f"{folder}/b.vdb").sample([[0.3, 0.1, 0]]), f.sample([[0.3, 0.1, 0]]))
+
+
+class Errors(unittest.TestCase):
+    def says(self, words, call, kind=catena.Error):
+        with self.assertRaises(kind) as caught:
+            call()
+        self.assertIn(words, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_they_are_the_program_s_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = f"{folder}/s.json"
+            with open(path, "w", encoding="utf-8") as file:
+                file.write('{"chain": [\n {"name": "skin", "type": "isosurfac"}]}')
+            with self.assertRaises(catena.Error) as caught:
+                catena.Chain(path)
+            probe = SOURCE + "/assets/probes/first.csv"
+            told = run("replay", path, "--probe", probe, "-o", f"{folder}/t.csv").stderr
+            self.assertEqual("catena: " + str(caught.exception) + "\n", told)
+
+    def test_what_cannot_be_used_is_named(self):
+        self.says("2 dimensions", lambda: catena.field(np.zeros((3, 3))))
+        self.says("no finite value", lambda: catena.field(np.full((3, 3, 3), np.nan)))
+        self.says("complex", lambda: catena.field(np.zeros((3, 3, 3), complex)))
+        self.says("from 2 to", lambda: catena.field(np.zeros((1, 3, 3))))
+        self.says("cannot be inverted", lambda: catena.field(np.zeros((3, 3, 3)), affine=np.zeros((4, 4))))
+        self.says("(N, 3)", lambda: catena.analytic("sphere").sample([[1, 2]]))
+        self.says("unknown field", lambda: catena.render({"isosurfaces": [{"field": "b", "level": 1}]}))
+        self.says("seeds[1]", lambda: catena.trace(catena.analytic("saddle"), [[1, 1, 0], [0, 0, 0]]))
+        self.says("positions", lambda: catena.Chain({}).run([[1, 2]]))
+        self.says("is no folder", lambda: catena.trade_report("/nowhere"))
+        self.assertTrue(issubclass(catena.MachineError, catena.Error) and issubclass(catena.Error, ValueError))
+
+
+class Curves(unittest.TestCase):
+    def test_a_circle_comes_back(self):
+        curve = catena.trace(catena.analytic("circle"), [[0.5, 0, 0]])[0]
+        self.assertTrue(curve.closed)
+        np.testing.assert_allclose(np.linalg.norm(curve.points[:, :2], axis=1), 0.5, atol=1e-8)
+        self.assertAlmostEqual(curve.s[-1] - curve.s[0], np.pi, places=7)
+        np.testing.assert_allclose(np.abs(curve.at([np.pi / 2])), [[0.5, 0, 0]], atol=1e-7)
+
+
+class Chains(unittest.TestCase):
+    def probe(self, name):
+        with open(f"{SOURCE}/assets/probes/{name}.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        return (np.array([float(r["t"]) for r in rows]), np.array([[float(r[k]) for k in "xyz"] for r in rows]),
+                np.array([int(r.get("buttons") or 0) for r in rows]))
+
+    def test_the_same_bits_as_replay_and_step_by_step(self):
+        t, places, buttons = self.probe("first")
+        scene = SOURCE + "/assets/scenes/first.json"
+        chain = catena.Chain(scene)
+        ticks = chain.run(places, t, buttons)
+        with tempfile.TemporaryDirectory() as folder:
+            told = run("replay", scene, "--probe", SOURCE + "/assets/probes/first.csv", "-o", f"{folder}/t.csv", "--stats", f"{folder}/s.json")
+            self.assertEqual(told.returncode, 0, told.stderr)
+            with open(f"{folder}/s.json", encoding="utf-8") as file:
+                self.assertEqual(int(json.load(file)["state_hash"], 16), chain.state_hash)
+        self.assertEqual(ticks.proxies.shape, (len(t), 2, 3))
+        self.assertEqual(chain.links, ["curve", "skin"])
+        again = catena.Chain(scene)
+        halves = [again.run(part, tt, bb) for part, tt, bb in zip(np.array_split(places, 3), np.array_split(t, 3), np.array_split(buttons, 3))]
+        np.testing.assert_array_equal(np.concatenate([h.forces for h in halves]), ticks.forces)
+        self.assertEqual(again.state_hash, chain.state_hash)
+        again.reset()
+        self.assertEqual(again.ticks, 0)
+
+    def test_an_array_is_felt(self):
+        chain = catena.Chain({"chain": [{"name": "skin", "type": "isosurface", "field": "height", "level": 26, "free": "above"}],
+                              "workspace": {"metres_per_unit": 0.01}}, fields={"height": np.mgrid[:33, :33, :33][0]})
+        far, near = chain.step([16.2, 16.3, 28]), chain.step([16.2, 16.3, 25])
+        self.assertEqual(catena.STATUSES[far.statuses[0, 0]], "FREE")
+        np.testing.assert_array_equal(far.forces, 0)
+        np.testing.assert_allclose(near.proxies[0, -1], [16.2, 16.3, 26], atol=1e-6)
+        np.testing.assert_allclose(near.forces, [[0, 0, 500 * 0.01]], atol=1e-5)
+
+    def test_others_run_while_the_chain_does(self):
+        chain = catena.Chain(SOURCE + "/assets/scenes/first.json")
+        places = np.tile(self.probe("first")[1], (20, 1))
+        worker = threading.Thread(target=chain.run, args=(places,))
+        turns = 0
+        worker.start()
+        while worker.is_alive():
+            turns += 1
+            time.sleep(0)
+        worker.join()
+        self.assertGreater(turns, 10)  # with the lock held there would be one or two
+
+
+class Pictures(unittest.TestCase):
+    def test_colour_depth_and_ids_say_the_same(self):
+        scene = {"isosurfaces": [{"field": "ball", "level": 10, "color": [1, 0, 0]}], "background": [0, 0, 1],
+                 "camera": {"position": [16, 16, 100], "target": [16, 16, 16], "up": [0, 1, 0]}}
+        p = catena.render(scene, 96, 64, fields={"ball": ball()})
+        self.assertEqual((p.color.shape, p.color.dtype), ((64, 96, 4), np.uint8))
+        self.assertEqual((p.depth.dtype, p.ids.dtype), (np.float32, np.uint32))
+        self.assertEqual(p.objects[int(p.ids[32, 48])], ("isosurface", "ball"))
+        self.assertAlmostEqual(float(p.depth[32, 48]), 84 - 10, delta=0.2)
+        self.assertEqual(p.ids[0, 0], 0)
+        self.assertTrue(np.isinf(p.depth[0, 0]))
+        np.testing.assert_array_equal(p.color[0, 0], [0, 0, 255, 255])
+        self.assertGreater(p.color[32, 48, 0], p.color[32, 48, 2])
+        with tempfile.TemporaryDirectory() as folder:
+            p.save(f"{folder}/p.png")
+            self.assertEqual(os.listdir(folder), ["p.png"])
+            with open(f"{folder}/p.png", "rb") as file:
+                self.assertEqual(file.read(4), b"\x89PNG")
+
+    def test_an_array_alone_is_shown(self):
+        p = catena.render(ball(), 64, 48)
+        self.assertTrue((p.color != p.color[0, 0]).any())
+
+
+class Tables(unittest.TestCase):
+    def test_a_recording_is_what_was_felt(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = f"{folder}/a.catlog"
+            done = run("feel", SOURCE + "/assets/scenes/first.json", "--device", "recorded:" + SOURCE + "/assets/probes/first.csv", "--ticks", "50",
+                       "--record", log)
+            if done.returncode != 0:
+                done = run("feel", SOURCE + "/assets/scenes/first.json", "--device", "simulated", "--seconds", "0.05", "--record", log)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            r = catena.recording(log)
+            n = len(r["t"])
+            self.assertGreater(n, 5)
+            self.assertEqual(r["links"], ["curve", "skin"])
+            self.assertEqual((r["probe"].shape, r["proxies"].shape, r["statuses"].shape), ((n, 3), (n, 2, 3), (n, 2)))
+            self.assertIn("ends cleanly", r["ending"])
+            self.assertEqual(r["version"], catena.__version__)
+            with self.assertRaises(catena.Error):
+                catena.recording(SOURCE + "/README.md")
+
+
+    def test_a_study_s_table_has_a_row_a_trial(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = run("study", "simulate", SOURCE + "/assets/studies/proxy-chain.json", "--subjects", "1", "-o", folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            table = catena.study_table(folder)
+            self.assertTrue(table["simulated"])
+            self.assertEqual(table["end_mm"].shape, (len(table["time_s"]), 3))
+            self.assertEqual(set(table["subject"]), {1})
+            self.assertEqual(table["condition"].dtype.kind, "U")
+
+
+    def test_a_trade_report_keeps_its_columns(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(run("tradeoff", "--figure", "2", "-o", folder).returncode, 0)
+            drift = catena.trade_report(folder)["figure2-drift"]
+            with open(folder + "/figure2-drift.csv", encoding="utf-8") as file:
+                self.assertEqual(",".join(drift.dtype.names), file.readline().strip())
+            lap = dict(zip(drift["method"], drift["drift_mm_first_lap"]))
+            self.assertGreater(abs(lap["linear"]), 1e3 * abs(lap["selected"]))
+
+
+class Windows(unittest.TestCase):
+    def test_an_array_and_a_scene_are_shown(self):
+        code = ("import numpy as np, catena\n"
+                "a = np.mgrid[:9, :9, :9][0]\n"
+                "print(catena.show(a, options=['--frames', '2']))\n"
+                "scene = {'isosurfaces': [{'field': 'height', 'level': 4}]}\n"
+                "done = catena.show(scene, fields={'height': a}, options=['--frames', '2', '--size', '200x150'])\n"
+                "print(done['changed'], '\"level\": 4' in done['scene'])\n"
+                "try: catena.show({'isosurfaces': [{'field': 'none', 'level': 4}]})\n"
+                "except catena.Error as error: print(error)\n")
+        done = subprocess.run(["sh", SOURCE + "/tests/support/on_display.sh", "640x480x24", os.sys.executable, "-c", code], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.strip().splitlines()
+        self.assertEqual(lines[0], "{'scene': None, 'changed': False}")
+        self.assertEqual(lines[1], "False True")
+        self.assertIn('unknown field "none"', lines[2])
+
+
+class Words(unittest.TestCase):
+    def test_the_document_s_example_runs(self):
+        with open(SOURCE + "/docs/library.md", encoding="utf-8") as file:
+            code = file.read().split("```python\n")[1].split("```")[0]
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                names = {}
+                exec(compile(code, "library.md", "exec"), names)  # pylint: disable=exec-used
+            finally:
+                os.chdir(before)
+        self.assertEqual(names["ticks"].proxies.shape, (1000, 1, 3))
+        self.assertGreater(np.abs(names["ticks"].forces).max(), 1)
+
+    def test_every_public_name_is_described(self):
+        for name in catena.__all__:
+            thing = getattr(catena, name)
+            if name == "STATUSES":
+                continue
+            self.assertTrue(thing.__doc__, name)
+            for member, value in inspect.getmembers(thing) if inspect.isclass(thing) and not issubclass(thing, Exception) else []:
+                if not member.startswith("_"):
+                    self.assertTrue(value.__doc__, f"{name}.{member}")
+
+
+if __name__ == "__main__":
+    unittest.main()
