@@ -162,7 +162,7 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   only_in("ft2build.h", {"render/text/"});
   only_in("fontconfig/", {"render/text/"});
   only_in("CLI/", {"engine/app/"});
-  only_in("boost/", {"engine/statistics/distributions.cpp"});
+  only_in("boost/", {"engine/statistics/distributions.cpp", "engine/web/"});
   EXPECT_LE(users["openvdb/"].size(), 5u) << "openvdb headers cost 10 s of build each";
   for (const char* library : {"openvdb/", "vulkan/", "json/"}) EXPECT_FALSE(users[library].empty()) << library;
 }
