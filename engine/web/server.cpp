@@ -67,6 +67,12 @@ Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
   boost::system::error_code error;
   const asio::ip::address address = asio::ip::make_address(options.address, error);
   if (error) return Error{in_quotes(options.address) + ": expected an address in numbers, such as 127.0.0.1 or ::1"};
+  // it stands in a header
+  const std::string& framed = options.framed_by;
+  const bool is_origin = framed.starts_with("http://") || framed.starts_with("https://");
+  constexpr const char* kOfOrigins = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.:/-[]";
+  if (!framed.empty() && (!is_origin || framed.find_first_not_of(kOfOrigins) != std::string::npos))
+    return Error{in_quotes(framed) + ": expected the origin of a page, such as http://127.0.0.1:8888"};
   std::unique_ptr<Server> server(new Server());
   server->parts_ = std::make_unique<Parts>(options);
   Parts& parts = *server->parts_;

@@ -138,7 +138,7 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   for (const char* top : {"engine", "haptics", "render"}) {
     for (const Include& include : all_includes(top)) {
       for (const char* library : {"openvdb/", "nanovdb/", "vulkan/", "GLFW/", "json/", "tbb/", "nifti1_io.h", "png.h", "seccomp.h", "CLI/",
-                                  "ft2build.h", "fontconfig/", "vtk", "itk", "zip.h", "gifti_io.h", "boost/"})
+                                  "ft2build.h", "fontconfig/", "vtk", "itk", "zip.h", "gifti_io.h", "boost/", "turbojpeg.h"})
         if (include.to.starts_with(library)) users[library].insert(include.from);
     }
   }
@@ -159,6 +159,7 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   only_in("GLFW/", {"engine/app/viewer/"});
   only_in("seccomp.h", {"engine/reader/"});
   only_in("png.h", {"render/image/"});
+  only_in("turbojpeg.h", {"render/image/"});
   only_in("ft2build.h", {"render/text/"});
   only_in("fontconfig/", {"render/text/"});
   only_in("CLI/", {"engine/app/"});

@@ -16,6 +16,8 @@
 
 namespace catena::app {
 
+struct Controls;
+
 class HandHost {
  public:
   struct Options {
@@ -71,6 +73,8 @@ class HandHost {
 
   bool is_mouse() const { return mouse_ != nullptr; }
   void move_mouse(const scene::Scene& scene, const Vec3& world, std::uint32_t buttons);
+  /// What holds a mouse back, for the next motion of the hand.
+  void hold_back(const scene::Scene& scene, Controls& controls) const;
   const Vec3& first_probe() const { return first_probe_; }
   bool forces() const { return servo_ && servo_->forces(); }
   void set_forces(bool on);
