@@ -123,9 +123,10 @@ class Page {
  private:
   void run() {
     io_.restart();
-    beast::get_lowest_layer(socket_).expires_after(kClientPatience);
+    io_.run_for(kClientPatience);
+    if (io_.stopped()) return;
+    close();
     io_.run();
-    beast::get_lowest_layer(socket_).expires_never();
   }
 
   asio::io_context io_;

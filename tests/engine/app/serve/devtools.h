@@ -37,7 +37,7 @@ class Browser {
     child_ = fork();
     if (child_ == 0) {
       setpgid(0, 0);
-      for (const int descriptor : {0, 1, 2}) dup2(open("/dev/null", O_RDWR), descriptor);
+      for (const int descriptor : {0, 1, 2}) dup2(::open("/dev/null", O_RDWR), descriptor);
       setenv("HOME", folder_.path().c_str(), 1);
       execv(argv[0], argv.data());
       _exit(127);

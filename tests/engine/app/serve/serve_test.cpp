@@ -49,7 +49,13 @@ TEST(Serve, APageSeesMovesFeelsAndChanges) {
   // the hand goes onto the ball, and the wheel pushes it in
   page->say(R"({"do": "move", "number": 6, "pieces": [[100, 50, 0, 0, 0, 0]]})");
   page->say(R"({"do": "hand"})");
-  page->say(R"({"do": "move", "number": 7, "pieces": [[100, 50, 0, 0, 5, 0]]})");
+  // it began within the ball, too deep to be held: out, and in again from there
+  page->say(R"({"do": "move", "number": 7, "pieces": [[100, 50, 0, 0, -5, 0]]})");
+  test::told(*page, "state", [](const Node& state) {
+    const Node* links = state.find("links");
+    return links != nullptr && links->items.size() == 1 && word_of(links->items[0], "status") == "FREE";
+  });
+  page->say(R"({"do": "move", "number": 8, "pieces": [[100, 50, 0, 0, 9, 0]]})");
   const Node pushed = test::told(*page, "state", [](const Node& state) { return number_of(state, "force") > 0.05; });
   EXPECT_TRUE(pushed.find("hand") != nullptr && pushed.find("hand")->boolean);
   ASSERT_TRUE(pushed.find("links") != nullptr && pushed.find("links")->items.size() == 1);
