@@ -10,7 +10,7 @@ namespace browser_test {
 namespace test = catena::test;
 
 constexpr const char* kScene = R"({
-  "fields": {"flow": {"analytic": "helix"}, "ball": {"analytic": "sphere", "resolution": 32}},
+  "fields": {"flow": {"analytic": "helix"}, "ball": {"analytic": "sphere", "resolution": 16}},
   "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.5}],
   "isosurfaces": [{"field": "ball", "level": 1, "color": [0.3, 0.6, 0.9]}],
   "volumes": [{"field": "ball", "color": "viridis", "opacity": [[0, 0], [1.2, 0], [1.6, 0.05], [2, 0]]}],
@@ -29,7 +29,7 @@ TEST(InABrowser, ThePageShowsTurnsFeelsAndChanges) {
   test::write_file(folder / "served.json", kScene);
   test::Served served(folder / "served.json");
   ASSERT_NE(served.port(), 0) << served.err();
-  test::Browser browser("760,420");
+  test::Browser browser("640,400");
   ASSERT_TRUE(browser.is_there());
   browser.open(served.url());
   ASSERT_TRUE(browser.until("window.catena && catena.exact > 0"));
@@ -104,6 +104,17 @@ TEST(InABrowser, DISABLED_LatencyAndRate) {
               browser.number("picture.width"), browser.number("picture.height"), browser.number("catena.arrivals.length") / 5,
               browser.number("catena.bytes / catena.arrivals.length / 1000"), browser.number(ordered + "[Math.floor(" + count + " / 2)]"),
               browser.number(ordered + "[Math.floor(" + count + " * 0.95)]"));
+  // and what it looks like with a hand in it
+  const int x = static_cast<int>(browser.number("picture.getBoundingClientRect().width / 2"));
+  browser.value("picture.focus()");
+  browser.key("r");
+  browser.mouse("mouseMoved", x, 280);
+  browser.key("h");
+  EXPECT_TRUE(browser.until("catena.state.hand"));
+  for (int i = 0; i < 8; ++i) browser.mouse("mouseWheel", x, 280, "\"deltaX\": 0, \"deltaY\": -100");
+  const double exact = browser.number("catena.exact");
+  EXPECT_TRUE(browser.until("sent.size == 0 && catena.exact > " + std::to_string(exact)));
+  keep(browser, "measured");
   EXPECT_EQ(served.interrupt(), 0);
   std::printf("%s", served.out().substr(served.out().find('\n') + 1).c_str());
 }
