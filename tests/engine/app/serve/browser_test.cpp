@@ -10,7 +10,7 @@ namespace browser_test {
 namespace test = catena::test;
 
 constexpr const char* kScene = R"({
-  "fields": {"flow": {"analytic": "helix"}, "ball": {"analytic": "sphere", "resolution": 16}},
+  "fields": {"flow": {"analytic": "helix"}, "ball": {"analytic": "sphere", "resolution": 32}},
   "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.5}],
   "isosurfaces": [{"field": "ball", "level": 1, "color": [0.3, 0.6, 0.9]}],
   "volumes": [{"field": "ball", "color": "viridis", "opacity": [[0, 0], [1.2, 0], [1.6, 0.05], [2, 0]]}],
@@ -29,7 +29,7 @@ TEST(InABrowser, ThePageShowsTurnsFeelsAndChanges) {
   test::write_file(folder / "served.json", kScene);
   test::Served served(folder / "served.json");
   ASSERT_NE(served.port(), 0) << served.err();
-  test::Browser browser("640,400");
+  test::Browser browser("760,420");
   ASSERT_TRUE(browser.is_there());
   browser.open(served.url());
   ASSERT_TRUE(browser.until("window.catena && catena.exact > 0"));
@@ -42,7 +42,7 @@ TEST(InABrowser, ThePageShowsTurnsFeelsAndChanges) {
   EXPECT_TRUE(browser.until("picture.width == Math.round(picture.getBoundingClientRect().width)"));
   ASSERT_TRUE(browser.until("catena.exact > 0"));
   const std::string middle = "pen.getImageData(picture.width * 0.4, picture.height * 0.4, 1, 1).data[2]";
-  EXPECT_GT(browser.number(middle), 60);
+  EXPECT_TRUE(browser.until(middle + " > 60"));
   keep(browser, "rest");
 
   // a drag turns the scene: the pictures that show it come back
