@@ -91,6 +91,7 @@ int parse_and_work(int argc, char** argv) {
   add_tradeoff(program, chosen);
   add_feel(program, chosen);
   add_devices(program, chosen);
+  add_serve(program, chosen);
   add_study(program, chosen);
   add_view(program, chosen, view_exit_code);
   add_documents(program, chosen);

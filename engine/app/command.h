@@ -28,6 +28,7 @@ void add_import(CLI::App& program, Work& chosen);
 void add_tradeoff(CLI::App& program, Work& chosen);
 void add_feel(CLI::App& program, Work& chosen);
 void add_devices(CLI::App& program, Work& chosen);
+void add_serve(CLI::App& program, Work& chosen);
 void add_study(CLI::App& program, Work& chosen);
 void add_documents(CLI::App& program, Work& chosen);
 void add_view(CLI::App& program, Work& chosen, int& exit_code);

@@ -8,11 +8,12 @@ find_package(glm REQUIRED)
 find_package(glfw3 CONFIG REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(glslang CONFIG REQUIRED)
-find_package(Boost REQUIRED)  # headers: Boost.Math
+find_package(Boost REQUIRED)  # headers: Boost.Math, Boost.Beast
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
 pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(JSONCPP REQUIRED IMPORTED_TARGET jsoncpp)
 pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(SECCOMP REQUIRED IMPORTED_TARGET libseccomp)

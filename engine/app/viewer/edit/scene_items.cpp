@@ -42,6 +42,13 @@ std::vector<std::string> felt_levels(const scene::Scene& scene, const std::strin
   return pointers;
 }
 
+TextEdits level_edits(const scene::Scene& scene, const scene::Isosurface& surface, double level) {
+  TextEdits edits{{pointer_of(surface.where) + "/level", scene::text_of(level)}};
+  for (const std::string& pointer : felt_levels(scene, name_of(scene, surface.field), surface.level))
+    edits.push_back({pointer, scene::text_of(level)});
+  return edits;
+}
+
 std::vector<std::string> seen_levels(const scene::Scene& scene, const std::string& field, double level) {
   std::vector<std::string> pointers;
   scene.world.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {

@@ -37,6 +37,8 @@ std::optional<T> item_of(const scene::Scene& scene, const std::string& item, sce
 std::vector<std::string> felt_levels(const scene::Scene& scene, const std::string& field, double level);
 /// The same of the isosurfaces that are drawn or hidden.
 std::vector<std::string> seen_levels(const scene::Scene& scene, const std::string& field, double level);
+/// What gives a drawn isosurface another level: the links that lie on it go along.
+TextEdits level_edits(const scene::Scene& scene, const scene::Isosurface& surface, double level);
 
 /// The level of the field's surface that is drawn, as JSON text: a number, or {"widget": NAME} where it follows a widget. Of several, the
 /// one that is nearest to `value`. Empty: none is drawn.

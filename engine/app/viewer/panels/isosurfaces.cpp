@@ -29,9 +29,7 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
     short_tip("a link of the chain lies on this surface: its level goes along");
   }
   if (!moved) return;
-  TextEdits writes{{pointer_of(surface.where) + "/level", scene::text_of(level)}};
-  for (const std::string& pointer : felt) writes.push_back({pointer, scene::text_of(level)});
-  edits.drag(writes, "isolevel");
+  edits.drag(level_edits(scene, surface, level), "isolevel");
 }
 
 void draw_isosurfaces(PanelContext& context) {

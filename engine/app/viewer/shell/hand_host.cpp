@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "engine/app/hand/open_hand.h"
+#include "engine/app/viewer/shell/controls.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/scene/prepare.h"
@@ -20,6 +21,16 @@ std::vector<std::string> names_of(const haptics::Program& program) {
   std::vector<std::string> names;
   for (const haptics::Link& link : program.links) names.push_back(link.name);
   return names;
+}
+
+/// The last proxy that something holds away from the hand.
+std::optional<Vec3> held_place(const exchange::HapticState& felt) {
+  std::optional<Vec3> place;
+  for (int i = 0; i < felt.link_count; ++i) {
+    const exchange::LinkReport& link = felt.links[static_cast<std::size_t>(i)];
+    if (link.active && link.gap > 0) place = link.proxy;
+  }
+  return place;
 }
 
 /// Whether a picture of `now` would differ from one of `before`.
@@ -220,6 +231,12 @@ bool HandHost::take(scene::Scene& scene) {
 
 void HandHost::move_mouse(const scene::Scene& scene, const Vec3& world, std::uint32_t buttons) {
   if (mouse_ != nullptr) mouse_->move_to(device_from_world(scene.workspace, world), buttons);
+}
+
+void HandHost::hold_back(const scene::Scene& scene, Controls& controls) const {
+  controls.force_n = is_mouse() ? felt_.force_n : Vec3(0.0);
+  controls.max_force_n = scene.coupling.max_force_n;
+  controls.held = is_mouse() ? held_place(felt_) : std::nullopt;
 }
 
 void HandHost::set_forces(bool on) {

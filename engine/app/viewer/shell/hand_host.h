@@ -17,6 +17,8 @@
 
 namespace catena::app {
 
+struct Controls;
+
 class HandHost {
  public:
   struct Options {
@@ -80,6 +82,8 @@ class HandHost {
     recording_.add_poses(poses);
   }
   void move_mouse(const scene::Scene& scene, const Vec3& world, std::uint32_t buttons);
+  /// What holds a mouse back, for the next motion of the hand.
+  void hold_back(const scene::Scene& scene, Controls& controls) const;
   const Vec3& first_probe() const { return first_probe_; }
   bool forces() const { return servo_ && servo_->forces(); }
   void set_forces(bool on);

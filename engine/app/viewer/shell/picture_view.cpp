@@ -19,7 +19,6 @@ namespace catena::app {
 
 namespace {
 
-constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
 constexpr int kMaxWaits = 30;
 
 /// The largest part of an area, in its middle, with a picture's proportions.
@@ -80,24 +79,6 @@ std::array<std::uint32_t, 2> PictureView::size() const {
 
 bool PictureView::take_shaders() { return reload_ && reload_->poll(screen_->renderer(), now_ns()); }
 
-/// Of the scene as it is now, for a picture of that many pixels.
-Result<render::FramePacket> PictureView::packet(std::uint32_t width, std::uint32_t height) const {
-  scene::Scene& scene = shared_.scene.scene();
-  const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), std::max(kLeastPixels, width),
-                                     std::max(kLeastPixels, height));
-  // a hand that the mouse holds says how deep it is
-  const auto drop_line = [&]() -> bool& { return scene.world.get<scene::Cursor>(scene.cursor).drop_line; };
-  const bool stated = std::exchange(drop_line(), drop_line() || shared_.controls.hand_mode);
-  auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
-  drop_line() = stated;
-  return packet;
-}
-
-/// Interlaced eyes belong to the window's own pixels.
-std::uint32_t PictureView::scale_of(const NextPicture& next) const {
-  return render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
-}
-
 Result<bool> PictureView::follow_headset() {
   if (!headset_) return false;
   CATENA_CHECK(headset_->follow(*screen_, now_ns(), [this](const std::string& line) {
@@ -114,7 +95,7 @@ Result<bool> PictureView::draw_in_headset() {
   HeadsetHost::Content content;
   content.make = [&]() -> Result<render::FramePacket> {
     auto [width, height] = size();
-    CATENA_TRY(render::FramePacket packet, this->packet(width, height));
+    CATENA_TRY(render::FramePacket packet, drawing_.packet(width, height));
     // what belongs to a flat picture stays in the window
     packet.overlay.texts.clear();
     packet.overlay.scalar_bars.clear();
@@ -124,8 +105,8 @@ Result<bool> PictureView::draw_in_headset() {
   };
   content.aim = [&](const render::View& view, render::FramePacket& of) { render::set_view(scene, view, of); };
   content.kind = [&](const render::FramePacket& of) {
-    kind_ = {render::draws_rays(of), screen_->renderer().draws_fast(of), std::ranges::any_of(of.volumes, &render::VolumeItem::shade)};
-    return render::LadderKind{kind_.fast, kind_.shaded};
+    const SceneKind& kind = drawing_.look_at(of, screen_->renderer());
+    return render::LadderKind{kind.fast, kind.shaded};
   };
   CATENA_TRY(const bool drawn, headset_->draw(*screen_, shared_.hand, content));
   // the hand's metres are the room's, unless another device holds the probe; not while the world is on its way
@@ -140,7 +121,7 @@ Result<bool> PictureView::draw_in_headset() {
   }
   if (!drawn) return false;
   if (shared_.times.count() == 0) tell_notes();
-  shown_.reset();
+  drawing_.forget();
   is_eye_ = picked_stale_ = true;
   shared_.times.add(ms_since(start), now_ns());
   return true;
@@ -150,21 +131,24 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   if (headset_ && headset_->running() && !for_file && !is_minimised()) {
     const auto drawn = draw_in_headset();
     if (!drawn) return Failure{1, drawn.error().message};
-    if (*drawn || shown_) return std::nullopt;
+    if (*drawn || drawing_.shown()) return std::nullopt;
   }
   is_eye_ = false;
-  auto ahead = std::exchange(ahead_, std::nullopt);
-  if (is_minimised()) return std::nullopt;
+  if (is_minimised()) {
+    drawing_.drop_ahead();
+    return std::nullopt;
+  }
   std::uint32_t width = 0, height = 0;
   screen_->size(width, height);
   if (!for_file) {
     lay_out();
     width = pixels_[2] - pixels_[0];
     height = pixels_[3] - pixels_[1];
+  } else {
+    drawing_.drop_ahead();
   }
-  const std::uint32_t scale = scale_of(next);
   std::int64_t start = now_ns();
-  auto packet = ahead && !for_file ? Result<render::FramePacket>(std::move(*ahead)) : this->packet(width / scale, height / scale);
+  auto packet = drawing_.packet(next, width, height);
   if (!packet) {
     // at the start it is the scene's fault; later an edit's, and the last picture stands
     if (shared_.times.count() == 0) return Failure{2, packet.error().message};
@@ -173,9 +157,7 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   }
   Pacing& pacing = shared_.pacing;
   if (pacing.wants_estimate()) {
-    const auto error = render::estimate_rmse(screen_->renderer(), *packet, next.settings);
-    if (!error) return Failure{1, error.error().message};
-    pacing.estimated(*error);
+    if (auto known = drawing_.estimate_if_wanted(screen_->renderer(), *packet, next); !known) return Failure{1, known.error().message};
     start = now_ns();
   }
   const int recoveries = screen_->recoveries();
@@ -192,10 +174,8 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
                           render::describe(next.settings) == render::describe(live.eye->settings());
   if (as_planned && live.drawn(drawing_ms))
     if (const auto quality = live.quality()) pacing = Pacing(*quality);
-  kind_ = {!packet->volumes.empty() || !packet->isosurfaces.empty(), screen_->renderer().draws_fast(*packet),
-           std::ranges::any_of(packet->volumes, &render::VolumeItem::shade)};
   if (shared_.times.count() == 0) tell_notes();
-  shown_ = std::move(*packet);
+  drawing_.drawn(std::move(*packet), screen_->renderer());
   picked_stale_ = true;
   if (!for_file) shared_.times.add(ms, now_ns());
   return std::nullopt;
@@ -208,20 +188,10 @@ void PictureView::tell_notes() const {
   for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
 }
 
-NextPicture PictureView::followed() {
-  Pacing& pacing = shared_.pacing;
-  if (!shown_ || !kind_.rays || !pacing.may_keep()) return moving();
-  const std::uint32_t scale = scale_of(pacing.again());
-  auto packet = this->packet((pixels_[2] - pixels_[0]) / scale, (pixels_[3] - pixels_[1]) / scale);
-  if (!packet || !render::same_rays(*packet, *shown_)) return moving();
-  ahead_ = std::move(*packet);
-  return pacing.kept();
-}
-
 std::optional<Failure> PictureView::estimate() {
   Pacing& pacing = shared_.pacing;
   if (!pacing.may_estimate() || is_minimised()) return std::nullopt;
-  auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+  auto packet = this->packet();
   if (!packet) return std::nullopt;  // said where it was drawn
   const auto estimate = [&]() -> Result<double> {
     if (!shared_.plan.eye) return render::estimate_rmse(screen_->renderer(), *packet, pacing.again().settings);
@@ -240,7 +210,7 @@ std::optional<Failure> PictureView::estimate() {
 std::optional<Failure> PictureView::plan() {
   if (is_minimised()) return std::nullopt;
   lay_out();
-  auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+  auto packet = this->packet();
   if (!packet) return Failure{2, packet.error().message};
   LivePlan& live = shared_.plan;
   const SceneHost& scene = shared_.scene;
@@ -284,7 +254,7 @@ std::optional<Failure> PictureView::show(const std::function<void()>& make_panel
 }
 
 void PictureView::forget() {
-  shown_.reset();
+  drawing_.forget();
   picked_stale_ = true;
 }
 
@@ -310,40 +280,38 @@ void PictureView::update_values() {
   const double most = scene.coupling.max_force_n;
   state.force_share = most > 0 ? std::clamp(norm(felt.force_n) / most, 0.0, 1.0) : 0;
 
-  const bool can = state.pointer_on_picture && !state.pointer_pressed && shown_ && shown_->eyes.empty() && !state.untitled;
+  const auto& shown = drawing_.shown();
+  const bool can = state.pointer_on_picture && !state.pointer_pressed && shown && shown->eyes.empty() && !state.untitled;
   if (can && !picked_stale_) return;
   picked_stale_ = !can;
   state.pointer = {};
   if (!can) return;
-  const double x = (state.pointer_x - state.area.x) / state.area.width * shown_->width;
-  const double y = (state.pointer_y - state.area.y) / state.area.height * shown_->height;
+  const double x = (state.pointer_x - state.area.x) / state.area.width * shown->width;
+  const double y = (state.pointer_y - state.area.y) / state.area.height * shown->height;
   const auto texel = screen_->pick(x, y);
   if (!texel) return;
-  if (const auto place = pick(*shown_, x, y, texel->depth, texel->id)) state.pointer = at(place->world, object_words(*shown_, place->id));
+  if (const auto place = pick(*shown, x, y, texel->depth, texel->id)) state.pointer = at(place->world, object_words(*shown, place->id));
 }
 
 std::optional<PickedPlace> PictureView::picked_at(double window_x, double window_y) const {
   const Area& area = shared_.state.area;
-  if (!shown_ || shared_.state.untitled || !area.contains(window_x, window_y)) return std::nullopt;
-  return pick_thing(*shown_, (window_x - area.x) / area.width * shown_->width, (window_y - area.y) / area.height * shown_->height);
+  if (shared_.state.untitled || !area.contains(window_x, window_y)) return std::nullopt;
+  return drawing_.picked_at((window_x - area.x) / area.width, (window_y - area.y) / area.height);
 }
 
 std::optional<PickedPlace> PictureView::under_pointer() const {
   const ViewState& state = shared_.state;
   // eyes side by side have a place for the pointer each
-  const bool apart = shown_ && !shown_->eyes.empty() && render::is_apart(shown_->packing);
+  const auto& shown = drawing_.shown();
+  const bool apart = shown && !shown->eyes.empty() && render::is_apart(shown->packing);
   return state.pointer_on_picture && !apart ? picked_at(state.pointer_x, state.pointer_y) : std::nullopt;
-}
-
-std::string PictureView::item_of(std::uint32_t id) const {
-  return shown_ && id > 0 && id <= shown_->objects.size() ? shown_->objects[id - 1].item : std::string();
 }
 
 std::optional<Vec3> PictureView::seen_place(const std::string& item) const {
   // big meshes are looked at triangle by triangle
   std::size_t triangles = 0;
-  if (shown_)
-    for (const render::MeshItem& mesh : shown_->meshes) triangles += mesh.geometry->triangles.size() / 3;
+  if (const auto& shown = drawing_.shown())
+    for (const render::MeshItem& mesh : shown->meshes) triangles += mesh.geometry->triangles.size() / 3;
   const int lattice = triangles > 200000 ? 8 : 24;
   if (const auto here = under_pointer(); here && item_of(here->id) == item) return here->world;
   const Area& area = shared_.state.area;
@@ -394,7 +362,7 @@ std::optional<Failure> PictureView::write_last(const std::function<void()>& make
   // of a headset: what was seen last by the first eye
   const bool seen = is_eye_ && screen_->has_picture();
   if (!seen && (!shared_.pacing.finished() || !whole || !screen_->has_picture()))
-    if (auto failure = draw(best(), !whole)) return failure;
+    if (auto failure = draw(drawing_.best(), !whole)) return failure;
   auto picture = screen_->renderer().read_back();
   if (!picture) return Failure{1, picture.error().message};
   const bool transparent = shared_.scene.scene().background.transparent;

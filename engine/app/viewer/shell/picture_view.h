@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "engine/app/viewer/shell/drawing.h"
 #include "engine/app/viewer/shell/headset_host.h"
-#include "engine/app/viewer/shell/pick.h"
 #include "engine/app/viewer/shell/shader_reload.h"
 #include "engine/app/viewer/shell/shared.h"
 
@@ -16,7 +16,8 @@ namespace catena::app {
 
 class PictureView {
  public:
-  PictureView(Shared& shared, std::optional<ShaderReload> reload) : shared_(shared), reload_(std::move(reload)) {}
+  PictureView(Shared& shared, std::optional<ShaderReload> reload)
+      : shared_(shared), drawing_(shared.scene, shared.controls, shared.pacing), reload_(std::move(reload)) {}
   ~PictureView();  ///< what the headset has on the device goes first
 
   /// What draws it, and the headset where one is asked for; before the first picture.
@@ -41,12 +42,9 @@ class PictureView {
 
   /// Into the picture's part of the window; `for_file`: of the whole window's size, and no picture of the session's.
   std::optional<Failure> draw(const NextPicture& next, bool for_file = false);
-  /// The best that the scene can be drawn with.
-  NextPicture best() { return shared_.pacing.best(kind_); }
-  NextPicture moving() { return shared_.pacing.moving(kind_); }
-  /// The picture after the hand has moved: as good as the last where rays meet what they met, else as while something moves.
-  NextPicture followed();
-  std::optional<NextPicture> still() { return shared_.pacing.still(kind_); }
+  /// Which one comes next (drawing.h).
+  Drawing& drawing() { return drawing_; }
+  NextPicture followed() { return drawing_.followed(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]); }
   /// The error of the picture that is at rest, once.
   std::optional<Failure> estimate();
   /// The plan of the picture as it is now: measured, or out of the store. From then on it is drawn by it.
@@ -65,7 +63,7 @@ class PictureView {
   /// A place where the item ("isosurfaces[0]") is seen: under the pointer, or else the nearest to the middle of the picture on a lattice.
   std::optional<Vec3> seen_place(const std::string& item) const;
   /// "isosurfaces[0]"; empty: an id of no item.
-  std::string item_of(std::uint32_t id) const;
+  std::string item_of(std::uint32_t id) const { return drawing_.item_of(id); }
   /// The pointer may be over something else.
   void look_again() { picked_stale_ = true; }
 
@@ -77,22 +75,20 @@ class PictureView {
   std::optional<Failure> write_last(const std::function<void()>& make_panels);
 
  private:
-  std::uint32_t scale_of(const NextPicture& next) const;
   Result<bool> draw_in_headset();
-  Result<render::FramePacket> packet(std::uint32_t width, std::uint32_t height) const;
+  /// Of the picture's own size.
+  Result<render::FramePacket> packet() const { return drawing_.packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]); }
   std::optional<PickedPlace> picked_at(double window_x, double window_y) const;
   void tell_notes() const;
   void update_values();
 
   Shared& shared_;
+  Drawing drawing_;
   std::optional<ShaderReload> reload_;
   std::unique_ptr<HeadsetHost> headset_;  ///< outlives the device that it made
   std::unique_ptr<Screen> screen_;
-  std::array<std::uint32_t, 4> pixels_{};     ///< where the picture lies in the window
-  std::optional<render::FramePacket> shown_;  ///< the last picture's
-  std::optional<render::FramePacket> ahead_;  ///< the next one's, where followed() has made it
-  SceneKind kind_;                            ///< the last picture's
-  bool picked_stale_ = true;                  ///< the place under the pointer is to be looked at again
+  std::array<std::uint32_t, 4> pixels_{};  ///< where the picture lies in the window
+  bool picked_stale_ = true;               ///< the place under the pointer is to be looked at again
   bool damaged_ = false;
   bool is_eye_ = false;        ///< the last picture is an eye of the headset
   std::optional<bool> asked_;  ///< a file; of the window: true

@@ -31,7 +31,7 @@ Session::Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, W
                  std::optional<Interrupt>& interrupt)
     : gui_(window),
       shared_{options, scene, hand, window, gui_},
-      eye_(shared_),
+      eye_(shared_.controls, scene, hand),
       picture_(shared_, std::move(reload)),
       files_(shared_, eye_, picture_),
       interrupt_(interrupt) {}
@@ -215,25 +215,18 @@ bool Session::goes_on() const {
          (options.seconds <= 0 || s_since(start_ns_) < options.seconds);
 }
 
-/// In time while something moves, better ones when it rests; nothing where the last one stands.
 std::optional<NextPicture> Session::next_picture(bool moved, bool hand_moved) {
   const ViewOptions& options = shared_.options;
-  const double rest_s = s_since(last_change_ns_);
-  if (options.frames > 0 && shared_.times.count() + 1 == options.frames) return picture_.best();
-  if (moved) return picture_.moving();
-  if (!hand_moved) return rest_s >= kRestS ? picture_.still() : std::nullopt;
-  const NextPicture next = picture_.followed();
-  if (!next.settings.keep) last_change_ns_ = now_ns();
-  // better ones come while a hand is at work, too
-  if (next.settings.keep && rest_s >= kRestS && shared_.pacing.may_improve())
-    if (auto better = picture_.still()) return better;
-  return next;
+  if (options.frames > 0 && shared_.times.count() + 1 == options.frames) return picture_.drawing().best();
+  const auto [width, height] = picture_.size();
+  return picture_.drawing().next(moved, hand_moved, width, height);
 }
 
 std::optional<Failure> Session::run() {
   const ViewOptions& options = shared_.options;
   SceneHost& scene = shared_.scene;
-  start_ns_ = last_change_ns_ = now_ns();
+  start_ns_ = now_ns();
+  picture_.drawing().changed();
   std::int64_t last_show_ns = 0;
   bool busy = true, minimised = false, live = false;
   const Gui::Frame frame = interface_frame();
@@ -266,10 +259,9 @@ std::optional<Failure> Session::run() {
     const bool resized = picture_.is_stale() || picture_.lay_out();
     const bool moved = by_input.view || std::exchange(changed_, false) || opened || edited || resized || pulsed || reloaded || turned ||
                        shared_.times.count() == 0;
-    if (moved) last_change_ns_ = now_ns();
-
-    auto next = in_headset ? picture_.moving() : next_picture(moved, news || by_input.hand);
-    if (!next && s_since(last_change_ns_) >= kEstimateS && std::exchange(wants_error_, false))
+    if (in_headset && moved) picture_.drawing().changed();
+    auto next = in_headset ? picture_.drawing().moving() : next_picture(moved, news || by_input.hand);
+    if (!next && picture_.drawing().rest_s() >= kEstimateS && std::exchange(wants_error_, false))
       if (auto failure = picture_.estimate()) return failure;
     if (!next && (options.frames > 0 || options.seconds > 0)) next = shared_.pacing.again();
     busy = next.has_value();

@@ -72,13 +72,13 @@ class Session {
   std::int64_t last_step_ns_ = 0;  ///< in time
   int steps_ahead_ = -1;           ///< the step that is loaded ahead
   bool has_pulses_ = false, pulses_run_ = true;
-  std::int64_t start_ns_ = 0, last_change_ns_ = 0;  ///< of the loop; of what the picture shows
-  bool changed_ = false;                            ///< a command has changed what the picture shows
-  bool wants_error_ = false;                        ///< of the picture at rest
-  bool measure_ = false;                            ///< what a plan goes by
-  std::int64_t last_observed_ns_ = 0;               ///< the hand
-  bool interface_holds_pointer_ = false;            ///< the buttons that are down went down on it
-  int unsettled_ = 0;                               ///< interfaces to come though nothing happens: they settle their sizes
+  std::int64_t start_ns_ = 0;             ///< of the loop
+  bool changed_ = false;                  ///< a command has changed what the picture shows
+  bool wants_error_ = false;              ///< of the picture at rest
+  bool measure_ = false;                  ///< what a plan goes by
+  std::int64_t last_observed_ns_ = 0;     ///< the hand
+  bool interface_holds_pointer_ = false;  ///< the buttons that are down went down on it
+  int unsettled_ = 0;                     ///< interfaces to come though nothing happens: they settle their sizes
   std::int64_t last_title_ns_ = 0;
   int pictures_in_title_ = 0;  ///< drawn when it was last made
 };

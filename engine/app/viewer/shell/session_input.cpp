@@ -121,7 +121,7 @@ void Session::act(Action action) {
     case Action::projection:
     case Action::turntable:
     case Action::fly:
-      changed_ = eye_.act(action) || changed_;
+      changed_ = eye_.act(action, state.area.width / state.area.height) || changed_;
       return;
   }
 }
@@ -200,16 +200,6 @@ namespace {
 
 constexpr int kSettling = 3;
 
-/// The last proxy that something holds away from the hand.
-std::optional<Vec3> held_place(const exchange::HapticState& felt) {
-  std::optional<Vec3> place;
-  for (int i = 0; i < felt.link_count; ++i) {
-    const exchange::LinkReport& link = felt.links[static_cast<std::size_t>(i)];
-    if (link.active && link.gap > 0) place = link.proxy;
-  }
-  return place;
-}
-
 }  // namespace
 
 Gui::Frame Session::interface_frame() {
@@ -245,14 +235,9 @@ Changed Session::take_input(double wait_s) {
     window.set_full_screen(full);
     full = window.is_full_screen();
   }
-  // what is held back while the mouse is the hand
-  Controls& controls = shared_.controls;
-  HandHost& hand = shared_.hand;
   const scene::Scene& scene = shared_.scene.scene();
-  controls.force_n = hand.is_mouse() ? hand.felt().force_n : Vec3(0.0);
-  controls.max_force_n = scene.coupling.max_force_n;
-  controls.held = hand.is_mouse() ? held_place(hand.felt()) : std::nullopt;
-  if (changed.hand) hand.move_mouse(scene, controls.hand, controls.buttons);
+  shared_.hand.hold_back(scene, shared_.controls);
+  if (changed.hand) shared_.hand.move_mouse(scene, shared_.controls.hand, shared_.controls.buttons);
   if (changed.view) eye_.pin();
   return changed;
 }

@@ -16,7 +16,6 @@ struct Failure {
 };
 
 // what a window's loop goes by, seconds
-inline constexpr double kRestS = 0.25;       ///< without a change for so long: the picture may take its time
 inline constexpr double kIdleWaitS = 0.004;  ///< between looks at the servo's news when nothing else happens
 inline constexpr double kMinimisedWaitS = 0.1;
 

@@ -52,7 +52,7 @@ StudyWindow::StudyWindow(const ViewOptions& options, LiveSession& session, Scene
     : session_(session),
       gui_(window, {kPageTextPixels, kHeadingPixels}),
       shared_{options, scene, hand, window, gui_},
-      eye_(shared_),
+      eye_(shared_.controls, scene, hand),
       picture_(shared_, std::nullopt),
       interrupt_(interrupt) {
   shared_.state.panels = false;
@@ -157,9 +157,9 @@ void StudyWindow::put_hand_under_pointer() {
 // ---- what is shown ----
 
 std::optional<NextPicture> StudyWindow::next_picture(bool moved, bool hand_moved) {
-  if (moved) return picture_.moving();
+  if (moved) return picture_.drawing().moving();
   if (!shows_picture()) return std::nullopt;
-  if (!hand_moved) return 1e-3 * ms_since(last_change_ns_) >= kRestS ? picture_.still() : std::nullopt;
+  if (!hand_moved) return 1e-3 * ms_since(last_change_ns_) >= kRestS ? picture_.drawing().still() : std::nullopt;
   const NextPicture next = picture_.followed();
   if (!next.settings.keep) last_change_ns_ = now_ns();
   return next;

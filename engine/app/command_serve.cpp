@@ -1,0 +1,76 @@
+/// catena serve SOURCE [--port N] [--address A]: the scene in a browser.
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <utility>
+
+#include "engine/app/command.h"
+#include "engine/app/options.h"
+#include "engine/app/run_files.h"
+#include "engine/app/serve/serve.h"
+
+namespace catena::app {
+
+namespace {
+
+const std::string kServedQuality = "time=50";
+
+struct ServeArguments {
+  std::string source, address = "127.0.0.1", size = "1024x768", quality, framed_by;
+  std::vector<std::string> fields, names;
+  int port = 8642;
+  double seconds = 0, gpu_memory_mb = 0;
+  RealtimeChoice realtime;
+  AnnotateOptions annotate;
+};
+
+Outcome start_serving(const ServeArguments& o) {
+  CATENA_TRY(const Size size, parse_size(o.size, 4096));
+  ServeOptions options;
+  options.source = o.source;
+  CATENA_TRY(options.overrides, field_overrides(o.fields));
+  options.adjust = [annotations = o.annotate](scene::Scene& scene) { return annotate(scene, annotations); };
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+  CATENA_CHECK(options.adjust(scene));
+  const std::string& own = scene.quality.empty() ? kServedQuality : scene.quality;
+  CATENA_TRY(options.quality, parse_quality(o.quality.empty() ? own : o.quality));
+  options.hand.device = "mouse";
+  options.hand.fields = o.fields;
+  options.hand.realtime = o.realtime.options();
+  options.server.address = o.address;
+  options.server.port = static_cast<std::uint16_t>(o.port);
+  options.server.names = o.names;
+  options.server.framed_by = o.framed_by;
+  options.width = size.width;
+  options.height = size.height;
+  options.gpu_memory = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
+  options.seconds = o.seconds;
+  return serve(std::move(options));
+}
+
+}  // namespace
+
+void add_serve(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<ServeArguments>();
+  CLI::App* command = program.add_subcommand("serve", "the scene in a browser, here or through `ssh -L`: orbit, and the mouse as the hand");
+  command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
+  command->add_option("--port", options->port, "to listen at; 0: any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
+  command->add_option("--address", options->address, "to listen at, in numbers; 0.0.0.0 lets other machines in, without encryption")
+      ->capture_default_str();
+  command->add_option("--name", options->names, "what browsers may call this machine, beside localhost and addresses in numbers")
+      ->allow_extra_args(false);
+  command->add_option("--framed-by", options->framed_by, "a page's origin whose frames may show this one, such as http://127.0.0.1:8888");
+  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->add_option("--size", options->size, "of the picture before a page says its own, WxH")->capture_default_str();
+  command->add_option("--quality", options->quality,
+                      "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest. Default: the "
+                      "scene's, or else time=50");
+  command
+      ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
+      ->check(number_between(1, 1e9));
+  command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
+  add_annotate_options(*command, options->annotate);
+  add_realtime_options(*command, options->realtime);
+  command->callback([&chosen, options] { chosen = [options] { return start_serving(*options); }; });
+}
+
+}  // namespace catena::app

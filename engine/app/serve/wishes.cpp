@@ -1,0 +1,93 @@
+#include "engine/app/serve/wishes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/json.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr double kFarthest = 1e5;  // pixels
+constexpr std::pair<std::string_view, Action> kActions[] = {{"hand", Action::hand_mode},        {"fit", Action::fit},
+                                                            {"first_view", Action::first_view}, {"along_x", Action::along_x},
+                                                            {"along_y", Action::along_y},       {"along_z", Action::along_z},
+                                                            {"against_x", Action::against_x},   {"against_y", Action::against_y},
+                                                            {"against_z", Action::against_z},   {"projection", Action::projection},
+                                                            {"turntable", Action::turntable}};
+
+Result<Input> piece_of(const std::vector<double>& row) {
+  for (const double number : row)
+    if (!(std::abs(number) <= kFarthest)) return Error{"pieces: a number is out of range"};
+  const int held = static_cast<int>(row[5]);
+  if (held < 0 || held > 63 || held != row[5]) return Error{"pieces: what is held is a sum of 1 to 32"};
+  Input piece;
+  piece.x = row[0], piece.y = row[1], piece.dx = row[2], piece.dy = row[3], piece.wheel = row[4];
+  piece.left = held & 1, piece.middle = held & 2, piece.right = held & 4;
+  piece.shift = held & 8, piece.control = held & 16, piece.space = held & 32;
+  return piece;
+}
+
+Result<std::vector<std::vector<double>>> rows_of(const json::Node& node, std::string_view key, std::size_t width, std::size_t most) {
+  const json::Node* list = node.find(key);
+  if (list == nullptr || list->kind != json::Kind::array || list->items.empty() || list->items.size() > most)
+    return Error{std::string(key) + ": expected 1 to " + std::to_string(most) + " rows of numbers"};
+  return json::as_rows(*list, key, width);
+}
+
+Result<Wish> move_of(const json::Node& node) {
+  MoveWish wish;
+  CATENA_TRY(const int number, json::get_integer(node, "number", 0, 0, 2'000'000'000));
+  wish.number = static_cast<std::uint32_t>(number);
+  CATENA_TRY(const auto rows, rows_of(node, "pieces", 6, kMostPieces));
+  for (const std::vector<double>& row : rows) {
+    CATENA_TRY(Input piece, piece_of(row));
+    wish.pieces.push_back(std::move(piece));
+  }
+  return Wish{std::move(wish)};
+}
+
+Result<Wish> opacity_of(const json::Node& node) {
+  OpacityWish wish;
+  CATENA_TRY(wish.item, json::require_string(node, "item"));
+  CATENA_TRY(const auto rows, rows_of(node, "points", 2, kMostPoints));
+  for (const std::vector<double>& row : rows) wish.points.push_back({row[0], std::clamp(row[1], 0.0, kMaxAlpha)});
+  return Wish{std::move(wish)};
+}
+
+}  // namespace
+
+Result<Wish> parse_wish(std::string_view words) {
+  CATENA_TRY(const json::Node node, json::parse(words, "message"));
+  CATENA_CHECK(json::expect_object(node, "a message"));
+  CATENA_TRY(const std::string what, json::require_string(node, "do"));
+  for (const auto& [word, action] : kActions)
+    if (what == word) return Wish{action};
+  if (what == "take") return Wish{HandWish::take};
+  if (what == "give") return Wish{HandWish::give};
+  if (what == "move") return move_of(node);
+  if (what == "opacity") return opacity_of(node);
+  if (what == "size") {
+    CATENA_TRY(const int width, json::get_integer(node, "width", 0, static_cast<int>(kLeastPage), static_cast<int>(kMostPage)));
+    CATENA_TRY(const int height, json::get_integer(node, "height", 0, static_cast<int>(kLeastPage), static_cast<int>(kMostPage)));
+    if (width == 0 || height == 0) return Error{"size: expected width and height"};
+    return Wish{SizeWish{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}};
+  }
+  if (what == "level") {
+    LevelWish wish;
+    CATENA_TRY(wish.item, json::require_string(node, "item"));
+    CATENA_TRY(wish.value, json::require_number(node, "value"));
+    return Wish{std::move(wish)};
+  }
+  if (what == "map") {
+    MapWish wish;
+    CATENA_TRY(wish.item, json::require_string(node, "item"));
+    CATENA_TRY(wish.name, json::require_string(node, "name"));
+    return Wish{std::move(wish)};
+  }
+  return Error{"a page cannot ask for that"};
+}
+
+}  // namespace catena::app

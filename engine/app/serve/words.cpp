@@ -1,0 +1,106 @@
+#include "engine/app/serve/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/app/viewer/edit/transfer_edit.h"
+#include "engine/base/json_text.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kBars = 64;
+
+/// A slider of finite numbers, or nothing.
+std::string range_words(const field::AnyField& field, const SortedValues& values) {
+  const auto range = plot_range(field.scalar->min_value(), field.scalar->max_value());
+  std::string bars = "[]";
+  if (values)
+    bars = json_list(histogram_bars(*values, range[0], range[1], kBars), [](float height) { return fmt::format("{:.3f}", height); });
+  return fmt::format(R"("lo": {}, "hi": {}, "bars": {})", json_number(range[0]), json_number(range[1]), bars);
+}
+
+std::string surfaces_words(scene::Scene& scene, FieldValues& values) {
+  std::string text;
+  scene.world.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
+    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(surface.field);
+    const field::AnyField& field = source.drawn.get() != nullptr ? source.drawn : source.loaded;
+    const json::Node* stated = surface.where.find("level");
+    const bool is_number = stated != nullptr && stated->kind == json::Kind::number;
+    if (is_hidden(scene.world, e) || !field.scalar || !is_number || pointer_of(surface.where).empty()) return;
+    text += fmt::format(R"({}{{"item": {}, "name": {}, "level": {}, {}}})", text.empty() ? "" : ", ", json_string(surface.where.label),
+                        json_string(name_of(scene, surface.field)), json_number(surface.level),
+                        range_words(field, values.of(scene, surface.field)));
+  });
+  return "[" + text + "]";
+}
+
+std::string volumes_words(scene::Scene& scene, FieldValues& values) {
+  std::string text;
+  scene.world.each<scene::Volume>([&](scene::Entity e, const scene::Volume& volume) {
+    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(volume.field);
+    if (is_hidden(scene.world, e) || !source.drawn.scalar || pointer_of(volume.where).empty()) return;
+    const auto edit = transfer_edit(volume, source.drawn.scalar->mapping().smallest_edge());
+    if (!edit || edit->opacities.size() > 64 || edit->colors.size() > 512) return;
+    const auto point = [](const auto& p) { return fmt::format("[{}, {}]", json_number(p.value), json_number(p.alpha)); };
+    const auto color = [](const auto& p) {
+      return fmt::format("[{}, {:.3f}, {:.3f}, {:.3f}]", json_number(p.value), p.color.r, p.color.g, p.color.b);
+    };
+    text += fmt::format(R"({}{{"item": {}, "name": {}, "map": {}, "opacity": {}, "color": {}, {}}})", text.empty() ? "" : ", ",
+                        json_string(volume.where.label), json_string(name_of(scene, volume.field)), json_string(edit->map),
+                        json_list(edit->opacities, point), json_list(edit->colors, color),
+                        range_words(source.drawn, values.of(scene, volume.field)));
+  });
+  return "[" + text + "]";
+}
+
+void put(std::string& bytes, std::uint32_t number, int count) {
+  for (int i = 0; i < count; ++i) bytes += static_cast<char>((number >> (8 * i)) & 255);
+}
+
+}  // namespace
+
+std::string role_words(const std::string& hand, std::size_t viewers) {
+  return fmt::format(R"({{"role": {{"hand": {}, "viewers": {}}}}})", json_string(hand), viewers);
+}
+
+std::string scene_words(SceneHost& host, FieldValues& values) {
+  scene::Scene& scene = host.scene();
+  const std::string name = std::filesystem::path(host.document().path()).filename().string();
+  const auto word = [](std::string_view map) { return json_string(std::string(map)); };
+  return fmt::format(R"({{"scene": {{"name": {}, "isosurfaces": {}, "volumes": {}, "maps": {}}}}})", json_string(name),
+                     surfaces_words(scene, values), volumes_words(scene, values), json_list(scene::color_map_names(), word));
+}
+
+std::string state_words(const HandHost& hand, double max_force_n, bool hand_mode, const std::string& picture) {
+  const exchange::HapticState& felt = hand.felt();
+  std::string links;
+  for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(felt.link_count), hand.link_names().size()); ++i)
+    links += fmt::format(R"({}{{"name": {}, "status": "{}"}})", links.empty() ? "" : ", ", json_string(hand.link_names()[i]),
+                         exchange::status_word(felt.links[i].status));
+  return fmt::format(R"({{"state": {{"force": {:.3f}, "most": {}, "links": [{}], "hand": {}, "picture": {}}}}})", norm(felt.force_n),
+                     json_number(max_force_n), links, hand_mode, json_string(picture));
+}
+
+std::string note_words(const std::string& line) { return fmt::format(R"({{"note": {}}})", json_string(line)); }
+
+std::string picture_bytes(const PictureHead& head, const std::string& file) {
+  std::string bytes;
+  bytes.reserve(16 + file.size());
+  put(bytes, head.number, 4);
+  put(bytes, head.motion, 4);
+  put(bytes, head.width, 2);
+  put(bytes, head.height, 2);
+  put(bytes, head.exact ? 2 : 1, 1);
+  put(bytes, 0, 1);
+  put(bytes, static_cast<std::uint32_t>(std::clamp(head.ms, 0.0, 65535.0)), 2);
+  return bytes + file;
+}
+
+}  // namespace catena::app

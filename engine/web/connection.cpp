@@ -1,0 +1,133 @@
+#include <boost/beast/core/bind_handler.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "engine/web/hub.h"
+#include "engine/web/viewer_link.h"
+
+namespace catena::web {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+
+namespace {
+
+constexpr std::uint32_t kLongestHeader = 8192;
+constexpr const char* kNoEntry =
+    "This page is for who started it: open the whole address that `catena serve` has printed, with its token.\n";
+
+std::string with_nonce(const std::string& page, const std::string& nonce) {
+  constexpr std::string_view kPlace = "NONCE";
+  std::string text;
+  std::size_t at = 0;
+  for (std::size_t next = page.find(kPlace); next != std::string::npos; next = page.find(kPlace, at)) {
+    text.append(page, at, next - at).append(nonce);
+    at = next + kPlace.size();
+  }
+  return text.append(page, at);
+}
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(Hub& hub, boost::asio::ip::tcp::socket socket)
+      : hub_(hub), counted_(std::make_unique<Counted>(hub)), stream_(std::move(socket)) {}
+
+  void read() {
+    parser_.header_limit(kLongestHeader);
+    stream_.expires_after(std::chrono::seconds(kPatienceS));
+    http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](boost::system::error_code error, std::size_t) {
+      if (error)
+        self->end();
+      else
+        self->answer();
+    });
+  }
+
+ private:
+  void answer() {
+    const auto& request = parser_.get();
+    const std::string_view host = view_of(request[http::field::host]), target = view_of(request.target());
+    if (!hub_.access.allows_host(host))
+      return say(http::status::forbidden, "This machine is not called so here; see `catena serve --help`, --name.\n");
+    const bool known = hub_.access.has_cookie(view_of(request[http::field::cookie]), host);
+    if (target == "/socket") return open_socket(known);
+    if (request.method() != http::verb::get) return say(http::status::method_not_allowed, "Only GET is answered.\n");
+    const bool invited = hub_.access.has_token(target);
+    if (!invited && target != "/" && !target.starts_with("/?")) return say(http::status::not_found, "There is only one page.\n");
+    if (!invited && !known) return say(http::status::forbidden, kNoEntry);
+    show_page(invited ? std::optional(hub_.access.set_cookie(host)) : std::nullopt);
+  }
+
+  void open_socket(bool known) {
+    const auto& request = parser_.get();
+    const std::string_view host = view_of(request[http::field::host]), origin = view_of(request[http::field::origin]);
+    if (!known || !Access::allows_origin(origin, host)) return say(http::status::forbidden, kNoEntry);
+    if (!beast::websocket::is_upgrade(request)) return say(http::status::upgrade_required, "A WebSocket was expected.\n");
+    if (hub_.viewers.size() >= kMostViewers) return say(http::status::service_unavailable, "Too many look on already.\n");
+    stream_.expires_never();
+    std::make_shared<ViewerLink>(hub_, stream_.release_socket(), std::move(counted_))->accept(parser_.release());
+  }
+
+  void show_page(const std::optional<std::string>& cookie) {
+    const std::string nonce = new_secret(), framed = hub_.options.framed_by.empty() ? "'none'" : hub_.options.framed_by;
+    begin(http::status::ok, "text/html; charset=utf-8");
+    response_.set("Content-Security-Policy",
+                  "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
+                      "'; img-src blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors " + framed);
+    if (cookie) response_.set(http::field::set_cookie, *cookie);
+    response_.body() = with_nonce(hub_.options.page, nonce);
+    finish();
+  }
+
+  void say(http::status status, const std::string& words) {
+    begin(status, "text/plain; charset=utf-8");
+    response_.body() = words;
+    finish();
+  }
+
+  void begin(http::status status, const char* type) {
+    response_.result(status);
+    response_.version(11);
+    response_.set(http::field::content_type, type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.keep_alive(false);
+  }
+
+  void finish() {
+    response_.prepare_payload();
+    http::async_write(stream_, response_, [self = shared_from_this()](boost::system::error_code, std::size_t) { self->end(); });
+  }
+
+  void end() {
+    boost::system::error_code ignored;
+    stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  }
+
+  Hub& hub_;
+  std::unique_ptr<Counted> counted_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kLongestHeader + 1024};
+  http::request_parser<http::empty_body> parser_;
+  http::response<http::string_body> response_;
+};
+
+}  // namespace
+
+void serve_connection(Hub& hub, boost::asio::ip::tcp::socket socket) {
+  if (hub.connections >= kMostConnections) return;  // the socket closes
+  std::make_shared<Connection>(hub, std::move(socket))->read();
+}
+
+}  // namespace catena::web

@@ -1,0 +1,44 @@
+#include "render/image/encode.h"
+
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <memory>
+
+namespace catena::render {
+
+Result<std::string> jpeg_bytes(const Picture& picture, int quality) {
+  CATENA_ASSERT(picture.width > 0 && picture.height > 0 && quality >= 1 && quality <= 100);
+  const auto end = [](void* encoder) { tjDestroy(encoder); };
+  const std::unique_ptr<void, decltype(end)> encoder(tjInitCompress(), end);
+  const auto width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
+  if (!encoder) return Error{"the picture cannot be encoded: out of memory", true};
+  std::string bytes(tjBufSize(width, height, TJSAMP_420), '\0');
+  auto* out = reinterpret_cast<unsigned char*>(bytes.data());
+  unsigned long size = bytes.size();
+  if (tjCompress2(encoder.get(), picture.rgba.data(), width, 0, height, TJPF_RGBX, &out, &size, TJSAMP_420, quality, TJFLAG_NOREALLOC) != 0)
+    return Error{std::string("the picture cannot be encoded: ") + tjGetErrorStr2(encoder.get()), true};
+  bytes.resize(size);
+  return bytes;
+}
+
+Result<std::string> png_bytes(const Picture& picture) {
+  CATENA_ASSERT(picture.width > 0 && picture.height > 0);
+  std::string rgb(std::size_t(3) * picture.width * picture.height, '\0');
+  for (std::size_t i = 0; i < std::size_t(picture.width) * picture.height; ++i)
+    for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = static_cast<char>(picture.rgba[4 * i + c]);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = picture.width;
+  image.height = picture.height;
+  image.format = PNG_FORMAT_RGB;
+  image.flags = PNG_IMAGE_FLAG_FAST;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr) == 0)
+    return Error{std::string("the picture cannot be encoded: ") + image.message, true};
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace catena::render

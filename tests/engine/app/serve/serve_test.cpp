@@ -1,0 +1,148 @@
+/// `catena serve` as a page sees it: pictures, the hand, what can be changed, who may change it.
+#include <gtest/gtest.h>
+
+#include "tests/engine/app/serve/served.h"
+
+namespace serve_test {
+
+namespace test = catena::test;
+using catena::json::Node;
+
+// a ball of which the hand feels the surface
+constexpr const char* kBall = R"({
+  "fields": {"ball": {"analytic": "sphere"}},
+  "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.5}],
+  "isosurfaces": [{"field": "ball", "level": 1}],
+  "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}
+})";
+
+struct Ball {
+  test::TemporaryFolder folder;
+  std::string path = folder / "ball.json";
+  Ball() { test::write_file(path, kBall); }
+};
+
+double number_of(const Node& node, const char* key) { return node.find(key) != nullptr ? node.find(key)->number : -1; }
+std::string word_of(const Node& node, const char* key) { return node.find(key) != nullptr ? node.find(key)->string : ""; }
+
+TEST(Serve, APageSeesMovesFeelsAndChanges) {
+  const Ball ball;
+  test::Served served(ball.path);
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  ASSERT_TRUE(page->is_open());
+  EXPECT_EQ(word_of(test::told(*page, "role"), "hand"), "yours");
+  // coarse and quick at first, every pixel as it is when nothing moves
+  const test::SentPicture first = test::shown(*page);
+  EXPECT_TRUE(first.file.starts_with("\xff\xd8\xff")) << "JPEG";
+  EXPECT_EQ(first.width, 160u);
+  const test::SentPicture last = test::shown(*page, [](const test::SentPicture& p) { return p.exact; });
+  EXPECT_TRUE(last.file.starts_with("\x89PNG"));
+  // an orbit: the picture that shows it says so
+  page->say(R"({"do": "move", "number": 5, "pieces": [[80, 60, 20, 0, 0, 1]]})");
+  const test::SentPicture turned = test::shown(*page, [](const test::SentPicture& p) { return p.motion == 5; });
+  EXPECT_GT(turned.number, last.number);
+  page->say(R"({"do": "first_view"})");
+  // another size
+  page->say(R"({"do": "size", "width": 200, "height": 100})");
+  EXPECT_EQ(test::shown(*page, [](const test::SentPicture& p) { return p.width == 200; }).height, 100u);
+  // the hand goes onto the ball, and the wheel pushes it in
+  page->say(R"({"do": "move", "number": 6, "pieces": [[100, 50, 0, 0, 0, 0]]})");
+  page->say(R"({"do": "hand"})");
+  // it began within the ball, too deep to be held: out, and in again from there
+  page->say(R"({"do": "move", "number": 7, "pieces": [[100, 50, 0, 0, -5, 0]]})");
+  test::told(*page, "state", [](const Node& state) {
+    const Node* links = state.find("links");
+    return links != nullptr && links->items.size() == 1 && word_of(links->items[0], "status") == "FREE";
+  });
+  page->say(R"({"do": "move", "number": 8, "pieces": [[100, 50, 0, 0, 9, 0]]})");
+  const Node pushed = test::told(*page, "state", [](const Node& state) { return number_of(state, "force") > 0.05; });
+  EXPECT_TRUE(pushed.find("hand") != nullptr && pushed.find("hand")->boolean);
+  ASSERT_TRUE(pushed.find("links") != nullptr && pushed.find("links")->items.size() == 1);
+  EXPECT_EQ(word_of(pushed.find("links")->items[0], "name"), "skin");
+  // a smaller ball, for eye and hand: the hand is outside
+  page->say(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.5})");
+  const Node scene =
+      test::told(*page, "scene", [](const Node& s) { return number_of(s.find("isosurfaces")->items.at(0), "level") == 0.5; });
+  EXPECT_EQ(word_of(scene, "name"), "ball.json");
+  EXPECT_EQ(number_of(test::told(*page, "state", [](const Node& s) { return number_of(s, "force") == 0; }), "force"), 0);
+  // what cannot be done is said, and changes nothing
+  for (const char* bad : {R"({"do": "level", "item": "isosurfaces[7]", "value": 1})", R"({"do": "map", "item": "volumes[0]", "name": "x"})",
+                          R"({"do": "quit"})", "nonsense"}) {
+    page->say(bad);
+    EXPECT_TRUE(test::told(*page, "note").kind == catena::json::Kind::string) << bad;
+  }
+  EXPECT_EQ(served.interrupt(), 0);
+  EXPECT_FALSE(page->read() && page->read() && page->read() && page->read() && page->read());
+  EXPECT_NE(served.out().find(" pictures for at most 1 page at a time"), std::string::npos) << served.out();
+  EXPECT_EQ(served.err(), "");
+  EXPECT_EQ(test::read_file(ball.path), kBall) << "nothing is written to the scene";
+}
+
+TEST(Serve, OnePageHasTheHandAndOthersWatch) {
+  const Ball ball;
+  test::Served served(ball.path);
+  ASSERT_NE(served.port(), 0) << served.err();
+  auto first = served.page();
+  EXPECT_EQ(word_of(test::told(*first, "role"), "hand"), "yours");
+  const auto second = served.page();
+  EXPECT_EQ(word_of(test::told(*second, "role"), "hand"), "taken");
+  EXPECT_EQ(number_of(test::told(*first, "role", [](const Node& r) { return number_of(r, "viewers") == 2; }), "viewers"), 2);
+  EXPECT_NE(test::shown(*second).number, 0u);
+  // who watches changes nothing
+  second->say(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.25})");
+  second->say(R"({"do": "take"})");
+  first->say(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.75})");
+  std::vector<double> levels;
+  test::told(*second, "scene", [&](const Node& scene) {
+    levels.push_back(number_of(scene.find("isosurfaces")->items.at(0), "level"));
+    return levels.back() == 0.75;
+  });
+  for (const double level : levels) EXPECT_NE(level, 0.25);
+  // the hand is free when its page has gone
+  first->close();
+  EXPECT_EQ(word_of(test::told(*second, "role"), "hand"), "free");
+  second->say(R"({"do": "take"})");
+  EXPECT_EQ(word_of(test::told(*second, "role"), "hand"), "yours");
+  second->say(R"({"do": "give"})");
+  EXPECT_EQ(word_of(test::told(*second, "role"), "hand"), "free");
+  const auto third = served.page();
+  EXPECT_EQ(word_of(test::told(*third, "role"), "hand"), "yours") << "who comes while it is free";
+  EXPECT_EQ(served.interrupt(), 0);
+}
+
+TEST(Serve, AVolumesTransferFunctionIsChanged) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "cloud.json", R"({"fields": {"f": {"analytic": "sphere", "resolution": 24}},
+    "volumes": [{"field": "f", "color": "viridis", "opacity": [[0, 0], [2, 0.5]]}], "camera": {"position": [0, -6, 0], "target": [0, 0, 0]}})");
+  test::Served served(folder / "cloud.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  const auto volume = [](const Node& scene) { return scene.find("volumes")->items.at(0); };
+  page->say(R"({"do": "opacity", "item": "volumes[0]", "points": [[0, 0.125], [1, 0.25], [2, 0]]})");
+  const Node scene = test::told(*page, "scene", [&](const Node& s) { return volume(s).find("opacity")->items.size() == 3; });
+  EXPECT_EQ(volume(scene).find("opacity")->items[1].items[1].number, 0.25);
+  page->say(R"({"do": "map", "item": "volumes[0]", "name": "magma"})");
+  EXPECT_EQ(word_of(volume(test::told(*page, "scene", [&](const Node& s) { return word_of(volume(s), "map") == "magma"; })), "map"),
+            "magma");
+  // values that do not rise: refused as the scene's own would be
+  page->say(R"({"do": "opacity", "item": "volumes[0]", "points": [[1, 0.1], [0, 0.2]]})");
+  EXPECT_EQ(test::told(*page, "note").kind, catena::json::Kind::string);
+}
+
+TEST(Serve, BadInputIsOneLine) {
+  const Ball ball;
+  for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{{"serve", "missing.json"},
+                                                                                   {"serve", ball.path, "--address", "localhost"},
+                                                                                   {"serve", ball.path, "--port", "99999"},
+                                                                                   {"serve", ball.path, "--framed-by", "*"},
+                                                                                   {"serve", ball.path, "--quality", "pretty"},
+                                                                                   {"serve"}}) {
+    const test::ProgramResult result = test::run_catena(bad);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+}  // namespace serve_test

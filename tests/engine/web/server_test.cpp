@@ -1,0 +1,215 @@
+/// The server against a client of its own: who is let in, what comes through, and what a hostile one can do.
+#include "engine/web/server.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/web/access.h"
+#include "tests/engine/web/client.h"
+
+namespace server_test {
+
+namespace test = catena::test;
+using namespace catena::web;
+
+struct Rig {
+  std::unique_ptr<Server> server;
+  int port = 0;
+  std::string host, cookie;
+
+  Rig() {
+    ServerOptions options;
+    options.page = "<script nonce=\"NONCE\">NONCE</script>";
+    auto opened = Server::open(std::move(options));
+    EXPECT_TRUE(opened);
+    server = std::move(*opened);
+    port = server->port();
+    host = "127.0.0.1:" + std::to_string(port);
+    cookie = test::cookie_for(port, server->url());
+  }
+  std::string ask(const std::string& target, const test::Headers& headers, const std::string& method = "GET") const {
+    return test::answer_to(port, test::request_of(target, headers, method));
+  }
+  std::unique_ptr<test::Page> page() const { return std::make_unique<test::Page>(port, test::Page::As{cookie, "http://" + host}); }
+  /// Until so many news are there, or nothing comes any more.
+  std::vector<News> news(std::size_t count) const {
+    std::vector<News> all;
+    for (int i = 0; i < 400 && all.size() < count; ++i)
+      for (News& one : server->take(0.05)) all.push_back(std::move(one));
+    return all;
+  }
+  /// Its next message is a picture, of which this is the text.
+  static std::string picture(test::Page& page) {
+    const auto message = page.read();
+    return message && !message->is_text ? message->bytes : "";
+  }
+};
+
+TEST(Server, ShowsThePageToWhoWasInvited) {
+  const Rig rig;
+  const std::string url = rig.server->url(), invited = url.substr(url.find("/?"));
+  EXPECT_EQ(test::status_of(rig.ask("/", {{"Host", rig.host}})), 403);
+  EXPECT_EQ(test::status_of(rig.ask("/?token=" + std::string(32, '0'), {{"Host", rig.host}})), 403);
+  const std::string page = rig.ask(invited, {{"Host", rig.host}});
+  EXPECT_EQ(test::status_of(page), 200);
+  EXPECT_EQ(test::header_of(page, "Referrer-Policy"), "no-referrer");
+  EXPECT_EQ(test::header_of(page, "Cache-Control"), "no-store");
+  // scripts run by a word that is another one each time
+  const std::string rules = test::header_of(page, "Content-Security-Policy"),
+                    again = rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}});
+  ASSERT_NE(rules.find("script-src 'nonce-"), std::string::npos);
+  const std::string nonce = rules.substr(rules.find("'nonce-") + 7, 32);
+  EXPECT_NE(page.find("<script nonce=\"" + nonce + "\">" + nonce + "</script>"), std::string::npos);
+  EXPECT_NE(rules.find("frame-ancestors 'none'"), std::string::npos);
+  EXPECT_EQ(test::status_of(again), 200);
+  EXPECT_EQ(again.find(nonce), std::string::npos);
+  EXPECT_EQ(test::header_of(again, "Set-Cookie"), "");
+  EXPECT_EQ(page.find(rig.server->url().substr(url.size() - 32)), std::string::npos) << "the token goes nowhere";
+}
+
+TEST(Server, RefusesStrangers) {
+  const Rig rig;
+  EXPECT_EQ(test::status_of(rig.ask("/", {{"Host", "evil.example"}, {"Cookie", rig.cookie}})), 403) << "a name that was rebound";
+  EXPECT_EQ(test::status_of(rig.ask("/", {{"Cookie", rig.cookie}})), 403);
+  EXPECT_EQ(test::status_of(rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}}, "POST")), 405);
+  EXPECT_EQ(test::status_of(rig.ask("/etc/passwd", {{"Host", rig.host}, {"Cookie", rig.cookie}})), 404);
+  EXPECT_EQ(test::status_of(rig.ask("/socket", {{"Host", rig.host}, {"Cookie", rig.cookie}, {"Origin", "http://" + rig.host}})), 426);
+  const auto status = [&](const test::Page::As& as) {
+    const test::Page page(rig.port, as);
+    return page.is_open() ? 101 : page.status();
+  };
+  EXPECT_EQ(status({rig.cookie, "http://evil.example"}), 403);
+  EXPECT_EQ(status({rig.cookie, ""}), 403);
+  EXPECT_EQ(status({"", "http://" + rig.host}), 403);
+  EXPECT_EQ(status({rig.cookie, "http://evil.example", "/socket", "evil.example"}), 403);
+  EXPECT_EQ(status({rig.cookie, "http://" + rig.host}), 101);
+}
+
+TEST(Server, WordsAndPicturesComeThrough) {
+  const Rig rig;
+  auto one = rig.page(), two = rig.page();
+  ASSERT_TRUE(one->is_open() && two->is_open());
+  one->say("hello");
+  auto news = rig.news(3);
+  ASSERT_EQ(news.size(), 3u);
+  EXPECT_EQ(news[0].what, News::What::came);
+  EXPECT_EQ(news[2].words, "hello");
+  EXPECT_EQ(news[2].viewer, news[0].viewer);
+  EXPECT_TRUE(rig.server->wants_picture());
+  rig.server->send(news[0].viewer, Slot::note, "only you");
+  rig.server->send(kAllViewers, Slot::picture, "a picture");
+  EXPECT_EQ(one->read()->bytes, "only you");
+  EXPECT_EQ(Rig::picture(*one), "a picture");
+  EXPECT_EQ(Rig::picture(*two), "a picture");
+  one->close();
+  news = rig.news(1);
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_EQ(news[0].what, News::What::left);
+}
+
+TEST(Server, ASlowReaderMissesPicturesAndCostsNoMemory) {
+  const Rig rig;
+  auto slow = rig.page(), quick = rig.page();
+  ASSERT_EQ(rig.news(2).size(), 2u);
+  // what is under way is not taken back; of what waits only the newest stays
+  for (int i = 0; i < 300; ++i) {
+    rig.server->send(kAllViewers, Slot::picture, std::to_string(i) + std::string(200000, ' '));
+    if (i >= 2) continue;
+    ASSERT_EQ(std::stoi(Rig::picture(*quick)), i);
+    quick->shown();
+  }
+  EXPECT_EQ(std::stoi(Rig::picture(*slow)), 0);
+  EXPECT_EQ(std::stoi(Rig::picture(*slow)), 1);
+  slow->shown();
+  EXPECT_EQ(std::stoi(Rig::picture(*slow)), 299);
+  // another viewer goes on beside it
+  for (int last = -1; last != 299;) {
+    last = std::stoi(Rig::picture(*quick));
+    quick->shown();
+  }
+}
+
+TEST(Server, WhatIsNoMessageEndsTheConnection) {
+  const Rig rig;
+  auto good = rig.page();
+  ASSERT_EQ(rig.news(1).size(), 1u);
+  const std::vector<std::pair<const char*, std::function<void(test::Page&)>>> bad{
+      {"too long", [](test::Page& page) { page.say(std::string(kLongestMessage + 1, 'x')); }},
+      {"an odd number of bytes", [](test::Page& page) { page.say("abc", false); }},
+      {"a picture shown that never came", [](test::Page& page) { page.shown(); }},
+      {"not masked", [](test::Page& page) { page.say_raw(std::string("\x81\x05hello", 7)); }},
+      {"not UTF-8", [](test::Page& page) { page.say("\xff\xfe\xfd"); }},
+      {"a length of 2^62", [](test::Page& page) { page.say_raw(std::string("\x81\xff\x40\0\0\0\0\0\0\0abcd", 14)); }},
+      {"a reserved kind", [](test::Page& page) { page.say_raw(std::string("\x8f\x80\0\0\0\0", 6)); }},
+      {"noise", [](test::Page& page) { page.say_raw(std::string(5000, '\xa5')); }}};
+  for (const auto& [what, does] : bad) {
+    SCOPED_TRACE(what);
+    auto page = rig.page();
+    ASSERT_TRUE(page->is_open());
+    does(*page);
+    EXPECT_FALSE(page->read());
+    const auto news = rig.news(2);
+    ASSERT_EQ(news.size(), 2u);
+    EXPECT_EQ(news[0].what, News::What::came);
+    EXPECT_EQ(news[1].what, News::What::left);
+  }
+  good->say("still here");
+  EXPECT_EQ(rig.news(1).at(0).words, "still here");
+}
+
+TEST(Server, AFloodWaitsInTheNetwork) {
+  const Rig rig;
+  auto page = rig.page();
+  ASSERT_EQ(rig.news(1).size(), 1u);
+  constexpr std::size_t kCount = 500;
+  for (std::size_t i = 0; i < kCount; ++i) page->say(std::to_string(i));
+  // nobody has taken any: no more than these were read
+  std::vector<News> all;
+  std::size_t most = 0;
+  while (all.size() < kCount) {
+    auto some = rig.server->take(5);
+    if (some.empty()) break;
+    most = std::max(most, some.size());
+    for (News& one : some) all.push_back(std::move(one));
+  }
+  EXPECT_LE(most, 2 * kMostWaiting);
+  ASSERT_EQ(all.size(), kCount);
+  for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(all[i].words, std::to_string(i));
+}
+
+TEST(Server, RequestsAreBounded) {
+  const Rig rig;
+  const std::string head = "GET / HTTP/1.1\r\nHost: " + rig.host + "\r\n";
+  EXPECT_NE(test::status_of(test::answer_to(rig.port, head + "X: " + std::string(20000, 'x') + "\r\n\r\n")), 200);
+  EXPECT_NE(test::status_of(test::answer_to(rig.port, head + "Content-Length: 1000000\r\n\r\n" + std::string(1000, 'x'))), 200);
+  EXPECT_NE(test::status_of(test::answer_to(rig.port, std::string(3000, '\0') + "\r\n\r\n")), 200);
+  EXPECT_NE(test::status_of(test::answer_to(rig.port, "GET / HTTP/9.9\r\n\r\n")), 200);
+  std::vector<std::unique_ptr<test::Page>> pages;
+  for (int i = 0; i < kMostViewers; ++i) {
+    pages.push_back(rig.page());
+    ASSERT_TRUE(pages.back()->is_open()) << i;
+    rig.news(1);
+  }
+  const auto one_more = rig.page();
+  EXPECT_FALSE(one_more->is_open());
+  EXPECT_EQ(one_more->status(), 503);
+  EXPECT_EQ(test::status_of(rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}})), 200);
+}
+
+TEST(Server, SaysWhereItCannotListen) {
+  const Rig rig;
+  ServerOptions taken;
+  taken.port = rig.server->port();
+  const auto second = Server::open(taken);
+  ASSERT_FALSE(second);
+  EXPECT_TRUE(second.error().machine);
+  ServerOptions nowhere;
+  nowhere.address = "localhost";
+  const auto none = Server::open(nowhere);
+  ASSERT_FALSE(none);
+  EXPECT_FALSE(none.error().machine);
+  ServerOptions framed;
+  framed.framed_by = "http://a; script-src *";
+  EXPECT_FALSE(Server::open(framed));
+}
+
+}  // namespace server_test
