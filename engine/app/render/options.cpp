@@ -21,11 +21,11 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
   }
   if (!o.camera.empty()) {
     if (motion.towards_eye_ || o.fit) return Error{"--camera " + o.camera + ": goes without --view and --fit"};
+    if (!o.head.empty()) return Error{"--head " + o.head + ": goes without --camera"};
     CATENA_TRY(motion.path_, render::read_camera_path(o.camera));
   }
   if (!o.head.empty()) {
     if (o.stereo.screen.empty()) return Error{"--head " + o.head + ": expected --screen, before which the head is"};
-    if (!o.camera.empty()) return Error{"--head " + o.head + ": goes without --camera"};
     CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(o.head));
     std::vector<render::CameraKey> keys;
     for (const ProbeRow& row : rows) keys.push_back({row.t_s, row.position, Vec3(0.0), std::nullopt, std::nullopt});

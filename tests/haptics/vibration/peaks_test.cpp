@@ -100,14 +100,15 @@ TEST(Peaks, WhatIsThereWhenTheHandComesBackIsNoStep) {
 
 TEST(Peaks, NoneIsLostBetweenTwoThreads) {
   Peaks peaks;
-  constexpr int kPulses = 20000;
-  std::atomic<bool> done{false};
+  constexpr int kTakes = 1000;
+  std::atomic<bool> enough{false}, done{false};
+  int pulses = 0;  // of the servo's thread, until it has ended
   // pulses that grow: the largest one ever taken is the last one, and what is taken never exceeds what was
   std::thread servo([&] {
-    for (int i = 1; i <= kPulses; ++i) {
+    while (!enough) {
       peaks.add({.live = false});
       peaks.add({});
-      peaks.add({.force_n = Vec3(i, 0, 0)});
+      peaks.add({.force_n = Vec3(++pulses, 0, 0)});
     }
     done = true;
   });
@@ -118,10 +119,10 @@ TEST(Peaks, NoneIsLostBetweenTwoThreads) {
     const double change = peaks.take().change_n;
     ASSERT_TRUE(change == 0 || change >= most) << "an old peak was kept beside a newer one";
     most = std::max(most, change);
+    enough = enough || takes >= kTakes;
   }
   servo.join();
-  EXPECT_EQ(most, kPulses);
-  EXPECT_GT(takes, 1);
+  EXPECT_EQ(most, static_cast<float>(pulses));
 }
 
 }  // namespace peaks_test
