@@ -90,7 +90,7 @@ TEST(FramePace, GivesWayToWhatElseTheMachineDoesAndComesBack) {
 TEST(FramePace, CountsWhatIsLateAndNotAPause) {
   FramePace pace;
   std::int64_t shown = 10'000'000;
-  const auto frame = [&](int periods) {
+  const auto frame = [&](std::int64_t periods) {
     shown += periods * 10'000'000;
     pace.next(10, shown);
     pace.drawn(1);
