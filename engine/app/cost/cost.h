@@ -1,8 +1,8 @@
 /// `catena info --cost`: what a scene, or a data file as `render` shows it, will load, mirror, create, evaluate a tick and draw a frame,
 /// with bytes and expected times, and with --measure what was then measured. Bytes are those that the functions that allocate would take.
 /// Expected times are counts of work times a unit cost, or sums of parts, which are measured here and now:
-///   a formula on its grid   nodes x what a node of the same formula took on a lattice of 24^3
-///   a mirror                bytes x what a byte of a mirror of 64^3 took
+///   a formula on its grid   nodes x what a node of the same formula took on a lattice of 64^3
+///   a mirror                bytes x what a byte of a mirror of 128^3 took
 ///   a file                  what loading it took just now
 ///   a tick                  one without links + what each link adds that is alone in its chain, on a standard walk through the scene
 ///   a frame                 a start + rows x what a row took: of strips of the picture, some of 1 row and some of 8
