@@ -73,8 +73,10 @@ class Served {
   std::string url_, cookie_;
 };
 
-/// The member `key` of the next such message, with pictures acknowledged on the way; null: the connection ended first.
-inline json::Node told(Page& page, const std::string& key, const std::function<bool(const json::Node&)>& wanted = {}) {
+/// The member `key` of the next such message, with pictures acknowledged on the way; null: the connection ended first. `passed` sees every
+/// message up to it: what is told once, in no fixed order, may come before.
+inline json::Node told(Page& page, const std::string& key, const std::function<bool(const json::Node&)>& wanted = {},
+                       const std::function<void(const json::Node&)>& passed = {}) {
   for (int i = 0; i < 2000; ++i) {
     const auto message = page.read();
     if (!message) return {};
@@ -83,6 +85,7 @@ inline json::Node told(Page& page, const std::string& key, const std::function<b
       continue;
     }
     const auto node = json::parse(message->bytes, "message");
+    if (node && passed) passed(*node);
     const json::Node* member = node ? node->find(key) : nullptr;
     if (member != nullptr && (!wanted || wanted(*member))) return *member;
   }
