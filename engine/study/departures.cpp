@@ -12,16 +12,15 @@ namespace {
 
 constexpr std::size_t kMostTold = 3;  ///< of a subject's rows
 
-/// What a row says that the design does not; empty: nothing.
-std::string other_in(const Study& study, const Row& row, const std::vector<Trial>& session) {
-  if (row.index < 0 || row.index >= static_cast<int>(session.size()))
-    return fmt::format("there is no such trial in a session of {}", session.size());
-  const Trial& trial = session[static_cast<std::size_t>(row.index)];
+}  // namespace
+
+std::string departure(const Study& study, const Row& row, const Trial& trial) {
   const std::string& task = study.tasks[static_cast<std::size_t>(trial.task)].name;
   const std::string& condition = study.conditions[static_cast<std::size_t>(trial.condition)].name;
   const auto differs = [](const char* what, const auto& is, const auto& designed) {
     return fmt::format("{} is {}, by the design {}", what, is, designed);
   };
+  if (row.index != trial.index) return differs("index", row.index, trial.index);
   if (row.task != task) return differs("task", row.task, task);
   if (row.condition != condition) return differs("condition", row.condition, condition);
   if (row.stimulus != trial.stimulus) return differs("stimulus", row.stimulus, trial.stimulus);
@@ -30,8 +29,6 @@ std::string other_in(const Study& study, const Row& row, const std::vector<Trial
   if (row.training != trial.training) return differs("training", row.training ? 1 : 0, trial.training ? 1 : 0);
   return {};
 }
-
-}  // namespace
 
 std::vector<std::string> departures(const Study& study, const std::vector<Row>& rows) {
   std::map<int, std::vector<const Row*>> subjects;
@@ -49,7 +46,9 @@ std::vector<std::string> departures(const Study& study, const std::vector<Row>& 
     if (own.size() != designed) lines.push_back(fmt::format("subject {}: {} of {} trials", subject, own.size(), designed));
     std::size_t others = 0;
     for (const Row* row : own) {
-      const std::string what = other_in(study, *row, session);
+      const bool there = row->index >= 0 && row->index < static_cast<int>(session.size());
+      const std::string what = there ? departure(study, *row, session[static_cast<std::size_t>(row->index)])
+                                     : fmt::format("there is no such trial in a session of {}", session.size());
       if (!what.empty() && ++others <= kMostTold)
         lines.push_back(one_line(fmt::format("subject {}, trial {}: {}", subject, row->index, what)));
     }

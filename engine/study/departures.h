@@ -8,6 +8,9 @@
 
 namespace catena::study {
 
+/// What a row says that this trial of its subject's session does not: "condition is drag, by the design none"; empty: nothing.
+std::string departure(const Study& study, const Row& row, const Trial& trial);
+
 /// A line each, by subject: trials that are missing, and rows that say something else than the design. A few of a subject, the rest
 /// counted. Rows in any order; without training rows those are not missed. Empty: the rows are the design's, whole.
 std::vector<std::string> departures(const Study& study, const std::vector<Row>& rows);

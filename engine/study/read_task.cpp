@@ -16,7 +16,9 @@ const StudyTable<StimulusRules>& stimulus_table() {
           .bind(number("clearance_mm", "mm", "The start is at least so far from every global streamline.").within(0, 1e4), &T::clearance_mm)
           .bind(integer("lines", "", "Global streamlines.", 0, 200), &T::lines)
           .bind(number("line_mm", "mm", "The longest that one is, each way.").limited({0.0, 1e5, true}), &T::line_mm)
-          .bind(number("parallel", "", "3D: at least this share of the path's length is seen along the picture plane (across the camera's axis).").within(0, 1),
+          .bind(number("parallel", "",
+                       "3D: at least this share of the path's length is seen along the picture plane (across the camera's axis).")
+                    .within(0, 1),
                 &T::parallel)
           .bind(number("crossing_deg", "degrees", "Advection: the path meets its target at this angle or a steeper one.").within(0, 90),
                 &T::crossing_deg)

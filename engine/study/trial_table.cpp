@@ -1,9 +1,11 @@
 #include "engine/study/trial_table.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -108,6 +110,14 @@ Result<std::vector<Row>> rows_of_subjects(const std::string& folder, std::vector
   return all;
 }
 
+/// The name of a file is on the disk when its folder is.
+void sync_folder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  static_cast<void>(::fsync(descriptor));
+  ::close(descriptor);
+}
+
 std::string mark_of(const std::string& folder) { return (fs::path(folder) / "simulated.json").string(); }
 
 }  // namespace
@@ -189,7 +199,9 @@ Outcome make_folder(const std::string& path) {
   return Done{};
 }
 
-std::string recording_name(const Trial& trial) { return fmt::format("{:03}-{:03}.catlog", trial.subject, trial.index); }
+std::string recording_file(const std::string& folder, const Trial& trial) {
+  return (fs::path(recordings_folder(folder)) / fmt::format("{:03}-{:03}.catlog", trial.subject, trial.index)).string();
+}
 
 Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes) {
   std::vector<int> numbers;
@@ -261,6 +273,19 @@ Outcome DataFolder::write_subject(int subject, const std::vector<Row>& rows) con
   file.write(table_text(rows));
   file.sync();
   return file.commit();
+}
+
+std::string DataFolder::unfinished_recording(const Trial& trial) const {
+  const std::string place = recording_file(path_, trial);
+  remove_stale_parts(place);
+  return part_name(place);
+}
+
+Outcome DataFolder::keep_recording(const Trial& trial, const std::string& unfinished) const {
+  const std::string place = recording_file(path_, trial);
+  if (std::rename(unfinished.c_str(), place.c_str()) != 0) return system_error(place, "cannot write");
+  sync_folder(recordings_folder(path_));
+  return Done{};
 }
 
 Outcome DataFolder::write_table() const {

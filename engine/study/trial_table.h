@@ -42,11 +42,12 @@ Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& fi
 /// "DIR/subjects/007.csv"
 std::string subject_file(const std::string& folder, int subject);
 
-/// "DIR/recordings", and in it "007-012.catlog": subject and index.
+/// "DIR/recordings".
 std::string recordings_folder(const std::string& folder);
 /// With those that it lies in.
 Outcome make_folder(const std::string& path);
-std::string recording_name(const Trial& trial);
+/// In it "007-012.catlog": subject and index.
+std::string recording_file(const std::string& folder, const Trial& trial);
 
 /// The numbers of the subjects that have a file in a data folder, rising; other files are told in `notes`.
 Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes = nullptr);
@@ -70,6 +71,10 @@ class DataFolder {
   Outcome append(const Row& row) const;
   /// All of a subject's rows at once, whole or not at all.
   Outcome write_subject(int subject, const std::vector<Row>& rows) const;
+  /// Where the recording of a trial is written until it is whole, under a name of its own; what ended programs left of it is gone.
+  std::string unfinished_recording(const Trial& trial) const;
+  /// It is whole, and gets its name: recordings/007-012.catlog, on the disk.
+  Outcome keep_recording(const Trial& trial, const std::string& unfinished) const;
   /// Writes trials.csv of all of them.
   Outcome write_table() const;
 

@@ -91,34 +91,34 @@ const VdbEntry* OpenFile::parent_of(const std::string& unique_name) const {
   return nullptr;
 }
 
-openvdb::GridBase::Ptr OpenFile::read_metadata(const VdbEntry& entry) {
-  if (!openvdb::GridBase::isRegistered(entry.tree_type)) return nullptr;
+openvdb::GridBase::Ptr OpenFile::begin(const VdbEntry& entry, openvdb::io::GridDescriptor& descriptor) {
   stream_.clear();
   stream_.seekg(static_cast<std::streamoff>(entry.at));
-  openvdb::io::GridDescriptor descriptor;
   const openvdb::GridBase::Ptr grid = descriptor.read(stream_);
   descriptor.seekToGrid(stream_);
+  return grid;
+}
+
+openvdb::GridBase::Ptr OpenFile::read_metadata(const VdbEntry& entry) {
+  if (!openvdb::GridBase::isRegistered(entry.tree_type)) return nullptr;
+  openvdb::io::GridDescriptor descriptor;
+  const openvdb::GridBase::Ptr grid = begin(entry, descriptor);
   Archive::metadata(grid, stream_);
   return grid;
 }
 
 openvdb::GridBase::Ptr OpenFile::read_at(const VdbEntry& entry, const openvdb::CoordBBox* box) {
   if (!openvdb::GridBase::isRegistered(entry.tree_type)) return nullptr;
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(entry.at));
   openvdb::io::GridDescriptor descriptor;
-  const openvdb::GridBase::Ptr grid = descriptor.read(stream_);
-  descriptor.seekToGrid(stream_);
+  const openvdb::GridBase::Ptr grid = begin(entry, descriptor);
   Archive::grid(grid, descriptor, stream_, box);
   if (!descriptor.isInstance()) return grid;
   // the tree of another grid, which must have one of its own
   const VdbEntry* parent = parent_of(descriptor.instanceParentName());
   if (parent == nullptr || parent == &entry) throw std::runtime_error("it shares the tree of a grid that is not there");
-  stream_.seekg(static_cast<std::streamoff>(parent->at));
   openvdb::io::GridDescriptor owner;
-  const openvdb::GridBase::Ptr owning = owner.read(stream_);
+  const openvdb::GridBase::Ptr owning = begin(*parent, owner);
   if (owner.isInstance()) throw std::runtime_error("it shares a tree that is itself shared");
-  owner.seekToGrid(stream_);
   Archive::grid(owning, owner, stream_, box);
   grid->setTree(owning->baseTreePtr());
   return grid;

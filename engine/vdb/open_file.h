@@ -34,6 +34,8 @@ class OpenFile {
   OpenFile(std::span<const std::byte> bytes);
   openvdb::GridBase::Ptr read_at(const VdbEntry& entry, const openvdb::CoordBBox* box);
   openvdb::GridBase::Ptr read_metadata(const VdbEntry& entry);
+  /// A grid with nothing in it; the stream is where its contents begin.
+  openvdb::GridBase::Ptr begin(const VdbEntry& entry, openvdb::io::GridDescriptor& descriptor);
   const VdbEntry* parent_of(const std::string& unique_name) const;
 
   openvdb::io::StreamMetadata::Ptr about_;  ///< the stream borrows it

@@ -34,25 +34,29 @@ void Commands::use(Image& image, const Use& next) {
                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
   const bool same = image.layout == next.layout && image.stage == next.stage && image.access == next.access;
   if (same && !(next.access & writes)) return;
+  barrier(image.handle(), image.aspect(), {image.layout, image.stage, image.access}, next);
+  image.layout = next.layout;
+  image.stage = next.stage;
+  image.access = next.access;
+}
+
+void Commands::barrier(VkImage image, VkImageAspectFlags aspect, const Use& from, const Use& to) {
   VkImageMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = image.stage;
-  barrier.srcAccessMask = image.access;
-  barrier.dstStageMask = next.stage;
-  barrier.dstAccessMask = next.access;
-  barrier.oldLayout = image.layout;
-  barrier.newLayout = next.layout;
+  barrier.srcStageMask = from.stage;
+  barrier.srcAccessMask = from.access;
+  barrier.dstStageMask = to.stage;
+  barrier.dstAccessMask = to.access;
+  barrier.oldLayout = from.layout;
+  barrier.newLayout = to.layout;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image.handle();
-  barrier.subresourceRange = {image.aspect(), 0, 1, 0, 1};
+  barrier.image = image;
+  barrier.subresourceRange = {aspect, 0, 1, 0, 1};
   VkDependencyInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
   info.imageMemoryBarrierCount = 1;
   info.pImageMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(buffer_, &info);
-  image.layout = next.layout;
-  image.stage = next.stage;
-  image.access = next.access;
 }
 
 void Commands::barrier(const Buffer& buffer, const Use& from, const Use& to) {

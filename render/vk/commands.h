@@ -70,6 +70,7 @@ class Commands {
   // barriers
   void use(Image& image, const Use& next);
   void barrier(const Buffer& buffer, const Use& from, const Use& to);
+  void barrier(VkImage image, VkImageAspectFlags aspect, const Use& from, const Use& to);  ///< of an image that others own
 
   // copies
   void copy(const Buffer& from, VkDeviceSize offset, Image& to, VkOffset3D at, VkExtent3D extent);  ///< an upload; counted

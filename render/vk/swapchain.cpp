@@ -27,26 +27,6 @@ Result<VkSurfaceFormatKHR> choose_format(const Device& device) {
   return Error{"the window has no 8-bit UNORM format, expected B8G8R8A8_UNORM or R8G8B8A8_UNORM"};
 }
 
-void swapchain_barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 from_stage,
-                       VkAccessFlags2 from_access, VkPipelineStageFlags2 to_stage, VkAccessFlags2 to_access) {
-  VkImageMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = from_stage;
-  barrier.srcAccessMask = from_access;
-  barrier.dstStageMask = to_stage;
-  barrier.dstAccessMask = to_access;
-  barrier.oldLayout = from;
-  barrier.newLayout = to;
-  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.imageMemoryBarrierCount = 1;
-  info.pImageMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &info);
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Swapchain>> Swapchain::create(Device& device, std::uint32_t width, std::uint32_t height) {
@@ -139,13 +119,11 @@ Result<bool> Swapchain::show(const Image& source, std::uint32_t index, bool opti
   // copy, scaled to the window
   CATENA_TRY(Commands commands, Commands::begin(*device_));
   const VkImage target = images_[index];
-  swapchain_barrier(commands.handle(), target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                    VK_ACCESS_2_TRANSFER_WRITE_BIT);
+  const Use taken{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE};
+  const Use presented{VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
+  commands.barrier(target, VK_IMAGE_ASPECT_COLOR_BIT, taken, kTransferWrite);
   commands.blit(source, target, extent_);
-  swapchain_barrier(commands.handle(), target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
-                    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                    VK_ACCESS_2_NONE);
+  commands.barrier(target, VK_IMAGE_ASPECT_COLOR_BIT, kTransferWrite, presented);
   CATENA_TRY(const std::uint64_t value, commands.submit(acquired_, finished_[index]));
 
   VkPresentInfoKHR info{};

@@ -5,33 +5,6 @@
 
 namespace catena::render::xr {
 
-namespace {
-
-VkImageMemoryBarrier2 moved(VkImage image, VkImageAspectFlags aspect, const vk::Use& from, const vk::Use& to) {
-  VkImageMemoryBarrier2 barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-  barrier.srcStageMask = from.stage;
-  barrier.srcAccessMask = from.access;
-  barrier.dstStageMask = to.stage;
-  barrier.dstAccessMask = to.access;
-  barrier.oldLayout = from.layout;
-  barrier.newLayout = to.layout;
-  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {aspect, 0, 1, 0, 1};
-  return barrier;
-}
-
-void record(VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier) {
-  VkDependencyInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-  info.imageMemoryBarrierCount = 1;
-  info.pImageMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &info);
-}
-
-}  // namespace
-
 Result<std::unique_ptr<EyeImages>> EyeImages::create(Session& session, ViewSize size, Content content) {
   Instance& instance = session.instance();
   const Functions& xr = session.xr();
@@ -106,13 +79,13 @@ Outcome EyeImages::copy(vk::Image& picture, VkImage to) {
   if (content_ == Content::depth) lent.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
   vk::Use before = lent;  // what the runtime did to it is over, and what it shows does not count
   before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  record(commands.handle(), moved(to, picture.aspect(), before, vk::kTransferWrite));
+  commands.barrier(to, picture.aspect(), before, vk::kTransferWrite);
   VkImageCopy region{};
   region.srcSubresource = region.dstSubresource = {picture.aspect(), 0, 0, 1};
   region.extent = extent;
   vkCmdCopyImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                  &region);
-  record(commands.handle(), moved(to, picture.aspect(), vk::kTransferWrite, lent));
+  commands.barrier(to, picture.aspect(), vk::kTransferWrite, lent);
   CATENA_TRY([[maybe_unused]] const std::uint64_t done, commands.submit());
   return Done{};
 }

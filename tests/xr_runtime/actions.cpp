@@ -108,17 +108,23 @@ float amount_of(const std::string& name, const ScriptedHand& hand) {
   return hand.select;
 }
 
+/// What every action's state has; `value` of the hand that holds it, null: none does.
+template <class State, class Value>
+XrResult fill_state(const SessionObject& session, const XrActionStateGetInfo* info, State* out, const Value& value) {
+  const ScriptedHand* hand = active_hand(session, number(info->action), info->subactionPath);
+  out->isActive = hand != nullptr;
+  out->currentState = value(hand);
+  out->changedSinceLastSync = XR_FALSE;
+  out->lastChangeTime = 0;
+  return XR_SUCCESS;
+}
+
 XRAPI_ATTR XrResult XRAPI_CALL boolean_state(XrSession handle, const XrActionStateGetInfo* info, XrActionStateBoolean* out) {
   ENTER(xrGetActionStateBoolean);
   FIND(SessionObject, session, handle, session);
   FIND(ActionObject, action, info->action, action);
   if (action->type != XR_ACTION_TYPE_BOOLEAN_INPUT) return illegal(self, XR_ERROR_ACTION_TYPE_MISMATCH, "not a yes or no");
-  const ScriptedHand* hand = active_hand(*session, number(info->action), info->subactionPath);
-  out->isActive = hand != nullptr;
-  out->currentState = hand && amount_of(action->name, *hand) > 0.5f;
-  out->changedSinceLastSync = XR_FALSE;
-  out->lastChangeTime = 0;
-  return XR_SUCCESS;
+  return fill_state(*session, info, out, [&](const ScriptedHand* hand) { return hand && amount_of(action->name, *hand) > 0.5f; });
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL float_state(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* out) {
@@ -126,12 +132,7 @@ XRAPI_ATTR XrResult XRAPI_CALL float_state(XrSession handle, const XrActionState
   FIND(SessionObject, session, handle, session);
   FIND(ActionObject, action, info->action, action);
   if (action->type != XR_ACTION_TYPE_FLOAT_INPUT) return illegal(self, XR_ERROR_ACTION_TYPE_MISMATCH, "not a number");
-  const ScriptedHand* hand = active_hand(*session, number(info->action), info->subactionPath);
-  out->isActive = hand != nullptr;
-  out->currentState = hand ? amount_of(action->name, *hand) : 0;
-  out->changedSinceLastSync = XR_FALSE;
-  out->lastChangeTime = 0;
-  return XR_SUCCESS;
+  return fill_state(*session, info, out, [&](const ScriptedHand* hand) { return hand ? amount_of(action->name, *hand) : 0.0f; });
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL vector_state(XrSession handle, const XrActionStateGetInfo* info, XrActionStateVector2f* out) {
@@ -139,12 +140,7 @@ XRAPI_ATTR XrResult XRAPI_CALL vector_state(XrSession handle, const XrActionStat
   FIND(SessionObject, session, handle, session);
   FIND(ActionObject, action, info->action, action);
   if (action->type != XR_ACTION_TYPE_VECTOR2F_INPUT) return illegal(self, XR_ERROR_ACTION_TYPE_MISMATCH, "not a stick");
-  const ScriptedHand* hand = active_hand(*session, number(info->action), info->subactionPath);
-  out->isActive = hand != nullptr;
-  out->currentState = hand ? hand->stick : XrVector2f{0, 0};
-  out->changedSinceLastSync = XR_FALSE;
-  out->lastChangeTime = 0;
-  return XR_SUCCESS;
+  return fill_state(*session, info, out, [&](const ScriptedHand* hand) { return hand ? hand->stick : XrVector2f{0, 0}; });
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL pose_state(XrSession handle, const XrActionStateGetInfo* info, XrActionStatePose* out) {

@@ -17,6 +17,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
+#include "engine/study/departures.h"
 #include "engine/study/simulated_trial.h"
 #include "engine/study/trial_table.h"
 #include "haptics/servo/log/writer.h"
@@ -65,7 +66,7 @@ Result<Shard> read_shard(const std::optional<std::string>& given) {
 /// The recordings of one subject, a trial after the other.
 class Recordings {
  public:
-  Recordings(const study::Study& study, std::string folder) : study_(study), folder_(std::move(folder)) {}
+  Recordings(const study::Study& study, const study::DataFolder& data) : study_(study), data_(data) {}
 
   Result<haptics::TickSink*> begin(const study::Trial& trial, const std::string& text, const haptics::Program& program) {
     haptics::log::LogHeader header;
@@ -75,22 +76,17 @@ class Recordings {
     header.catena_version = kVersion;
     header.rate_hz = study::kSimulatedRateHz;
     header.about = about_trial(study_, trial);
-    place_ = (fs::path(folder_) / study::recording_name(trial)).string();
-    remove_stale_parts(place_);
-    unfinished_ = part_name(place_);
+    unfinished_ = data_.unfinished_recording(trial);
     CATENA_TRY(writer_, haptics::log::LogWriter::open(unfinished_, std::move(header)));
     writer_->add_program(program);
     return writer_.get();
   }
   /// A recording gets its name once it is whole.
-  Outcome end() {
+  Outcome end(const study::Trial& trial) {
     if (!writer_) return Done{};
     const auto writer = std::move(writer_);
     CATENA_CHECK(writer->finish());
-    std::error_code code;
-    fs::rename(std::exchange(unfinished_, {}), place_, code);
-    if (code) return Error{place_ + ": cannot write: " + code.message()};
-    return Done{};
+    return data_.keep_recording(trial, std::exchange(unfinished_, {}));
   }
   ~Recordings() {
     std::error_code ignored;
@@ -99,7 +95,8 @@ class Recordings {
 
  private:
   const study::Study& study_;
-  std::string folder_, place_, unfinished_;
+  const study::DataFolder& data_;
+  std::string unfinished_;
   std::unique_ptr<haptics::log::LogWriter> writer_;
 };
 
@@ -116,7 +113,7 @@ Result<Session> session_in(const study::Study& study, const study::DataFolder& d
   CATENA_TRY(const std::vector<study::Row> rows, data.rows(subject));
   session.done = rows.size();
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (i >= session.trials.size() || rows[i].index != session.trials[i].index || rows[i].seed != session.trials[i].seed)
+    if (i >= session.trials.size() || !study::departure(study, rows[i], session.trials[i]).empty())
       return Error{fmt::format("{}:{}: is no trial of a simulated session; data of `study simulate` were expected",
                                study::subject_file(data.path(), subject), i + 2)};
   return session;
@@ -124,7 +121,7 @@ Result<Session> session_in(const study::Study& study, const study::DataFolder& d
 
 Outcome simulate_subject(const study::Study& study, const study::DataFolder& data, const Session& session, bool record,
                          const std::function<void()>& on_trial) {
-  Recordings recordings(study, study::recordings_folder(data.path()));
+  Recordings recordings(study, data);
   study::TrialSimulator::Recorder recorder;
   if (record)
     recorder = [&](const study::Trial& trial, const std::string& text, const haptics::Program& program) {
@@ -139,7 +136,7 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
     if (!std::isfinite(measured.error_mm) || !std::isfinite(measured.travelled_mm) || !is_finite(measured.end_mm))
       return Error{fmt::format("{}: subject {}, trial {}: the model left all numbers; milder ones in \"operator\" were expected",
                                study.path, trial.subject, trial.index)};
-    CATENA_CHECK(recordings.end());
+    CATENA_CHECK(recordings.end(trial));
     CATENA_CHECK(data.append(study::row_of(study, trial, measured)));
     on_trial();
   }

@@ -13,20 +13,13 @@
 #include "engine/base/json_text.h"
 #include "engine/base/output_file.h"
 #include "engine/study/answers.h"
+#include "engine/study/departures.h"
 
 namespace catena::app {
 
 namespace {
 
 Error cannot(const std::string& path, const char* what) { return Error{path + ": cannot " + what + ": " + std::strerror(errno)}; }
-
-/// The name of a folder is on the disk when the folder is.
-void sync_folder(const std::string& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  static_cast<void>(::fsync(descriptor));
-  ::close(descriptor);
-}
 
 }  // namespace
 
@@ -41,29 +34,16 @@ Result<SubjectFolder> SubjectFolder::open(const std::string& path, const study::
   return result;
 }
 
-std::string SubjectFolder::recording(const study::Trial& trial) const {
-  return study::recordings_folder(folder_.path()) + "/" + study::recording_name(trial);
-}
-
-std::string SubjectFolder::unfinished_recording(const study::Trial& trial) const {
-  const std::string place = recording(trial);
-  remove_stale_parts(place);
-  return part_name(place);
-}
-
 Outcome SubjectFolder::look_for_trials() {
   CATENA_TRY(const std::vector<study::Row> rows, folder_.rows(subject_));
   const std::string path = study::subject_file(folder_.path(), subject_);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const study::Row& row = rows[i];
-    const bool same = i < trials_.size() && row.index == trials_[i].index && row.stimulus == trials_[i].stimulus &&
-                      row.task == study_->tasks[static_cast<std::size_t>(trials_[i].task)].name &&
-                      row.condition == study_->conditions[static_cast<std::size_t>(trials_[i].condition)].name;
+    const bool same = i < trials_.size() && study::departure(*study_, rows[i], trials_[i]).empty();
     if (!same) return Error{fmt::format("{}:{}: this is not trial {} of the subject's session", path, i + 2, i)};
   }
   finished_ = rows.size();
   // what was being recorded when a session was cut off
-  if (finished_ < trials_.size()) remove_stale_parts(recording(trials_[finished_]));
+  if (finished_ < trials_.size()) remove_stale_parts(study::recording_file(folder_.path(), trials_[finished_]));
   return Done{};
 }
 
@@ -76,9 +56,7 @@ Outcome SubjectFolder::look_for_answers() {
 }
 
 Outcome SubjectFolder::keep(const study::Trial& trial, const study::Measured& measured, const std::string& unfinished) const {
-  const std::string place = recording(trial);
-  if (std::rename(unfinished.c_str(), place.c_str()) != 0) return cannot(place, "write");
-  sync_folder(study::recordings_folder(folder_.path()));
+  CATENA_CHECK(folder_.keep_recording(trial, unfinished));
   return folder_.append(study::row_of(*study_, trial, measured));
 }
 

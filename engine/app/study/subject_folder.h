@@ -22,7 +22,7 @@ class SubjectFolder {
   std::size_t answered() const { return answered_; }  ///< of the questions
 
   /// Where the recording of a trial is written until it is whole.
-  std::string unfinished_recording(const study::Trial& trial) const;
+  std::string unfinished_recording(const study::Trial& trial) const { return folder_.unfinished_recording(trial); }
   /// The trial is finished: the recording at `unfinished` gets its name, and the row is on the disk.
   Outcome keep(const study::Trial& trial, const study::Measured& measured, const std::string& unfinished) const;
   /// One more answer is on the disk.
@@ -33,7 +33,6 @@ class SubjectFolder {
  private:
   SubjectFolder(const study::Study& study, int subject, study::DataFolder folder)
       : study_(&study), subject_(subject), folder_(std::move(folder)) {}
-  std::string recording(const study::Trial& trial) const;
   Outcome look_for_trials();
   Outcome look_for_answers();
 
