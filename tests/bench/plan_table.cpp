@@ -58,8 +58,15 @@ Vec3 seed_in(const field::VectorField& flow) {
   return best;
 }
 
-scene::Scene scene_of(const Case& c, const std::string& folder) {
-  std::string files = fmt::format("{{\"flow\": {}, \"s\": {}}}", c.flow, c.scalar);
+scene::Scene scene_of(const Case& c, const std::string& folder, int level = 0) {
+  std::string scalar = c.scalar;
+  const std::size_t nodes = scalar.find("64");
+  if (level > 0 && nodes != std::string::npos) {
+    scalar.replace(nodes, 2, std::to_string((64 >> level) + 1));
+  } else if (level > 0) {
+    scalar.insert(scalar.rfind('}'), fmt::format(", \"level_of_detail\": {}", level));
+  }
+  std::string files = fmt::format("{{\"flow\": {}, \"s\": {}}}", c.flow, scalar);
   for (std::size_t at; (at = files.find("DIR")) != std::string::npos;) files.replace(at, 3, folder);
   scene::Scene bare = get(scene::parse_scene("{\"fields\": " + files + "}", c.name));
   const json::Node nowhere;
@@ -103,7 +110,8 @@ std::vector<render::RenderSettings> all_settings(bool fast, bool shaded) {
   return all;
 }
 
-void eye_rows(const Case& c, scene::Scene& scene) {
+/// `coarser`: the same scene on coarser levels of its grid, which the sweep tries, too.
+void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coarser) {
   const auto renderer = get(render::Renderer::create({}));
   const render::FramePacket packet = get(render::make_frame(scene, 400, 300));
   render::FramePacket clear = packet;
@@ -113,8 +121,20 @@ void eye_rows(const Case& c, scene::Scene& scene) {
   need(renderer->draw(packet, render::balanced_settings()));
   const auto sweep = all_settings(renderer->draws_fast(packet), packet.volumes.front().shade);
   const auto truth = get(tradeoff::picture_of(*renderer, clear, render::converged_rung(0.125)));
-  const auto error_of = [&](const render::RenderSettings& s) {
-    return render::measure_error(get(tradeoff::picture_of(*renderer, clear, s)), truth,
+  std::vector<render::FramePacket> levels;
+  std::vector<std::unique_ptr<render::Renderer>> renderers;  // one a level, or each would make its mirrors again
+  for (scene::Scene& coarse : coarser) {
+    levels.push_back(get(render::make_frame(coarse, 400, 300)));
+    renderers.push_back(get(render::Renderer::create({})));
+    levels.back().view = packet.view;
+    const auto grid = levels.back().volumes.front().grid;
+    // opacities are those of the whole grid's voxels
+    levels.back().volumes = packet.volumes;
+    levels.back().volumes.front().grid = grid;
+  }
+  const auto error_of = [&](render::Renderer& by, render::FramePacket drawn, const render::RenderSettings& s) {
+    drawn.background[3] = 0;
+    return render::measure_error(get(tradeoff::picture_of(by, drawn, s)), truth,
                                  {packet.background[0], packet.background[1], packet.background[2]})
         .rmse;
   };
@@ -127,18 +147,22 @@ void eye_rows(const Case& c, scene::Scene& scene) {
   std::vector<plan::EyePlan> plans;
   tradeoff::Curve times;
   std::vector<tradeoff::Repeat> repeats;
-  const auto add = [&](const render::RenderSettings& s) {
+  const auto add = [&](render::Renderer& by, const render::FramePacket& drawn, const render::RenderSettings& s,
+                       const std::string& on = "") {
     tradeoff::Point p;
-    p.setting = render::describe(s);
-    p.error = error_of(s);
+    p.setting = render::describe(s) + on;
+    p.error = error_of(by, drawn, s);
     times.points.push_back(p);
-    repeats.push_back([&renderer, &packet, s] { return render::drawing_ms(*renderer, packet, s); });
+    repeats.push_back([&by, &drawn, s] { return render::drawing_ms(by, drawn, s); });
   };
-  for (const auto& s : sweep) add(s);
-  for (const scene::Plan& plan : wanted) plans.emplace_back(curve, plan), add(plans.back().settings());
+  for (const auto& s : sweep) add(*renderer, packet, s);
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    for (const auto& s : sweep) add(*renderers[k], levels[k], s, fmt::format(", level {}", k + 1));
+  const std::size_t swept = times.points.size();
+  for (const scene::Plan& plan : wanted) plans.emplace_back(curve, plan), add(*renderer, packet, plans.back().settings());
   need(tradeoff::time_points(times, repeats, 10, 5));
   for (std::size_t k = 0; k < plans.size(); ++k) {
-    const tradeoff::Point& chosen = times.points[sweep.size() + k];
+    const tradeoff::Point& chosen = times.points[swept + k];
     const double goal = std::max({told, wanted[k].error.value_or(chosen.error)});
     const int best = cheapest_within(times.points, goal);
     row(c.name,
@@ -195,8 +219,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
   };
   using flow::Method;
   add(*subject.program, "selected");
-  for (const Method m : {Method::linear, Method::euler, Method::rk2, Method::rk3, Method::rk4})
-    add(online(m, 1e-9), std::string(flow::method_word(m)));
+  // not fixed steps, which no plan chooses: their error grows with the hand's speed and way
   for (const Method m : {Method::rkf34, Method::dp54})
     for (double digits = 2; digits <= 13; digits += 0.5)
       add(online(m, std::pow(10.0, -digits)), fmt::format("{} 1e-{}", flow::method_word(m), digits));
@@ -244,7 +267,9 @@ int main(int argc, char** argv) {
   for (const Case& c : cases) {
     if (argc > 2 && std::string(argv[2]) != c.name) continue;
     scene::Scene scene = scene_of(c, argv[1]);
-    eye_rows(c, scene);
+    std::vector<scene::Scene> coarser;
+    for (const int level : {1, 2}) coarser.push_back(scene_of(c, argv[1], level));
+    eye_rows(c, scene, coarser);
     hand_rows(c, std::move(scene));
   }
   return 0;
