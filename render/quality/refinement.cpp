@@ -94,10 +94,21 @@ TimeModel::TimeModel(std::vector<double> costs, double first_guess_ms) : unit_ms
   for (const double cost : costs) rungs_.push_back({cost});
 }
 
+double TimeModel::factor_of(std::size_t rung) const {
+  for (std::size_t away = 0; away < rungs_.size(); ++away) {
+    double factor = 0;
+    if (away <= rung && rungs_[rung - away].drawn) factor = rungs_[rung - away].factor;
+    if (rung + away < rungs_.size() && rungs_[rung + away].drawn) factor = std::max(factor, rungs_[rung + away].factor);
+    if (factor > 0) return factor;
+  }
+  return 1;
+}
+
 void TimeModel::measured(std::size_t rung, double ms) {
   Rung& r = rungs_[rung];
   const double ratio = std::clamp(ms / expected_ms(rung), 0.01, 100.0);
   const bool counts = r.drawn || ratio < 1;
+  r.factor = factor_of(rung);
   r.drawn = true;
   if (!counts) return;
   unit_ms_ *= std::sqrt(ratio);

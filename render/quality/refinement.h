@@ -38,14 +38,16 @@ std::vector<RenderSettings> quality_ladder(const LadderKind& kind);
 
 /// expected(rung) = unit cost(rung) factor(rung): the unit follows the view and the machine, the factor what a rung's cost got wrong.
 /// A picture that took r times what was expected moves both by sqrt(r). A rung's first picture pays for its pipelines too: it
-/// counts only if it was quicker than expected.
+/// counts only if it was quicker than expected. A rung that was never drawn has the factor of the nearest that was, of two the greater.
 class TimeModel {
  public:
   TimeModel(std::vector<double> costs, double first_guess_ms);
   void measured(std::size_t rung, double ms);
-  double expected_ms(std::size_t rung) const { return unit_ms_ * rungs_[rung].cost * rungs_[rung].factor; }
+  double expected_ms(std::size_t rung) const { return unit_ms_ * rungs_[rung].cost * factor_of(rung); }
 
  private:
+  double factor_of(std::size_t rung) const;
+
   struct Rung {
     double cost = 0, factor = 1;
     bool drawn = false;

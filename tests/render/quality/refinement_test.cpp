@@ -63,6 +63,18 @@ TEST(TimeModel, FollowsTheMachineAndForgetsPipelines) {
   EXPECT_LT(quick.expected_ms(0), 10);
 }
 
+TEST(TimeModel, WhatWasNeverDrawnIsLikeItsNeighbour) {
+  TimeModel times({1, 2, 4, 8}, 10);
+  for (int k = 0; k < 20; ++k) times.measured(1, 5);  // four times as quick as guessed
+  EXPECT_NEAR(times.expected_ms(1), 5, 1e-6);
+  EXPECT_NEAR(times.expected_ms(2), 10, 1e-6);
+  EXPECT_NEAR(times.expected_ms(0), 2.5, 1e-6);
+  // between two of which one is slow for its cost: as slow
+  for (int k = 0; k < 40; ++k) times.measured(3, 40), times.measured(1, 5);
+  EXPECT_NEAR(times.expected_ms(3), 40, 0.1);
+  EXPECT_NEAR(times.expected_ms(2), 20, 0.1);
+}
+
 TEST(Refinement, AMovingCameraStaysWithinItsBudget) {
   double last_cost = 0;
   for (const double budget : {40.0, 55.0, 80.0, 200.0}) {
