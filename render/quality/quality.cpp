@@ -353,11 +353,20 @@ Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const Rend
 }
 
 DrawingClock::DrawingClock(Renderer& renderer)
-    : is_cpu_(renderer.device().info().is_cpu()), start_ns_(is_cpu_ ? processor_ns() : now_ns()) {}
+    : DrawingClock(renderer, renderer.device().info().is_cpu()          ? By::processor
+                             : renderer.device().stopwatch().measures() ? By::device
+                                                                        : By::wall) {}
+
+DrawingClock::DrawingClock(Renderer& renderer, By by) : renderer_(&renderer), by_(by), start_ns_(now_ns()) {}
+
+double DrawingClock::now_ns() const {
+  if (by_ == By::device) return renderer_->device().counters().work_ns;
+  return double(by_ == By::processor ? processor_ns() : catena::now_ns());
+}
 
 double DrawingClock::ms() const {
-  const double ms = 1e-6 * double((is_cpu_ ? processor_ns() : now_ns()) - start_ns_);
-  return is_cpu_ ? kUneven * ms / drawing_threads() : ms;
+  const double ms = 1e-6 * (now_ns() - start_ns_);
+  return by_ == By::processor ? kUneven * ms / drawing_threads() : ms;
 }
 
 Result<double> drawing_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {

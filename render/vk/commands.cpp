@@ -21,10 +21,12 @@ Result<Commands> Commands::begin(Device& device) {
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   CATENA_VK(vkBeginCommandBuffer(buffer, &begin), "begin a command buffer");
+  self.lap_ = device.stopwatch().begin(buffer);
   return self;
 }
 
 Commands::~Commands() {
+  device_->stopwatch().drop(lap_);
   if (buffer_)
     device_->retire([device = device_, buffer = buffer_] { vkFreeCommandBuffers(device->handle(), device->command_pool(), 1, &buffer); });
 }
@@ -204,8 +206,12 @@ void Commands::draw_mesh(std::uint32_t first_index, std::uint32_t index_count, s
 void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) { vkCmdDispatch(buffer_, x, y, z); }
 
 Result<std::uint64_t> Commands::submit(VkSemaphore wait, VkSemaphore signal) {
+  device_->stopwatch().end(buffer_, lap_);
   CATENA_VK(vkEndCommandBuffer(buffer_), "record commands");
-  return device_->submit(buffer_, wait, signal);
+  CATENA_TRY(const std::uint64_t value, device_->submit(buffer_, wait, signal));
+  device_->retire([device = device_, lap = lap_] { device->counters().work_ns += device->stopwatch().take(lap); });
+  lap_.reset();
+  return value;
 }
 
 Outcome Commands::finish() {

@@ -62,7 +62,10 @@ class Commands {
  public:
   static Result<Commands> begin(Device& device);
   ~Commands();
-  Commands(Commands&& other) noexcept : device_(other.device_), buffer_(other.buffer_) { other.buffer_ = VK_NULL_HANDLE; }
+  Commands(Commands&& other) noexcept : device_(other.device_), buffer_(other.buffer_), lap_(other.lap_) {
+    other.buffer_ = VK_NULL_HANDLE;
+    other.lap_.reset();
+  }
   Commands& operator=(Commands&&) = delete;
 
   VkCommandBuffer handle() const { return buffer_; }
@@ -104,6 +107,7 @@ class Commands {
   Commands(Device& device, VkCommandBuffer buffer) : device_(&device), buffer_(buffer) {}
   Device* device_;
   VkCommandBuffer buffer_;
+  Stopwatch::Lap lap_;
 };
 
 // ---- bytes to the device: through staging memory what changes seldom (these wait for their own end), mapped what changes each frame ----

@@ -257,6 +257,7 @@ Outcome Device::create_device() {
   pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
   pool.queueFamilyIndex = queue_family_;
   CATENA_VK(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "create a command pool");
+  stopwatch_ = std::make_unique<Stopwatch>(physical_, device_, queue_family_);
 
   VkSemaphoreTypeCreateInfo type{};
   type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
@@ -277,6 +278,7 @@ Device::~Device() {
     }
     passed_ = std::numeric_limits<std::uint64_t>::max();
     collect();
+    stopwatch_.reset();
     if (timeline_) vkDestroySemaphore(device_, timeline_, nullptr);
     if (pool_) vkDestroyCommandPool(device_, pool_, nullptr);
     if (!maker_.keeps_them) vkDestroyDevice(device_, nullptr);

@@ -18,6 +18,7 @@
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
 #include "render/vk/requirements.h"
+#include "render/vk/stopwatch.h"
 
 namespace catena::render::vk {
 
@@ -73,6 +74,7 @@ struct DeviceCounters {
   std::uint64_t submissions = 0;
   std::uint64_t allocations = 0;
   std::uint64_t refused = 0;  ///< allocations that the budget did not hold
+  double work_ns = 0;         ///< of what was submitted and is done, by the device's clock (stopwatch.h)
 };
 
 class Device {
@@ -98,6 +100,7 @@ class Device {
   DeviceCounters& counters() { return counters_; }
   const DeviceCounters& counters() const { return counters_; }
   ShaderReplacements& shaders() { return shaders_; }
+  Stopwatch& stopwatch() { return *stopwatch_; }
   /// Bytes that the budget still holds.
   std::uint64_t memory_left() const { return counters_.bytes < info_.memory_budget ? info_.memory_budget - counters_.bytes : 0; }
   /// The driver gave the device up: nothing can be drawn with it any more. A new one can be made from the same packets.
@@ -141,6 +144,7 @@ class Device {
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkSemaphore timeline_ = VK_NULL_HANDLE;
   std::uint64_t submitted_ = 0, passed_ = 0;
+  std::unique_ptr<Stopwatch> stopwatch_;
   std::deque<Retired> retired_;
   DeviceInfo info_;
   DeviceCounters counters_;

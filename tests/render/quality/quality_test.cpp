@@ -4,8 +4,10 @@
 #include "render/image/measure.h"
 #include "render/quality/refinement.h"
 
+#include <chrono>
 #include <cmath>
 #include <random>
+#include <thread>
 
 #include "tests/render/support/frames.h"
 
@@ -74,6 +76,26 @@ TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
     last_step = choice->settings.fast->step_voxels;
   }
   EXPECT_GT(last_step, 1);
+}
+
+/// The device's own clock sees the work of a picture and nothing else: not the processor's, not other programs'.
+TEST_F(Quality, TheDevicesClockTimesItsWorkAlone) {
+  if (!renderer_->device().stopwatch().measures()) GTEST_SKIP() << "this device has no timestamps";
+  const FramePacket packet = scene();
+  ASSERT_TRUE(renderer_->draw(packet, exact_rung(1)));
+  const DrawingClock idle(*renderer_, DrawingClock::By::device), wall(*renderer_, DrawingClock::By::wall);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(idle.ms(), 0);
+  const auto ms_of = [&](double step) {
+    const DrawingClock clock(*renderer_, DrawingClock::By::device);
+    EXPECT_TRUE(renderer_->draw(packet, exact_rung(step)));
+    return clock.ms();
+  };
+  const double coarse = ms_of(4), fine = ms_of(0.1);
+  EXPECT_GT(coarse, 0);
+  EXPECT_GT(fine, 2 * coarse);
+  EXPECT_NEAR(idle.ms(), coarse + fine, 1e-6);
+  EXPECT_LE(idle.ms() + 19, wall.ms()) << "the pause was none of its work";
 }
 
 /// A thin shell in a small picture: all error is in a few pixels, which a sparse lattice misses.

@@ -166,8 +166,10 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   // with the embedded shaders if those of --shaders cannot be drawn with
   if (!drawn && reload_ && reload_->give_up(screen_->renderer(), drawn.error().message)) drawn = screen_->draw(*packet, next.settings);
   if (!drawn) return Failure{1, drawn.error().message};
-  if (screen_->recoveries() != recoveries) shared_.state.say("the graphics device was lost and has been started again", true);
-  const double ms = ms_since(start), drawing_ms = clock.ms();
+  const bool recovered = screen_->recoveries() != recoveries;
+  if (recovered) shared_.state.say("the graphics device was lost and has been started again", true);
+  // the clock's renderer is gone with a lost device
+  const double ms = ms_since(start), drawing_ms = recovered ? ms : clock.ms();
   pacing.drawn(ms);
   LivePlan& live = shared_.plan;
   const bool as_planned = live.eye && next.scale == 1 && !next.settings.keep && !for_file && shared_.times.count() > 0 &&
