@@ -111,6 +111,8 @@ class RayProbe {
   virtual bool has_kept() const = 0;
   /// Those tiles, R8_UINT; null: there are none, or all of the picture was marched.
   virtual vk::Image* changed_tiles() = 0;
+  /// Of the fast raycast's last picture: FastVolumeRaycast::marked_blocks.
+  virtual std::array<vk::Image*, 2> marked_blocks() = 0;
 
  protected:
   ~RayProbe() = default;

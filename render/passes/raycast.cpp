@@ -63,6 +63,7 @@ class RaycastPass final : public Pass, public RayProbe {
     if (!has_kept()) return nullptr;
     return fast_ ? fast_pass_->changed_tiles() : exact_pass_->changed_tiles();
   }
+  std::array<vk::Image*, 2> marked_blocks() override { return fast_ ? fast_pass_->marked_blocks() : std::array<vk::Image*, 2>{}; }
   bool has_refused(const FramePacket& packet) const override {
     return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
   }

@@ -411,6 +411,22 @@ Result<MarchedTiles> Renderer::marched_tiles() {
   return tiles;
 }
 
+Result<std::array<std::uint64_t, 2>> Renderer::refined_rays() {
+  Parts& p = *parts_;
+  std::array<std::uint64_t, 2> rays{};
+  for (Pass* pass : p.active()) {
+    if (!pass->probe()) continue;
+    const std::array<vk::Image*, 2> blocks = pass->probe()->marked_blocks();
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      if (blocks[k] == nullptr) continue;
+      const VkExtent3D& size = blocks[k]->info().extent;
+      CATENA_TRY(const auto marks, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, *blocks[k], std::size_t(size.width) * size.height)));
+      rays[k] += 16 * std::uint64_t(std::ranges::count(marks, std::uint8_t(1)));
+    }
+  }
+  return rays;
+}
+
 Result<Picked> Renderer::pick(std::uint32_t x, std::uint32_t y) {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0 && x < p.view_width && y < p.view_height);

@@ -131,6 +131,9 @@ class Renderer {
   /// Of the last picture's tiles of 16 x 16 pixels the number whose rays were marched, and of all: with RenderSettings::keep those that
   /// something opaque has come to or left.
   Result<MarchedTiles> marched_tiles();
+  /// Of the fast raycast's last picture: the rays that were marched where interpolation would not have served, of every 2nd pixel and of
+  /// every pixel, in whole blocks of 16.
+  Result<std::array<std::uint64_t, 2>> refined_rays();
   /// Depth and id of one pixel of the last picture: two texels come back, not the images. A pixel beyond the picture is a bug.
   Result<Picked> pick(std::uint32_t x, std::uint32_t y);
   /// Pixels of one view of the last picture; 0 before the first.

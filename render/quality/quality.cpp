@@ -32,18 +32,26 @@ constexpr double kRoughGoal = 1.5;                              // 1/255: from i
 // changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
 constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3, kFinestStep = 0.05;
 constexpr int kMaxPictures = 16;
+constexpr std::size_t kGoodSteps = 5;  // of those that are good enough, the longest
 
-/// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
-/// CPU driver has them: they only decide what is tried first.
+/// How rays become a picture. Refinement thresholds in shares of the error; then the rays of every 2nd pixel and of every pixel that are
+/// refined, by all such that show something: guesses, until one was drawn.
 struct Plan {
   std::uint32_t spacing;
   double refine_half, refine_full;
-  double overhead, rays;
+  std::array<double, 2> refined;
 };
-constexpr Plan kPlan[] = {{4, -1, -1, 0.03, 0.09}, {4, 1.3, -1, 0.05, 0.2}, {2, 0, -1, 0.04, 0.28}, {4, 1, 3, 0.12, 0.28},
-                          {2, 0, 2, 0.1, 0.4},     {2, 0, 1.5, 0.11, 0.46}, {2, 0, 0.8, 0.12, 0.6}, {1, 0, -1, 0.03, 1}};
+constexpr Plan kPlan[] = {{4, -1, -1, {0, 0}},  {4, 1.3, -1, {0.4, 0}}, {2, 0, -1, {0, 0}},     {4, 1, 3, {0.45, 0.1}},
+                          {2, 0, 2, {0, 0.15}}, {2, 0, 1.5, {0, 0.22}}, {2, 0, 0.8, {0, 0.37}}, {1, 0, -1, {0, 0}}};
 constexpr int kPlans = int(std::size(kPlan));
-constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
+/// Of every pixel's rays by those of the first lattice, and of a refined share: a ray costs the more the farther its neighbours are. As a
+/// CPU driver has it: it only decides between settings that are good enough.
+double cost_of(const Plan& plan, const std::array<double, 2>& refined, double step) {
+  const double first = plan.spacing == 1 ? 1 : plan.spacing == 2 ? 0.325 : 0.137;
+  const double marks = plan.refine_full >= 0 ? 0.02 : 0;
+  return (first + marks + 0.29 * refined[0] + refined[1]) * (kStepless + (1 - kStepless) / step);
+}
+constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 
 /// Of a driver that draws with the processor: a thread a core, or as many as it is told.
@@ -109,6 +117,7 @@ class Search {
     double covered = 0;
     for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
     covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);
+    covered_ = std::max(1.0, covered);
     for (const std::uint32_t spacing : kSpacings) {
       spacing_ = spacing;
       if (covered / (spacing * spacing) >= kSamples) break;
@@ -116,6 +125,8 @@ class Search {
     CATENA_CHECK(find_truth(renderer_.draws_fast(packet_) ? goal : 0));
     if (moves && renderer_.draws_fast(packet_)) {
       CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
+      const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
+      most_flicker_ = kFlickerGoal * std::max(goal, flicker_between(none, truth_, none, next_truth_));
     }
     if (!renderer_.draws_fast(packet_)) return Done{};
     // it may have no memory for the grid
@@ -142,27 +153,8 @@ class Search {
 
   Result<QualityChoice> for_error(double e) {
     if (fast_) {
-      CATENA_TRY(auto candidates, fast_candidates(e));
-      std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
-      bool blurs[kPlans] = {};               // what is thin
-      for (int drawn = 0; !candidates.empty(); candidates.erase(candidates.begin())) {
-        // what interpolation cost at another step says whether this one is worth a picture; every ray always is
-        const Candidate& next = candidates.front();
-        std::optional<double>& before = failed[next.plan];
-        const bool every_ray = next.settings.fast->spacing == 1;
-        if (blurs[next.plan] || (before && std::hypot(next.rays, *before) > e) || (drawn >= kMaxPictures && !every_ray)) continue;
-        CATENA_TRY(const Measured picture, of_picture(next.settings));
-        ++drawn;
-        if (picture.good_for(e)) {
-          CATENA_TRY(const bool keeps, keeps_what_is_thin(next.settings, e));
-          CATENA_TRY(const bool steady, keeps ? is_steady(next.settings, e) : false);
-          if (steady) return choice(next.settings, picture.above, true);
-          if (keeps) continue;
-        }
-        // where a few pixels are far off, or what is thin is lost, a shorter step will not mend it: rays alone were good enough
-        blurs[next.plan] = picture.above <= e && !every_ray;
-        before = std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
-      }
+      CATENA_TRY(const std::optional<QualityChoice> chosen, fast_for_error(e));
+      if (chosen) return *chosen;
     }
     for (const double step : kExactSteps) {
       // they are judged by what is finer than they are
@@ -173,6 +165,49 @@ class Search {
     RenderSettings finest = reference_settings();
     finest.step_voxels = std::clamp(truth_step_, kFinestStep, finest.step_voxels);
     return choice(finest, truth_error_, truth_error_ <= e);
+  }
+
+  /// The cheapest of the fast settings that are good enough; nothing where none is.
+  Result<std::optional<QualityChoice>> fast_for_error(double e) {
+    CATENA_TRY(std::vector<Candidate> candidates, fast_candidates(e));
+    std::array<double, 2> refined[kPlans];
+    for (int plan = 0; plan < kPlans; ++plan) refined[plan] = kPlan[plan].refined;
+    std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
+    bool blurs[kPlans] = {};               // what is thin
+    // every ray of the longest step: that is good enough as it was measured
+    std::optional<QualityChoice> best;
+    double best_cost = std::numeric_limits<double>::infinity();
+    const auto cost = [&](const Candidate& c) { return cost_of(kPlan[c.plan], refined[c.plan], c.settings.fast->step_voxels); };
+    std::erase_if(candidates, [&](const Candidate& c) {
+      if (c.settings.fast->spacing > 1) return false;
+      if (cost(c) < best_cost) best = choice(c.settings, c.above, true), best_cost = cost(c);
+      return true;
+    });
+    for (int drawn = 0; !candidates.empty() && drawn < kMaxPictures;) {
+      const auto cheapest = std::ranges::min_element(candidates, {}, cost);
+      const Candidate next = *cheapest;
+      candidates.erase(cheapest);
+      if (cost(next) >= best_cost) break;
+      // what interpolation cost at another step says whether this one is worth a picture
+      std::optional<double>& before = failed[next.plan];
+      if (blurs[next.plan] || (before && std::hypot(next.rays, *before) > e)) continue;
+      CATENA_TRY(const Measured picture, of_picture(next.settings));
+      ++drawn;
+      CATENA_TRY(const auto rays, renderer_.refined_rays());
+      learn(next.plan, {4 * double(rays[0]) / covered_, double(rays[1]) / covered_}, refined);
+      if (picture.good_for(e)) {
+        if (cost(next) >= best_cost) continue;
+        CATENA_TRY(const bool keeps, keeps_what_is_thin(next.settings, e));
+        CATENA_TRY(const bool steady, keeps ? is_steady(next.settings) : false);
+        if (steady) best = choice(next.settings, picture.above, true), best_cost = cost(next);
+        if (keeps) continue;
+      }
+      // where a few pixels are far off, or what is thin is lost, a shorter step will not mend it: rays alone were good enough
+      blurs[next.plan] = picture.above <= e;
+      before = std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
+    }
+    if (best) best->pictures = pictures_;
+    return best;
   }
 
   Result<QualityChoice> for_time(double ms, const DrawTimer& timer) {
@@ -231,35 +266,47 @@ class Search {
   }
 
   /// Whether the error of the picture that was drawn last stays much the same where the camera goes on.
-  Result<bool> is_steady(const RenderSettings& settings, double e) {
+  Result<bool> is_steady(const RenderSettings& settings) {
     CATENA_CHECK(renderer_.draw(turned(packet_), settings));
     ++pictures_;
     CATENA_TRY(const Picture after, drawn_lattice());
-    const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
-    const double change = flicker_between(none, truth_, none, next_truth_);
-    return flicker_between(drawn_, truth_, after, next_truth_) <= kFlickerGoal * std::max(e, change);
+    return flicker_between(drawn_, truth_, after, next_truth_) <= most_flicker_;
   }
 
   struct Candidate {
     RenderSettings settings;
-    double rays, cost;
+    double rays, above;  ///< of the rays alone: Measured
     int plan;
   };
 
-  /// Every step whose rays alone are good enough with every plan of interpolation, the cheapest first.
+  /// What a plan's picture refined; stricter plans refine no less.
+  static void learn(int plan, const std::array<double, 2>& found, std::array<double, 2> (&refined)[kPlans]) {
+    refined[plan] = found;
+    const Plan& p = kPlan[plan];
+    for (int other = 0; other < kPlans; ++other) {
+      const Plan& o = kPlan[other];
+      if (o.refine_half > 0 && o.refine_half < p.refine_half) refined[other][0] = std::max(refined[other][0], found[0]);
+      if (o.refine_full > 0 && o.refine_full < p.refine_full) refined[other][1] = std::max(refined[other][1], found[1]);
+    }
+  }
+
+  /// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation.
   Result<std::vector<Candidate>> fast_candidates(double e) {
     std::vector<Candidate> all;
     const bool smooth = packet_.volumes.front().shade;
     for (const double step : kFastSteps) {
-      CATENA_TRY(const Measured rays, of_rays(fast_rung(step, 1, 0, -1, smooth)));
-      if (rays.rmse > kStepShare * e || rays.p999 > kFarthest * e) continue;
+      if (all.size() == kGoodSteps * std::size(kPlan)) break;
+      const RenderSettings every_ray = fast_rung(step, 1, 0, -1, smooth);
+      CATENA_TRY(const Picture rays, renderer_.probe(packet_, every_ray, spacing_));
+      const Measured error = compare(rays, truth_);
+      if (error.rmse > kStepShare * e || error.p999 > kFarthest * e) continue;
+      CATENA_TRY(const Picture after, renderer_.probe(turned(packet_), every_ray, spacing_));
+      if (flicker_between(rays, truth_, after, next_truth_) > most_flicker_) continue;
       for (int plan = 0; plan < kPlans; ++plan) {
         const Plan& p = kPlan[plan];
-        all.push_back({fast_rung(step, p.spacing, p.refine_half * e, p.refine_full * e, smooth), rays.rmse,
-                       p.overhead + p.rays * (kStepless + (1 - kStepless) / step), plan});
+        all.push_back({fast_rung(step, p.spacing, p.refine_half * e, p.refine_full * e, smooth), error.rmse, error.above, plan});
       }
     }
-    std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
     return all;
   }
 
@@ -276,6 +323,8 @@ class Search {
   Renderer& renderer_;
   FramePacket packet_;
   Picture truth_, next_truth_;               ///< the rays of the lattice; and from where the camera goes
+  double most_flicker_ = 0;                  ///< that is steady enough
+  double covered_ = 1;                       ///< pixels
   Picture drawn_;                            ///< the lattice of the picture that was drawn last
   double truth_step_ = 0, truth_error_ = 0;  ///< and what it still changed by
   Picture all_rays_;                         ///< the fast raycast's without interpolation

@@ -143,7 +143,8 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
 Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
   const std::uint32_t width = lattice_size(target.width, spacing), height = lattice_size(target.height, spacing);
   if (spacing > 1) CATENA_CHECK(vk::fit_image(*device_, level.color, kLatticeFormat, width, height));
-  return vk::fit_image(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
+  return vk::fit_image(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock,
+                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
 }
 
 Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, bool tiles) {
@@ -268,6 +269,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   const Kept now{settings, {frame, look_.version(), target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
   const bool still = has_kept_ = keep && target && kept_ && kept_->settings == settings && kept_->picture.is(now.picture);
   kept_.reset();
+  marched_half_ = marched_full_ = false;
   commands.use(no_tiles_, vk::kShaderRead);
   if (opaque_depth) {
     if (!opaque_) opaque_.emplace(*device_);
@@ -309,6 +311,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
                                    still};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
+      (spacing == 2 ? marched_half_ : marched_full_) = true;
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
     } else {
       commands.use(level.marks, vk::kFragmentRead);

@@ -34,6 +34,9 @@ class FastVolumeRaycast {
   bool has_kept() const { return has_kept_; }
   /// The tiles that the last call has marched again, where it has kept the others; null: it has not, or nothing was opaque.
   vk::Image* changed_tiles() { return has_kept_ && kept_->picture.opaque ? &opaque_->changed() : nullptr; }
+  /// What the last call has marched beside its first lattice, of every 2nd pixel and of every pixel: blocks of 4 x 4 rays, R8_UINT, 1:
+  /// marched. Null: none of that lattice.
+  std::array<vk::Image*, 2> marked_blocks() { return {marched_half_ ? &half_.marks : nullptr, marched_full_ ? &full_.marks : nullptr}; }
   /// Something else has drawn into the target.
   void forget_target() { kept_.reset(); }
   /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
@@ -92,6 +95,7 @@ class FastVolumeRaycast {
   vk::Image no_tiles_;
   std::optional<Kept> kept_;
   bool has_kept_ = false;
+  bool marched_half_ = false, marched_full_ = false;  ///< blocks of the last call
 };
 
 /// One invocation a lattice point: what upsample.comp and interpolate.comp need for the pixels of an area.

@@ -10,6 +10,8 @@ layout(binding = 8) uniform sampler3D gradients;       // render/mirror/gradient
 #include "shaders/lib/packed.glsl"
 
 #define SMALL_BRICK 4.0
+#define FIRST_STEP 0.25  // of the step, where it begins to be seen
+#define STEP_GROWTH 1.5
 
 // x: sigma, yzw: colour
 vec4 between(float a, float b) {
@@ -149,12 +151,13 @@ vec4 march_packed(vec2 q, float end) {
     along = dot(normal.xyz, along_ray);
     across2 = dot(normal.xyz, normal.xyz) - along * along;
   }
-  // central differences reach as far as a segment of two voxels: the rise over longer ones knows their slope better, over shorter ones
-  // it has the kinks of the cells
-  const float by_rise = clamp(0.5 * (m.h * length(m.ray.direction) - 1.0), 0.0, 1.0);
+  // what is opaque is seen within the first steps: they are short, and grow
+  const float longest = m.h, voxels = length(m.ray.direction);
+  if (SHADED != 0u) m.h *= FIRST_STEP;
   while (s.t < m.end && through > frame.termination) {
     float curved;
     const Station e = next_station(m, s, curved);
+    m.h = min(longest, STEP_GROWTH * m.h);
     const float extent = e.t - s.t;
 
     // its two halves
@@ -180,6 +183,9 @@ vec4 march_packed(vec2 q, float end) {
       const float both = dot(normal.xyz, normal_end.xyz) - along * along_end, ends = along + along_end;
       float rise = (e.s.code - s.s.code) / (extent * world_per_depth);
       if (MASKED != 0u && s.s.valid != e.s.valid) rise = 0.5 * ends;
+      // central differences reach as far as a segment of two voxels: the rise over longer ones knows their slope better, over shorter
+      // ones it has the kinks of the cells
+      const float by_rise = clamp(0.5 * (extent * voxels - 1.0), 0.0, 1.0);
       float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : mix(0.5 * ends, 0.75 * rise + 0.125 * ends, by_rise);
       along_middle = mix(along_middle, 0.5 * ends, max(normal.w, normal_end.w));
       const vec2 l0 = light_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));

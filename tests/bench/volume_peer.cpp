@@ -1,5 +1,5 @@
 /// Catena as a peer of volume_peers.py (tests/bench/peers/protocol.h):   volume_peer CASE.json
-///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth]
+///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth][,end=T]
 ///   (1/255; < 0: nowhere)
 /// The settings of error=E and time=MS are chosen once, at the azimuth of the picture that is kept. The note of an answer says which,
 /// what they were expected to take and to err, and the memory held on the device.
@@ -59,7 +59,8 @@ class Ours : public peers::Peer {
         return Error{
             mode +
             ": expected error=E, time=MS, draft, balanced, reference[=STEP], exact=STEP or fast=STEP,SPACING,REFINE_HALF,REFINE_FULL"};
-      f.smooth_gradients = mode.ends_with(",smooth");
+      f.smooth_gradients = mode.find(",smooth") != std::string::npos;
+      if (const std::size_t at = mode.find(",end="); at != std::string::npos) f.termination = std::atof(mode.c_str() + at + 5);
       settings_.fast = f;
     }
     return Done{};
@@ -76,7 +77,9 @@ class Ours : public peers::Peer {
   }
 
   std::string note() override {
-    return fmt::format("{}{}, {:.0f} MiB", note_, render::describe(settings_), double(renderer_->stats().gpu_bytes) / (1 << 20));
+    const auto counted = renderer_->refined_rays();
+    const auto refined = counted ? *counted : std::array<std::uint64_t, 2>{};
+    return fmt::format("{}{}, {} and {} rays refined, {:.0f} MiB", note_, render::describe(settings_), refined[0], refined[1], double(renderer_->stats().gpu_bytes) / (1 << 20));
   }
 
  private:
