@@ -1,4 +1,4 @@
-// The depth of a headset's picture, out of the depth of what is opaque.
+// The depth of a headset's picture, out of the depths of what is opaque and of what rays meet.
 #ifndef CATENA_SHARED_HEADSET_H
 #define CATENA_SHARED_HEADSET_H
 #include "shaders/shared/frame.h"
@@ -10,6 +10,8 @@ struct HeadsetDepthData {
   float reference_m;      // metres from the eye where the opaque depth is 0
   float near_m;           // depth 0
   float far_m;            // depth 1
+  uint has_opaque;
+  uint ray_spacing;  // pixels between the rays whose depths there are; 0: none
 };
 
 CATENA_SHARED_END
