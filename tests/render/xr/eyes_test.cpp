@@ -33,8 +33,10 @@ class HeadsetEyes : public HeadsetFixture {
       ASSERT_TRUE(headset_->poll());
       const auto frame = headset_->begin();
       ASSERT_TRUE(frame);
+      const double before = processor_s();
       auto packet = make_frame(scene, std::uint32_t(size.width), std::uint32_t(size.height));
       ASSERT_TRUE(packet) << packet.error().message;
+      packet_s_ += processor_s() - before;
       packet->overlay = {};  // of the flat picture
       const Placement placement = first_placement(packet->view);
       const auto aim = [&](const View& view, FramePacket& of) { set_view(scene, view, of); };
@@ -42,6 +44,7 @@ class HeadsetEyes : public HeadsetFixture {
       ASSERT_TRUE(shown) << shown.error().message;
     }
   }
+  double packet_s_ = 0;  ///< spent on what both eyes share
   void close() {
     headset_->stop();
     renderer_.reset();
@@ -78,28 +81,31 @@ TEST_F(HeadsetEyes, CostOfTheSecond) {
   runtime_.script().without.insert(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
   const std::vector<XrView> both = runtime_.script().views;
   const std::string folder = source_dir() + "/assets/scenes/";
+  constexpr int kPictures = 30;
   for (const char* name : {"hand.json", "brain.json", "head-cut.json", "atlas.json"}) {
     auto scene = scene::read_scene(folder + name);
     ASSERT_TRUE(scene) << scene.error().message;
     std::vector<double> ratios;
-    double first_ms = 0;
-    for (int round = 0; round < 5; ++round) {
+    double first_ms = 0, packet_ms = 0;
+    for (int round = 0; round < 3; ++round) {
       double seconds[2] = {0, 0};
       for (const int which : {0, 1, 2}) {  // the left one alone, the right one, both
         runtime_.script().views = which == 2 ? both : std::vector{both[std::size_t(which)]};
         ASSERT_TRUE(open());
-        draw(*scene, balanced_settings(), 4);
+        draw(*scene, balanced_settings(), 10);
+        packet_s_ = 0;
         const double before = processor_s();
-        constexpr int kPictures = 8;
         draw(*scene, balanced_settings(), kPictures);
         seconds[which / 2] += (processor_s() - before) / kPictures;
         close();
       }
       ratios.push_back(2 * seconds[1] / seconds[0]);
       first_ms = 1e3 * seconds[0] / 2;
+      packet_ms = 1e3 * packet_s_ / kPictures;
     }
     std::ranges::sort(ratios);
-    std::printf("%-22s one eye %7.1f ms, both %.3f times that (%.3f to %.3f)\n", name, first_ms, ratios[2], ratios[0], ratios[4]);
+    std::printf("%-22s one eye %7.1f ms, of these the packet of both %.2f ms; both %.3f times that (%.3f to %.3f)\n", name, first_ms,
+                packet_ms, ratios[1], ratios[0], ratios[2]);
   }
 }
 
