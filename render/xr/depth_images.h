@@ -4,6 +4,7 @@
 /// A projection (maximum, minimum, average) has no depth: what is opaque behind it would lie too deep, and nothing is submitted. Frame
 /// thread.
 #pragma once
+#include <array>
 #include <memory>
 
 #include "render/passes/renderer.h"
@@ -28,7 +29,7 @@ class DepthImages {
   Session* session_;
   std::unique_ptr<EyeImages> images_;
   vk::Image drawn_;
-  vk::Pipeline pipeline_;
+  std::array<vk::Pipeline, 4> pipelines_;  // by what there is: 1 something opaque, 2 rays
   vk::Buffer uniform_;
 };
 

@@ -10,8 +10,6 @@ struct HeadsetDepthData {
   float reference_m;      // metres from the eye where the opaque depth is 0
   float near_m;           // depth 0
   float far_m;            // depth 1
-  uint has_opaque;
-  uint ray_spacing;  // pixels between the rays whose depths there are; 0: none
 };
 
 CATENA_SHARED_END
