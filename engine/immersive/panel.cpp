@@ -24,13 +24,16 @@ std::optional<PanelHit> meet(const Panel& panel, const AimRay& ray) {
   return hit;
 }
 
+Quat level_turn(const Quat& head) {
+  const Vec3 back = rotate(head, Vec3(0, 0, 1));
+  // straight up or down: not turned
+  if (!(std::hypot(back.x, back.z) > kAlong)) return kNoRotation;
+  return rotation_of(std::atan2(back.x, back.z) * Vec3(0, 1, 0));
+}
+
 Panel in_front_of(const Vec3& head_m, const Quat& head, double distance_m, double drop_m, Panel panel) {
-  Vec3 back = rotate(head, Vec3(0, 0, 1));
-  back.y = 0;
-  back = direction(back);
-  if (max_abs(back) == 0) back = Vec3(0, 0, 1);  // straight up or down
-  panel.orientation = rotation_of(std::atan2(back.x, back.z) * Vec3(0, 1, 0));
-  panel.middle_m = head_m - distance_m * back - Vec3(0, drop_m, 0);
+  panel.orientation = level_turn(head);
+  panel.middle_m = head_m - distance_m * rotate(panel.orientation, Vec3(0, 0, 1)) - Vec3(0, drop_m, 0);
   return panel;
 }
 

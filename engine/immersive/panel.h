@@ -32,6 +32,8 @@ struct PanelHit {
 /// Where the ray meets the panel's plane; nothing from behind, along it, or away from it.
 std::optional<PanelHit> meet(const Panel& panel, const AimRay& ray);
 
+/// How far a head is turned about the vertical: it looks along -z of that. Looking straight up or down: not at all.
+Quat level_turn(const Quat& head);
 /// Before a head: `distance_m` along where it looks, level, turned to it, `drop_m` lower than the eyes.
 Panel in_front_of(const Vec3& head_m, const Quat& head, double distance_m, double drop_m, Panel panel);
 

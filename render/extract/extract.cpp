@@ -86,6 +86,23 @@ double strain_of(const scene::Scene& scene, const scene::Cursor& cursor) {
   return most > 0 && is_finite(cursor.force_n) ? std::clamp(norm(cursor.force_n) / most, 0.0, 1.0) : 0;
 }
 
+/// Those that are drawn, in one order.
+template <class Work>
+void each_cursor(const scene::Scene& scene, const Work& work) {
+  scene.world.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
+    if (cursor.visible && is_finite(cursor.probe)) work(cursor);
+  });
+}
+
+/// What of the cursor is the hand's, and not its look.
+CursorItem hand_of(const scene::Scene& scene, const scene::Cursor& cursor) {
+  CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, 0, cursor.leaving, 0};
+  if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
+  item.active.resize(item.proxies.size(), true);
+  item.leaving.resize(item.proxies.size(), 0.0);
+  return item;
+}
+
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
@@ -108,16 +125,13 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   }
   double widest_tube = 0;
   for (const TubeItem& tube : packet.tubes) widest_tube = std::max(widest_tube, tube.radius);
-  scene.world.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
-    if (!cursor.visible || !is_finite(cursor.probe)) return;
-    CursorItem item{
-        cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving, packet.add_object("cursor", "")};
-    if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
+  each_cursor(scene, [&](const scene::Cursor& cursor) {
+    CursorItem item = hand_of(scene, cursor);
+    item.size = cursor.size;
+    item.id = packet.add_object("cursor", "");
     item.ghost = cursor.ghost;
     item.crosshair = cursor.crosshair;
     if (cursor.drop_line) item.foot = item.probe;  // extract_feet lowers it
-    item.active.resize(item.proxies.size(), true);
-    item.leaving.resize(item.proxies.size(), 0.0);
     if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
     packet.cursors.push_back(std::move(item));
   });
@@ -193,6 +207,23 @@ void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) 
   set_fog(scene, packet_bounds(packet), packet);
   set_widgets(scene, data_bounds(packet), packet);
   set_eyes(packet, scene.stereo);
+}
+
+void move_cursors(const scene::Scene& scene, FramePacket& packet) {
+  std::vector<CursorItem> hands;
+  each_cursor(scene, [&](const scene::Cursor& cursor) { hands.push_back(hand_of(scene, cursor)); });
+  if (hands.size() != packet.cursors.size()) return;
+  for (std::size_t k = 0; k < hands.size(); ++k) {
+    CursorItem& item = packet.cursors[k];
+    hands[k].size = item.size;
+    hands[k].id = item.id;
+    hands[k].ghost = item.ghost;
+    hands[k].crosshair = item.crosshair;
+    if (item.foot) hands[k].foot = hands[k].probe;
+    item = std::move(hands[k]);
+  }
+  const bool any_foot = std::ranges::any_of(packet.cursors, [](const CursorItem& item) { return item.foot.has_value(); });
+  if (any_foot) extract_feet(scene, drawn_bounds(packet), packet);
 }
 
 Outcome prepare_frame(scene::Scene& scene) {

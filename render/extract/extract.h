@@ -22,6 +22,9 @@ Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::ui
 /// Another view of the packet of this scene; what follows from the view (the eyes, the edges of the axes, the fog's range) is made anew.
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
 
+/// The cursors of the packet of this scene where the hand is by now (late latching): all else, and how large they are, stays.
+void move_cursors(const scene::Scene& scene, FramePacket& packet);
+
 /// An Error where the picture is of a screen, and the packet's eye is not before it: it is drawn as without the screen.
 Outcome check_head(const FramePacket& packet, const scene::Stereo& stereo);
 

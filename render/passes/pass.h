@@ -105,6 +105,10 @@ class RayProbe {
  public:
   /// The rays of every `spacing`-th pixel, into `target` (kVolumeFormat).
   virtual Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
+  /// Such rays again: the depth t (shaders/shared/frame.h) at which their alpha passes 0.5, into the red of `target` (kVolumeFormat);
+  /// NO_DEPTH where it never does. After the picture.
+  virtual Outcome record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
+  virtual bool has_half_depth() const = 0;
   /// The fast raycast was tried with this packet's volume and had no memory for it.
   virtual bool has_refused(const FramePacket& packet) const = 0;
   /// Of the last picture only the tiles were marched that something opaque had come to or left.

@@ -58,6 +58,8 @@ class RaycastPass final : public Pass, public RayProbe {
 
   RayProbe* probe() override { return this; }
   Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  Outcome record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  bool has_half_depth() const override { return fast_ || (any_ && !projected_ && exact_pass_->has_half_depth()); }
   bool has_kept() const override { return fast_ ? fast_pass_->has_kept() : any_ && !projected_ && exact_pass_->has_kept(); }
   vk::Image* changed_tiles() override {
     if (!has_kept()) return nullptr;
@@ -228,6 +230,26 @@ Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uin
   commands.begin_pass({&color, 1}, {});
   const VkExtent3D& extent = target.info().extent;
   CATENA_CHECK(record_exact(commands, frame, rays, {{0, 0}, {extent.width, extent.height}}));
+  commands.end_pass();
+  return Done{};
+}
+
+Outcome RaycastPass::record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
+  constexpr double kHalf = 0.5;  // what is behind does not count
+  const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
+  if (fast_) {
+    FastSettings settings = *frame.settings.fast;
+    settings.termination = kHalf;
+    return fast_pass_->record_half_depth(commands, frame.rays, settings, spacing, target, opaque, frame.targets.none);
+  }
+  CameraRays rays = frame.rays;
+  rays.spacing = spacing;
+  RaySettings settings = ray_settings(frame);
+  settings.termination = kHalf;
+  const vk::ColorTarget depth{&target, std::array<float, 4>{NO_DEPTH, 0, 0, 0}};
+  commands.begin_pass({&depth, 1}, {});
+  const VkExtent3D& extent = target.info().extent;
+  CATENA_CHECK(exact_pass_->record_half_depth(commands, rays, settings, {{0, 0}, {extent.width, extent.height}}, ray_scene(frame)));
   commands.end_pass();
   return Done{};
 }

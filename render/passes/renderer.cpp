@@ -74,6 +74,8 @@ struct Renderer::Parts {
   bool packed = false;                            ///< the last picture is made of several views
   std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;
+  vk::Image ray_depth;
+  std::uint32_t ray_depth_spacing = 0;  ///< of the last picture; 0: it has none
   std::vector<std::string> drawn_passes;
   std::size_t sharers = 1;  ///< grids that must share what the budget leaves
 
@@ -89,6 +91,7 @@ struct Renderer::Parts {
   Outcome prepare(Frame& frame);
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
   Outcome draw(const FramePacket& packet, const RenderSettings& settings);
+  Outcome draw_ray_depth(Frame& frame);
   Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
   Outcome paint(std::uint32_t width, std::uint32_t height, const UiItems& items);
 };
@@ -228,6 +231,23 @@ Outcome Renderer::Parts::draw(const FramePacket& packet, const RenderSettings& s
   view_width = packet.width;
   view_height = packet.height;
   reference_depth = frame.rays.reference_depth;
+  return draw_ray_depth(frame);
+}
+
+Outcome Renderer::Parts::draw_ray_depth(Frame& frame) {
+  ray_depth_spacing = 0;
+  const std::uint32_t spacing = frame.settings.ray_depth_spacing;
+  if (spacing == 0) return Done{};
+  for (Pass* pass : active()) {
+    RayProbe* rays = pass->probe();
+    if (!rays || !rays->has_half_depth()) continue;
+    CATENA_CHECK(vk::fit_image(*device, ray_depth, kVolumeFormat, (frame.packet.width + spacing - 1) / spacing,
+                               (frame.packet.height + spacing - 1) / spacing));
+    CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+    CATENA_CHECK(rays->record_half_depth(commands, frame, spacing, ray_depth));
+    CATENA_CHECK(commands.finish());
+    ray_depth_spacing = spacing;
+  }
   return Done{};
 }
 
@@ -294,6 +314,14 @@ std::optional<Renderer::OpaqueDepth> Renderer::opaque_depth() {
   if ((parts_->drawn & target::opaque_depth) == 0) return std::nullopt;
   return OpaqueDepth{&parts_->targets.opaque_depth, parts_->reference_depth};
 }
+
+std::optional<Renderer::RayDepth> Renderer::ray_depth() {
+  CATENA_ASSERT(parts_->drawn != 0);
+  if (parts_->ray_depth_spacing == 0) return std::nullopt;
+  return RayDepth{&parts_->ray_depth, parts_->reference_depth, parts_->ray_depth_spacing};
+}
+
+vk::Image& Renderer::no_image() { return parts_->targets.none; }
 
 Result<FloatPicture> Renderer::read_back_float() {
   Parts& p = *parts_;

@@ -114,6 +114,17 @@ class Renderer {
     double reference;
   };
   std::optional<OpaqueDepth> opaque_depth();
+  /// What stands for the depth of volumes and translucent surfaces in the last picture: where a ray's alpha passes 0.5, in the red of a
+  /// texel for every `spacing`-th pixel each way, counted as the opaque depth; NO_DEPTH where it never does before something opaque.
+  /// Nothing at all where nothing is drawn by rays, of a projection, or without RenderSettings::ray_depth_spacing.
+  struct RayDepth {
+    vk::Image* image;
+    double reference;
+    std::uint32_t spacing;
+  };
+  std::optional<RayDepth> ray_depth();
+  /// A texel that is bound where there is no image.
+  vk::Image& no_image();
   /// The same in floats, for settings with `float_picture`.
   Result<FloatPicture> read_back_float();
   /// Pixels that a picture can have, each way, on this device.

@@ -204,7 +204,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw
   const bool leaps = draw.skips && look_.leaping() > kLeapAbove;
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
-                                                 look_.as_bricks(), look_.masked()},
+                                                 look_.as_bricks(), look_.masked(), draw.half_depth},
                                                 draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
@@ -332,17 +332,30 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
 
 Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                                         vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
-  CATENA_ASSERT(target.info().format == kVolumeFormat);
+  return probe(commands, rays, settings, spacing,
+               {.target = &target, .shading = shading(settings), .opaque_depth = opaque_depth, .none = &none});
+}
+
+Outcome FastVolumeRaycast::record_half_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
+                                             std::uint32_t spacing, vk::Image& target, const vk::Image* opaque_depth,
+                                             const vk::Image& none) {
+  return probe(commands, rays, settings, spacing, {.target = &target, .opaque_depth = opaque_depth, .none = &none, .half_depth = true});
+}
+
+/// Rays alone, of a lattice that nothing refines.
+Outcome FastVolumeRaycast::probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
+                                 Draw wanted) {
+  CATENA_ASSERT(wanted.target->info().format == kVolumeFormat);
   CATENA_CHECK(write_frame(rays, settings));
   CATENA_CHECK(vk::fit_image(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
   CATENA_CHECK(vk::write_uniform(
       *device_, probe_.data,
       shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0, 0}));
-  const VkExtent3D& extent = target.info().extent;
-  return draw(
-      commands, probe_,
-      {&target, nullptr, true, Tiles::all, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
+  const VkExtent3D& extent = wanted.target->info().extent;
+  wanted.skips = settings.skip;
+  wanted.area = {{0, 0}, {extent.width, extent.height}};
+  return draw(commands, probe_, wanted);
 }
 
 }  // namespace catena::render

@@ -42,6 +42,9 @@ class FastVolumeRaycast {
   /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
   Outcome record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
+  /// The same rays; instead of colours the depth t at which alpha passes 0.5 (red), NO_DEPTH where it never does.
+  Outcome record_half_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
+                            vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
   /// Every 2nd pixel, for Upsampler.
   vk::Image& half() { return half_.color; }
   std::uint64_t grid_bytes() const { return look_.words().bytes() + look_.gradients().bytes(); }
@@ -57,7 +60,7 @@ class FastVolumeRaycast {
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
   /// Which tiles of a lattice are drawn: the others stay as they are.
   enum class Tiles { all, marked, changed };
-  using Constants = std::array<std::uint32_t, 7>;
+  using Constants = std::array<std::uint32_t, 8>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const { return look_.item().shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
@@ -73,7 +76,9 @@ class FastVolumeRaycast {
     VkRect2D area{};
     const vk::Image* opaque_depth = nullptr;
     const vk::Image* none = nullptr;
+    bool half_depth = false;
   };
+  Outcome probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing, Draw wanted);
   Outcome draw(vk::Commands& commands, Level& level, const Draw& draw);
   Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area, bool keep);
   struct Kept {

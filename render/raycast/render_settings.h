@@ -49,6 +49,8 @@ struct RenderSettings {
   /// While nothing but opaque things moves, only the rays of the tiles under them (fast ones: near them) are marched again. The picture is
   /// the same to the bit, but what it took says nothing.
   bool keep = false;
+  /// > 0: the rays of every so-many-th pixel each way are marched once more, after the picture, for Renderer::ray_depth().
+  std::uint32_t ray_depth_spacing = 0;
 };
 RenderSettings draft_settings();      ///< every 4th pixel at step 2; where the fast raycast cannot: step 2, jittered
 RenderSettings balanced_settings();   ///< every 2nd pixel at step 1, every one where the picture asks for it; where it cannot: step 1

@@ -74,8 +74,8 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
                     : kind.layers > 0 ? cubic ? vk::Spirv(kVolumeBlendLayersCubicShader) : vk::Spirv(kVolumeBlendLayersShader)
                     : cubic ? vk::Spirv(kVolumeBlendCubicShader)
                                       : vk::Spirv(kVolumeBlendShader);
-    info.constants = {kind.flags, kind.opaque,      kind.volumes, kind.surfaces, kind.layers,
-                      kind.modes, kind.color_grids, kind.jitter,  kind.colors,   kind.fog};
+    info.constants = {kind.flags,       kind.opaque, kind.volumes, kind.surfaces, kind.layers,    kind.modes,
+                      kind.color_grids, kind.jitter, kind.colors,  kind.fog,      kind.half_depth};
   }
   CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   return &pipeline;
@@ -239,6 +239,14 @@ Outcome VolumeRaycast::draw(vk::Commands& commands, const Ready& ready, const Vk
 Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
                               const RayScene& scene) {
   return draw(commands, ready(rays, settings, scene), area, scene);
+}
+
+Outcome VolumeRaycast::record_half_depth(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                                         const RayScene& scene) {
+  Ready found = ready(rays, settings, scene);
+  found.kind.half_depth = true;
+  found.kind.fog = found.kind.jitter = 0;  // no colour, no grain
+  return draw(commands, found, area, scene);
 }
 
 Outcome VolumeRaycast::record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,

@@ -22,6 +22,11 @@ class VolumeRaycast {
   /// same, to the bit (still_tiles.h).
   Outcome record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
                       const RayScene& scene, vk::Image& target, bool keep);
+  /// As record(), of settings that end at half of the light: instead of colours the depth t at which alpha passes 0.5 (red), NO_DEPTH where
+  /// it never does. Not of layers alone.
+  Outcome record_half_depth(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                            const RayScene& scene);
+  bool has_half_depth() const { return !volumes_.empty() || !surfaces_.empty(); }
   /// Whether the last record_into() left most of it as it was.
   bool has_kept() const { return has_kept_; }
   /// Something else has drawn into the target.
@@ -51,6 +56,7 @@ class VolumeRaycast {
   struct Kind {
     std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0;
     bool tiles = false;  ///< only those that have changed
+    bool half_depth = false;
     auto operator<=>(const Kind&) const = default;
     bool single() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
     bool layers_alone() const { return volumes == 0 && surfaces == 0; }

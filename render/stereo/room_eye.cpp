@@ -1,10 +1,15 @@
 #include "render/stereo/room_eye.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/frame/camera.h"
 
 namespace catena::render {
+
+namespace {
+constexpr double kRadian = M_PI / 180;
+}
 
 Placement first_placement(const View& view, double distance_m) {
   // an up along the axis is replaced as the camera does it
@@ -16,7 +21,9 @@ Placement first_placement(const View& view, double distance_m) {
   Placement placement;
   placement.world_from_room = Mat3(right, up, back);
   placement.metres_per_unit = distance_m / (distance > 0 ? distance : 1);
-  placement.world_origin = view.target + back * (distance_m / placement.metres_per_unit);
+  const double above = std::asin(std::clamp(dot(axes.back, up), -1.0, 1.0));
+  const double angle = std::clamp(above, -kMostUp_deg * kRadian, kMostDown_deg * kRadian);
+  placement.world_origin = view.target + (std::cos(angle) * back + std::sin(angle) * up) * (distance_m / placement.metres_per_unit);
   return placement;
 }
 

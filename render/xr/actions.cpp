@@ -32,27 +32,27 @@ Result<XrPath> Actions::path(const char* text) {
   return made;
 }
 
-Result<XrAction> Actions::action(XrActionType type, const char* name, const char* words) {
+Result<XrAction> Actions::action(XrActionType type, const char* name, const char* words, bool of_hands) {
   XrActionCreateInfo info{};
   info.type = XR_TYPE_ACTION_CREATE_INFO;
   info.actionType = type;
   std::strcpy(info.actionName, name);
   std::strcpy(info.localizedActionName, words);
-  info.countSubactionPaths = std::uint32_t(hands_.size());
+  info.countSubactionPaths = of_hands ? std::uint32_t(hands_.size()) : 0;
   info.subactionPaths = hands_.data();
   XrAction made = XR_NULL_HANDLE;
   CATENA_XR_CHECK(*session_, session_->xr().CreateAction(set_, &info, &made), "make a control");
   return made;
 }
 
-Result<XrSpace> Actions::pose_space(XrAction pose, std::size_t which) {
+Result<XrSpace> Actions::pose_space(XrAction pose, XrPath hand) {
   XrActionSpaceCreateInfo info{};
   info.type = XR_TYPE_ACTION_SPACE_CREATE_INFO;
   info.action = pose;
-  info.subactionPath = hands_[which];
+  info.subactionPath = hand;
   info.poseInActionSpace.orientation.w = 1;
   XrSpace made = XR_NULL_HANDLE;
-  CATENA_XR_CHECK(*session_, session_->xr().CreateActionSpace(session_->handle(), &info, &made), "follow a hand");
+  CATENA_XR_CHECK(*session_, session_->xr().CreateActionSpace(session_->handle(), &info, &made), "follow a pose");
   return made;
 }
 
@@ -66,6 +66,7 @@ Actions::~Actions() {
   for (const auto& spaces : {aim_spaces_, grip_spaces_})
     for (XrSpace space : spaces)
       if (space) (void)session_->xr().DestroySpace(space);
+  if (gaze_space_) (void)session_->xr().DestroySpace(gaze_space_);
   if (set_) (void)session_->xr().DestroyActionSet(set_);
 }
 
@@ -86,6 +87,11 @@ Outcome Actions::make() {
   CATENA_TRY(stick_, action(XR_ACTION_TYPE_VECTOR2F_INPUT, "stick", "Turn"));
   CATENA_TRY(menu_, action(XR_ACTION_TYPE_BOOLEAN_INPUT, "menu", "Panel"));
   CATENA_TRY(vibration_, action(XR_ACTION_TYPE_VIBRATION_OUTPUT, "vibration", "What is felt"));
+  const bool sees_eyes = session_->instance().has().gaze;
+  if (sees_eyes) {
+    CATENA_TRY(gaze_, action(XR_ACTION_TYPE_POSE_INPUT, "gaze", "Where the eyes look", false));
+    CATENA_CHECK(suggest_gaze());
+  }
   CATENA_CHECK(suggest());
   XrSessionActionSetsAttachInfo attach{};
   attach.type = XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO;
@@ -93,8 +99,11 @@ Outcome Actions::make() {
   attach.actionSets = &set_;
   CATENA_XR_CHECK(*session_, xr.AttachSessionActionSets(session_->handle(), &attach), "take controls");
   for (std::size_t k = 0; k < kHands; ++k) {
-    CATENA_TRY(aim_spaces_[k], pose_space(aim_, k));
-    CATENA_TRY(grip_spaces_[k], pose_space(grip_, k));
+    CATENA_TRY(aim_spaces_[k], pose_space(aim_, hands_[k]));
+    CATENA_TRY(grip_spaces_[k], pose_space(grip_, hands_[k]));
+  }
+  if (sees_eyes) {
+    CATENA_TRY(gaze_space_, pose_space(gaze_, XR_NULL_PATH));
   }
   return Done{};
 }
@@ -132,6 +141,18 @@ Outcome Actions::suggest() {
   return taken ? Outcome(Done{}) : Outcome(session_->failed(last, "take controls"));
 }
 
+Outcome Actions::suggest_gaze() {
+  XrActionSuggestedBinding binding{gaze_, XR_NULL_PATH};
+  CATENA_TRY(binding.binding, path("/user/eyes_ext/input/gaze_ext/pose"));
+  XrInteractionProfileSuggestedBinding info{};
+  info.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
+  CATENA_TRY(info.interactionProfile, path("/interaction_profiles/ext/eye_gaze_interaction"));
+  info.countSuggestedBindings = 1;
+  info.suggestedBindings = &binding;
+  CATENA_XR_CHECK(*session_, session_->xr().SuggestInteractionProfileBindings(session_->instance().handle(), &info), "take the gaze");
+  return Done{};
+}
+
 Outcome Actions::sync() {
   const XrActiveActionSet active{set_, XR_NULL_PATH};
   XrActionsSyncInfo info{};
@@ -146,7 +167,7 @@ Result<bool> Actions::locate(XrSpace space, XrTime at, RoomPose& pose) {
   constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
   XrSpaceLocation found{};
   found.type = XR_TYPE_SPACE_LOCATION;
-  CATENA_XR_CHECK(*session_, session_->xr().LocateSpace(space, session_->space(SpaceKind::local), at, &found), "locate a hand");
+  CATENA_XR_CHECK(*session_, session_->xr().LocateSpace(space, session_->space(SpaceKind::local), at, &found), "locate a pose");
   const auto& [x, y, z, w] = found.pose.orientation;
   pose.position = Vec3(found.pose.position.x, found.pose.position.y, found.pose.position.z);
   pose.turn = normalised(Quat(w, x, y, z));
@@ -193,6 +214,21 @@ Result<HandState> Actions::hand(std::size_t which, XrTime at) {
   CATENA_XR_CHECK(*session_, xr.GetActionStateBoolean(session_->handle(), &info, &menu), "look at the controls");
   state.menu = menu.isActive && menu.currentState;
   return state;
+}
+
+Result<std::optional<RoomPose>> Actions::gaze(XrTime at) {
+  const std::optional<RoomPose> none;
+  if (!gaze_space_ || !session_->focused()) return none;
+  XrActionStateGetInfo info{};
+  info.type = XR_TYPE_ACTION_STATE_GET_INFO;
+  info.action = gaze_;
+  XrActionStatePose state{};
+  state.type = XR_TYPE_ACTION_STATE_POSE;
+  CATENA_XR_CHECK(*session_, session_->xr().GetActionStatePose(session_->handle(), &info, &state), "look at the eyes");
+  if (!state.isActive) return none;
+  RoomPose pose;
+  CATENA_TRY(const bool known, locate(gaze_space_, at, pose));
+  return known ? std::optional(pose) : none;
 }
 
 Outcome Actions::vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns) {

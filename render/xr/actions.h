@@ -4,11 +4,13 @@
 ///   aim    where the hand points: along -z        grip   where the controller is held; the probe is its origin
 ///   select trigger, 0..1                          grab   squeeze, 0..1
 ///   stick  thumbstick or trackpad, right and up   menu   the panel
+/// Where a headset sees the eyes (XR_EXT_eye_gaze_interaction), their gaze is a pose like the others: along -z from between them.
 /// A hand whose controller is off, or which the runtime cannot see, is not there. One object a session; it goes before the session.
 /// Frame thread; the haptic thread never comes here.
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "engine/base/vec.h"
 #include "render/xr/session.h"
@@ -44,6 +46,9 @@ class Actions {
   /// A hand at a time of the runtime's clock: `now` for what it does, the frame's time for what is drawn of it.
   Result<HandState> hand(std::size_t which, XrTime at);
 
+  /// Where the person looks then; nothing where the headset does not know. Nothing without focus.
+  Result<std::optional<RoomPose>> gaze(XrTime at);
+
   /// Replaces what the hand feels. amplitude 0..1; frequency in Hz, 0: the runtime's choice; what it cannot make it clamps.
   /// Nothing without focus.
   Outcome vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns);
@@ -56,17 +61,19 @@ class Actions {
   explicit Actions(Session& session) : session_(&session) {}
   Outcome make();
   Outcome suggest();
+  Outcome suggest_gaze();
   Result<XrPath> path(const char* text);
-  Result<XrAction> action(XrActionType type, const char* name, const char* words);
-  Result<XrSpace> pose_space(XrAction pose, std::size_t which);
+  Result<XrAction> action(XrActionType type, const char* name, const char* words, bool of_hands = true);
+  Result<XrSpace> pose_space(XrAction pose, XrPath hand);
   Result<bool> locate(XrSpace space, XrTime at, RoomPose& pose);
 
   Session* session_;
   XrActionSet set_ = XR_NULL_HANDLE;
   XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, select_ = XR_NULL_HANDLE, grab_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
-           menu_ = XR_NULL_HANDLE, vibration_ = XR_NULL_HANDLE;
+           menu_ = XR_NULL_HANDLE, vibration_ = XR_NULL_HANDLE, gaze_ = XR_NULL_HANDLE;
   std::array<XrPath, kHands> hands_{};
   std::array<XrSpace, kHands> aim_spaces_{}, grip_spaces_{};
+  XrSpace gaze_space_ = XR_NULL_HANDLE;
 };
 
 }  // namespace catena::render::xr

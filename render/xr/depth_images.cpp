@@ -26,27 +26,34 @@ std::unique_ptr<DepthImages> DepthImages::create(Session& session, ViewSize size
 
 Result<bool> DepthImages::take(Renderer& renderer, double metres_per_unit) {
   const auto opaque = renderer.opaque_depth();
-  if (!opaque) return false;
+  const auto rays = renderer.ray_depth();
+  if (!opaque && !rays) return false;
+  CATENA_ASSERT(!rays || rays->spacing == kRaySpacing);
   vk::Device& device = session_->device();
-  const VkExtent3D extent = opaque->image->info().extent;
+  const VkExtent3D extent = renderer.picture().info().extent;
   CATENA_CHECK(vk::fit_image(device, drawn_, VK_FORMAT_D32_SFLOAT, extent.width, extent.height,
                              VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
-  if (!pipeline_) {
+  vk::Pipeline& pipeline = pipelines_[(opaque ? 1 : 0) + (rays ? 2 : 0)];
+  if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kHeadsetVertexShader;
     info.fragment = kHeadsetDepthShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
     info.depth = true;
-    CATENA_TRY(pipeline_, vk::Pipeline::create(device, info));
+    info.constants = {opaque.has_value(), rays ? kRaySpacing : 0};
+    CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }
-  const shared::HeadsetDepthData data{float(metres_per_unit), float(metres_per_unit * opaque->reference), kNearM, kFarM};
+  const double reference = opaque ? opaque->reference : rays->reference;
+  const shared::HeadsetDepthData data{float(metres_per_unit), float(metres_per_unit * reference), kNearM, kFarM};
   CATENA_CHECK(vk::write_uniform(device, uniform_, data));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
-  commands.use(*opaque->image, vk::kFragmentRead);
+  vk::Image* const none = &renderer.no_image();
+  for (vk::Image* image : {opaque ? opaque->image : none, rays ? rays->image : none}) commands.use(*image, vk::kFragmentRead);
   commands.begin_pass({}, {&drawn_, 0.0f});
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, opaque->image, nullptr}};
-  commands.bind(pipeline_, bindings);
+                                  {1, vk::Resource::texture, nullptr, opaque ? opaque->image : none, nullptr},
+                                  {2, vk::Resource::texture, nullptr, rays ? rays->image : none, nullptr}};
+  commands.bind(pipeline, bindings);
   commands.draw_triangle();
   commands.end_pass();
   commands.use(drawn_, vk::kTransferRead);

@@ -5,6 +5,23 @@
 
 namespace catena::render::xr {
 
+namespace {
+
+/// The fovea goes where the person looks; straight ahead of the view where that is not known, or behind it.
+void look_at(const std::optional<Vec3>& gaze, const RoomEye& eye, RenderSettings& settings) {
+  if (!gaze || !settings.fast || !(settings.fast->fovea > 0)) return;
+  const Vec3 seen = *gaze * eye.room_from_eye;  // v * R = R^T v
+  if (!(seen.z < 0)) return;
+  settings.fast->gaze_right = std::clamp(-seen.x / seen.z, -kWidestGaze, kWidestGaze);
+  settings.fast->gaze_up = std::clamp(-seen.y / seen.z, -kWidestGaze, kWidestGaze);
+}
+
+bool has_projection(const FramePacket& packet) {
+  return std::ranges::any_of(packet.volumes, [](const VolumeItem& volume) { return volume.projection != Projection::composite; });
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Headset>> Headset::open(const char* library) {
   CATENA_TRY(std::unique_ptr<Instance> instance, Instance::open(library));
   return std::unique_ptr<Headset>(new Headset(std::move(instance)));
@@ -55,10 +72,10 @@ Result<Frame> Headset::begin() {
 }
 
 Outcome Headset::show(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                      const Placement& placement, double share, const Aim& aim) {
+                      const Placement& placement, double share, const Aim& aim, const std::optional<Vec3>& gaze) {
   std::vector<Shown> shown;
   if (frame.wants_picture) {
-    auto drawn = draw_views(frame, renderer, packet, settings, placement, share, aim);
+    auto drawn = draw_views(frame, renderer, packet, settings, placement, share, aim, gaze);
     if (!drawn) {
       (void)skip(frame);
       return drawn.error();
@@ -72,7 +89,7 @@ Outcome Headset::show(const Frame& frame, Renderer& renderer, FramePacket& packe
 }
 
 Result<std::vector<Shown>> Headset::draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                                               const Placement& placement, double share, const Aim& aim) {
+                                               const Placement& placement, double share, const Aim& aim, const std::optional<Vec3>& gaze) {
   const auto scaled = [&](std::uint32_t pixels) { return std::max(1u, std::uint32_t(std::lround(share * pixels))); };
   if (session_->mask_changes() != mask_changes_) CATENA_CHECK(take_masks());
   std::vector<Shown> shown(frame.views.size());
@@ -87,12 +104,15 @@ Result<std::vector<Shown>> Headset::draw_views(const Frame& frame, Renderer& ren
     packet.eyes.clear();
     packet.packing = Packing::single;
     if (!view.hidden.empty()) packet.meshes.push_back(mask_item(view.hidden, placement, eye));
-    const Outcome drawn = renderer.draw(packet, settings);
+    RenderSettings own = settings;
+    look_at(gaze, eye, own);
+    if (view.depth) own.ray_depth_spacing = DepthImages::kRaySpacing;
+    const Outcome drawn = renderer.draw(packet, own);
     if (!view.hidden.empty()) packet.meshes.pop_back();
     if (!drawn) return drawn.error();
     CATENA_CHECK(view.color->take(renderer.picture()));
     shown[k] = {view.color.get(), {packet.width, packet.height}};
-    if (!view.depth || !packet.volumes.empty()) continue;
+    if (!view.depth || has_projection(packet)) continue;
     CATENA_TRY(const bool has_depth, view.depth->take(renderer, placement.metres_per_unit));
     if (has_depth) shown[k].depth = &view.depth->images();
   }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "render/passes/renderer.h"
 #include "render/xr/actions.h"
@@ -23,6 +24,8 @@ struct FrameCounts {
   std::uint64_t frames = 0;    ///< begun and ended
   std::uint64_t pictures = 0;  ///< of these, with a picture
 };
+
+inline constexpr double kWidestGaze = 10;  ///< tangent off a view's axis; beyond, no display shows anything
 
 class Headset {
  public:
@@ -51,10 +54,10 @@ class Headset {
   Result<Frame> begin();
   /// Draws every view of the packet's scene, where the frame wants a picture, and hands them over. The first view is drawn last, so that it
   /// is the renderer's last picture: for the window. `share`: of the recommended pixels, each way. `aim` changes what of the packet follows
-  /// from the view.
+  /// from the view. `gaze`: where the person looks, a direction in the room, for the fovea of the settings; nothing: straight ahead.
   using Aim = std::function<void(const View& view, FramePacket& packet)>;
   Outcome show(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement,
-               double share = 1, const Aim& aim = {});
+               double share = 1, const Aim& aim = {}, const std::optional<Vec3>& gaze = {});
   /// Nothing to show.
   Outcome skip(const Frame& frame) { return end_frame(*session_, frame, {}); }
   const FrameCounts& counts() const { return counts_; }
@@ -62,7 +65,7 @@ class Headset {
  private:
   explicit Headset(std::unique_ptr<Instance> instance) : instance_(std::move(instance)) {}
   Result<std::vector<Shown>> draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                                        const Placement& placement, double share, const Aim& aim);
+                                        const Placement& placement, double share, const Aim& aim, const std::optional<Vec3>& gaze);
 
   std::unique_ptr<Instance> instance_;  // first in, last out
   std::unique_ptr<Session> session_;

@@ -53,6 +53,7 @@ Outcome Instance::create() {
   has_.depth = take(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
   has_.visibility_mask = take(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
   has_.clock = take(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
+  has_.gaze = take(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
 
   XrInstanceCreateInfo info{};
   info.type = XR_TYPE_INSTANCE_CREATE_INFO;
@@ -76,7 +77,11 @@ Outcome Instance::look_at_system() {
   CATENA_XR_CHECK(*this, functions_.GetSystem(instance_, &wanted, &system_), "be found");
   XrSystemProperties system{};
   system.type = XR_TYPE_SYSTEM_PROPERTIES;
+  XrSystemEyeGazeInteractionPropertiesEXT eyes{};
+  eyes.type = XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT;
+  if (has_.gaze) system.next = &eyes;
   CATENA_XR_CHECK(*this, functions_.GetSystemProperties(instance_, system_, &system), "describe itself");
+  has_.gaze = has_.gaze && eyes.supportsEyeGazeInteraction;
   name_ = std::string(runtime.runtimeName) + ", " + system.systemName;
 
   std::uint32_t count = 0;

@@ -24,6 +24,7 @@ struct Offers {
   bool depth = false;            ///< XR_KHR_composition_layer_depth
   bool visibility_mask = false;  ///< XR_KHR_visibility_mask
   bool clock = false;            ///< XR_KHR_convert_timespec_time
+  bool gaze = false;             ///< XR_EXT_eye_gaze_interaction, and a headset that sees the eyes
 };
 
 class Instance {

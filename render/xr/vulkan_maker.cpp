@@ -1,5 +1,6 @@
 #include <string>
 
+#include "render/vk/requirements.h"
 #include "render/xr/instance.h"
 
 namespace catena::render::xr {
@@ -12,6 +13,34 @@ VkResult answer(Instance& instance, XrResult said, VkResult vulkan, const char* 
   (void)instance.failed(said, what);
   return VK_ERROR_INITIALIZATION_FAILED;
 }
+
+/// The features of a device in structures of their own instead of VkPhysicalDeviceVulkan12Features: a runtime looks whether the chain has
+/// VkPhysicalDeviceTimelineSemaphoreFeatures, else puts its own there (Monado), and that may not stand beside the other. Points into
+/// itself.
+struct SplitFeatures {
+  VkPhysicalDeviceFeatures2 core{};
+  VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
+  VkPhysicalDeviceScalarBlockLayoutFeatures scalar{};
+  VkPhysicalDeviceVulkan13Features v13{};
+
+  SplitFeatures() {
+    vk::DeviceFeatures needed;
+    vk::require(needed);
+    v13 = needed.v13;
+    core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    core.features = needed.core.features;
+    core.pNext = &timeline;
+    timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
+    timeline.timelineSemaphore = needed.v12.timelineSemaphore;
+    timeline.pNext = &scalar;
+    scalar.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
+    scalar.scalarBlockLayout = needed.v12.scalarBlockLayout;
+    scalar.pNext = &v13;
+    v13.pNext = nullptr;
+  }
+  SplitFeatures(const SplitFeatures&) = delete;
+  SplitFeatures& operator=(const SplitFeatures&) = delete;
+};
 
 }  // namespace
 
@@ -45,7 +74,10 @@ vk::VulkanMaker Instance::maker(std::mutex& queue_lock) {
     info.systemId = system_;
     info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
     info.vulkanPhysicalDevice = physical;
-    info.vulkanCreateInfo = &wanted;
+    const SplitFeatures features;
+    VkDeviceCreateInfo split = wanted;
+    split.pNext = &features.core;
+    info.vulkanCreateInfo = &split;
     VkResult result = VK_SUCCESS;
     return answer(*this, functions_.CreateVulkanDeviceKHR(instance_, &info, made, &result), result, "make a Vulkan device");
   };

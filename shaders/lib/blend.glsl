@@ -110,6 +110,7 @@ void main() {
       layer_at = layer_depth(++layer, at, end);
     }
 #endif
+    if (HALF_DEPTH != 0u && half_depth >= NO_DEPTH && through <= 0.5) half_depth = t;
   }
-  out_color = vec4(color_sum, 1.0 - through);
+  out_color = HALF_DEPTH != 0u ? found_depth() : vec4(color_sum, 1.0 - through);
 }

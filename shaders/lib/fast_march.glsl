@@ -4,6 +4,7 @@
 layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by gradients made beforehand
 layout(constant_id = 1) const uint SKIPS = 0;
 layout(constant_id = 2) const uint OPAQUE = 0;
+layout(constant_id = 7) const uint HALF_DEPTH = 0;  // instead of a colour: the depth at which half of the light is gone
 
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
 layout(binding = 8) uniform sampler3D gradients;       // render/mirror/gradient_volume.h
@@ -105,7 +106,10 @@ float middle_code(Station a, Station b, float curved) {
   return clamp(0.5 * (a.s.code + b.s.code) + curved * 0.125 * (b.t - a.t) * (a.slope - b.slope), 0.0, 255.0);
 }
 
-// The premultiplied colour of the ray of pixel place q, up to depth `end`.
+// Where in a piece of one sigma half of the light is gone, as a share of its length; before > 0.5 >= after.
+float half_gone(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
+
+// The premultiplied colour of the ray of pixel place q, up to depth `end`; with HALF_DEPTH that depth, and alpha 1 where there is one.
 vec4 march_packed(vec2 q, float end) {
   const vec3 world = world_direction(q);
   const float world_per_depth = length(world);
@@ -113,7 +117,7 @@ vec4 march_packed(vec2 q, float end) {
   m.ray = local_ray(0, q);
   vec2 interval = visible_interval(0, m.ray, q);
   m.end = min(interval.y, end);
-  if (!(interval.x < m.end)) return vec4(0.0);
+  if (!(interval.x < m.end)) return HALF_DEPTH != 0u ? vec4(NO_DEPTH, 0.0, 0.0, 0.0) : vec4(0.0);
   m.h = frame.step_world / world_per_depth;
   m.inverse = safe_inverse(m.ray.direction);
   m.ahead = mix(vec3(0.0), vec3(1.0), forward_of(m.ray.direction));
@@ -171,6 +175,10 @@ vec4 march_packed(vec2 q, float end) {
     const float half_length = -0.5 * 1.44269504 * extent * world_per_depth;
     const float half_way = through * exp2(first.x * half_length);
     const float after = half_way * exp2(second.x * half_length);
+    if (HALF_DEPTH != 0u && after <= 0.5) {
+      const float part = half_way <= 0.5 ? half_gone(through, half_way) : 1.0 + half_gone(half_way, after);
+      return vec4(s.t + 0.5 * extent * part, 0.0, 0.0, 1.0);
+    }
     if (SHADED != 0u) {
       vec4 normal_end = normal_at(e);
       if (MASKED != 0u && !e.s.valid) normal_end = normal;
@@ -200,5 +208,5 @@ vec4 march_packed(vec2 q, float end) {
     through = after;
     s = e;
   }
-  return vec4(sum, 1.0 - through);
+  return HALF_DEPTH != 0u ? vec4(NO_DEPTH, 0.0, 0.0, 0.0) : vec4(sum, 1.0 - through);
 }

@@ -9,6 +9,7 @@ layout(constant_id = 5) const uint GRID_MODES = 0;   // two bits a grid: 1 a fac
 layout(constant_id = 6) const uint COLOR_GRIDS = 0;  // which one: four bits a grid
 layout(constant_id = 7) const uint JITTER = 0;
 layout(constant_id = 9) const uint FOG = 0;  // there is a depth cue
+layout(constant_id = 10) const uint HALF_DEPTH = 0;  // instead of a colour: the depth at which half of the light is gone
 
 #include "shaders/lib/tables.glsl"
 layout(binding = 2) uniform texture2D opaque_depth;
@@ -21,6 +22,7 @@ float world_per_depth;
 float early = 0.0;  // what the first segment lacks, in segments
 float optical_depth = 0.0, surfaces_through = 1.0, through = 1.0;
 vec3 color_sum = vec3(0.0);
+float half_depth = NO_DEPTH;
 
 bool has_factor(int i) { return (GRID_MODES >> (2 * i) & 1u) != 0u; }
 bool has_other_color(int i) { return (GRID_MODES >> (2 * i) & 2u) != 0u; }
@@ -90,6 +92,11 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
   }
 }
 
+// Where in a segment of one sigma half of the light is gone, as a share of its length; before > 0.5 >= after.
+float half_way(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
+
+vec4 found_depth() { return vec4(half_depth, 0.0, 0.0, half_depth < NO_DEPTH ? 1.0 : 0.0); }
+
 // Segments of one length over [from, to], in which the same volumes are met throughout.
 void march(float from, float to) {
   const float h = frame.step_world / world_per_depth;
@@ -115,6 +122,7 @@ void march(float from, float to) {
     if (sigma_sum > 0.0) {
       optical_depth += sigma_sum * extent * world_per_depth;
       const float after = surfaces_through * exp(-optical_depth);
+      if (HALF_DEPTH != 0u && through > 0.5 && after <= 0.5) half_depth = begin + extent * half_way(through, after);
       color_sum += emitted / sigma_sum * (through - after);
       through = after;
     }

@@ -17,5 +17,5 @@ void main() {
   rays[0] = local_ray(0, q);
   intervals[0] = seen_interval(0, q, end);
   if (intervals[0].x < NO_DEPTH) march(intervals[0].x, intervals[0].y);
-  out_color = vec4(color_sum, 1.0 - through);
+  out_color = HALF_DEPTH != 0u ? found_depth() : vec4(color_sum, 1.0 - through);
 }

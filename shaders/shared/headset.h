@@ -1,4 +1,4 @@
-// The depth of a headset's picture, out of the depth of what is opaque.
+// The depth of a headset's picture, out of the depths of what is opaque and of what rays meet.
 #ifndef CATENA_SHARED_HEADSET_H
 #define CATENA_SHARED_HEADSET_H
 #include "shaders/shared/frame.h"

@@ -13,6 +13,8 @@ const std::string& path_text(std::uint64_t instance, XrPath path) {
   return object && path < object->paths.size() ? object->paths[path] : none;
 }
 
+constexpr const char* kEyes = "/interaction_profiles/ext/eye_gaze_interaction";
+
 int hand_of(const std::string& path) { return path.find("/right") != std::string::npos ? 1 : 0; }
 
 XRAPI_ATTR XrResult XRAPI_CALL create_action_set(XrInstance handle, const XrActionSetCreateInfo*, XrActionSet* made) {
@@ -43,7 +45,10 @@ XRAPI_ATTR XrResult XRAPI_CALL create_action(XrActionSet handle, const XrActionC
 XRAPI_ATTR XrResult XRAPI_CALL suggest(XrInstance handle, const XrInteractionProfileSuggestedBinding* info) {
   ENTER(xrSuggestInteractionProfileBindings);
   FIND(InstanceObject, instance, handle, instance);
-  auto& bindings = instance->suggested[path_text(number(handle), info->interactionProfile)];
+  const std::string& profile = path_text(number(handle), info->interactionProfile);
+  if (profile == kEyes && !instance->extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME))
+    return illegal(self, XR_ERROR_PATH_UNSUPPORTED, "the gaze's extension was not asked for");
+  auto& bindings = instance->suggested[profile];
   bindings.clear();
   for (std::uint32_t i = 0; i < info->countSuggestedBindings; ++i) {
     const XrActionSuggestedBinding& one = info->suggestedBindings[i];
@@ -102,6 +107,15 @@ const ScriptedHand* active_hand(const SessionObject& session, std::uint64_t acti
   return has ? &script.hands[hand] : nullptr;
 }
 
+/// The eyes are seen, and the action is bound to their gaze.
+bool sees_gaze(const SessionObject& session, std::uint64_t action) {
+  auto* instance = world().find<InstanceObject>(session.parent, Kind::instance);
+  const Script& script = world().stage.script;
+  const auto profile = instance->suggested.find(kEyes);
+  return script.sees_eyes && script.gaze && session.state == XR_SESSION_STATE_FOCUSED && session.synced &&
+         profile != instance->suggested.end() && profile->second.contains(action);
+}
+
 float amount_of(const std::string& name, const ScriptedHand& hand) {
   if (name.find("grab") != std::string::npos) return hand.squeeze;
   if (name.find("menu") != std::string::npos) return hand.menu ? 1.0f : 0.0f;
@@ -148,7 +162,7 @@ XRAPI_ATTR XrResult XRAPI_CALL pose_state(XrSession handle, const XrActionStateG
   FIND(SessionObject, session, handle, session);
   FIND(ActionObject, action, info->action, action);
   if (action->type != XR_ACTION_TYPE_POSE_INPUT) return illegal(self, XR_ERROR_ACTION_TYPE_MISMATCH, "not a pose");
-  out->isActive = active_hand(*session, number(info->action), info->subactionPath) != nullptr;
+  out->isActive = active_hand(*session, number(info->action), info->subactionPath) != nullptr || sees_gaze(*session, number(info->action));
   return XR_SUCCESS;
 }
 

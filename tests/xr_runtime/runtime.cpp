@@ -14,7 +14,8 @@ namespace catena::test::xr_runtime {
 namespace {
 
 constexpr const char* kExtensions[] = {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
-                                       XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME};
+                                       XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME,
+                                       XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME};
 
 XrView scripted_view(float x, float turn, float left, float right) {
   XrView view{};
@@ -95,6 +96,22 @@ void read_environment() {
     if (key == "menu") {
       script.menu_from = std::strtoull(value.c_str(), nullptr, 10);
       script.menu_to = std::strtoull(value.c_str() + colon + 1, nullptr, 10);
+    }
+    if (key == "gaze") {
+      double right = 0, up = 0;
+      std::sscanf(value.c_str(), "%lf:%lf", &right, &up);
+      const double yaw = -std::atan(right), pitch = std::atan(up / std::hypot(1, right));
+      const double sy = std::sin(yaw / 2), cy = std::cos(yaw / 2), sx = std::sin(pitch / 2), cx = std::cos(pitch / 2);
+      script.gaze = XrPosef{{float(cy * sx), float(sy * cx), float(-sy * sx), float(cy * cx)}, {0, 0, 0}};
+    }
+    if (key == "head") {
+      XrVector3f by{0, 0, 0};
+      std::sscanf(value.c_str(), "%f:%f:%f", &by.x, &by.y, &by.z);
+      for (XrView& view : script.views) {
+        view.pose.position.x += by.x;
+        view.pose.position.y += by.y;
+        view.pose.position.z += by.z;
+      }
     }
     if (key == "paced") script.paced = true;
     if (key == "record") {
@@ -222,6 +239,9 @@ XRAPI_ATTR XrResult XRAPI_CALL system_properties(XrInstance handle, XrSystemId s
   std::strcpy(out->systemName, "scripted headset");
   out->graphicsProperties = {8192, 8192, 16};
   out->trackingProperties = {XR_TRUE, XR_TRUE};
+  for (auto* next = static_cast<XrBaseOutStructure*>(out->next); next; next = next->next)
+    if (next->type == XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT)
+      reinterpret_cast<XrSystemEyeGazeInteractionPropertiesEXT*>(next)->supportsEyeGazeInteraction = world().stage.script.sees_eyes;
   return XR_SUCCESS;
 }
 
@@ -326,7 +346,18 @@ XRAPI_ATTR XrResult XRAPI_CALL vulkan_physical(XrInstance handle, const XrVulkan
 XRAPI_ATTR XrResult XRAPI_CALL vulkan_device(XrInstance handle, const XrVulkanDeviceCreateInfoKHR* info, VkDevice* made, VkResult* result) {
   ENTER(xrCreateVulkanDeviceKHR);
   FIND(InstanceObject, instance, handle, instance);
-  *result = vkCreateDevice(info->vulkanPhysicalDevice, info->vulkanCreateInfo, info->vulkanAllocator, made);
+  // as Monado does: timeline semaphores are switched on, unless the program has said something of them
+  VkDeviceCreateInfo own = *info->vulkanCreateInfo;
+  VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
+  timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
+  timeline.timelineSemaphore = VK_TRUE;
+  bool there = false;
+  for (auto* one = static_cast<const VkBaseInStructure*>(own.pNext); one; one = one->pNext) there = there || one->sType == timeline.sType;
+  if (!there) {
+    timeline.pNext = const_cast<void*>(own.pNext);
+    own.pNext = &timeline;
+  }
+  *result = vkCreateDevice(info->vulkanPhysicalDevice, &own, info->vulkanAllocator, made);
   return XR_SUCCESS;
 }
 

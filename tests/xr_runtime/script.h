@@ -2,7 +2,8 @@
 /// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
 ///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
 ///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, menu=5:9 (the right
-///   hand's button is down from frame 5 to 8), paced (xrWaitFrame sleeps)
+///   hand's button is down from frame 5 to 8), gaze=0.2:-0.1 (the eyes look so far to the right and up, tangents),
+///   head=1:0:-2 (the head is moved there, metres), paced (xrWaitFrame sleeps)
 /// Everything is under one lock; the tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -50,6 +52,8 @@ struct Script {
   std::multimap<std::uint64_t, XrEventDataBuffer> events;      ///< the same of other events
   std::function<void(std::uint64_t frame, Script&)> at_frame;  ///< before the wait of each frame
   ScriptedHand hands[2];
+  std::optional<XrPosef> gaze;  ///< of the eyes; none: they are not seen now
+  bool sees_eyes = true;        ///< the headset can
   std::string profile = "/interaction_profiles/khr/simple_controller";
   std::uint64_t menu_from = 0, menu_to = 0;  ///< frames in which the right hand's button is down
   bool keep_pictures = false;

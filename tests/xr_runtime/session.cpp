@@ -120,8 +120,10 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_space(XrSpace handle, XrSpace base, XrTime
   if (space->action != 0) {
     const ScriptedHand& hand = script.hands[space->hand];
     const auto* action = world().find<ActionObject>(space->action, Kind::action);
-    if (!action || !hand.active) out->locationFlags = 0;
+    const bool of_eyes = action && action->name == "gaze";
+    if (!action || !(of_eyes ? script.gaze.has_value() : hand.active)) out->locationFlags = 0;
     if (action) out->pose = action->name.find("aim") != std::string::npos ? hand.aim : hand.grip;
+    if (of_eyes && script.gaze) out->pose = *script.gaze;
   } else if (space->reference == XR_REFERENCE_SPACE_TYPE_VIEW && !script.views.empty()) {
     XrVector3f sum{0, 0, 0};
     for (const XrView& view : script.views) {

@@ -73,10 +73,47 @@ TEST_F(ViewerHeadset, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
   EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
 }
 
+/// Wherever the runtime's space begins: the world is put before the head, where the first picture finds it.
+TEST_F(ViewerHeadset, TheWorldStandsBeforeTheHead) {
+  ASSERT_EQ(view("--frames 4 --screenshot " + (folder_ / "eye.png"), "size=96x80 head=3:0.5:-2"), 0) << log();
+  const auto eye = render::read_png(folder_ / "eye.png");
+  ASSERT_TRUE(eye) << eye.error().message;
+  std::size_t orange = 0;
+  for (std::size_t i = 0; i < eye->rgba.size(); i += 4) orange += eye->rgba[i] > eye->rgba[i + 2] + 40;
+  EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
+}
+
 TEST_F(ViewerHeadset, WithoutARuntimeItSaysSoInOneLine) {
   EXPECT_EQ(view("--frames 2", "", "/nowhere/runtime.json"), 1) << log();
   EXPECT_EQ(lost_lines(), 1) << log();
   EXPECT_NE(log().find("expected an OpenXR runtime"), std::string::npos) << log();
+}
+
+/// Where the eyes look goes into the recording, beside head and hands.
+TEST_F(ViewerHeadset, TheGazeIsRecorded) {
+  const std::string log = folder_ / "hand.catlog", table = folder_ / "poses.csv";
+  ASSERT_EQ(view("--frames 12 --record " + log, "size=32x32 gaze=0.25:-0.1"), 0) << this->log();
+  ASSERT_EQ(std::system((test::program_path() + " export " + log + " -o " + (folder_ / "ticks.csv") + " --poses " + table + " > " +
+                         (folder_ / "log") + " 2>&1")
+                            .c_str()),
+            0)
+      << this->log();
+  std::istringstream in(test::read_file(table));
+  std::string header, line, last;
+  std::getline(in, header);
+  while (std::getline(in, line)) last = line;
+  const auto value = [&](const std::string& name) {
+    std::istringstream names(header), values(last);
+    std::string one, number;
+    while (std::getline(names, one, ',') && std::getline(values, number, ','))
+      if (one == name) return std::atof(number.c_str());
+    ADD_FAILURE() << "no column " << name << " in " << header;
+    return 0.0;
+  };
+  const Quat turn(value("gaze_qw"), value("gaze_qx"), value("gaze_qy"), value("gaze_qz"));
+  const Vec3 ahead = rotate(turn, Vec3(0.0, 0.0, -1.0));
+  EXPECT_NEAR(ahead.x / -ahead.z, 0.25, 1e-4) << last;
+  EXPECT_NEAR(ahead.y / -ahead.z, -0.1, 1e-4) << last;
 }
 
 /// The menu button brings the window into the room, as a quad over the picture.

@@ -304,6 +304,30 @@ TEST(Extract, TheCursorShowsOnceItIsVisible) {
   EXPECT_TRUE(packet_of(scene).cursors.empty());
 }
 
+/// Late: the hand alone is anew; its look, its size and all else stay as they were.
+TEST(Extract, TheCursorAloneIsMoved) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}],
+    "cursor": {"drop_line": true}})");
+  scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  cursor.visible = true;
+  cursor.probe = {0.1, 0.2, 0.3};
+  cursor.proxies = {{0.0, 0.0, 1.0}};
+  FramePacket packet = packet_of(scene);
+  const CursorItem before = packet.cursors.at(0);
+  cursor.probe = {0.4, 0.2, 0.5};
+  cursor.proxies = {{0.0, 0.5, 1.0}};
+  cursor.force_n = {0.0, 2.0, 0.0};
+  const FramePacket anew = packet_of(scene);
+  move_cursors(scene, packet);
+  EXPECT_NE(packet.cursors, std::vector{before});
+  EXPECT_EQ(packet.cursors, anew.cursors);
+  EXPECT_EQ(packet.cursors[0].size, before.size);
+  EXPECT_EQ(packet.objects.size(), anew.objects.size());
+  cursor.visible = false;
+  move_cursors(scene, packet);
+  EXPECT_EQ(packet.cursors, anew.cursors) << "another packet is made for that";
+}
+
 TEST(Extract, ADropLineEndsOnTheFloor) {
   const auto foot = [](const std::string& more, const Vec3& probe) {
     scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}])" + more + "}");

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "render/frame/camera.h"
+#include "render/stereo/room_eye.h"
 
 namespace catena::render {
 namespace eyes_test {
@@ -125,6 +126,22 @@ TEST(Eyes, AViewAlongItsUpStillHasEyesThatAgree) {
   const Camera left = camera_of(pair[0]), right = camera_of(pair[1]);
   EXPECT_NEAR(norm(left.right - right.right), 0, 1e-15);
   EXPECT_NEAR(norm(right.position - left.position - 0.2 * left.right), 0, 1e-12);
+}
+
+/// What the view looks at is at arm's length, as far below the eyes as the view is above it, and level; a steep view is taken less so.
+TEST(Eyes, APersonFindsTheWorldAsTheViewHasIt) {
+  for (const auto& [above_deg, due_deg] : {std::pair{25.0, 25.0}, {0.0, 0.0}, {-10.0, -10.0}, {75.0, 40.0}, {-60.0, -15.0}}) {
+    const double above = above_deg * M_PI / 180, due = due_deg * M_PI / 180;
+    View view;
+    view.target = {1.0, 2.0, -3.0};
+    view.position = view.target + 14.0 * Vec3(0.6 * std::cos(above), 0.8 * std::cos(above), std::sin(above));
+    view.up = {0.0, 0.0, 2.0};
+    const Placement placement = first_placement(view);
+    EXPECT_NEAR(placement.metres_per_unit, kReachM / 14, 1e-12);
+    EXPECT_NEAR(norm(placement.to_room(view.target) - kReachM * Vec3(0.0, -std::sin(due), -std::cos(due))), 0, 1e-12) << above_deg;
+    const Vec3 up = placement.to_room(view.target + Vec3(0.0, 0.0, 1.0)) - placement.to_room(view.target);
+    EXPECT_NEAR(norm(up - Vec3(0.0, placement.metres_per_unit, 0.0)), 0, 1e-12);
+  }
 }
 
 }  // namespace eyes_test

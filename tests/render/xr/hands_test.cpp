@@ -106,6 +106,36 @@ TEST_F(HeadsetHands, VibrationsArriveAsTheyAreAndNoneWithoutFocus) {
   EXPECT_EQ(felt.size(), 3u);
 }
 
+/// Where the eyes look is a pose; what a headset without eyes, or without the extension, does is nothing.
+TEST_F(HeadsetHands, TheGazeIsWhereTheEyesLook) {
+  const float s = std::sin(0.1f), c = std::cos(0.1f);
+  for (const int lack : {0, 1, 2}) {
+    SCOPED_TRACE(lack);
+    runtime_.reset();
+    runtime_.script().width = runtime_.script().height = 16;
+    runtime_.script().gaze = XrPosef{{0, s, 0, c}, {0.01f, 0.02f, 0.03f}};
+    if (lack == 1) runtime_.script().without.insert(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+    if (lack == 2) runtime_.script().sees_eyes = false;
+    ASSERT_TRUE(open());
+    ASSERT_TRUE(turn(packet_, {}, 3));
+    ASSERT_TRUE(headset_->actions().sync());
+    const auto gaze = headset_->actions().gaze(5'000'000'000);
+    ASSERT_TRUE(gaze) << gaze.error().message;
+    EXPECT_EQ(gaze->has_value(), lack == 0);
+    if (*gaze) {
+      EXPECT_NEAR((*gaze)->position.y, 0.02, 1e-7);
+      EXPECT_NEAR(norm(rotate((*gaze)->turn, Vec3(0.0, 0.0, -1.0)) - Vec3(-std::sin(0.2), 0.0, -std::cos(0.2))), 0, 1e-6);
+      runtime_.script().gaze.reset();  // the eyes are shut
+      const auto shut = headset_->actions().gaze(5'000'000'000);
+      ASSERT_TRUE(shut);
+      EXPECT_FALSE(shut->has_value());
+    }
+    headset_->stop();
+    renderer_.reset();
+    headset_.reset();
+  }
+}
+
 TEST_F(HeadsetHands, TheClockIsOurs) {
   ASSERT_TRUE(open());
   EXPECT_EQ(xr::time_of(headset_->instance(), 12'345'678'901), std::optional<XrTime>(12'345'678'901));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "render/vk/commands.h"
+#include "tests/render/support/frames.h"
 #include "tests/render/xr/rig.h"
 
 namespace catena::test {
@@ -39,6 +40,96 @@ TEST_F(HeadsetLayers, DepthsAreMetresWhateverTheWorldsUnit) {
     EXPECT_NEAR(z / (0.8 * metres), 1, 2e-3);
     EXPECT_EQ(picture.depth[0], 1.0f);  // nothing there
   }
+}
+
+/// Of a submitted picture, metres along the eye's axis; infinite where nothing is.
+double metres_at(const xr_runtime::KeptPicture& picture, int i, int j) {
+  const double n = picture.near_z, f = picture.far_z, d = picture.depth[std::size_t(j) * picture.width + std::size_t(i)];
+  return d >= 1 ? HUGE_VAL : n * f / (f - d * (f - n));
+}
+
+/// A volume has the depth where alpha passes 0.5, by exact rays and by fast ones: from outside, from within, before and behind something
+/// opaque; where alpha stays below that, what is behind it.
+TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
+  constexpr int kSize = 64;
+  constexpr double kScale = 0.05, kExtent = 16;  // metres a unit; of the box, units
+  for (XrView& view : runtime_.script().views) {
+    view.pose = {{0, 0, 0, 1}, {0, 0, 0}};
+    view.fov = {-0.4f, 0.4f, 0.4f, -0.4f};
+  }
+  runtime_.script().width = runtime_.script().height = kSize;
+  ASSERT_TRUE(open());
+  const auto even = make_grid({17, 17, 17}, [](const Vec3&) { return 1.0; });
+  const auto ramp = make_grid({17, 17, 17}, [](const Vec3& at) { return at.z; });
+  struct Case {
+    const char* name;
+    const GridPtr& grid;
+    double sigma;    ///< a unit, times the value; of the ramp at its nearest face 16 times that
+    double front_m;  ///< of the box, from the eye; < 0: the eye is within
+    double ball_m;   ///< the nearest point of a ball on the axis; 0: none
+    bool seen;       ///< alpha passes 0.5
+  };
+  const Case cases[] = {{"outside", even, 0.5, 0.6, 0, true},
+                        {"within", even, 0.5, -0.3, 0, true},
+                        {"thin", even, 0.01, 0.6, 0, false},
+                        {"thin before a ball", even, 0.01, 0.6, 0.9, false},
+                        {"thick before a ball", even, 0.5, 0.6, 0.9, true},
+                        {"a ball before it", even, 0.5, 0.6, 0.4, true},
+                        {"a ramp", ramp, 0.02, 0.6, 0, true}};
+  for (const Case& due : cases)
+    for (const bool fast : {false, true}) {
+      SCOPED_TRACE(std::string(due.name) + (fast ? ", fast" : ", exact"));
+      Placement placement;
+      placement.metres_per_unit = kScale;
+      placement.world_origin = {kExtent / 2, kExtent / 2, kExtent + due.front_m / kScale};
+      FramePacket packet;
+      if (due.ball_m > 0) packet = ball_packet(placement.to_world({0.0, 0.0, -due.ball_m - 0.02}), 0.02 / kScale);
+      packet.volumes.push_back(volume_item(due.grid, {{0, 0}, {16, 16 * due.sigma}}));
+      RenderSettings settings;
+      if (fast) settings.fast = FastSettings{.step_voxels = 1};
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_TRUE(headset_->poll());
+        const auto frame = headset_->begin();
+        ASSERT_TRUE(frame);
+        const Outcome shown = headset_->show(*frame, *renderer_, packet, settings, placement);
+        ASSERT_TRUE(shown) << shown.error().message;
+      }
+      const xr_runtime::KeptPicture& picture = runtime_.record().last[0];
+      ASSERT_EQ(picture.depth.size(), std::size_t(kSize) * kSize);
+      for (const int place : {24, 32, 40}) {  // of rays that were marched
+        const double tangent = (place + 0.5 - kSize / 2) / (kSize / 2) * std::tan(0.4), slant = std::hypot(1, tangent);
+        // along the ray: sigma l = ln 2; of the ramp sigma (16 l - l^2 / 2), l along the axis, where each unit is `slant` long
+        double l = std::log(2.0) / due.sigma / slant;
+        if (due.grid == ramp) l = 16 - std::sqrt(256 - 2 * l);
+        const double volume_m = std::max(0.0, due.front_m) + kScale * l;
+        const bool ball = due.ball_m > 0 && place == 32;
+        const double metres = metres_at(picture, place, 32);
+        if (ball && due.seen) {
+          EXPECT_NEAR(metres, std::min(volume_m, due.ball_m), 0.01 * kScale * 16);
+        } else if (ball) {
+          EXPECT_NEAR(metres, due.ball_m, 0.01 * due.ball_m);
+        } else if (due.seen) {
+          EXPECT_NEAR(metres, volume_m, 0.01 * kScale * 16) << place;
+        } else if (place != 32 && due.ball_m == 0) {
+          EXPECT_EQ(metres, HUGE_VAL) << place;
+        }
+      }
+    }
+}
+
+/// Its depth is not known, and what is opaque behind it would lie too deep.
+TEST_F(HeadsetLayers, AProjectionHasNoDepth) {
+  ASSERT_TRUE(open());
+  FramePacket packet = ball_packet({8.0, 8.0, 4.0}, 3);
+  packet.volumes.push_back(volume_item(make_grid({17, 17, 17}, [](const Vec3& at) { return at.z; }), {{0, 0}, {16, 1}}));
+  packet.volumes.back().projection = Projection::maximum;
+  Placement placement;
+  placement.metres_per_unit = 0.05;
+  placement.world_origin = {8.0, 8.0, 30.0};
+  const Outcome turned = turn(packet, placement, 3);
+  ASSERT_TRUE(turned) << turned.error().message;
+  EXPECT_GT(runtime_.record().pictures, 0u);
+  EXPECT_EQ(runtime_.record().depths, 0u);
 }
 
 TEST_F(HeadsetLayers, WithoutTheExtensionOrItsFormatThereAreNoDepths) {

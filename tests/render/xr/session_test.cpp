@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <set>
 #include <thread>
 
@@ -47,6 +48,7 @@ class HeadsetSession : public HeadsetFixture {
       CATENA_TRY([[maybe_unused]] const xr::HandState state, actions.hand(hand, now.value_or(1)));
       CATENA_CHECK(actions.vibrate(hand, 0.5, 100, 20'000'000));
       CATENA_CHECK(actions.stop_vibration(hand));
+      CATENA_TRY([[maybe_unused]] const auto gaze, actions.gaze(now.value_or(1)));
       CATENA_TRY([[maybe_unused]] const std::string profile, actions.profile(hand));
     }
     CATENA_CHECK(turn(packet_, {}, 2));
@@ -218,7 +220,18 @@ TEST_F(HeadsetSession, AnyRuntimeThatIsNamedShowsPictures) {
     ASSERT_TRUE(turned) << turned.error().message;
   }
   EXPECT_GE(headset_->counts().pictures, 60u);
+  ASSERT_TRUE(headset_->session().ask_to_leave());
+  for (int i = 0; i < 2000 && !headset_->session().has_left(); ++i) {
+    if (!headset_->running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const Outcome turned = turn(packet_, {}, 1);
+    ASSERT_TRUE(turned) << turned.error().message;
+  }
+  EXPECT_TRUE(headset_->session().has_left());
   EXPECT_EQ(headset_->session().odd_edges(), 0u);
+  std::printf("%s:", headset_->instance().name().c_str());
+  for (const XrSessionState state : headset_->session().history()) std::printf(" %s", xr::state_word(state));
+  std::printf("; %llu frames, %llu pictures\n", (unsigned long long)headset_->counts().frames,
+              (unsigned long long)headset_->counts().pictures);
 }
 
 /// Debian's layer between program and runtime: it writes what it finds to a file.

@@ -23,6 +23,17 @@ void HeadsetHands::step(const std::array<RoomHand, 2>& hands, const Vec3& head_m
   narrow_ = vignette_.step(before, placement, head_m, dt_s);
 }
 
+std::optional<Vec3> HeadsetHands::held_middle(const std::array<RoomHand, 2>& hands) const {
+  Vec3 sum{0.0};
+  int count = 0;
+  for (std::size_t k = 0; k < hands.size(); ++k) {
+    if (!squeezed_[k]) continue;
+    sum += hands[k].position_m;
+    ++count;
+  }
+  return count > 0 && is_finite(sum) ? std::optional(sum / double(count)) : std::nullopt;
+}
+
 haptics::ControllerPose HeadsetHands::probe(const RoomHand& hand, std::int64_t t_ns) {
   selected_ = hand.there && is_down(hand.select, selected_);
   return {t_ns, hand.position_m, hand.turn, selected_ ? haptics::Controller::kSelect : 0, hand.there && !holds_world()};

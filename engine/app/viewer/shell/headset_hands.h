@@ -31,6 +31,8 @@ class HeadsetHands {
   /// Each picture, `dt_s` after the last: the world follows the hands.
   void step(const std::array<RoomHand, 2>& hands, const Vec3& head_m, double dt_s, Placement& placement);
   bool holds_world() const { return grab_.holds(); }
+  /// Between the hands that hold it, metres of room; nothing where none does.
+  std::optional<Vec3> held_middle(const std::array<RoomHand, 2>& hands) const;
   /// How far the picture narrows, 0..1.
   double vignette() const { return narrow_; }
 

@@ -19,8 +19,15 @@ namespace {
 
 constexpr int kFarewellTurns = 200;                                    // of events and frames, while the runtime ends the session
 constexpr double kPanelM = 0.8, kPanelAwayM = 0.9, kPanelDropM = 0.1;  // its width; from the head
-constexpr double kFovea = 0.36;     // tan 20 degrees off the eye's axis: beyond, lenses and eyes see less than the rays cost
-constexpr double kMostStepS = 0.1;  // of the world's motion: after a pause it does not race
+constexpr double kFovea = 0.36;       // tan 20 degrees off the gaze, or the eye's axis: beyond, lenses and eyes see less than the rays cost
+constexpr double kAboveHandM = 0.06;  // the scale's words over the hands that hold the world
+constexpr double kWordsAt_px = 1.0 / 50;  // their height, of the view's
+constexpr double kMostStepS = 0.1;        // of the world's motion: after a pause it does not race
+
+/// As the scene's camera says, but straight ahead of where the head is now: the local space of some runtimes begins elsewhere.
+Placement before(const render::xr::RoomHead& head, const render::View& view) {
+  return immersive::moved(render::first_placement(view), Vec3(0.0), immersive::level_turn(head.turn), 1, head.position);
+}
 
 RoomHand room_hand(const render::xr::HandState& state) {
   return {state.there, state.grip.position, state.grip.turn, state.select, state.grab, state.stick_x};
@@ -38,7 +45,9 @@ struct HeadsetHost::Parts {
   std::optional<Placement> placement;
   HeadsetHands hands;
   render::FramePace pace;
-  XrTime last_time = 0;  ///< of the last frame; 0: none before
+  XrTime last_time = 0;        ///< of the last frame; 0: none before
+  std::optional<Vec3> gaze;    ///< where the eyes look when the picture is seen, a direction in the room; none: not known
+  std::optional<Vec3> held_m;  ///< the middle of the hands that hold the world; none: they do not
 
   // the panel
   bool panel_open = false, menu_down = false;
@@ -50,6 +59,7 @@ struct HeadsetHost::Parts {
 
   void lose(const std::string& why, std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
+  void show_scale(render::FramePacket& packet) const;
   void take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head);
   void stop();
 };
@@ -195,10 +205,17 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
     if (states[k].there) poses[k == 0 ? TrackedPart::left_hand : TrackedPart::right_hand] = {states[k].grip.position, states[k].grip.turn};
   }
   take_panel(states, head);
+  CATENA_TRY(const auto eyes, actions.gaze(frame.time));
+  gaze.reset();
+  if (eyes) {
+    poses[TrackedPart::gaze] = {eyes->position, eyes->turn};
+    gaze = rotate(eyes->turn, Vec3(0.0, 0.0, -1.0));
+  }
   hand.record_poses(poses);
   const double dt_s = last_time == 0 ? 0 : std::min(1e-9 * double(frame.time - last_time), kMostStepS);
   last_time = frame.time;
   if (placement) hands.step(hands_then, head.position, dt_s, *placement);
+  held_m = hands.held_middle(hands_then);
 
   // the probe is where the hand is now
   haptics::Controller* controller = hand.controller();
@@ -217,6 +234,18 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
   if (call.what == What::stop) return actions.stop_vibration(HeadsetHands::kProbe);
   if (call.what == What::nothing) return Done{};
   return actions.vibrate(HeadsetHands::kProbe, call.vibration.amplitude, call.vibration.frequency_hz, call.vibration.duration_ns);
+}
+
+/// How large the world is, over the hands that scale it.
+void HeadsetHost::Parts::show_scale(render::FramePacket& packet) const {
+  if (!held_m || !placement) return;
+  render::LabelItem label;
+  label.at = placement->to_world(*held_m + Vec3(0.0, kAboveHandM, 0.0));
+  label.text = immersive::scale_words(placement->metres_per_unit);
+  label.anchor = render::Anchor::bottom;
+  label.offset_pt = {0.0, 0.0};
+  label.size_pt = std::max(12.0, kWordsAt_px * headset->instance().views().front().height) / packet.overlay.scale;
+  packet.overlay.labels.push_back(std::move(label));
 }
 
 Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& content) {
@@ -241,12 +270,15 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
     (void)p.headset->skip(*frame);
     return packet.error();
   }
-  if (!p.placement) p.placement = render::first_placement(packet->view);
+  if (!p.placement) p.placement = before(render::xr::head_of(*frame), packet->view);
   packet->vignette = p.hands.vignette();
+  p.show_scale(*packet);
   render::FramePlan plan = p.pace.next(1e-6 * double(frame->period_ns), frame->time);
   if (plan.settings.fast) plan.settings.fast->fovea = kFovea;
   const std::int64_t start = now_ns();
-  const Outcome shown = p.headset->show(*frame, screen.renderer(), *packet, plan.settings, *p.placement, 1.0 / plan.scale, content.aim);
+  if (content.latch) content.latch(*packet);
+  const Outcome shown =
+      p.headset->show(*frame, screen.renderer(), *packet, plan.settings, *p.placement, 1.0 / plan.scale, content.aim, p.gaze);
   if (shown) {
     p.pace.drawn(ms_since(start));
     p.pace.follow(content.kind(*packet));

@@ -35,7 +35,9 @@ class HeadsetHost {
   bool running() const;
   /// What a frame is made of.
   struct Content {
-    std::function<Result<render::FramePacket>()> make;                               ///< of the scene as it is now
+    std::function<Result<render::FramePacket>()> make;  ///< of the scene as it is now
+    /// Just before it is drawn: the hand in it as it is by now (late latching; nothing else moves, both eyes see the same).
+    std::function<void(render::FramePacket& packet)> latch;
     std::function<void(const render::View& view, render::FramePacket& packet)> aim;  ///< what follows from where the eye is
     std::function<render::LadderKind(const render::FramePacket& packet)> kind;       ///< what the rays have to do, once it was drawn
   };

@@ -103,6 +103,10 @@ Result<bool> PictureView::draw_in_headset() {
     packet.overlay.status.reset();
     return packet;
   };
+  content.latch = [&](render::FramePacket& of) {
+    hand_moved_late_ = shared_.hand.take(scene) || hand_moved_late_;
+    render::move_cursors(scene, of);
+  };
   content.aim = [&](const render::View& view, render::FramePacket& of) { render::set_view(scene, view, of); };
   content.kind = [&](const render::FramePacket& of) {
     const SceneKind& kind = drawing_.look_at(of, screen_->renderer());

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/app/viewer/shell/drawing.h"
 #include "engine/app/viewer/shell/headset_host.h"
@@ -24,6 +25,8 @@ class PictureView {
   std::optional<Failure> open();
   /// What the headset has to say. True: it wants a picture at every turn of the loop.
   Result<bool> follow_headset();
+  /// The hand's newest state was taken while the headset's picture was drawn, and what comes of it is still to be looked at. Once.
+  bool take_hand_moved() { return std::exchange(hand_moved_late_, false); }
   /// For the title; empty without one.
   std::string headset_words() const { return headset_ ? headset_->words() : std::string(); }
   /// For the last words; empty without one.
@@ -90,6 +93,7 @@ class PictureView {
   std::array<std::uint32_t, 4> pixels_{};  ///< where the picture lies in the window
   bool picked_stale_ = true;               ///< the place under the pointer is to be looked at again
   bool damaged_ = false;
+  bool hand_moved_late_ = false;
   bool is_eye_ = false;        ///< the last picture is an eye of the headset
   std::optional<bool> asked_;  ///< a file; of the window: true
   int waits_ = 0;              ///< frames, for a picture of every pixel

@@ -240,7 +240,7 @@ std::optional<Failure> Session::run() {
     run_steps();
     const bool opened = files_.take_loaded();
     if (opened) forget_plan();
-    const bool edited = take_edits(), news = shared_.hand.take(scene.scene());
+    const bool edited = take_edits(), late = picture_.take_hand_moved(), news = shared_.hand.take(scene.scene()) || late;
     if (news && shared_.plan.observer) shared_.plan.observer->add(shared_.hand.felt());
     live = live || news || files_.is_loading() || shared_.hand.recording().running();
     if (news) keep_widgets();
