@@ -2,7 +2,8 @@
 /// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
 ///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
 ///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, menu=5:9 (the right
-///   hand's button is down from frame 5 to 8), paced (xrWaitFrame sleeps)
+///   hand's button is down from frame 5 to 8), stage=x:y:z (in the local space), grip=40:x:y:z (the right hand, from
+///   that frame on), select=50:70 (its trigger is down in these frames), paced (xrWaitFrame sleeps)
 /// Everything is under one lock; the tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -39,6 +41,8 @@ struct Script {
   std::vector<XrView> views;  ///< in the local space; reset() has two, canted and asymmetric
   std::uint32_t width = 96, height = 80;
   std::int64_t period_ns = 11'111'111;
+  std::optional<std::int64_t> stated_period_ns;  ///< what it says of the period, where that is not so
+  XrPosef stage{{0, 0, 0, 1}, {0, 0, 0}};        ///< in the local space
   bool paced = false;
   bool focus = true;  ///< after the first frame the session becomes visible and focused by itself
   bool tracked = true;
@@ -51,7 +55,9 @@ struct Script {
   std::function<void(std::uint64_t frame, Script&)> at_frame;  ///< before the wait of each frame
   ScriptedHand hands[2];
   std::string profile = "/interaction_profiles/khr/simple_controller";
-  std::uint64_t menu_from = 0, menu_to = 0;  ///< frames in which the right hand's button is down
+  std::map<std::uint64_t, XrVector3f> grips;                     ///< where the right hand is from that frame on
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> selects;  ///< frames in which its trigger is down: from, to
+  std::uint64_t menu_from = 0, menu_to = 0;                      ///< frames in which the right hand's button is down
   bool keep_pictures = false;
 };
 
