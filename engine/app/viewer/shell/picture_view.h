@@ -26,6 +26,8 @@ class PictureView {
   Result<bool> follow_headset();
   /// For the title; empty without one.
   std::string headset_words() const { return headset_ ? headset_->words() : std::string(); }
+  /// The three places of the device on the desk are asked for, or not any more.
+  Outcome ask_for_places();
   /// For the last words; empty without one.
   std::string headset_figures() const { return headset_ ? headset_->figures() : std::string(); }
   Screen& screen() { return *screen_; }
@@ -76,6 +78,8 @@ class PictureView {
 
  private:
   Result<bool> draw_in_headset();
+  void follow_the_room();
+  void keep_room(const haptics::DeviceSettings::Room& room);
   /// Of the picture's own size.
   Result<render::FramePacket> packet() const { return drawing_.packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]); }
   std::optional<PickedPlace> picked_at(double window_x, double window_y) const;
