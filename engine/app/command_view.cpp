@@ -3,10 +3,12 @@
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/hand/device_file.h"
 #include "engine/app/options.h"
 #include "engine/app/plan/make_plan.h"
 #include "engine/app/run_files.h"
 #include "engine/app/viewer/viewer.h"
+#include "haptics/device/registry.h"
 
 namespace catena::app {
 
@@ -15,8 +17,8 @@ namespace {
 const std::string kQuality = "time=50";
 
 struct ViewArguments {
-  std::string source, device, size = "1024x768", quality, plan, shaders, screenshot, window_screenshot, servo_stats, frame_stats, record,
-                              firmware;
+  std::string source, device, device_file, head, size = "1024x768", quality, plan, shaders, screenshot, window_screenshot, servo_stats,
+                                                 frame_stats, record, firmware;
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0, gpu_memory_mb = 0;
@@ -30,7 +32,10 @@ struct ViewArguments {
 RunFiles files_of(const ViewArguments& o, const scene::Scene& scene) {
   RunFiles files(scene);
   files.reads_device(o.device);
+  files.reads_device(o.head);
+  if (!haptics::is_device_type(haptics::device_type_of(o.head))) files.reads(o.head);
   files.reads(o.firmware);
+  files.reads(o.device_file);
   files.reads_folder(o.shaders);
   files.writes("--screenshot", o.screenshot);
   files.writes("--window-screenshot", o.window_screenshot);
@@ -45,8 +50,9 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
   ViewOptions options;
   options.source = o.source;
   CATENA_TRY(options.overrides, field_overrides(o.fields));
-  options.adjust = [annotations = o.annotate, stereo = o.stereo](scene::Scene& scene) -> Outcome {
+  options.adjust = [annotations = o.annotate, stereo = o.stereo, device = o.device_file](scene::Scene& scene) -> Outcome {
     CATENA_CHECK(annotate(scene, annotations));
+    CATENA_CHECK(use_device_file(device, scene));
     return stereo.apply(scene.stereo);
   };
   {
@@ -75,6 +81,8 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
   options.frames = o.frames;
   options.panels = !o.no_panels;
   options.headset = options.hand.headset = o.headset;
+  options.device_file = o.device_file;
+  options.head = o.head;
   options.screenshot = o.screenshot;
   options.window_screenshot = o.window_screenshot;
   exit_code = view(std::move(options));
@@ -91,6 +99,12 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
       "--device", options->device,
       "what holds the probe: mouse, or a haptic device (its forces are off until F). Default: the scene's, or else the mouse, "
       "which also steps in for what is not plugged in");
+  command->add_option(
+      "--device-file", options->device_file,
+      "the device's settings, as of a scene's \"device\", in its place; where it stands in a headset's room is written there");
+  command->add_option(
+      "--head", options->head,
+      "a tracked head before --screen: CSV, t,x,y,z, world units, played by time; or a device (default: the mouse moves it)");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
   command->add_option(

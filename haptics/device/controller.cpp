@@ -6,6 +6,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kBehind = 1.1;                    // of the longest interval
+constexpr int kIntervals = 3;                      // of which it is the longest
 constexpr double kSettle_ns = 1e8;                 // how fast a wrong lag goes
 constexpr double kSlowest = 0.8, kFastest = 1.25;  // of the time that passes
 
@@ -49,7 +50,7 @@ void Controller::say(const ControllerPose& pose) {
 // One tick of the clock that is behind the samples, and the place at it.
 void Controller::play(const Past& past, std::int64_t now_ns) noexcept {
   std::int64_t longest = 0;
-  for (int i = 0; i + 1 < past.count; ++i) longest = std::max(longest, past.poses[i].t_ns - past.poses[i + 1].t_ns);
+  for (int i = 0; i + 1 < past.count && i < kIntervals; ++i) longest = std::max(longest, past.poses[i].t_ns - past.poses[i + 1].t_ns);
   const ControllerPose& newest = past.poses[0];
   const ControllerPose& oldest = past.poses[past.count - 1];
   if (!there_ || past.stay != stay_) {

@@ -55,9 +55,10 @@ class Controller final : public Device {
   static DeviceCapabilities nominal();
 
  private:
-  /// The newest poses of one stay, the newest first; what the tracker's thread keeps.
+  /// The newest poses of one stay, the newest first; what the tracker's thread keeps. All of lost_s at 1000 a second: after a pause of the
+  /// tracker the clock is as far behind, and goes on from where it is.
   struct Past {
-    static constexpr int kMost = 4;
+    static constexpr int kMost = 128;
     std::array<ControllerPose, kMost> poses{};
     int count = 0;           ///< 0: not tracked
     std::uint32_t stay = 0;  ///< counted: another one after each loss

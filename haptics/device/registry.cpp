@@ -136,6 +136,10 @@ std::string device_type_of(const std::string& name) { return name.substr(0, name
 
 bool is_hardware(const std::string& type) { return type == "falcon" || type == "spacemouse"; }
 
+bool has_place(const std::string& type) {
+  return type == "falcon" || type == "emulated-falcon" || type == "simulated" || type == "simulated-6dof";
+}
+
 bool is_device_type(const std::string& type) { return find(type) != nullptr; }
 
 std::string device_types() {

@@ -18,7 +18,9 @@ struct DeviceInfo {
 std::string device_type_of(const std::string& name);  ///< TYPE
 bool is_device_type(const std::string& type);
 bool is_hardware(const std::string& type);  ///< a thing on the desk: it may not be plugged in
-std::string device_types();                 ///< "falcon, mouse, null, ...": for messages
+/// Its metres are of a thing that stands still on the desk: it can be registered to the room of a headset.
+bool has_place(const std::string& type);
+std::string device_types();  ///< "falcon, mouse, null, ...": for messages
 /// Every device that could be used, present ones first. Looks at the USB bus.
 std::vector<DeviceInfo> list_devices();
 /// What a device of this type can do, before it is opened.

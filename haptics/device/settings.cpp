@@ -11,6 +11,8 @@
 namespace catena::haptics {
 namespace {
 
+constexpr double kMostRoom_m = 1000;
+
 // ["x", "-z", "y"]: row i of hand_from_device is the device axis that hand axis i is
 Result<Mat3> read_axes(const json::Node& node) {
   const char* expected = "three different ones of x, -x, y, -y, z, -z, right-handed, were expected, such as [\"x\", \"-z\", \"y\"]";
@@ -66,6 +68,19 @@ Outcome read_hand_axes(const std::string&, const json::Node& node, Settings& s) 
   return Done{};
 }
 
+Outcome read_room(const std::string&, const json::Node& node, Settings& s) {
+  const json::Node *origin = node.find("room_origin"), *rotation = node.find("room_rotation");
+  if (origin == nullptr && rotation == nullptr) return Done{};
+  if (origin == nullptr || rotation == nullptr)
+    return json::error_at(origin == nullptr ? *rotation : *origin, "\"room_origin\" and \"room_rotation\" go together; both were expected");
+  s.room.emplace();
+  CATENA_TRY(s.room->origin_m, json::as_vec3(*origin, "room_origin"));
+  if (!(max_abs(s.room->origin_m) <= kMostRoom_m))
+    return json::error_at(*origin, "\"room_origin\" is out of range; metres of a room, up to 1000, were expected");
+  CATENA_TRY(s.room->room_from_hand, json::as_rotation(*rotation, "room_rotation"));
+  return Done{};
+}
+
 Outcome read_firmware(const std::string& scene_path, const json::Node& node, Settings& s) {
   CATENA_TRY(s.firmware, json::get_string(node, "firmware", s.firmware));
   if (!s.firmware.empty() && std::filesystem::path(s.firmware).is_relative())
@@ -111,6 +126,11 @@ SettingsTable made_table() {
              .by_default("0, none"),
          &Settings::force_button);
   t.bind(schema::vec3("gravity", "N", "Added in device axes while the forces are on; carries the grip."), &Settings::gravity_n);
+  t.group({schema::vec3("room_origin", "m", "Where the hand's origin is in the room of a headset; `catena view --xr` finds it.")
+               .ranged("to 1000")
+               .without_default(),
+           schema::rotation("room_rotation", "From the hand's axes to the room's.").without_default()},
+          read_room);
   t.hand(schema::file("firmware", "Falcon: the vendor's image."), read_firmware);
   t.bind(number("force_gain", "counts/N m", "Falcon: motor counts.").positive(), &Settings::force_gain);
   return t;

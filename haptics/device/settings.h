@@ -34,6 +34,13 @@ struct DeviceSettings {
   int force_button = 0;        ///< turns the forces on and off
   Vec3 gravity_n{0.0};         ///< "gravity": added to every force that is sent, device axes; carries the grip
 
+  /// Where the device stands in the room of a headset (its stage), once it was registered there: room = origin + rotation hand.
+  struct Room {
+    Vec3 origin_m{0.0};        ///< "room_origin": of the hand's metres
+    Mat3 room_from_hand{1.0};  ///< "room_rotation"
+  };
+  std::optional<Room> room;
+
   // drivers' own
   std::string firmware;                          ///< falcon: a file of the vendor's, sent when the device has none
   double force_gain = 1e4;                       ///< falcon: motor counts per N m

@@ -41,6 +41,9 @@ Result<View> screen_view(const Screen& screen, const Vec3& eye) {
   view.window.right = view.window.left + 2;
   view.window.bottom = dot(up, corner) / (0.5 * height);
   view.window.top = view.window.bottom + 2;
+  if (!(std::fabs(view.window.left) <= kMaxShift && std::fabs(view.window.bottom) <= kMaxShift))
+    return Error{"the eye " + text_of(eye) +
+                 " is too far beside the screen; at most half a million of its widths and heights were expected"};
   return view;
 }
 

@@ -164,14 +164,9 @@ Outcome Actions::sync() {
 }
 
 Result<bool> Actions::locate(XrSpace space, XrTime at, RoomPose& pose) {
-  constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
-  XrSpaceLocation found{};
-  found.type = XR_TYPE_SPACE_LOCATION;
-  CATENA_XR_CHECK(*session_, session_->xr().LocateSpace(space, session_->space(SpaceKind::local), at, &found), "locate a pose");
-  const auto& [x, y, z, w] = found.pose.orientation;
-  pose.position = Vec3(found.pose.position.x, found.pose.position.y, found.pose.position.z);
-  pose.turn = normalised(Quat(w, x, y, z));
-  return (found.locationFlags & kKnown) == kKnown && is_finite(pose.position);
+  CATENA_TRY(const std::optional<RoomPose> found, session_->locate(space, at, "locate a hand"));
+  if (found) pose = *found;
+  return found.has_value();
 }
 
 Result<HandState> Actions::hand(std::size_t which, XrTime at) {

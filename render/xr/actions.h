@@ -17,12 +17,6 @@
 
 namespace catena::render::xr {
 
-/// In the local space, metres.
-struct RoomPose {
-  Vec3 position{0.0};
-  Quat turn = kNoRotation;
-};
-
 struct HandState {
   bool there = false;    ///< position and direction of the grip are known
   bool points = false;   ///< those of the aim are

@@ -1,5 +1,6 @@
 #include "render/xr/frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/xr/depth_images.h"
@@ -25,7 +26,9 @@ Outcome locate(Session& session, Frame& frame) {
   CATENA_XR_CHECK(session,
                   session.xr().LocateViews(session.handle(), &info, &state, std::uint32_t(frame.views.size()), &count, frame.views.data()),
                   "locate the eyes");
-  frame.wants_picture = frame.wants_picture && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked;
+  // an eye that no picture can be made for, whatever the flags say, is not tracked
+  const bool sound = std::ranges::all_of(frame.views, [](const XrView& one) { return static_cast<bool>(eye_view({}, room_eye(one))); });
+  frame.wants_picture = frame.wants_picture && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked && sound;
   return Done{};
 }
 
@@ -63,7 +66,8 @@ Result<Frame> begin_frame(Session& session) {
   CATENA_XR_CHECK(session, xr.WaitFrame(session.handle(), &wait, &state), "say when the next picture is due");
   Frame frame;
   frame.time = state.predictedDisplayTime;
-  frame.period_ns = state.predictedDisplayPeriod;
+  constexpr std::int64_t kLeast_ns = 1'000'000, kMost_ns = 1'000'000'000;  // of a period that is one
+  frame.period_ns = std::clamp<std::int64_t>(state.predictedDisplayPeriod, kLeast_ns, kMost_ns);
   frame.wants_picture = state.shouldRender && is_seen(session.state());
   XrFrameBeginInfo begin{};
   begin.type = XR_TYPE_FRAME_BEGIN_INFO;

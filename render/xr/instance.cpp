@@ -1,5 +1,7 @@
 #include "render/xr/instance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -86,11 +88,14 @@ Outcome Instance::look_at_system() {
 
   std::uint32_t count = 0;
   CATENA_XR_CHECK(*this, functions_.EnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr), "say its size");
+  constexpr std::uint32_t kMostViews = 64;
+  if (count > kMostViews) return Error{fmt::format("the headset {} has {} views, expected at most {}", name_, count, kMostViews)};
   XrViewConfigurationView view{};
   view.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
   std::vector<XrViewConfigurationView> views(count, view);
   CATENA_XR_CHECK(*this, functions_.EnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()),
                   "say its size");
+  views.resize(std::min<std::size_t>(views.size(), count));
   for (const XrViewConfigurationView& one : views)
     views_.push_back({std::clamp(one.recommendedImageRectWidth, 1u, std::max(1u, one.maxImageRectWidth)),
                       std::clamp(one.recommendedImageRectHeight, 1u, std::max(1u, one.maxImageRectHeight))});

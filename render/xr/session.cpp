@@ -120,6 +120,18 @@ Outcome Session::poll() {
   }
 }
 
+Result<std::optional<RoomPose>> Session::locate(XrSpace space, XrTime at, const char* what) {
+  constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+  XrSpaceLocation found{};
+  found.type = XR_TYPE_SPACE_LOCATION;
+  CATENA_XR_CHECK(*instance_, xr().LocateSpace(space, this->space(SpaceKind::local), at, &found), what);
+  const auto& [x, y, z, w] = found.pose.orientation;
+  const Vec3 position(found.pose.position.x, found.pose.position.y, found.pose.position.z);
+  const Quat turn = normalised(Quat(w, x, y, z));
+  if ((found.locationFlags & kKnown) != kKnown || !is_finite(position)) return std::optional<RoomPose>();
+  return std::optional<RoomPose>({position, turn});
+}
+
 Outcome Session::ask_to_leave() {
   if (!running_) return Done{};
   CATENA_XR_CHECK(*instance_, xr().RequestExitSession(session_), "end the session");

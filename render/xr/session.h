@@ -8,8 +8,10 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "engine/base/vec.h"
 #include "render/vk/device.h"
 #include "render/xr/instance.h"
 #include "render/xr/session_state.h"
@@ -17,6 +19,12 @@
 namespace catena::render::xr {
 
 enum class SpaceKind { local, stage, head };
+
+/// In the local space, metres.
+struct RoomPose {
+  Vec3 position{0.0};
+  Quat turn = kNoRotation;
+};
 
 class Session {
  public:
@@ -44,6 +52,8 @@ class Session {
 
   /// The null handle where the runtime does not have it.
   XrSpace space(SpaceKind kind) const { return spaces_[static_cast<std::size_t>(kind)]; }
+  /// Where a space is in the local one at that time; nothing where it is not known. `what`: for the error.
+  Result<std::optional<RoomPose>> locate(XrSpace space, XrTime at, const char* what);
   /// The origin of the local or stage space has moved: how often so far. What is placed in it may be placed anew.
   std::uint64_t recentrings() const { return recentrings_; }
   /// The parts of the lenses that are seen have changed: how often so far.

@@ -1,6 +1,7 @@
 #include "render/xr/visibility_mask.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace catena::render::xr {
 
@@ -21,7 +22,9 @@ Result<HiddenMesh> hidden_mesh(Session& session, std::size_t view) {
                XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask);
   };
   CATENA_XR_CHECK(session, ask(), "say what its lenses hide");
-  if (mask.vertexCountOutput == 0 || mask.indexCountOutput == 0) return mesh;
+  constexpr std::uint32_t kMost = 1'000'000;
+  if (mask.vertexCountOutput == 0 || mask.indexCountOutput == 0 || mask.vertexCountOutput > kMost || mask.indexCountOutput > kMost)
+    return mesh;
   std::vector<XrVector2f> vertices(mask.vertexCountOutput);
   mesh.triangles.resize(mask.indexCountOutput);
   mask.vertexCapacityInput = mask.vertexCountOutput;
@@ -30,8 +33,9 @@ Result<HiddenMesh> hidden_mesh(Session& session, std::size_t view) {
   mask.indices = mesh.triangles.data();
   CATENA_XR_CHECK(session, ask(), "say what its lenses hide");
   mesh.triangles.resize(std::min<std::size_t>(mesh.triangles.size(), mask.indexCountOutput) / 3 * 3);
-  // a mesh that points beyond its vertices is none
+  // a mesh that points beyond its vertices, or to no place, is none
   if (std::ranges::any_of(mesh.triangles, [&](std::uint32_t i) { return i >= vertices.size(); })) return HiddenMesh{};
+  if (!std::ranges::all_of(vertices, [](const XrVector2f& v) { return std::isfinite(v.x) && std::isfinite(v.y); })) return HiddenMesh{};
   for (const XrVector2f& v : vertices) mesh.vertices.push_back({v.x, v.y});
   return mesh;
 }

@@ -113,6 +113,11 @@ void read_environment() {
         view.pose.position.z += by.z;
       }
     }
+    if (XrVector3f& at = script.stage.position; key == "stage") std::sscanf(value.c_str(), "%f:%f:%f", &at.x, &at.y, &at.z);
+    if (XrVector3f at{}; key == "grip" && std::sscanf(value.c_str() + colon + 1, "%f:%f:%f", &at.x, &at.y, &at.z) == 3)
+      script.grips[std::strtoull(value.c_str(), nullptr, 10)] = at;
+    if (key == "select")
+      script.selects.emplace_back(std::strtoull(value.c_str(), nullptr, 10), std::strtoull(value.c_str() + colon + 1, nullptr, 10));
     if (key == "paced") script.paced = true;
     if (key == "record") {
       record_path() = value;

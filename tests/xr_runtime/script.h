@@ -3,7 +3,8 @@
 ///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
 ///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, menu=5:9 (the right
 ///   hand's button is down from frame 5 to 8), gaze=0.2:-0.1 (the eyes look so far to the right and up, tangents),
-///   head=1:0:-2 (the head is moved there, metres), paced (xrWaitFrame sleeps)
+///   head=1:0:-2 (the head is moved there, metres), stage=x:y:z (in the local space), grip=40:x:y:z (the right hand, from
+///   that frame on), select=50:70 (its trigger is down in these frames), paced (xrWaitFrame sleeps)
 /// Everything is under one lock; the tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
@@ -41,6 +42,8 @@ struct Script {
   std::vector<XrView> views;  ///< in the local space; reset() has two, canted and asymmetric
   std::uint32_t width = 96, height = 80;
   std::int64_t period_ns = 11'111'111;
+  std::optional<std::int64_t> stated_period_ns;  ///< what it says of the period, where that is not so
+  XrPosef stage{{0, 0, 0, 1}, {0, 0, 0}};        ///< in the local space
   bool paced = false;
   bool focus = true;  ///< after the first frame the session becomes visible and focused by itself
   bool tracked = true;
@@ -55,7 +58,9 @@ struct Script {
   std::optional<XrPosef> gaze;  ///< of the eyes; none: they are not seen now
   bool sees_eyes = true;        ///< the headset can
   std::string profile = "/interaction_profiles/khr/simple_controller";
-  std::uint64_t menu_from = 0, menu_to = 0;  ///< frames in which the right hand's button is down
+  std::map<std::uint64_t, XrVector3f> grips;                     ///< where the right hand is from that frame on
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> selects;  ///< frames in which its trigger is down: from, to
+  std::uint64_t menu_from = 0, menu_to = 0;                      ///< frames in which the right hand's button is down
   bool keep_pictures = false;
 };
 

@@ -132,6 +132,8 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_space(XrSpace handle, XrSpace base, XrTime
       sum.z += view.pose.position.z / float(script.views.size());
     }
     out->pose.position = sum;
+  } else if (space->reference == XR_REFERENCE_SPACE_TYPE_STAGE) {
+    out->pose = script.stage;
   }
   return XR_SUCCESS;
 }
@@ -148,6 +150,9 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     const std::uint64_t frame = session->frame++;
     if (script.at_frame) script.at_frame(frame, script);
     if (script.menu_to > 0) script.hands[1].menu = frame >= script.menu_from && frame < script.menu_to;
+    if (const auto grip = script.grips.find(frame); grip != script.grips.end()) script.hands[1].grip.position = grip->second;
+    if (!script.selects.empty())
+      script.hands[1].select = std::ranges::any_of(script.selects, [&](const auto& of) { return frame >= of.first && frame < of.second; });
     for (auto [it, end] = script.states.equal_range(frame); it != end; ++it) post_state(number(handle), *session, it->second);
     auto* instance = world().find<InstanceObject>(session->parent, Kind::instance);
     for (auto [it, end] = script.events.equal_range(frame); it != end; ++it) instance->events.push_back(it->second);
@@ -160,7 +165,7 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
       if (session->time < now - script.period_ns) session->time = now;  // late: the next refresh
     }
     out->predictedDisplayTime = session->time + script.period_ns;
-    out->predictedDisplayPeriod = script.period_ns;
+    out->predictedDisplayPeriod = script.stated_period_ns.value_or(script.period_ns);
     out->shouldRender = session->state == XR_SESSION_STATE_VISIBLE || session->state == XR_SESSION_STATE_FOCUSED;
   }
   if (sleep_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(sleep_ns));

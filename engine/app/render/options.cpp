@@ -10,6 +10,13 @@
 
 namespace catena::app {
 
+Result<render::CameraPath> read_head_path(const std::string& path) {
+  CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(path));
+  std::vector<render::CameraKey> keys;
+  for (const ProbeRow& row : rows) keys.push_back({row.t_s, row.position, Vec3(0.0), std::nullopt, std::nullopt});
+  return render::CameraPath(std::move(keys));
+}
+
 Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
   CameraMotion motion;
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
@@ -26,10 +33,7 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
   }
   if (!o.head.empty()) {
     if (o.stereo.screen.empty()) return Error{"--head " + o.head + ": expected --screen, before which the head is"};
-    CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(o.head));
-    std::vector<render::CameraKey> keys;
-    for (const ProbeRow& row : rows) keys.push_back({row.t_s, row.position, Vec3(0.0), std::nullopt, std::nullopt});
-    motion.head_.emplace(std::move(keys));
+    CATENA_TRY(motion.head_, read_head_path(o.head));
   }
   motion.fit_ = o.fit;
   motion.orbit_deg_ = o.orbit_deg;

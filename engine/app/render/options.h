@@ -43,6 +43,9 @@ struct RenderOptions {
 /// All of the work. An Error: bad input; throws MachineFailure for the rest.
 Outcome render_pictures(const RenderOptions& options);
 
+/// The places of a tracked head, `t,x,y,z`, as a camera goes along them; what it looks at does not count.
+Result<render::CameraPath> read_head_path(const std::string& path);
+
 /// Where the camera is in each frame: the scene's, a key-framed path's, or along an axis; fitted, zoomed, raised and turned; or, before a
 /// screen of the scene, where a tracked head is.
 class CameraMotion {

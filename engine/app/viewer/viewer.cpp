@@ -24,7 +24,7 @@ Result<SceneHost> read_scene(const ViewOptions& options) {
 }
 
 /// The next best thing to a window: what --screenshot asks for, drawn as `catena render` does. Exit code 0.
-Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHost& hand, const std::string& why) {
+Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHost& hand, TrackedHead* head, const std::string& why) {
   const bool picture_only =
       options.window_screenshot.empty() && options.servo_stats.empty() && options.frame_stats.empty() && options.hand.record.empty();
   if (options.screenshot.empty() || !picture_only) return {1, why};
@@ -33,6 +33,7 @@ Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHos
   const auto draw = [&]() -> Outcome {
     scene::Scene& scene = host.scene();
     scene.camera = camera_of(loaded->packet.view);
+    if (const auto first = head ? head->at(0) : std::nullopt) scene.camera.position = *first;
     const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), options.width, options.height);
     CATENA_TRY(const render::FramePacket packet,
                render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height)));
@@ -77,9 +78,15 @@ std::optional<Failure> show(const ViewOptions& options) {
     if (!opened) return Failure{2, "--shaders " + opened.error().message};
     reload = std::move(*opened);
   }
+  std::unique_ptr<TrackedHead> head;
+  if (!options.head.empty()) {
+    auto opened = TrackedHead::open(options.head, scene->scene());
+    if (!opened) return Failure{2, opened.error().message};
+    head = std::move(*opened);
+  }
   auto window = Window::create(options.width, options.height, "catena");
-  if (!window) return draw_without_window(options, *scene, hand, window.error().message);
-  Session session(planned, *scene, hand, **window, std::move(reload), interrupt);
+  if (!window) return draw_without_window(options, *scene, hand, head.get(), window.error().message);
+  Session session(planned, *scene, hand, **window, std::move(reload), std::move(head), interrupt);
   if (auto failure = session.open()) return failure;
   return session.run();
 }

@@ -28,6 +28,8 @@ struct ViewOptions {
   std::string shaders;           ///< folder of shaders to watch; empty: none
   int frames = 0;                ///< quit after so many frames; 0: until the window is closed
   double seconds = 0;            ///< draw all the time and quit after so long; 0: until the window is closed
+  std::string device_file;       ///< settings of the device in place of the scene's; a registration is written there. Empty: none
+  std::string head;              ///< what tells where the head is before a screen of the scene (tracked_head.h); empty: the mouse
   bool panels = true;
   bool headset = false;                                    ///< draw for a headset; the window mirrors one eye
   std::string screenshot;                                  ///< .png of the last picture, written at the end; empty: none

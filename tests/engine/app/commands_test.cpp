@@ -125,6 +125,7 @@ right drag, control  move the hand in the picture's plane (wheel: depth)
 H                    the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1
 space                the hand's button 1
 F                    a haptic device's forces on and off (off at first)
+G                    with a headset: touch three places, which says where a haptic device stands; again: not now
 device button 1      takes hold of widgets, selects; what the scene's "on" says
 Ctrl+O               open; a file can be dropped on the window as well
 Ctrl+S, Ctrl+Shift+S save (with the view, if it was moved), save as

@@ -148,6 +148,9 @@ TEST(RenderStereo, ATrackedHeadLooksThroughAScreen) {
     EXPECT_NE(bad.err.find(part), std::string::npos) << bad.err;
   };
   wrong({}, "expected --screen");
+  test::write_file(folder / "head.csv", "t,x,y,z\n10,1e308,-8,2\n");
+  wrong({"--screen", "desk"}, "is too far beside the screen");
+  test::write_file(folder / "head.csv", "t,x,y,z\n10,0,-8,2\n10.16,1.6,-8,2\n");
   wrong({"--screen", "desk", "--camera", folder / "c.csv"}, "goes without --camera");
 }
 

@@ -4,11 +4,14 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
 
+#include "engine/app/hand/device_file.h"
 #include "engine/app/viewer/shell/headset_hands.h"
+#include "haptics/device/settings.h"
 #include "render/image/picture.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
@@ -133,6 +136,67 @@ TEST_F(ViewerHeadset, WhatIsLostComesBack) {
   EXPECT_GT(seen("pictures"), 20);
   EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(seen("objects"), 0);
+}
+
+/// What is not registered is asked for, on the terminal and on the panel in the room; the menu button puts it off.
+TEST_F(ViewerHeadset, ADeviceOnTheDeskIsAskedForItsPlaces) {
+  ASSERT_EQ(view("--device simulated --frames 24", "size=48x40"), 0) << log();
+  EXPECT_NE(log().find("Touch three places, not on one line, with the handle of simulated"), std::string::npos) << log();
+  EXPECT_GT(seen("quads"), 0);
+  EXPECT_EQ(log().find("is not registered"), std::string::npos) << log();
+  ASSERT_EQ(view("--device simulated --frames 24", "size=48x40 menu=6:8"), 0) << log();
+  EXPECT_NE(log().find("catena: simulated is not registered; G, or the panel Device, asks"), std::string::npos) << log();
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+}
+
+/// The controller touches three places, the simulated hand the same ones; the file says where the device stands, and can be given again.
+/// The device lies as the stage does, its origin at (0.2, 0.1, -0.5) of it.
+TEST_F(ViewerHeadset, ThreeTouchesAreKeptInTheFile) {
+  const std::array<Vec3, 3> touched{Vec3(0, 0, 0), Vec3(0.05, 0, 0), Vec3(0, 0.05, 0.01)};
+  const Vec3 origin(0.2, 0.1, -0.5), stage(0.1, -1, 0.3);
+  std::string path = "t,x,y,z,buttons\n", words = "size=16x16 stage=0.1:-1:0.3";
+  for (std::size_t k = 0; k < touched.size(); ++k) {
+    const Vec3 &p = touched[k], room = stage + origin + p;
+    const double t = 1.5 + 0.8 * double(k);
+    path += fmt::format("{0},{3},{4},{5},0\n{1},{3},{4},{5},1\n{2},{3},{4},{5},0\n", k == 0 ? 0 : t - 0.2, t, t + 0.4, p.x, p.y, p.z);
+    words += fmt::format(" grip={}:{}:{}:{} select={}:{}", 10 + 40 * k, room.x, room.y, room.z, 15 + 40 * k, 35 + 40 * k);
+  }
+  test::write_file(folder_ / "path.csv", path);
+  test::write_file(folder_ / "arm.json", "{\n  \"type\": \"simulated\",  // mine\n  \"friction\": 0\n}\n");
+  const std::string device = "--device simulated:" + (folder_ / "path.csv") + " --device-file " + (folder_ / "arm.json");
+  ASSERT_EQ(view(device + " --seconds 4.5", words), 0) << log();
+  EXPECT_NE(log().find("is registered: 0."), std::string::npos) << log();
+  EXPECT_NE(log().find("where it stands was written to"), std::string::npos) << log();
+  const std::string kept = test::read_file(folder_ / "arm.json");
+  EXPECT_NE(kept.find("// mine"), std::string::npos) << kept;
+  scene::Scene scene;
+  ASSERT_TRUE(use_device_file(folder_ / "arm.json", scene)) << kept;
+  const auto settings = haptics::read_device_settings(*scene.device, folder_ / "arm.json");
+  ASSERT_TRUE(settings && settings->room) << kept;
+  EXPECT_LT(norm(settings->room->origin_m - origin), 1e-3) << kept;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(settings->room->room_from_hand[axis][axis], 0.999) << kept;
+  // given again, nothing is asked for
+  ASSERT_EQ(view(device + " --frames 6", "size=16x16 stage=0.1:-1:0.3"), 0) << log();
+  EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
+}
+
+/// The file says where the device stands: its origin is 0.2 m to the right of the stage's and 0.5 m before it.
+TEST_F(ViewerHeadset, ADeviceThatIsRegisteredLiesInTheRoom) {
+  test::write_file(folder_ / "arm.json", R"({"type": "simulated", "friction": 0, "room_origin": [0.2, 0, -0.5],
+    "room_rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})");
+  ASSERT_EQ(view("--device simulated --device-file " + (folder_ / "arm.json") + " --seconds 2", "size=48x40 stage=0.1:-1:0.3"), 0) << log();
+  EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
+  // the camera's target is 0.7 m ahead of the room's origin; the room's z is the view's back, level
+  const Vec3 camera(0, -6, 3), up(0, 0, 1), back = direction(Vec3(0, -6, 0)), right = cross(up, back);
+  const double metres_per_unit = 0.7 / norm(camera);
+  const Vec3 room(0.1 + 0.2, -1, 0.3 - 0.5);
+  const Vec3 expected = back * (0.7 / metres_per_unit) + (right * room.x + up * room.y + back * room.z) / metres_per_unit;
+  Vec3 probe(0.0);
+  const std::string text = log();
+  const std::size_t at = text.find("probe ");
+  ASSERT_NE(at, std::string::npos) << text;
+  ASSERT_EQ(std::sscanf(text.c_str() + at, "probe %lf %lf %lf", &probe.x, &probe.y, &probe.z), 3);
+  EXPECT_LT(norm(probe - expected), 0.02) << text;
 }
 
 constexpr double kDt = 1.0 / 90;

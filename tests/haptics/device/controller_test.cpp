@@ -69,6 +69,26 @@ TEST(Controller, MakesEvenTicksOfFewSamples) {
   }
 }
 
+/// A tracker that says nothing for 80 ms, now and then: the hand waits and catches up, at most a quarter faster than it moved.
+TEST(Controller, APauseOfTheTrackerIsNoJump) {
+  for (const double hz : {60.0, 120.0, 1000.0}) {
+    Rig rig;
+    double next = 0, most_m = 0;
+    Vec3 last(0.0);
+    for (int k = 0; k < 3000; ++k) {
+      if (1e-3 * k >= next) {
+        rig.controller.say({clock_ns, Vec3(5e-4 * k, 0, 0), kNoRotation});
+        next = (k % 500 >= 400 && k % 500 < 420 ? 0.08 : 0) + 1e-3 * k + 1 / hz;
+      }
+      const DeviceInput input = rig.tick();
+      ASSERT_EQ(input.status, DeviceStatus::ready);
+      if (k > 100) most_m = std::max(most_m, norm(input.position_m - last));
+      last = input.position_m;
+    }
+    EXPECT_LT(most_m, 1.251 * 5e-4) << hz << " Hz";
+  }
+}
+
 TEST(Controller, AStillHandComesToRestToTheBit) {
   Rig rig;
   for (int k = 0; k < 300; ++k) {

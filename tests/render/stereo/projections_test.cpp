@@ -56,6 +56,11 @@ TEST(ScreenView, RefusesWhatIsNoScreenAndAnEyeBehindIt) {
   EXPECT_TRUE(screen_view(screen, {0.0, -2.0, 0.0}));
   EXPECT_FALSE(screen_view(screen, {0.0, 0.0, 0.0}));
   EXPECT_FALSE(screen_view(screen, {0.0, 2.0, 0.0}));
+  EXPECT_TRUE(screen_view(screen, {9e5, -2.0, -9e5}));
+  for (const double far : {1.1e6, 1e15, 1e308}) {
+    EXPECT_FALSE(screen_view(screen, {far, -2.0, 0.0})) << far;
+    EXPECT_FALSE(screen_view(screen, {0.0, -2.0, -far})) << far;
+  }
   EXPECT_FALSE(screen_view({{-1.0, 0.0, -1.0}, {1.0, 0.0, -1.0}, {0.0, 0.0, 1.0}}, {0.0, -2.0, 0.0}));
   EXPECT_FALSE(screen_view({Vec3(1.0), Vec3(1.0), {-1.0, 0.0, 1.0}}, {0.0, -2.0, 0.0}));
 }

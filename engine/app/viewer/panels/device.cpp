@@ -65,6 +65,11 @@ void draw_device(PanelContext& context) {
     if (ImGui::Checkbox("Forces (F)", &on)) context.ask(Action::forces);
     tip("the device may push; what a force does is felt at once");
   }
+  if (haptics::has_place(haptics::device_type_of(hand.device_name()))) {
+    if (ImGui::Button("Register in the room (G)")) context.ask(Action::register_device);
+    tip(hand.room() ? "where it stands in the headset's room is known; touch three places again"
+                    : "with a headset: touch three places, which says where it stands");
+  }
   const Vec3 at = device_from_world(context.scene.scene().workspace, felt.probe);
   ImGui::Text("At %.1f %.1f %.1f mm", 1e3 * at.x, 1e3 * at.y, 1e3 * at.z);
   tip("the probe in the device's own axes");

@@ -82,6 +82,8 @@ struct ViewState {
 
   bool plays_steps = false;  ///< steps in time go by
 
+  std::string prompt;  ///< what the person does next, until it is done; empty: nothing is asked
+
   // the picture and the pointer
   Area area;                            ///< of the picture, window coordinates
   double pointer_x = 0, pointer_y = 0;  ///< window coordinates

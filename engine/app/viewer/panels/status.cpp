@@ -53,6 +53,27 @@ std::string held_words(const PanelContext& context) {
   return {};
 }
 
+/// What the person does next, in the middle of the picture.
+void draw_prompt(PanelContext& context) {
+  const ViewState& state = context.state;
+  if (state.prompt.empty()) return;
+  const Area& area = state.area;
+  ImGui::SetNextWindowPos({float(area.x + 0.5 * area.width), float(area.y + 0.5 * area.height)}, 0, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({float(std::min(0.9 * area.width, 30.0 * ImGui::GetFontSize())), 0});
+  constexpr ImGuiWindowFlags kFlags =
+      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
+  if (ImGui::Begin("##prompt", nullptr, kFlags)) {
+    ImGui::TextWrapped("%s", state.prompt.c_str());
+    if (const Message* message = newest(state); message && message->text != state.prompt) {
+      ImGui::PushStyleColor(ImGuiCol_Text, color_of(*message));
+      ImGui::TextWrapped("%s", message->text.c_str());
+      ImGui::PopStyleColor();
+    }
+    if (ImGui::Button("Not now (G)")) context.ask(Action::register_device);
+  }
+  ImGui::End();
+}
+
 /// Without panels only what must be read is shown.
 void draw_words_alone(const ViewState& state) {
   const Message* message = newest(state);
@@ -75,6 +96,7 @@ void draw_words_alone(const ViewState& state) {
 
 void draw_status(PanelContext& context) {
   const ViewState& state = context.state;
+  draw_prompt(context);
   if (!state.panels) return draw_words_alone(state);
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   const float height = ImGui::GetFrameHeightWithSpacing();

@@ -70,6 +70,12 @@ constexpr CommandRow kCommandRows[] = {
      "the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1"},
     by_pointer(kHand, "space", "the hand's button 1"),
     {Action::forces, "Forces", {GLFW_KEY_F}, kNoStroke, kHand, "a haptic device's forces on and off (off at first)"},
+    {Action::register_device,
+     "Register in the room",
+     {GLFW_KEY_G},
+     kNoStroke,
+     kHand,
+     "with a headset: touch three places, which says where a haptic device stands; again: not now"},
     by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"),
 
     {Action::open, "Open...", with_control(GLFW_KEY_O), kNoStroke, kScene, "open; a file can be dropped on the window as well"},

@@ -48,6 +48,7 @@ enum class Action : std::uint8_t {
   step_before,
   // the hand
   hand_mode,
+  register_device,
   forces,
 };
 

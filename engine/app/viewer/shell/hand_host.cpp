@@ -10,6 +10,7 @@
 #include "engine/scene/prepare.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/limits_for.h"
+#include "haptics/servo/step.h"
 
 namespace catena::app {
 
@@ -117,6 +118,8 @@ void HandHost::make_servo() {
   servo.realtime = options_.realtime;
   if (is_mouse()) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
   servo.sink = recording_.sink();
+  forces_ = servo.forces;
+  held_off_ = false;
   servo_ = std::make_unique<haptics::Servo>(*hand_.device, program_, servo);
 }
 
@@ -241,8 +244,28 @@ void HandHost::hold_back(const scene::Scene& scene, Controls& controls) const {
 
 void HandHost::set_forces(bool on) {
   if (is_mouse()) return;
-  servo_->set_forces(on);
+  forces_ = on;
+  servo_->set_forces(on && !held_off_);
   say_forces();
+}
+
+bool HandHost::hold_off(bool off) {
+  if (hand_.device->capabilities().max_force_n <= 0) return true;
+  // the state of the program that was handed over last
+  const bool newest = felt_.program_epoch == program_->epoch;
+  if (off != held_off_ && (off || newest)) {
+    held_off_ = off;
+    servo_->set_forces(forces_ && !off);
+  }
+  return off ? felt_.tick == 0 || !forces_ || felt_.force_state == exchange::ForceState::off ||
+                   felt_.force_state == exchange::ForceState::stopped
+             : !held_off_;
+}
+
+std::optional<Vec3> HandHost::place_m() const {
+  const bool ready = felt_.condition == exchange::Condition::normal || felt_.condition == exchange::Condition::late;
+  if (felt_.tick == 0 || !ready || felt_.program_epoch != program_->epoch || !is_finite(felt_.probe)) return std::nullopt;
+  return haptics::device_from_world(*program_, felt_.probe);
 }
 
 void HandHost::say_forces() const {

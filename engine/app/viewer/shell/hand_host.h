@@ -85,8 +85,16 @@ class HandHost {
   /// What holds a mouse back, for the next motion of the hand.
   void hold_back(const scene::Scene& scene, Controls& controls) const;
   const Vec3& first_probe() const { return first_probe_; }
-  bool forces() const { return servo_ && servo_->forces(); }
+  bool forces() const { return servo_ && forces_; }
   void set_forces(bool on);
+  /// While the world moves under a hand that rests there is no force, whatever forces() says; afterwards it rises from zero. True: as it
+  /// is wished, no force is left or it may rise again.
+  bool hold_off(bool off);
+  /// Where the device's handle is, metres of the hand; nothing where it is not ready, or no state of this program has come yet.
+  std::optional<Vec3> place_m() const;
+  /// Where the device stands in a headset's room, once that is known.
+  const std::optional<haptics::DeviceSettings::Room>& room() const { return hand_.settings.room; }
+  void set_room(const std::optional<haptics::DeviceSettings::Room>& room) { hand_.settings.room = room; }
   void say_forces() const;
 
   const OpenHand& hand() const { return hand_; }
@@ -109,6 +117,7 @@ class HandHost {
   Recording recording_;
   std::optional<CrashGuard> crash_guard_;
   std::unique_ptr<haptics::Servo> servo_;
+  bool forces_ = false, held_off_ = false;
   std::shared_ptr<const haptics::Program> program_;
   std::vector<std::string> link_names_;
   exchange::HapticState felt_;

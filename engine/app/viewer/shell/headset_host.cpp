@@ -48,6 +48,9 @@ struct HeadsetHost::Parts {
   XrTime last_time = 0;        ///< of the last frame; 0: none before
   std::optional<Vec3> gaze;    ///< where the eyes look when the picture is seen, a direction in the room; none: not known
   std::optional<Vec3> held_m;  ///< the middle of the hands that hold the world; none: they do not
+  DeskDevice desk;
+  bool asks = false;         ///< the desk's three places, in the last picture
+  std::uint64_t starts = 0;  ///< of sessions: each has a local space of its own
 
   // the panel
   bool panel_open = false, menu_down = false;
@@ -60,6 +63,7 @@ struct HeadsetHost::Parts {
   void lose(const std::string& why, std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
   void show_scale(render::FramePacket& packet) const;
+  Outcome take_desk(const render::xr::Frame& frame, HandHost& hand, const std::array<RoomHand, 2>& now);
   void take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head);
   void stop();
 };
@@ -117,6 +121,7 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
       lose(started.error().message);
       return Done{};
     }
+    ++p.starts;
   }
   if (const Outcome polled = p.headset->poll(); !polled) {
     lose(polled.error().message);
@@ -134,16 +139,20 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
 bool HeadsetHost::running() const { return parts_->headset && parts_->headset->running(); }
 
 void HeadsetHost::Parts::take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head) {
-  const bool menu = states[0].menu || states[1].menu;
-  if (menu && !menu_down) {
-    panel_open = !panel_open;
+  const bool menu = states[0].menu || states[1].menu, pressed = menu && !menu_down;
+  // what is asked of the person stands before them; the button puts it off, and the trigger means the touch
+  const bool began = desk.touching() && !asks;
+  if (pressed && asks) desk.cancel();
+  asks = desk.touching();
+  if (pressed || began) {
+    panel_open = began || !panel_open;
     panel = immersive::in_front_of(head.position, head.turn, kPanelAwayM, kPanelDropM, panel);
     pointer = {};
   }
   menu_down = menu;
   mouse = {};
   const render::xr::HandState& hand = states[HeadsetHands::kProbe];
-  if (!panel_open || !quad || !hand.points) return;
+  if (!panel_open || !quad || !hand.points || asks) return;
   mouse = pointer.step(panel, immersive::aim_ray(hand.aim.position, hand.aim.turn), hand.select > HeadsetHands::kDown);
   pressed_since = pressed_since || mouse.pressed;
 }
@@ -188,6 +197,21 @@ std::optional<immersive::PanelPointer::Mouse> HeadsetHost::panel_mouse() {
   return mouse;
 }
 
+/// A device on the desk, where one holds the probe.
+Outcome HeadsetHost::Parts::take_desk(const render::xr::Frame& frame, HandHost& hand, const std::array<RoomHand, 2>& now) {
+  if (!frame.wants_picture || hand.is_mouse() || hand.controller()) return Done{};
+  render::xr::Session& session = headset->session();
+  RoomSpace space;
+  space.recentrings = (starts << 32) + session.recentrings();
+  if (const XrSpace stage = session.space(render::xr::SpaceKind::stage)) {
+    CATENA_TRY(const std::optional<render::xr::RoomPose> found, session.locate(stage, frame.time, "locate its room"));
+    if (!found) return Done{};
+    space = {found->position, found->turn, true, space.recentrings};
+  }
+  desk.step(1e-9 * double(frame.time), hand, now, space);
+  return Done{};
+}
+
 /// What the hands do to the world, to the probe, and what they are told. Poses go to the recording as they are when the picture is seen.
 Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost& hand) {
   using haptics::log::TrackedPart;
@@ -212,10 +236,12 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
     gaze = rotate(eyes->turn, Vec3(0.0, 0.0, -1.0));
   }
   hand.record_poses(poses);
-  const double dt_s = last_time == 0 ? 0 : std::min(1e-9 * double(frame.time - last_time), kMostStepS);
+  const double dt_s = last_time == 0 ? 0 : std::clamp(1e-9 * double(frame.time - last_time), 0.0, kMostStepS);
   last_time = frame.time;
   if (placement) hands.step(hands_then, head.position, dt_s, *placement);
   held_m = hands.held_middle(hands_then);
+
+  CATENA_CHECK(take_desk(frame, hand, hands_then));
 
   // the probe is where the hand is now
   haptics::Controller* controller = hand.controller();
@@ -294,8 +320,15 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
   return broken(shown.error().message);
 }
 
-const std::optional<Placement>& HeadsetHost::placement() const { return parts_->placement; }
 bool HeadsetHost::holds_world() const { return parts_->hands.holds_world(); }
+DeskDevice* HeadsetHost::desk() { return &parts_->desk; }
+
+std::optional<scene::Workspace> HeadsetHost::hand_workspace(const HandHost& hand) const {
+  const std::optional<Placement>& placed = parts_->placement;
+  if (!placed) return std::nullopt;
+  if (!hand.controller()) return parts_->desk.workspace(hand, *placed);
+  return scene::Workspace{placed->metres_per_unit, placed->world_origin, placed->world_from_room, true};
+}
 
 std::string HeadsetHost::figures() const {
   const Parts& p = *parts_;
@@ -323,9 +356,7 @@ std::string HeadsetHost::words() const {
 
 #else
 
-struct HeadsetHost::Parts {
-  std::optional<Placement> placement;
-};
+struct HeadsetHost::Parts {};
 HeadsetHost::HeadsetHost(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 HeadsetHost::~HeadsetHost() = default;
 Result<std::unique_ptr<HeadsetHost>> HeadsetHost::open() {
@@ -338,8 +369,9 @@ Result<bool> HeadsetHost::draw(Screen&, HandHost&, const Content&) { return fals
 void HeadsetHost::leave() {}
 std::string HeadsetHost::words() const { return "no headset"; }
 std::string HeadsetHost::figures() const { return words(); }
-const std::optional<Placement>& HeadsetHost::placement() const { return parts_->placement; }
 bool HeadsetHost::holds_world() const { return false; }
+DeskDevice* HeadsetHost::desk() { return nullptr; }
+std::optional<scene::Workspace> HeadsetHost::hand_workspace(const HandHost&) const { return std::nullopt; }
 void HeadsetHost::show_panel(Screen&) {}
 std::optional<immersive::PanelPointer::Mouse> HeadsetHost::panel_mouse() { return std::nullopt; }
 

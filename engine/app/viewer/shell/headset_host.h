@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/app/viewer/shell/desk_device.h"
 #include "engine/app/viewer/shell/hand_host.h"
 #include "engine/app/viewer/shell/screen.h"
 #include "engine/immersive/panel.h"
@@ -56,10 +57,12 @@ class HeadsetHost {
   std::string words() const;
   /// "headset: 900 frames, 880 pictures, 3 late, 0 at half rate", for the last words.
   std::string figures() const;
-  /// Where the world stands in the room; none: not placed yet.
-  const std::optional<Placement>& placement() const;
   /// A hand has hold of the world, which moves with it.
   bool holds_world() const;
+  /// The metres of what holds the probe, in the world as it stands in the room: of the controller, or of a device that is registered.
+  std::optional<scene::Workspace> hand_workspace(const HandHost& hand) const;
+  /// The registration of a device on the desk; null where there is no headset.
+  DeskDevice* desk();
 
  private:
   struct Parts;

@@ -5,11 +5,14 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/app/hand/device_file.h"
 #include "engine/app/plan/make_plan.h"
 #include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
 #include "engine/scene/units.h"
+#include "engine/scene/write_values.h"
+#include "engine/schema/values.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_parts.h"
 #include "render/image/picture.h"
@@ -85,7 +88,57 @@ Result<bool> PictureView::follow_headset() {
     shared_.state.say(line, true);
     tell_from_catena(line);
   }));
+  if (!headset_->running()) shared_.hand.hold_off(false);  // nothing moves the world any more
   return headset_->running();
+}
+
+/// The hand's metres are the room's where the room knows them; not while the world is on its way.
+void PictureView::follow_the_room() {
+  HandHost& hand = shared_.hand;
+  DeskDevice& desk = *headset_->desk();
+  for (const DeskDevice::News& news : desk.take_news()) {
+    shared_.state.say(news.words, news.is_error);
+    tell_from_catena(news.words);
+  }
+  shared_.state.prompt = desk.prompt();
+  if (const auto found = desk.take_found()) keep_room(*found);
+  const auto now = headset_->hand_workspace(hand);
+  if (!now) return (void)hand.hold_off(false);
+  scene::Workspace& workspace = shared_.scene.scene().workspace;
+  const bool stays =
+      now->metres_per_unit == workspace.metres_per_unit && now->origin == workspace.origin && now->rotation == workspace.rotation;
+  if (!hand.hold_off(!stays || headset_->holds_world()) || stays || headset_->holds_world()) return;
+  workspace = *now;
+  shared_.state.say_if_wrong(hand.publish(shared_.scene.scene(), shared_.scene.felt_text()));
+}
+
+Outcome PictureView::ask_for_places() {
+  DeskDevice* const desk = headset_ ? headset_->desk() : nullptr;
+  if (!desk) return Error{"there is no headset in whose room a device could be registered; view --xr was expected"};
+  if (!desk->touching()) return desk->begin(shared_.hand);
+  desk->cancel();
+  return Done{};
+}
+
+/// With the settings of the device, in its own file or in the scene.
+void PictureView::keep_room(const haptics::DeviceSettings::Room& room) {
+  const std::string type = haptics::device_type_of(shared_.hand.device_name()), &file = shared_.options.device_file;
+  const std::vector<scene::Document::Edit> edits{{"/type", scene::text_of(type)},
+                                                 {"/room_origin", scene::text_of(room.origin_m)},
+                                                 {"/room_rotation", schema::write_value(room.room_from_hand)}};
+  const auto say = [&](const Outcome& kept, const std::string& where) {
+    shared_.state.say(kept ? where : kept.error().message, !kept);
+    tell_from_catena(kept ? where : kept.error().message);
+  };
+  if (!file.empty()) return say(write_device_file(file, edits), "where it stands was written to " + file);
+  const auto& device = std::as_const(shared_.scene).scene().device;
+  const json::Node* const other = device ? device->find("type") : nullptr;
+  if (other && other->string != type)
+    return say(
+        Error{"the scene's \"device\" is a " + other->string + ": where the " + type + " stands is not kept; --device-file keeps it"}, "");
+  std::vector<scene::Document::Edit> in_scene = edits;
+  for (scene::Document::Edit& edit : in_scene) edit.pointer.insert(0, "/device");
+  say(shared_.scene.apply(in_scene, "where the device stands"), "where it stands is part of the scene, which is saved with Ctrl+S");
 }
 
 /// True: the picture is an eye's. What lies at a place of the window's picture cannot be said by it: an eye has its own packet.
@@ -113,16 +166,7 @@ Result<bool> PictureView::draw_in_headset() {
     return render::LadderKind{kind.fast, kind.shaded};
   };
   CATENA_TRY(const bool drawn, headset_->draw(*screen_, shared_.hand, content));
-  // the hand's metres are the room's, unless another device holds the probe; not while the world is on its way
-  const std::optional<Placement>& placed = headset_->placement();
-  if (shared_.hand.controller() && placed && !headset_->holds_world()) {
-    const scene::Workspace now{placed->metres_per_unit, placed->world_origin, placed->world_from_room, true};
-    scene::Workspace& workspace = scene.workspace;
-    if (now.metres_per_unit != workspace.metres_per_unit || now.origin != workspace.origin || now.rotation != workspace.rotation) {
-      workspace = now;
-      shared_.state.say_if_wrong(shared_.hand.publish(scene, shared_.scene.felt_text()));
-    }
-  }
+  follow_the_room();
   if (!drawn) return false;
   if (shared_.times.count() == 0) tell_notes();
   drawing_.forget();

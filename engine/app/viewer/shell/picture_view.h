@@ -29,6 +29,8 @@ class PictureView {
   bool take_hand_moved() { return std::exchange(hand_moved_late_, false); }
   /// For the title; empty without one.
   std::string headset_words() const { return headset_ ? headset_->words() : std::string(); }
+  /// The three places of the device on the desk are asked for, or not any more.
+  Outcome ask_for_places();
   /// For the last words; empty without one.
   std::string headset_figures() const { return headset_ ? headset_->figures() : std::string(); }
   Screen& screen() { return *screen_; }
@@ -79,6 +81,8 @@ class PictureView {
 
  private:
   Result<bool> draw_in_headset();
+  void follow_the_room();
+  void keep_room(const haptics::DeviceSettings::Room& room);
   /// Of the picture's own size.
   Result<render::FramePacket> packet() const { return drawing_.packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]); }
   std::optional<PickedPlace> picked_at(double window_x, double window_y) const;

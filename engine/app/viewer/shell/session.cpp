@@ -28,10 +28,11 @@ double s_since(std::int64_t ns) { return 1e-3 * ms_since(ns); }
 }  // namespace
 
 Session::Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, Window& window, std::optional<ShaderReload> reload,
-                 std::optional<Interrupt>& interrupt)
+                 std::unique_ptr<TrackedHead> head, std::optional<Interrupt>& interrupt)
     : gui_(window),
       shared_{options, scene, hand, window, gui_},
       eye_(shared_.controls, scene, hand),
+      head_(std::move(head)),
       picture_(shared_, std::move(reload)),
       files_(shared_, eye_, picture_),
       interrupt_(interrupt) {}
@@ -59,6 +60,8 @@ std::optional<Failure> Session::open() {
   if (!loaded) return Failure{2, loaded.error().message};
   files_.show(*loaded);
   look_for_pulses();
+  before_screen_ = shared_.controls.view;
+  follow_head();
   if (auto failure = picture_.open()) return failure;
   if (shared_.plan.wanted.of_eye())
     if (auto failure = picture_.plan()) return failure;
@@ -147,6 +150,18 @@ bool Session::run_pulses() {
   return phase.has_value();
 }
 
+/// The tracked head is where the eye is, whatever the mouse does. True where it has moved.
+bool Session::follow_head() {
+  if (!head_) return false;
+  const auto at = head_->at(s_since(start_ns_));
+  if (head_->was_lost()) shared_.state.say("the head is not tracked, or not before the screen: the picture stays", true);
+  render::View view = before_screen_;
+  view.position = at.value_or(shared_.controls.view.position);
+  const bool moved = view.position != std::exchange(shared_.controls.view, view).position;
+  eye_.pin();
+  return moved;
+}
+
 /// What cannot be loaded is said, and the step stays.
 void Session::show_step(int step) {
   scene::Scene& scene = shared_.scene.scene();
@@ -226,6 +241,8 @@ std::optional<Failure> Session::run() {
   const ViewOptions& options = shared_.options;
   SceneHost& scene = shared_.scene;
   start_ns_ = now_ns();
+  if (head_)
+    if (const Outcome started = head_->start(s_since(start_ns_)); !started) return Failure{1, started.error().message};
   picture_.drawing().changed();
   std::int64_t last_show_ns = 0;
   bool busy = true, minimised = false, live = false;
@@ -239,7 +256,10 @@ std::optional<Failure> Session::run() {
     // what has changed since the last picture
     run_steps();
     const bool opened = files_.take_loaded();
-    if (opened) forget_plan();
+    if (opened) {
+      forget_plan();
+      head_.reset();  // its screen is of the scene that was left
+    }
     const bool edited = take_edits(), late = picture_.take_hand_moved(), news = shared_.hand.take(scene.scene()) || late;
     if (news && shared_.plan.observer) shared_.plan.observer->add(shared_.hand.felt());
     live = live || news || files_.is_loading() || shared_.hand.recording().running();
@@ -255,10 +275,11 @@ std::optional<Failure> Session::run() {
     }
     const bool flies = shared_.controls.fly && !gui_.wants_keys();
     const bool pulsed = run_pulses(), reloaded = picture_.take_shaders();
+    const bool head_moved = follow_head();
     const bool turned = eye_.move(flies ? shared_.window.held_keys() : FlyKeys{});
     const bool resized = picture_.is_stale() || picture_.lay_out();
     const bool moved = by_input.view || std::exchange(changed_, false) || opened || edited || resized || pulsed || reloaded || turned ||
-                       shared_.times.count() == 0;
+                       head_moved || shared_.times.count() == 0;
     if (in_headset && moved) picture_.drawing().changed();
     auto next = in_headset ? picture_.drawing().moving() : next_picture(moved, news || by_input.hand);
     if (!next && picture_.drawing().rest_s() >= kEstimateS && std::exchange(wants_error_, false))

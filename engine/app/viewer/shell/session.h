@@ -11,14 +11,16 @@
 #include "engine/app/viewer/shell/picture_view.h"
 #include "engine/app/viewer/shell/scene_files.h"
 #include "engine/app/viewer/shell/shared.h"
+#include "engine/app/viewer/shell/tracked_head.h"
 
 namespace catena::app {
 
 class Session {
  public:
-  /// `hand` has its device; `scene` is read, and not loaded yet. `interrupt` is made where a device needs it, and outlives the hand.
+  /// `head`: where one is tracked. `hand` has its device; `scene` is read, and not loaded yet. `interrupt` is made where a device needs it,
+  /// and outlives the hand.
   Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, Window& window, std::optional<ShaderReload> reload,
-          std::optional<Interrupt>& interrupt);
+          std::unique_ptr<TrackedHead> head, std::optional<Interrupt>& interrupt);
   ~Session();  ///< the hand is let go first
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -38,6 +40,7 @@ class Session {
   void forget_plan();
   std::optional<Failure> measure_plan();
   bool run_pulses();
+  bool follow_head();
   void show_step(int step);
   void run_steps();
   void update_title();
@@ -64,6 +67,8 @@ class Session {
   Gui gui_;
   Shared shared_;
   Eye eye_;
+  std::unique_ptr<TrackedHead> head_;  ///< none: the mouse moves the eye
+  render::View before_screen_;         ///< but for where the head is
   PictureView picture_;
   SceneFiles files_;
   std::optional<Interrupt>& interrupt_;

@@ -108,6 +108,8 @@ void Session::act(Action action) {
       return show_step(scene.scene().time.step - 1);
     case Action::hand_mode:
       return shared_.controls.hand_mode ? end_hand() : begin_hand();
+    case Action::register_device:
+      return state.say_if_wrong(picture_.ask_for_places());
     case Action::forces:
       return shared_.hand.set_forces(!shared_.hand.forces());
     case Action::first_view:
