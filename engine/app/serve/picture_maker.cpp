@@ -47,7 +47,7 @@ Outcome PictureMaker::draw(Drawing& drawing, Pacing& pacing, FrameTimes& times, 
   auto picture = renderer_->read_back();
   if (!picture) return of_machine(picture.error());
   picture_ = std::move(*picture);
-  const double ms = ms_since(start);
+  const double ms = drawing_ms_ = ms_since(start);
   pacing.drawn(ms);
   times.add(ms, now_ns());
   drawing.drawn(std::move(packet), *renderer_);
