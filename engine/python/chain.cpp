@@ -2,7 +2,6 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <optional>
 
 #include "engine/python/module.h"
 #include "haptics/chain/tick.h"
@@ -83,17 +82,19 @@ class Chain {
 
   Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
     const std::vector<Vec3> places = points_of(positions, "positions");
-    const auto t = times.is_none() ? std::nullopt : std::optional(column(times, places.size(), "t"));
-    const auto pressed = buttons.is_none() ? std::nullopt : std::optional(buttons_of(column(buttons, places.size(), "buttons")));
+    // none: evenly, and nothing is pressed
+    const std::vector<double> t = times.is_none() ? std::vector<double>() : column(times, places.size(), "t");
+    const std::vector<std::uint32_t> pressed =
+        buttons.is_none() ? std::vector<std::uint32_t>() : buttons_of(column(buttons, places.size(), "buttons"));
     Ticks out(static_cast<py::ssize_t>(places.size()), static_cast<py::ssize_t>(program_->links.size()));
     Rows rows(out);
     const py::gil_scoped_release unlocked;
     const std::lock_guard turn(turn_);
     for (std::size_t i = 0; i < places.size(); ++i) {
       haptics::ProbeSample probe;
-      probe.t_s = t ? (*t)[i] : next_t_s();
+      probe.t_s = t.empty() ? next_t_s() : t[i];
       probe.position = places[i];
-      if (pressed) probe.buttons = (*pressed)[i];
+      if (!pressed.empty()) probe.buttons = pressed[i];
       haptics::tick(*program_, probe, *state_, *scratch_, last_);
       hash_.add(last_);
       ++ticks_;

@@ -21,7 +21,7 @@ class PictureMaker {
   /// The last picture as a message. `exact`: PNG.
   Result<std::string> message(bool exact, std::uint32_t motion);
 
-  /// Of the last picture, without its encoding.
+  /// Of the last picture, as render::DrawingClock counts; wall time where the device was lost on the way.
   double drawing_ms() const { return drawing_ms_; }
   bool has_picture() const { return !picture_.rgba.empty(); }
   render::Renderer& renderer() { return *renderer_; }
