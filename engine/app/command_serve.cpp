@@ -19,6 +19,7 @@ struct ServeArguments {
   std::vector<std::string> fields, names;
   int port = 8642;
   double seconds = 0, gpu_memory_mb = 0;
+  bool until_stdin_ends = false;
   RealtimeChoice realtime;
   AnnotateOptions annotate;
 };
@@ -33,6 +34,8 @@ Outcome start_serving(const ServeArguments& o) {
   CATENA_CHECK(options.adjust(scene));
   const std::string& own = scene.quality.empty() ? kServedQuality : scene.quality;
   CATENA_TRY(options.quality, parse_quality(o.quality.empty() ? own : o.quality));
+  options.quality_stated = !o.quality.empty() || !scene.quality.empty();
+  options.until_stdin_ends = o.until_stdin_ends;
   options.hand.device = "mouse";
   options.hand.fields = o.fields;
   options.hand.realtime = o.realtime.options();
@@ -68,6 +71,7 @@ void add_serve(CLI::App& program, Work& chosen) {
       ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
       ->check(number_between(1, 1e9));
   command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
+  command->add_flag("--until-stdin-ends", options->until_stdin_ends, "end when the standard input does: with the program at its other end");
   add_annotate_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return start_serving(*options); }; });

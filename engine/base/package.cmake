@@ -8,11 +8,13 @@ set(CATENA_HELPERS_FOLDER ${CMAKE_INSTALL_LIBEXECDIR}/catena)  # engine/base/hel
 
 # ---- programs, scenes, documents ----
 get_property(helpers GLOBAL PROPERTY CATENA_HELPERS)
-install(TARGETS catena RUNTIME COMPONENT catena)
-install(TARGETS ${helpers} RUNTIME DESTINATION ${CATENA_HELPERS_FOLDER} COMPONENT catena)
-install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catena COMPONENT catena PATTERN pictures EXCLUDE PATTERN system EXCLUDE)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena PATTERN examples EXCLUDE)
-install(FILES README.md LICENSE SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena)
+if(CATENA_INSTALL)
+  install(TARGETS catena RUNTIME COMPONENT catena)
+  install(TARGETS ${helpers} RUNTIME DESTINATION ${CATENA_HELPERS_FOLDER} COMPONENT catena)
+  install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catena COMPONENT catena PATTERN pictures EXCLUDE PATTERN system EXCLUDE)
+  install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena PATTERN examples EXCLUDE)
+  install(FILES README.md LICENSE SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena)
+endif()
 
 if(NOT CATENA_LIBRARY OR CATENA_SANITIZE)
   return()
@@ -87,6 +89,13 @@ catena_part(haptics catena_part_flow)
 target_compile_options(catena_part_haptics INTERFACE -ffp-contract=off)  # a tick repeats to the bit
 catena_part(render catena_part_field Vulkan::Vulkan)
 
+if(CATENA_PYTHON)
+  include(engine/python/python.cmake)
+endif()
+if(NOT CATENA_INSTALL)
+  return()
+endif()
+
 # ---- what is installed of it ----
 install(TARGETS catena_library catena_part_field catena_part_flow catena_part_haptics catena_part_render EXPORT catena
   LIBRARY COMPONENT library NAMELINK_COMPONENT development)
@@ -103,5 +112,4 @@ install(FILES ${PROJECT_BINARY_DIR}/catena-config.cmake ${PROJECT_BINARY_DIR}/ca
   COMPONENT development)
 install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 
-include(engine/python/python.cmake)
 include(engine/base/deb.cmake)

@@ -1,6 +1,8 @@
 /// catena.field: NumPy arrays as grids, read where they lie, whatever their type and their strides.
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 
 #include "engine/field/from_layers.h"
 #include "engine/field/load.h"
@@ -14,8 +16,24 @@ struct Voxels {
   const char* base = nullptr;
   field::Index3 size{0, 0, 0};
   py::ssize_t sx = 0, sy = 0, sz = 0, sc = 0;
-  bool vectors = false;
+  bool vectors = false, swapped = false;  ///< swapped: of the other byte order
 };
+
+/// A number of 16 bits (IEEE 754).
+struct Half {
+  std::uint16_t bits = 0;
+  explicit operator float() const { return glm::unpackHalf1x16(bits); }
+};
+
+template <class T>
+T number_at(const char* from, bool swapped) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), from, sizeof(T));
+  if (swapped) std::reverse(bytes.begin(), bytes.end());
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof(T));
+  return value;
+}
 
 template <class T>
 void read_layers(const Voxels& v, int z, std::span<float> out) {
@@ -25,18 +43,15 @@ void read_layers(const Voxels& v, int z, std::span<float> out) {
     for (int j = 0; j < v.size.y; ++j) {
       const char* row = v.base + k * v.sz + j * v.sy;
       for (int i = 0; i < v.size.x; ++i, row += v.sx)
-        for (int c = 0; c < components; ++c) {
-          T value;
-          std::memcpy(&value, row + c * v.sc, sizeof value);
-          out[n++] = static_cast<float>(value);
-        }
+        for (int c = 0; c < components; ++c) out[n++] = static_cast<float>(number_at<T>(row + c * v.sc, v.swapped));
     }
 }
 
 using Reader = void (*)(const Voxels&, int, std::span<float>);
 Reader reader_of(const py::dtype& type) {
-  if (type.byteorder() == '>') return nullptr;
   switch (type.kind() * 16 + static_cast<int>(type.itemsize())) {
+    case 'f' * 16 + 2:
+      return read_layers<Half>;
     case 'f' * 16 + 4:
       return read_layers<float>;
     case 'f' * 16 + 8:
@@ -82,8 +97,8 @@ Voxels voxels_of(const py::array& array, const std::string& axes, const std::str
 
 field::Mapping mapping_of(const py::object& affine, const std::string& name) {
   if (affine.is_none()) return {};
-  const auto m = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(affine);
-  if (!m || m.ndim() != 2 || m.shape(0) != 4 || m.shape(1) != 4)
+  const Numbers m = numbers_of(affine, name + ": affine");
+  if (m.ndim() != 2 || m.shape(0) != 4 || m.shape(1) != 4)
     throw Failure(Error{name + ": the affine is no 4 x 4 matrix; the map from (i, j, k, 1) to the world was expected"});
   Mat3 linear{1.0};
   Vec3 origin{0.0};
@@ -116,9 +131,10 @@ Field from_array(const py::array& array, const std::string& axes, const py::obje
                  const std::string& interpolation) {
   const Reader reader = reader_of(array.dtype());
   if (reader == nullptr)
-    throw Failure(Error{name + ": the array holds " + py::cast<std::string>(py::str(array.dtype())) +
-                        "; real numbers of this machine's byte order were expected (astype)"});
-  const Voxels voxels = voxels_of(array, axes, name);
+    throw Failure(
+        Error{name + ": the array holds " + py::cast<std::string>(py::str(array.dtype())) + "; real numbers were expected (astype)"});
+  Voxels voxels = voxels_of(array, axes, name);
+  voxels.swapped = array.dtype().byteorder() == '>';
   const field::Mapping mapping = mapping_of(affine, name);
   const py::gil_scoped_release unlocked;
   field::Layers layers;
@@ -141,7 +157,8 @@ void add_arrays(py::module_& m) {
   m.def("_from_array", from_array, py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("name"), py::arg("interpolation"));
   m.def(
       "_from_file",
-      [](const std::string& path, const std::string& grid, int step, const std::string& interpolation) {
+      [](const py::object& file, const std::string& grid, int step, const std::string& interpolation) {
+        const std::string path = path_of(file);
         const py::gil_scoped_release unlocked;
         field::LoadRequest request;
         request.path = path;

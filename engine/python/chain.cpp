@@ -1,6 +1,7 @@
 /// catena.Chain: what a hand feels along positions of its probe, tick by tick, exactly as `catena replay` computes it.
+#include <cmath>
 #include <memory>
-#include <optional>
+#include <mutex>
 
 #include "engine/python/module.h"
 #include "haptics/chain/tick.h"
@@ -62,7 +63,7 @@ struct Rows {
 
 class Chain {
  public:
-  Chain(const py::object& scene, const py::dict& fields, double rate_hz) : rate_hz_(rate_hz) {
+  Chain(const py::object& scene, const py::object& fields, double rate_hz) : rate_hz_(rate_hz) {
     if (!(rate_hz > 0) || !std::isfinite(rate_hz)) throw Failure(Error{"rate_hz is not positive; ticks a second were expected"});
     scene::Scene read = scene_of(scene, fields);
     const py::gil_scoped_release unlocked;
@@ -70,7 +71,9 @@ class Chain {
     reset();
   }
 
+  /// Waits for a run of another thread.
   void reset() {
+    const std::lock_guard turn(turn_);
     state_ = std::make_unique<haptics::ChainState>();
     scratch_ = std::make_unique<haptics::ChainScratch>();
     hash_ = {};
@@ -79,16 +82,19 @@ class Chain {
 
   Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
     const std::vector<Vec3> places = points_of(positions, "positions");
-    const auto t = column<double>(times, places.size(), "t");
-    const auto pressed = column<std::uint32_t>(buttons, places.size(), "buttons");
+    // none: evenly, and nothing is pressed
+    const std::vector<double> t = times.is_none() ? std::vector<double>() : column(times, places.size(), "t");
+    const std::vector<std::uint32_t> pressed =
+        buttons.is_none() ? std::vector<std::uint32_t>() : buttons_of(column(buttons, places.size(), "buttons"));
     Ticks out(static_cast<py::ssize_t>(places.size()), static_cast<py::ssize_t>(program_->links.size()));
     Rows rows(out);
     const py::gil_scoped_release unlocked;
+    const std::lock_guard turn(turn_);
     for (std::size_t i = 0; i < places.size(); ++i) {
       haptics::ProbeSample probe;
-      probe.t_s = t ? (*t)[i] : next_t_s();
+      probe.t_s = t.empty() ? next_t_s() : t[i];
       probe.position = places[i];
-      if (pressed) probe.buttons = (*pressed)[i];
+      if (!pressed.empty()) probe.buttons = pressed[i];
       haptics::tick(*program_, probe, *state_, *scratch_, last_);
       hash_.add(last_);
       ++ticks_;
@@ -103,21 +109,35 @@ class Chain {
     return names;
   }
   double metres_per_unit() const { return program_->metres_per_unit; }
-  std::uint64_t ticks() const { return ticks_; }
-  std::uint64_t state_hash() const { return hash_.value(); }
+  std::uint64_t ticks() const {
+    const std::lock_guard turn(turn_);
+    return ticks_;
+  }
+  std::uint64_t state_hash() const {
+    const std::lock_guard turn(turn_);
+    return hash_.value();
+  }
 
  private:
   double next_t_s() const { return static_cast<double>(ticks_) / rate_hz_; }
 
-  template <class T>
-  static std::optional<std::vector<T>> column(const py::object& from, std::size_t rows, const std::string& what) {
-    if (from.is_none()) return std::nullopt;
-    const auto array = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(from);
-    if (!array || array.size() != static_cast<py::ssize_t>(rows))
+  static std::vector<double> column(const py::object& from, std::size_t rows, const std::string& what) {
+    const Numbers array = numbers_of(from, what);
+    if (array.size() != static_cast<py::ssize_t>(rows))
       throw Failure(Error{what + " does not have one number for each position; " + std::to_string(rows) + " were expected"});
-    return std::vector<T>(array.data(), array.data() + rows);
+    return std::vector<double>(array.data(), array.data() + rows);
+  }
+  static std::vector<std::uint32_t> buttons_of(const std::vector<double>& numbers) {
+    std::vector<std::uint32_t> all;
+    for (const double number : numbers) {
+      if (!(number >= 0 && number <= 4294967295.0) || number != std::floor(number))
+        throw Failure(Error{"buttons: holds " + std::to_string(number) + "; whole numbers of 32 bits were expected"});
+      all.push_back(static_cast<std::uint32_t>(number));
+    }
+    return all;
   }
 
+  mutable std::mutex turn_;  ///< of the threads that tick
   double rate_hz_;
   std::shared_ptr<const haptics::Program> program_;
   std::unique_ptr<haptics::ChainState> state_;
@@ -139,8 +159,8 @@ void add_chain(py::module_& m) {
       .def_readonly("statuses", &Ticks::statuses, "(N, L) of uint8: indices into catena.STATUSES.");
   py::class_<Chain>(m, "Chain",
                     "The chain of proxies of a scene, felt by a probe that the caller moves. It remembers from tick to tick: run() goes on "
-                    "where it was. One thread at a time.")
-      .def(py::init<const py::object&, const py::dict&, double>(), py::arg("scene"), py::arg("fields") = py::dict(),
+                    "where it was. Threads that share one wait for each other.")
+      .def(py::init<const py::object&, const py::object&, double>(), py::arg("scene"), py::arg("fields") = py::none(),
            py::arg("rate_hz") = 1000.0,
            "scene: a path, or a dict as a scene file has it. fields: names and the Fields or arrays (z, y, x) that stand for "
            "them.\nrate_hz: "
@@ -149,9 +169,13 @@ void add_chain(py::module_& m) {
            "A tick for each position.\n\npositions: (N, 3) or (3,), world units. t: (N,), seconds, rising; None: evenly at rate_hz. "
            "buttons: (N,), whole numbers, bit 0 is button 1.\nReturns Ticks. The same positions give the same bits as `catena replay`.")
       .def(
-          "step", [](Chain& chain, const Points& position) { return chain.run(position, py::none(), py::none()); }, py::arg("position"),
-          "One tick: run() of one position.\n\nposition: (3,), world units. Returns Ticks with N = 1.")
-      .def("reset", &Chain::reset, "Forgets all ticks: the next one is the first.")
+          "step",
+          [](Chain& chain, const Points& position) {
+            vec3_of(position, "position");
+            return chain.run(position, py::none(), py::none());
+          },
+          py::arg("position"), "One tick: run() of one position.\n\nposition: (3,), world units. Returns Ticks with N = 1.")
+      .def("reset", &Chain::reset, py::call_guard<py::gil_scoped_release>(), "Forgets all ticks: the next one is the first.")
       .def_property_readonly("links", &Chain::links, "The names of the L links, in order.")
       .def_property_readonly("metres_per_unit", &Chain::metres_per_unit, "Metres of the hand a world unit.")
       .def_property_readonly("ticks", &Chain::ticks, "How many ticks there were since the start.")

@@ -1,4 +1,6 @@
 /// catena.trace: streamlines through seeds, as the hand feels them and the picture shows them.
+#include <cmath>
+
 #include "engine/flow/curve.h"
 #include "engine/python/module.h"
 
@@ -19,6 +21,9 @@ py::array_t<double> of_knots(const Curve& curve, Get get) {
 std::vector<Curve> trace(const Field& field, const Points& seeds, double length, bool line, double min_speed, double tolerance) {
   if (!field.any.vector) throw Failure(Error{"a scalar field has no streamlines; a vector field was expected"});
   const std::vector<Vec3> places = points_of(seeds, "seeds");
+  for (const auto& [what, value] : {std::pair{"length", length}, {"min_speed", min_speed}, {"tolerance", tolerance}})
+    if (!(value >= 0) || !std::isfinite(value))
+      throw Failure(Error{std::string(what) + " is " + std::to_string(value) + "; a finite number, 0 or more, was expected"});
   const py::gil_scoped_release unlocked;
   flow::TraceOptions options;
   options.length = length;
@@ -32,7 +37,8 @@ std::vector<Curve> trace(const Field& field, const Points& seeds, double length,
   return curves;
 }
 
-py::array_t<double> at(const Curve& curve, const py::array_t<double, py::array::c_style | py::array::forcecast>& s) {
+py::array_t<double> at(const Curve& curve, const py::object& lengths) {
+  const Numbers s = numbers_of(lengths, "s");
   std::vector<Vec3> places;
   for (py::ssize_t i = 0; i < s.size(); ++i) places.push_back(curve.curve->position(s.data()[i]));
   return array_of(places);

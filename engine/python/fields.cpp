@@ -51,7 +51,8 @@ Field analytic(const std::string& name, double scale, const std::string& part, c
   return {take(field::make_analytic(name, parameters))};
 }
 
-void save(const Field& field, const std::string& path) {
+void save(const Field& field, const py::object& to) {
+  const std::string path = path_of(to);
   if (!field.any.get()->is_grid()) throw Failure(Error{"a formula has no voxels to write; a grid was expected"});
   const py::gil_scoped_release unlocked;
   take(field::write_vdb(path, {{field.any, field.any.get()->name()}}));

@@ -1,11 +1,26 @@
 #include "engine/python/module.h"
 
+#include <algorithm>
+#include <string_view>
+
 #include "engine/base/version.h"
 #include "engine/scene/scene.h"
 
 namespace catena::python {
 
-std::vector<Vec3> points_of(const Points& array, const std::string& what) {
+std::string path_of(const py::object& path) { return py::cast<std::string>(py::module_::import("os").attr("fsencode")(path)); }
+
+Numbers numbers_of(const py::object& array, const std::string& what) {
+  const py::array any = py::array::ensure(array);
+  if (any && std::string_view("biuf").find(any.dtype().kind()) != std::string_view::npos)
+    if (Numbers numbers = Numbers::ensure(any)) return numbers;
+  PyErr_Clear();
+  throw Failure(
+      Error{what + (any ? ": holds " + py::cast<std::string>(py::str(any.dtype())) : ": is no array") + "; real numbers were expected"});
+}
+
+std::vector<Vec3> points_of(const Points& points_given, const std::string& what) {
+  const Numbers array = numbers_of(points_given, what);
   const bool one = array.ndim() == 1 && array.shape(0) == 3;
   if (!one && !(array.ndim() == 2 && array.shape(1) == 3)) {
     std::string shape;
@@ -33,9 +48,10 @@ py::array_t<double> array_of(const std::vector<Vec3>& points) {
   return array;
 }
 
-scene::Scene scene_of(const py::object& what, const py::dict& fields) {
+scene::Scene scene_of(const py::object& what, const py::object& fields) {
   std::vector<scene::FieldOverride> given;
-  for (const auto& [key, value] : fields) {
+  for (const auto& [key, value] : fields.is_none() ? py::dict() : py::dict(fields)) {
+    if (!py::isinstance<py::str>(key)) throw Failure(Error{"fields: " + py::cast<std::string>(py::repr(key)) + " is no name"});
     const std::string name = py::cast<std::string>(key);
     given.push_back({name, {}, {}, field_of(value, name).any});
   }
@@ -46,11 +62,11 @@ scene::Scene scene_of(const py::object& what, const py::dict& fields) {
     return take(scene::scene_for_field(field.any));
   }
   if (py::isinstance<py::dict>(what)) {
-    const std::string text = py::cast<std::string>(py::module_::import("json").attr("dumps")(what));
+    const std::string text = py::cast<std::string>(py::module_::import("catena").attr("_text_of_scene")(what));
     const py::gil_scoped_release unlocked;
     return take(scene::parse_scene(text, "scene", given));
   }
-  const std::string path = py::cast<std::string>(py::module_::import("os").attr("fspath")(what));
+  const std::string path = path_of(what);
   const py::gil_scoped_release unlocked;
   if (path.ends_with(".json")) return take(scene::read_scene(path, given));
   if (!given.empty()) throw Failure(Error{path + ": a data file has no use for other fields; a scene was expected with them"});
@@ -74,7 +90,13 @@ PYBIND11_MODULE(_catena, m) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Failure& failure) {
-      PyErr_SetString((failure.machine ? machine_error : error).ptr(), failure.what());
+      // one line, whatever was named in it
+      std::string line = failure.message;
+      std::replace_if(
+          line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
+      const auto text =
+          py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(line.data(), static_cast<py::ssize_t>(line.size()), "backslashreplace"));
+      PyErr_SetObject((failure.machine ? machine_error : error).ptr(), text.ptr());
     }
   });
   catena::python::add_fields(m);

@@ -20,7 +20,8 @@ namespace py = pybind11;
 
 /// Becomes catena.Error, or catena.MachineError where the machine does not give what is needed.
 struct Failure : std::runtime_error {
-  explicit Failure(const Error& error) : std::runtime_error(error.message), machine(error.machine) {}
+  explicit Failure(const Error& error) : std::runtime_error(error.message), message(error.message), machine(error.machine) {}
+  std::string message;  ///< what() ends at a zero byte
   bool machine;
 };
 
@@ -35,8 +36,14 @@ struct Field {
   field::AnyField any;
 };
 
-/// N x 3 doubles, or three of them; another shape is an error that names `what`.
-using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// A path (str, bytes or os.PathLike) in the bytes of the file system.
+std::string path_of(const py::object& path);
+
+/// Real numbers of whatever shape; what holds none is an error that names `what`.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+Numbers numbers_of(const py::object& array, const std::string& what);
+/// N x 3 of them, or three; another shape is an error.
+using Points = py::object;
 std::vector<Vec3> points_of(const Points& array, const std::string& what);
 py::array_t<double> array_of(const std::vector<Vec3>& points);
 Vec3 vec3_of(const Points& array, const std::string& what);
@@ -45,8 +52,8 @@ Vec3 vec3_of(const Points& array, const std::string& what);
 Field field_of(const py::handle& value, const std::string& name);
 
 /// A scene of a path (a scene file or a data file), a dict as the scene file's object, a Field or an array. `fields`: names and Fields or
-/// arrays that the scene uses.
-scene::Scene scene_of(const py::object& what, const py::dict& fields);
+/// arrays that the scene uses, or None.
+scene::Scene scene_of(const py::object& what, const py::object& fields);
 
 void add_fields(py::module_& m);
 void add_arrays(py::module_& m);

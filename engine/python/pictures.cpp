@@ -48,7 +48,7 @@ py::array_t<T> image(const std::vector<From>& from, std::uint32_t height, std::u
   return array;
 }
 
-py::tuple render_arrays(const py::object& what, int width, int height, const py::dict& fields) {
+py::tuple render_arrays(const py::object& what, int width, int height, const py::object& fields) {
   if (width < 1 || height < 1 || width > 16384 || height > 16384)
     throw Failure(Error{"a picture of " + std::to_string(width) + " x " + std::to_string(height) +
                         " pixels; from 1 to 16384 each way were expected"});

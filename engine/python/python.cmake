@@ -28,5 +28,7 @@ file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/engine/python/catena/*
   ${PROJECT_SOURCE_DIR}/engine/python/catena/py.typed)
 add_custom_command(TARGET catena_python POST_BUILD
   COMMAND ${CMAKE_COMMAND} -E copy_if_different ${scripts} ${PROJECT_BINARY_DIR}/python/catena)
-install(TARGETS catena_python LIBRARY DESTINATION ${CATENA_PYTHON_FOLDER}/catena COMPONENT python)
-install(FILES ${scripts} DESTINATION ${CATENA_PYTHON_FOLDER}/catena COMPONENT python)
+if(CATENA_INSTALL)
+  install(TARGETS catena_python LIBRARY DESTINATION ${CATENA_PYTHON_FOLDER}/catena COMPONENT python)
+  install(FILES ${scripts} DESTINATION ${CATENA_PYTHON_FOLDER}/catena COMPONENT python)
+endif()

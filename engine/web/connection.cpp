@@ -1,4 +1,5 @@
 #include <boost/beast/core/bind_handler.hpp>
+#include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -61,6 +62,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (target == "/socket") return open_socket(known);
     if (request.method() != http::verb::get) return say(http::status::method_not_allowed, "Only GET is answered.\n");
     const bool invited = hub_.access.has_token(target);
+    const Hub::Offered& offered = hub_.offered;
+    if (known && !offered.path.empty() && target == offered.target) return send_file(offered);
     if (!invited && target != "/" && !target.starts_with("/?")) return say(http::status::not_found, "There is only one page.\n");
     if (!invited && !known) return say(http::status::forbidden, kNoEntry);
     show_page(invited ? std::optional(hub_.access.set_cookie(host)) : std::nullopt);
@@ -78,7 +81,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void show_page(const std::optional<std::string>& cookie) {
     const std::string nonce = new_secret(), framed = hub_.options.framed_by.empty() ? "'none'" : hub_.options.framed_by;
-    begin(http::status::ok, "text/html; charset=utf-8");
+    begin(response_, http::status::ok, "text/html; charset=utf-8");
     response_.set("Content-Security-Policy",
                   "default-src 'none'; script-src 'nonce-" + nonce + "'; style-src 'nonce-" + nonce +
                       "'; img-src blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors " + framed);
@@ -87,22 +90,44 @@ class Connection : public std::enable_shared_from_this<Connection> {
     finish();
   }
 
+  /// To be kept, not shown, whatever is in it.
+  void send_file(const Hub::Offered& offered) {
+    boost::system::error_code error;
+    begin(file_, http::status::ok, "application/octet-stream");
+    file_.set(http::field::content_disposition, "attachment; filename=\"" + offered.target.substr(1) + "\"");
+    file_.body().open(offered.path.c_str(), beast::file_mode::scan, error);
+    if (error) return say(http::status::not_found, "The file cannot be read.\n");
+    file_.prepare_payload();
+    sender_.emplace(file_);
+    send_more();
+  }
+
+  /// However long all of it takes: what is not taken for kPatienceS ends it.
+  void send_more() {
+    stream_.expires_after(std::chrono::seconds(kPatienceS));
+    http::async_write_some(stream_, *sender_, [self = shared_from_this()](boost::system::error_code error, std::size_t) {
+      if (error || self->sender_->is_done()) return self->end();
+      self->send_more();
+    });
+  }
+
   void say(http::status status, const std::string& words) {
-    begin(status, "text/plain; charset=utf-8");
+    begin(response_, status, "text/plain; charset=utf-8");
     response_.body() = words;
     finish();
   }
 
-  void begin(http::status status, const char* type) {
-    response_.result(status);
-    response_.version(11);
-    response_.set(http::field::content_type, type);
-    response_.set(http::field::cache_control, "no-store");
-    response_.set("X-Content-Type-Options", "nosniff");
-    response_.set("Referrer-Policy", "no-referrer");
-    response_.set("Cross-Origin-Opener-Policy", "same-origin");
-    response_.set("Cross-Origin-Resource-Policy", "same-origin");
-    response_.keep_alive(false);
+  template <class Response>
+  static void begin(Response& response, http::status status, const char* type) {
+    response.result(status);
+    response.version(11);
+    response.set(http::field::content_type, type);
+    response.set(http::field::cache_control, "no-store");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");
+    response.keep_alive(false);
   }
 
   void finish() {
@@ -121,6 +146,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_{kLongestHeader + 1024};
   http::request_parser<http::empty_body> parser_;
   http::response<http::string_body> response_;
+  http::response<http::file_body> file_;
+  std::optional<http::response_serializer<http::file_body>> sender_;  ///< of file_
 };
 
 }  // namespace

@@ -29,6 +29,9 @@ struct Hub {
   boost::asio::io_context io{1};
   std::map<ViewerId, std::shared_ptr<ViewerLink>> viewers;
   ViewerId last_viewer = 0;
+  struct Offered {
+    std::string target, path{};  ///< of a request, "/NAME"; of the file, empty: none
+  } offered;
 
   std::mutex mutex;
   std::condition_variable happened;

@@ -133,6 +133,11 @@ void Server::send(ViewerId viewer, Slot slot, std::string bytes) {
   });
 }
 
+void Server::offer(std::string name, std::string path) {
+  Hub& hub = parts_->hub;
+  asio::post(hub.io, [&hub, target = "/" + name, path = std::move(path)] { hub.offered = {target, path}; });
+}
+
 bool Server::wants_picture() const { return parts_->hub.takers > 0; }
 
 }  // namespace catena::web

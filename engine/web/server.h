@@ -62,6 +62,9 @@ class Server {
   /// What happened since the last call; where nothing has, waits up to `wait_s` for something, or for a viewer that takes a picture.
   std::vector<News> take(double wait_s);
   void send(ViewerId viewer, Slot slot, std::string bytes);
+  /// GET /NAME brings this file to who has the cookie, to be kept; an empty path: there is none any more. One file at a time, as long as
+  /// it is by then.
+  void offer(std::string name, std::string path);
   /// Some viewer would be sent a picture at once.
   bool wants_picture() const;
 

@@ -1,13 +1,18 @@
 """The Python module as a user has it: run by ctest with the build's module in PYTHONPATH, CATENA the program, SOURCE the checkout."""
 import csv
+import html
 import inspect
 import json
 import os
+import re
 import subprocess
 import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
+import urllib.error
+import urllib.request
 
 import numpy as np
 
@@ -34,6 +39,12 @@ class Fields(unittest.TestCase):
         places = np.array([[x, y, z] for z in range(4) for y in range(5) for x in range(6)], float)
         for kind in "float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64".split():
             np.testing.assert_array_equal(catena.field(a.astype(kind)).sample(places), a.ravel(), kind)
+        np.testing.assert_array_equal(catena.field(a.astype("float16")).sample(places), a.ravel())
+        for kind in ">f4", ">f8", ">i2", ">u4", ">f2":
+            np.testing.assert_array_equal(catena.field(a.astype(kind)).sample(places), a.ravel(), kind)
+        # what is masked is no voxel
+        masked = catena.field(np.ma.masked_greater(a, 60))
+        self.assertEqual(masked.range, (0, 60))
         # strides of every kind are read where they lie
         np.testing.assert_array_equal(catena.field(a.T, axes="xyz").sample(places), a.ravel())
         np.testing.assert_array_equal(catena.field(np.asfortranarray(a)).sample(places), a.ravel())
@@ -106,6 +117,23 @@ class Errors(unittest.TestCase):
         self.says("seeds[1]", lambda: catena.trace(catena.analytic("saddle"), [[1, 1, 0], [0, 0, 0]]))
         self.says("positions", lambda: catena.Chain({}).run([[1, 2]]))
         self.says("is no folder", lambda: catena.trade_report("/nowhere"))
+        field = catena.analytic("circle")
+        self.says("real numbers", lambda: field.sample("abc"))
+        self.says("real numbers", lambda: field.sample([[1, 2, 3], [1]]))
+        self.says("complex128", lambda: field.sample(np.zeros((2, 3), complex)))
+        for bad in -1, np.nan, np.inf:
+            self.says("length is", lambda bad=bad: catena.trace(field, [1, 0, 0], length=bad))
+        self.says("a?b", lambda: catena.field(np.zeros((3, 3)), name="a\nb"))
+        self.says("/a?b.vdb: there is no such file", lambda: catena.field("/a\0b.vdb"))
+        self.says("there is no such file", lambda: catena.field("/a\udcffb.vdb"))
+        self.says("fields: 1 is no name", lambda: catena.Chain({}, fields={1: np.zeros((3, 3, 3))}))
+        self.says("a set has no place", lambda: catena.Chain({"chain": {1, 2}}))
+        self.says("not JSON compliant", lambda: catena.Chain({"coupling": {"stiffness": np.nan}}))
+        chain = catena.Chain({})
+        self.says("several points", lambda: chain.step([[1, 1, 1]] * 2))
+        for bad in [-1, 0], [0.5, 0], [2.0 ** 32, 0], [np.nan, 0]:
+            self.says("buttons: holds", lambda bad=bad: chain.run([[1, 1, 1]] * 2, buttons=bad))
+        self.says("buttons does not have", lambda: chain.run([[1, 1, 1]] * 2, buttons=[1]))
         self.assertTrue(issubclass(catena.MachineError, catena.Error) and issubclass(catena.Error, ValueError))
 
 
@@ -152,6 +180,26 @@ class Chains(unittest.TestCase):
         np.testing.assert_array_equal(far.forces, 0)
         np.testing.assert_allclose(near.proxies[0, -1], [16.2, 16.3, 26], atol=1e-6)
         np.testing.assert_allclose(near.forces, [[0, 0, 500 * 0.01]], atol=1e-5)
+
+    def test_numpy_s_numbers_are_a_scene_s(self):
+        link = {"name": "skin", "type": "isosurface", "field": "f", "level": np.float32(1.5), "free": "above"}
+        self.assertEqual(catena.Chain({"chain": [link]}, fields={"f": ball(9)}).links, ["skin"])
+
+    def test_threads_that_share_a_chain_wait_for_each_other(self):
+        chain = catena.Chain(SOURCE + "/assets/scenes/first.json")
+        places = np.tile(self.probe("first")[1], (3, 1))
+        def work():
+            for _ in range(4):
+                chain.run(places)
+                chain.reset()
+        workers = [threading.Thread(target=work) for _ in range(4)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        chain.reset()
+        self.assertEqual(chain.run(places[:5]).forces.shape, (5, 3))
+        self.assertEqual(chain.ticks, 5)
 
     def test_others_run_while_the_chain_does(self):
         chain = catena.Chain(SOURCE + "/assets/scenes/first.json")
@@ -248,6 +296,61 @@ class Windows(unittest.TestCase):
         self.assertEqual(lines[0], "{'scene': None, 'changed': False}")
         self.assertEqual(lines[1], "False True")
         self.assertIn('unknown field "none"', lines[2])
+
+
+class Pages(unittest.TestCase):
+    """catena.serve, as a notebook uses it, without one."""
+
+    def get(self, address):
+        with urllib.request.urlopen(address, timeout=20) as answer:
+            return answer.headers, answer.read().decode()
+
+    def has_ended(self, address):
+        for _ in range(400):
+            try:
+                urllib.request.urlopen(address, timeout=20).close()
+            except urllib.error.URLError:
+                return True
+            time.sleep(0.05)
+        return False
+
+    def test_an_array_is_served_as_a_frame_of_the_notebook(self):
+        with tempfile.TemporaryDirectory() as runtime:
+            with open(f"{runtime}/jpserver-77.json", "w", encoding="utf-8") as file:
+                json.dump({"url": "http://localhost:8888/", "pid": 77}, file)
+            with unittest.mock.patch.dict(os.environ, JPY_PARENT_PID="77", JUPYTER_RUNTIME_DIR=runtime):
+                served = catena.serve(ball(9), size=(320, 200))
+        with served:
+            self.assertTrue(served.running)
+            self.assertRegex(served.url, r"^http://localhost:[0-9]+/\?token=[0-9a-f]{32}$")
+            frame = re.fullmatch(r'<iframe src="([^"]*)" width="320" height="200" [^>]*></iframe>', served._repr_html_())
+            headers, page = self.get(html.unescape(frame.group(1)))
+            self.assertIn("frame-ancestors http://localhost:8888", headers["Content-Security-Policy"])
+            self.assertIn("HttpOnly", headers["Set-Cookie"])
+            self.assertIn("<canvas", page)
+            with self.assertRaises(urllib.error.HTTPError):
+                self.get(served.url.split("?")[0])
+        self.assertFalse(served.running)
+        self.assertNotIn("iframe", served._repr_html_())
+        self.assertTrue(self.has_ended(served.url))
+        served.stop()
+
+    def test_what_cannot_be_served_is_the_program_s_line(self):
+        with self.assertRaises(catena.Error) as caught:
+            catena.serve({"isosurfaces": [{"field": "none", "level": 4}]})
+        self.assertIn('unknown field "none"', str(caught.exception))
+        with self.assertRaises(catena.Error):
+            catena.serve(ball(9), page="file:///etc")
+
+    def test_it_ends_with_its_program_however_that_ends(self):
+        code = ("import os, signal, catena, numpy as np\n"
+                "served = catena.serve(np.mgrid[:9, :9, :9][0])\n"
+                "print(served.url, flush=True)\n"
+                "if {how}: os.kill(os.getpid(), signal.SIGKILL)\n")
+        for how in (True, False):
+            done = subprocess.run([os.sys.executable, "-c", code.format(how=how)], capture_output=True, text=True, timeout=100, check=False)
+            self.assertTrue(done.stdout.startswith("http://127.0.0.1:"), done.stderr)
+            self.assertTrue(self.has_ended(done.stdout.strip()))
 
 
 class Words(unittest.TestCase):

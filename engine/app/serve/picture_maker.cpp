@@ -1,9 +1,11 @@
 #include "engine/app/serve/picture_maker.h"
 
+#include <optional>
 #include <utility>
 
 #include "engine/base/clock.h"
 #include "render/image/encode.h"
+#include "render/quality/quality.h"
 
 namespace catena::app {
 
@@ -38,16 +40,20 @@ Outcome PictureMaker::draw(Drawing& drawing, Pacing& pacing, FrameTimes& times, 
     if (auto known = drawing.estimate_if_wanted(*renderer_, packet, next); !known) return of_machine(known.error());
     start = now_ns();
   }
+  std::optional<render::DrawingClock> clock(*renderer_);
   auto drawn = renderer_->draw(packet, next.settings);
   if (!drawn && renderer_->device().lost()) {
+    clock.reset();  // its renderer goes
     CATENA_CHECK(make_renderer());
     drawn = renderer_->draw(packet, next.settings);
   }
   if (!drawn) return of_machine(drawn.error());
+  const double drawing_ms = clock ? clock->ms() : 0;
   auto picture = renderer_->read_back();
   if (!picture) return of_machine(picture.error());
   picture_ = std::move(*picture);
   const double ms = ms_since(start);
+  drawing_ms_ = clock ? drawing_ms : ms;
   pacing.drawn(ms);
   times.add(ms, now_ns());
   drawing.drawn(std::move(packet), *renderer_);

@@ -21,6 +21,8 @@ class PictureMaker {
   /// The last picture as a message. `exact`: PNG.
   Result<std::string> message(bool exact, std::uint32_t motion);
 
+  /// Of the last picture, as render::DrawingClock counts; wall time where the device was lost on the way.
+  double drawing_ms() const { return drawing_ms_; }
   bool has_picture() const { return !picture_.rgba.empty(); }
   render::Renderer& renderer() { return *renderer_; }
 
@@ -31,6 +33,7 @@ class PictureMaker {
   std::unique_ptr<render::Renderer> renderer_;
   render::Picture picture_;
   PictureHead head_;
+  double drawing_ms_ = 0;
 };
 
 }  // namespace catena::app

@@ -23,8 +23,10 @@ struct ServeOptions {
   web::ServerOptions server;                     ///< the page is set here
   std::uint32_t width = 1024, height = 768;      ///< of the picture before a page says its own size
   Quality quality;
+  bool quality_stated = false;   ///< by the command line or the scene: a plan leaves it alone
   std::uint64_t gpu_memory = 0;  ///< bytes; 0: what the driver offers
   double seconds = 0;            ///< ends after so long; 0: by Ctrl-C
+  bool until_stdin_ends = false;
 };
 
 /// Until Ctrl-C, or the time is over. Errors are one line: the scene's (bad input), or the machine's.

@@ -1,12 +1,17 @@
 #include "engine/app/serve/serve_session.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <utility>
 
 #include "engine/app/serve/words.h"
 #include "engine/base/clock.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
@@ -35,21 +40,41 @@ ServeSession::ServeSession(const ServeOptions& options, const LoadedScene& loade
   eye_.look_at(loaded);
   scene_.set_check([&hand](scene::Scene& edited) { return hand.check(edited); });
   scene_.take_changed();
+  plan_.quality_stated = options.quality_stated;
 }
 
+namespace {
+
+/// Who writes to it has gone; what it writes is of no interest.
+bool stdin_has_ended() {
+  pollfd in{STDIN_FILENO, POLLIN, 0};
+  std::array<char, 4096> ignored{};
+  while (poll(&in, 1, 0) > 0) {
+    const ssize_t count = read(STDIN_FILENO, ignored.data(), ignored.size());
+    if (count == 0 || (count < 0 && errno != EINTR)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool ServeSession::goes_on() const {
+  if (options_.until_stdin_ends && stdin_has_ended()) return false;
   return !interrupt_.asked() && (options_.seconds <= 0 || 1e-3 * ms_since(start_ns_) < options_.seconds);
 }
 
 Outcome ServeSession::run() {
+  CATENA_CHECK(plan_as_stated());
   start_ns_ = now_ns();
   bool busy = true;
   while (goes_on()) {
     for (const web::News& news : server_.take(viewers_.empty() ? kNobodyWaitS : busy ? 0 : kLookWaitS)) hear(news);
-    for (const WidgetEdits::Ended& ended : widget_edits_.take(scene_.scene()))
-      if (const Outcome done = scene_.apply(ended.edits, ended.what); !done) note(done.error().message);
+    for (const WidgetEdits::Ended& ended : widget_edits_.take(scene_.scene())) note_if_wrong(scene_.apply(ended.edits, ended.what));
+    if (!viewers_.empty()) note_if_wrong(steps_.run(scene_));
+    if (recording_.is_over(hand_)) end_recording();
     if (scene_.take_changed()) {
-      if (const Outcome felt = hand_.publish(scene_.scene(), scene_.felt_text()); !felt) note(felt.error().message);
+      note_if_wrong(follow_text(plan_, scene_, pacing_));
+      note_if_wrong(hand_.publish(scene_.scene(), scene_.felt_text()));
       moved_ = true;
       scene_told_ = false;
     }
@@ -61,6 +86,7 @@ Outcome ServeSession::run() {
     busy = times_.count() != before;
     tell_state();
   }
+  CATENA_CHECK(recording_.end(hand_));
   const exchange::HapticState& felt = hand_.felt();
   fmt::print("{} pictures for at most {} page{} at a time, {:.1f} ms median, on {}\n", times_.count(), most_viewers_,
              most_viewers_ == 1 ? "" : "s", 1e-3 * times_.draw().p50_us, printable(maker_.renderer().stats().device));
@@ -79,6 +105,8 @@ Outcome ServeSession::show_next() {
       note(drawn.error().message);  // an edit's: the last picture stands
       return Done{};
     }
+    if (plan_.is_drawn_by(*next) && plan_.drawn(maker_.drawing_ms()))
+      if (const auto quality = plan_.quality()) pacing_ = Pacing(*quality);
     return send_picture(false);
   }
   // it rests: what the pages have is as good as it gets, but for how it was encoded
@@ -153,7 +181,7 @@ void ServeSession::tell_roles() {
 void ServeSession::tell_state() {
   if (ms_since(last_state_ns_) < kStateMs) return;
   last_state_ns_ = now_ns();
-  std::string state = state_words(hand_, scene_.scene().coupling.max_force_n, controls_.hand_mode, pacing_.words());
+  std::string state = state_words(hand_, scene_, {controls_.hand_mode, steps_.plays, pacing_.words(), plan_, recording_.name()});
   if (state != last_state_) server_.send(web::kAllViewers, web::Slot::state, state);
   last_state_ = std::move(state);
   // histograms come when they are sorted
@@ -165,6 +193,28 @@ void ServeSession::tell_state() {
 
 void ServeSession::note(const std::string& line) {
   if (holder_ != 0) server_.send(holder_, web::Slot::note, note_words(line));
+}
+
+void ServeSession::note_if_wrong(const Outcome& outcome) {
+  if (!outcome) note(outcome.error().message);
+}
+
+// ---- the plan ----
+
+/// What the scene wants before anybody looks.
+Outcome ServeSession::plan_as_stated() {
+  plan_.wanted = plan_.stated = scene_.scene().plan;
+  if (plan_.wanted.of_hand()) {
+    CATENA_CHECK(measure_hand(plan_, scene_, hand_, [](const std::string& line) { tell_from_catena(line); }));
+    scene_.touch();
+  }
+  return plan_.wanted.of_eye() && !plan_.quality_stated ? measure_eye_now() : Outcome(Done{});
+}
+
+Outcome ServeSession::measure_eye_now() {
+  CATENA_TRY(const render::FramePacket packet, drawing_.packet(width_, height_));
+  const auto tell = [this](const std::string& line) { viewers_.empty() ? tell_from_catena(line) : note(line); };
+  return measure_eye(plan_, pacing_, maker_.renderer(), packet, scene_, hand_, tell);
 }
 
 }  // namespace catena::app

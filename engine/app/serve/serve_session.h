@@ -8,9 +8,12 @@
 #include "engine/app/hand/signals.h"
 #include "engine/app/serve/picture_maker.h"
 #include "engine/app/serve/serve.h"
+#include "engine/app/serve/served_recording.h"
 #include "engine/app/serve/wishes.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/shell/eye.h"
+#include "engine/app/viewer/shell/live_plan.h"
+#include "engine/app/viewer/shell/step_player.h"
 
 namespace catena::app {
 
@@ -35,6 +38,10 @@ class ServeSession {
   void carry_out(const LevelWish& wish);
   void carry_out(const OpacityWish& wish);
   void carry_out(const MapWish& wish);
+  void carry_out(const StepWish& wish);
+  void carry_out(const RecordWish& wish);
+  void carry_out(const PlanWish& wish);
+  void end_recording();
   void begin_hand();
   void end_hand();
   void apply_edits(const TextEdits& edits, const std::string& what, const std::string& item);
@@ -42,6 +49,9 @@ class ServeSession {
   void tell_roles();
   void tell_state();
   void note(const std::string& line);
+  void note_if_wrong(const Outcome& outcome);
+  Outcome plan_as_stated();
+  Outcome measure_eye_now();
   Outcome show_next();
   Outcome send_picture(bool exact);
 
@@ -58,6 +68,9 @@ class ServeSession {
   FrameTimes times_;
   FieldValues values_;
   WidgetEdits widget_edits_;
+  StepPlayer steps_;
+  LivePlan plan_;
+  ServedRecording recording_;
   std::vector<web::ViewerId> viewers_;  ///< in the order in which they came
   web::ViewerId holder_ = 0;            ///< of the hand; 0: it is free
   std::size_t most_viewers_ = 0;

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "engine/app/serve/serve_session.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::app {
 
@@ -37,7 +38,24 @@ void ServeSession::carry_out(const SizeWish& wish) {
 }
 
 void ServeSession::carry_out(Action action) {
-  if (action == Action::hand_mode) return controls_.hand_mode ? end_hand() : begin_hand();
+  switch (action) {
+    case Action::hand_mode:
+      return controls_.hand_mode ? end_hand() : begin_hand();
+    case Action::undo:
+      scene_told_ = false;
+      return note_if_wrong(scene_.undo());
+    case Action::redo:
+      scene_told_ = false;
+      return note_if_wrong(scene_.redo());
+    case Action::play_steps:
+      steps_.plays = !steps_.plays;
+      return;
+    case Action::next_step:
+    case Action::step_before:
+      return note_if_wrong(steps_.show(scene_, scene_.scene().time.step + (action == Action::next_step ? 1 : -1)));
+    default:
+      break;  // the eye's
+  }
   moved_ = eye_.act(action, static_cast<double>(width_) / height_) || moved_;
 }
 
@@ -96,6 +114,33 @@ void ServeSession::carry_out(const MapWish& wish) {
   const auto found = volume_of(scene_.scene(), wish.item);
   if (!found) return note("there is no such volume");
   apply_edits(map_edits(found->first, found->second, wish.name), "colours", wish.item);
+}
+
+void ServeSession::carry_out(const StepWish& wish) { note_if_wrong(steps_.show(scene_, wish.step)); }
+
+/// While one is under way nothing is offered: what is there is not whole.
+void ServeSession::carry_out(const RecordWish& wish) {
+  if (!wish.on) return end_recording();
+  note_if_wrong(recording_.begin(scene_, hand_));
+  server_.offer(recording_.name(), recording_.path());
+}
+
+void ServeSession::end_recording() {
+  if (recording_.is_over(hand_))
+    note("the recording has ended: " + std::string(hand_.recording().failed() ? "writing has failed" : "it is full"));
+  note_if_wrong(recording_.end(hand_));
+  server_.offer(recording_.name(), recording_.path());
+}
+
+void ServeSession::carry_out(const PlanWish& wish) {
+  if (wish.place) {
+    if (!plan_.eye && !plan_.hand) return note("the plan goes by what is not measured yet");
+    return note_if_wrong(scene_.set("/plan", scene::text_of(plan_.at(*wish.place)), "plan"));
+  }
+  want_the_usual(plan_);
+  note_if_wrong(measure_hand(plan_, scene_, hand_, [this](const std::string& line) { note(line); }));
+  scene_.touch();
+  if (!plan_.quality_stated) note_if_wrong(measure_eye_now());
 }
 
 }  // namespace catena::app

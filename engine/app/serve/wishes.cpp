@@ -11,12 +11,22 @@ namespace catena::app {
 namespace {
 
 constexpr double kFarthest = 1e5;  // pixels
-constexpr std::pair<std::string_view, Action> kActions[] = {{"hand", Action::hand_mode},        {"fit", Action::fit},
-                                                            {"first_view", Action::first_view}, {"along_x", Action::along_x},
-                                                            {"along_y", Action::along_y},       {"along_z", Action::along_z},
-                                                            {"against_x", Action::against_x},   {"against_y", Action::against_y},
-                                                            {"against_z", Action::against_z},   {"projection", Action::projection},
-                                                            {"turntable", Action::turntable}};
+constexpr std::pair<std::string_view, Action> kActions[] = {{"hand", Action::hand_mode},
+                                                            {"fit", Action::fit},
+                                                            {"first_view", Action::first_view},
+                                                            {"along_x", Action::along_x},
+                                                            {"along_y", Action::along_y},
+                                                            {"along_z", Action::along_z},
+                                                            {"against_x", Action::against_x},
+                                                            {"against_y", Action::against_y},
+                                                            {"against_z", Action::against_z},
+                                                            {"projection", Action::projection},
+                                                            {"turntable", Action::turntable},
+                                                            {"undo", Action::undo},
+                                                            {"redo", Action::redo},
+                                                            {"play_steps", Action::play_steps},
+                                                            {"next_step", Action::next_step},
+                                                            {"step_before", Action::step_before}};
 
 Result<Input> piece_of(const std::vector<double>& row) {
   for (const double number : row)
@@ -67,6 +77,19 @@ Result<Wish> parse_wish(std::string_view words) {
     if (what == word) return Wish{action};
   if (what == "take") return Wish{HandWish::take};
   if (what == "give") return Wish{HandWish::give};
+  if (what == "record") return Wish{RecordWish{true}};
+  if (what == "stop_recording") return Wish{RecordWish{false}};
+  if (what == "step") {
+    CATENA_TRY(const int step, json::get_integer(node, "value", -1, 0, 1'000'000'000));
+    if (step < 0) return Error{"step: expected a value"};
+    return Wish{StepWish{step}};
+  }
+  if (what == "plan") {
+    if (node.find("place") == nullptr) return Wish{PlanWish{}};
+    CATENA_TRY(const double place, json::require_number(node, "place"));
+    if (!(place >= 0 && place <= 1)) return Error{"place: expected a number from 0 to 1"};
+    return Wish{PlanWish{place}};
+  }
   if (what == "move") return move_of(node);
   if (what == "opacity") return opacity_of(node);
   if (what == "size") {

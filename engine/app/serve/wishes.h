@@ -7,9 +7,13 @@
 ///   {"do": "level", "item": "isosurfaces[0]", "value": V}
 ///   {"do": "opacity", "item": "volumes[0]", "points": [[value, alpha], ...]}
 ///   {"do": "map", "item": "volumes[0]", "name": "viridis"}
+///   {"do": "step", "value": N}                             in time
+///   {"do": "record" | "stop_recording"}                    every tick of the hand; the page can fetch what was recorded
+///   {"do": "plan", "place": S}                             from 0, fast, to 1, exact; without a place: what it goes by is measured first
 ///   {"do": "take" | "give"}                                the hand, which one page has at a time
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -42,9 +46,18 @@ struct OpacityWish {
 struct MapWish {
   std::string item, name;
 };
+struct StepWish {
+  int step = 0;
+};
+struct RecordWish {
+  bool on = false;
+};
+struct PlanWish {
+  std::optional<double> place;
+};
 enum class HandWish : std::uint8_t { take, give };
 
-using Wish = std::variant<MoveWish, SizeWish, Action, LevelWish, OpacityWish, MapWish, HandWish>;
+using Wish = std::variant<MoveWish, SizeWish, Action, LevelWish, OpacityWish, MapWish, StepWish, RecordWish, PlanWish, HandWish>;
 
 /// One line says what is wrong.
 Result<Wish> parse_wish(std::string_view words);

@@ -10,6 +10,8 @@
 #include "engine/base/json_text.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/steps.h"
+#include "render/quality/quality.h"
 
 namespace catena::app {
 
@@ -78,14 +80,49 @@ std::string scene_words(SceneHost& host, FieldValues& values) {
                      surfaces_words(scene, values), volumes_words(scene, values), json_list(scene::color_map_names(), word));
 }
 
-std::string state_words(const HandHost& hand, double max_force_n, bool hand_mode, const std::string& picture) {
+namespace {
+
+std::string step_words(const scene::Scene& scene, bool plays) {
+  const auto time = scene::time_of_step(scene);
+  const int count = scene::step_count(scene);
+  return fmt::format(R"({{"now": {}, "count": {}, "time": {}, "plays": {}}})", std::min(scene.time.step, count - 1), count,
+                     time ? json_number(*time) : "null", plays);
+}
+
+std::string recording_words(const Recording& recording, const std::string& recorded) {
+  return fmt::format(R"({{"on": {}, "seconds": {:.0f}, "mb": {:.1f}, "file": {}}})", recording.running(), recording.seconds(),
+                     1e-6 * static_cast<double>(recording.status().bytes), json_string(recorded));
+}
+
+std::string plan_words(const LivePlan& live) {
+  const bool eye = live.eye && !live.quality_stated, hand = live.hand && !live.hand->is_empty();
+  if (!eye && !hand) return "null";
+  std::string links;
+  if (hand)
+    for (const plan::PlannedLink& link : live.hand->links()) links += (links.empty() ? "" : ", ") + link.link + ": " + link.setting;
+  return fmt::format(
+      R"({{"place": {:.3f}, "eye": {}, "hand": {}}})", live.place(),
+      json_string(eye ? fmt::format("{}: {:.2g}/255, {:.3g} ms", render::describe(live.eye->settings()), live.eye->expected_error(),
+                                    live.eye->expected_ms())
+                      : ""),
+      json_string(hand ? fmt::format("{}: {:.2g}, {:.3g} us", links, live.hand->expected_error(), live.hand->expected_us()) : ""));
+}
+
+}  // namespace
+
+std::string state_words(const HandHost& hand, const SceneHost& scene, const StateWords& more) {
   const exchange::HapticState& felt = hand.felt();
   std::string links;
   for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(felt.link_count), hand.link_names().size()); ++i)
     links += fmt::format(R"({}{{"name": {}, "status": "{}"}})", links.empty() ? "" : ", ", json_string(hand.link_names()[i]),
                          exchange::status_word(felt.links[i].status));
-  return fmt::format(R"({{"state": {{"force": {:.3f}, "most": {}, "links": [{}], "hand": {}, "picture": {}}}}})", norm(felt.force_n),
-                     json_number(max_force_n), links, hand_mode, json_string(picture));
+  const scene::Document& document = scene.document();
+  return fmt::format(
+      R"({{"state": {{"force": {:.3f}, "most": {}, "links": [{}], "hand": {}, "picture": {}, "step": {}, "undo": {}, "redo": {}, )"
+      R"("recording": {}, "plan": {}}}}})",
+      norm(felt.force_n), json_number(scene.scene().coupling.max_force_n), links, more.hand_mode, json_string(more.picture),
+      step_words(scene.scene(), more.plays), json_string(document.undo_what()), json_string(document.redo_what()),
+      recording_words(hand.recording(), more.recorded), plan_words(more.plan));
 }
 
 std::string note_words(const std::string& line) { return fmt::format(R"({{"note": {}}})", json_string(line)); }

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 
-#include "engine/app/plan/make_plan.h"
 #include "engine/app/viewer/shell/session.h"
 #include "engine/base/tell.h"
 #include "render/extract/extract.h"
@@ -50,14 +49,10 @@ Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHos
 
 std::optional<Failure> plan_hand(LivePlan& live, SceneHost& scene, const HandHost& hand) {
   if (!live.wanted.of_hand()) return std::nullopt;
-  const auto say = [](const std::string& line) { tell_from_catena(line); };
-  auto made = plan::make_hand_plan(scene.scene(), scene.document().text(), live.wanted, hand.hand().settings.rate_hz, hand.fields(), say);
-  if (!made) return Failure{2, made.error().message};
-  if (made->is_empty()) return std::nullopt;
-  say(made->sentence());
-  live.hand = std::move(*made);
-  const Outcome taken = scene.plan_hand(live.hand);
-  if (!taken) return Failure{2, taken.error().message};
+  const Outcome planned = measure_hand(live, scene, hand, [](const std::string& line) { tell_from_catena(line); });
+  if (!planned) return Failure{2, planned.error().message};
+  if (!live.hand) return std::nullopt;
+  tell_from_catena(live.hand->sentence());
   scene.take_changed();
   return std::nullopt;
 }

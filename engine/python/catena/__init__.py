@@ -10,12 +10,16 @@
 Lengths are world units, forces newtons, times seconds. What cannot be used raises catena.Error with the one line that the program
 `catena` would print. Nothing here changes a NumPy array that it is given.
 """
+import glob as _glob
+import html as _html
 import json as _json
 import os as _os
 import shutil as _shutil
 import struct as _struct
 import subprocess as _subprocess
 import tempfile as _tempfile
+import urllib.parse as _urls
+import weakref as _weakref
 import zlib as _zlib
 
 import numpy as _np
@@ -23,8 +27,8 @@ import numpy as _np
 from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _recording, _render,
                       _study_table, analytic, analytic_names, trace)
 
-__all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Ticks", "analytic", "analytic_names", "field",
-           "recording", "render", "show", "study_table", "trace", "trade_report"]
+__all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Served", "Ticks", "analytic", "analytic_names",
+           "field", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
 
 
 def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear", grid="", step=0):
@@ -36,10 +40,12 @@ def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear"
     interpolation: between voxels: "linear", "nearest" (label maps) or "cubic".
     grid, step: of a file: which grid, which step in time.
 
-    An array is read once, where it lies; the field keeps a grid of 32-bit floats of its own.
+    An array is read once, where it lies; the field keeps a grid of 32-bit floats of its own. What is masked, NaN or infinite is no voxel.
     """
     if isinstance(data, (str, _os.PathLike)):
-        return _from_file(_os.fspath(data), grid, step, interpolation)
+        return _from_file(data, grid, step, interpolation)
+    if isinstance(data, _np.ma.MaskedArray):  # what is masked has no value
+        data = data.astype(_np.float32).filled(_np.nan)
     return _from_array(_np.asarray(data), axes, affine, name, interpolation)
 
 
@@ -84,7 +90,7 @@ def render(scene, width=640, height=480, *, fields=None):
     scene: a Field or an array (shown as its kind of data is best seen), a path of a scene or data file, or a dict as a scene file has it.
     width, height: pixels. fields: names and the Fields or arrays (z, y, x) that stand for them in the scene.
     """
-    return Picture(*_render(scene, width, height, fields or {}))
+    return Picture(*_render(scene, width, height, fields))
 
 
 def recording(path):
@@ -93,14 +99,14 @@ def recording(path):
     tick, t (N,); probe, forces (N, 3); buttons (N,); proxies (N, L, 3); statuses (N, L), indices into STATUSES; period_us, compute_us (N,).
     Beside them links (L names), gaps (sentences about ticks that are not there), ending, device, version and the scene's text.
     """
-    return _recording(_os.fspath(path))
+    return _recording(_os.fsencode(path))
 
 
 def study_table(folder):
     """All finished trials of a study's data folder, as a dict of arrays with a row for each: subject, task, condition, time_s, error_mm, ...
     end_mm is (N, 3). Rows of training are there too (training). "simulated" is one truth value: a model of a person did
     the trials; "notes" are lines about what of the folder was not taken."""
-    return _study_table(_os.fspath(folder))
+    return _study_table(_os.fsencode(folder))
 
 
 def trade_report(folder):
@@ -136,6 +142,49 @@ def _program():
     return found
 
 
+def _text_of_scene(scene):
+    """A dict as a scene file has it; NumPy's numbers and arrays are as good as Python's."""
+    def plain(value):
+        if isinstance(value, (_np.generic, _np.ndarray)):
+            return value.tolist()
+        raise TypeError(f"a {type(value).__name__} has no place in a scene")
+
+    try:
+        return _json.dumps(scene, indent=1, default=plain, allow_nan=False)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise Error(f"scene: {error}") from None
+
+
+def _laid_out(folder, scene, fields):
+    """A scene as the program takes it: its path, and options for its fields. What has no file gets one in that folder."""
+    given = dict(fields or {})
+    options = []
+    if isinstance(scene, (str, _os.PathLike)):
+        path = _os.fspath(scene)
+    elif isinstance(scene, dict):
+        path = _os.path.join(folder, "scene.json")
+        text = dict(scene)
+        text["fields"] = dict(text.get("fields", {}))
+        for name in given:
+            text["fields"].setdefault(name, {"file": f"{name}.vdb"})
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(_text_of_scene(text))
+    else:
+        path = _os.path.join(folder, "field.vdb")
+        (scene if isinstance(scene, Field) else field(scene)).save(path)
+    for number, (name, value) in enumerate(given.items()):
+        file = _os.path.join(folder, f"given-{number}.vdb")  # a name may be no file's
+        (value if isinstance(value, Field) else field(value, name=name)).save(file)
+        options += ["--field", f"{name}={file}"]
+    return path, options
+
+
+def _failure(code, told, command):
+    """What the program said as it ended."""
+    lines = told.strip().splitlines() or [f"catena {command} ended with {code}"]
+    return (Error if code == 2 else MachineError)(lines[-1].removeprefix("catena: "))
+
+
 def show(scene, *, fields=None, seconds=None, options=()):
     """Opens a scene in the window and waits until it is closed. Returns what the user did.
 
@@ -145,25 +194,7 @@ def show(scene, *, fields=None, seconds=None, options=()):
     A path is opened as it is and saved in its place; all else lies in a folder that is removed at the end.
     """
     with _tempfile.TemporaryDirectory(prefix="catena-") as folder:
-        arguments = []
-        given = dict(fields or {})
-        if isinstance(scene, (str, _os.PathLike)):
-            path = _os.fspath(scene)
-        elif isinstance(scene, dict):
-            path = _os.path.join(folder, "scene.json")
-            text = dict(scene)
-            text["fields"] = dict(text.get("fields", {}))
-            for name in given:
-                text["fields"].setdefault(name, {"file": f"{name}.vdb"})
-            with open(path, "w", encoding="utf-8") as file:
-                _json.dump(text, file, indent=1)
-        else:
-            path = _os.path.join(folder, "field.vdb")
-            (scene if isinstance(scene, Field) else field(scene)).save(path)
-        for name, value in given.items():
-            file = _os.path.join(folder, f"{name}.vdb")
-            (value if isinstance(value, Field) else field(value, name=name)).save(file)
-            arguments += ["--field", f"{name}={file}"]
+        path, arguments = _laid_out(folder, scene, fields)
         saved = path if path.endswith(".json") else path + ".json"
         before = _text_of(saved)
         command = [_program(), "view", path, *arguments, *options]
@@ -171,8 +202,7 @@ def show(scene, *, fields=None, seconds=None, options=()):
             command += ["--seconds", str(seconds)]
         done = _subprocess.run(command, stdout=_subprocess.DEVNULL, stderr=_subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
-            lines = done.stderr.strip().splitlines() or [f"catena view ended with {done.returncode}"]
-            raise (Error if done.returncode == 2 else MachineError)(lines[-1].removeprefix("catena: "))
+            raise _failure(done.returncode, done.stderr, "view")
         after = _text_of(saved)
         return {"scene": after, "changed": after != before}
 
@@ -183,3 +213,102 @@ def _text_of(path):
             return file.read()
     except OSError:
         return None
+
+
+class Served:
+    """A scene that a browser shows, as serve() gives it: a notebook shows it as a frame. It ends with stop(), at the end of a `with`, when
+    nothing refers to it any more, and with this program, however that ends.
+
+    url: the address with its token, on this machine. size: (width, height) of the frame, pixels.
+    """
+
+    def __init__(self, url, size, child, folder):
+        self.url, self.size, self._child = url, size, child
+        self._end = _weakref.finalize(self, _end_serving, child, folder)
+
+    def stop(self):
+        """Ends it; once is enough."""
+        self._end()
+
+    @property
+    def running(self):
+        """Whether the page is served."""
+        return self._child.poll() is None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+
+    def __repr__(self):
+        return f"<catena.Served {self.url}>" if self.running else "<catena.Served, ended>"
+
+    def _repr_html_(self):
+        if not self.running:
+            return "<p>The scene is not served any more.</p>"
+        width, height = self.size
+        return (f'<iframe src="{_html.escape(self.url)}" width="{width}" height="{height}" style="border: 0" title="Catena" '
+                'referrerpolicy="no-referrer"></iframe>')
+
+
+def _end_serving(child, folder):
+    child.stdin.close()  # it ends by itself then
+    try:
+        child.wait(10)
+    except _subprocess.TimeoutExpired:
+        child.kill()
+        child.wait()
+    child.stdout.close()
+    folder.cleanup()
+
+
+def serve(scene, *, fields=None, size=(960, 600), page=None, port=0, options=()):
+    """Shows a scene in a browser, by `catena serve` on this machine alone, and returns at once: a Served, which a notebook shows as a frame.
+
+    scene: a Field or an array, a path, or a dict as a scene file has it; fields: names and Fields or arrays of it (grids).
+    size: (width, height) of the frame, pixels. port: 0: any that is free. options: more options of `catena serve`.
+    page: the address of the page that frames it, as the browser has it, such as "http://localhost:8888"; None: that of the Jupyter server
+    that runs this, or no page. Nothing is written to the scene.
+    """
+    origin = _notebook() if page is None else page
+    parts = _urls.urlsplit(origin or "")
+    if origin and (parts.scheme not in ("http", "https") or not parts.hostname):
+        raise Error(f"{origin}: expected the address of a page, such as http://localhost:8888")
+    folder = _tempfile.TemporaryDirectory(prefix="catena-")
+    try:
+        path, arguments = _laid_out(folder.name, scene, fields)
+        command = [_program(), "serve", path, "--port", str(port), "--until-stdin-ends", *arguments, *options]
+        if origin:
+            command += ["--framed-by", f"{parts.scheme}://{parts.netloc}"]
+        told = _os.path.join(folder.name, "told")
+        with open(told, "wb") as errors:
+            child = _subprocess.Popen(command, stdin=_subprocess.PIPE, stdout=_subprocess.PIPE, stderr=errors, text=True,
+                                      start_new_session=True)  # an interrupt of a cell is not meant for it
+        url = child.stdout.readline().strip()
+        if not url:
+            child.stdin.close()
+            code = child.wait()
+            child.stdout.close()
+            raise _failure(code, _text_of(told) or "", "serve")
+    except BaseException:
+        folder.cleanup()
+        raise
+    # a cookie counts only where frame and page have the same name
+    if parts.hostname in ("localhost", "127.0.0.1"):
+        url = url.replace("//127.0.0.1:", f"//{parts.hostname}:", 1)
+    return Served(url, tuple(size), child, folder)
+
+
+def _notebook():
+    """Where the Jupyter server that has started this process is, by what it leaves for others to find; None: nowhere."""
+    parent = _os.environ.get("JPY_PARENT_PID", "")
+    places = [_os.environ.get("JUPYTER_RUNTIME_DIR", ""), _os.path.expanduser("~/.local/share/jupyter/runtime"),
+              _os.path.join(_os.environ.get("JUPYTER_DATA_DIR", ""), "runtime")]
+    for place in places if parent.isdigit() else []:
+        for path in _glob.glob(_os.path.join(_glob.escape(place), f"*server-{parent}.json")):
+            try:
+                return _json.loads(_text_of(path) or "")["url"]
+            except (ValueError, KeyError, TypeError):
+                continue
+    return None

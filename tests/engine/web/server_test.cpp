@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "engine/web/access.h"
 #include "tests/engine/web/client.h"
+#include "tests/support/support.h"
 
 namespace server_test {
 
@@ -193,6 +196,31 @@ TEST(Server, RequestsAreBounded) {
   EXPECT_FALSE(one_more->is_open());
   EXPECT_EQ(one_more->status(), 503);
   EXPECT_EQ(test::status_of(rig.ask("/", {{"Host", rig.host}, {"Cookie", rig.cookie}})), 200);
+}
+
+TEST(Server, OneFileIsOfferedToWhoHasTheCookie) {
+  const Rig rig;
+  const test::TemporaryFolder folder;
+  std::string bytes;
+  for (int i = 0; i < 3'000'000; ++i) bytes += static_cast<char>(i * i >> 7);
+  test::write_file(folder / "a", bytes);
+  const auto ask = [&](const std::string& target, bool known = true) {
+    return rig.ask(target, known ? test::Headers{{"Host", rig.host}, {"Cookie", rig.cookie}} : test::Headers{{"Host", rig.host}});
+  };
+  EXPECT_EQ(test::status_of(ask("/a.bin")), 404);
+  rig.server->offer("a.bin", folder / "a");
+  const std::string answer = ask("/a.bin");
+  EXPECT_EQ(test::status_of(answer), 200);
+  EXPECT_EQ(test::header_of(answer, "Content-Disposition"), "attachment; filename=\"a.bin\"");
+  EXPECT_TRUE(answer.substr(answer.find("\r\n\r\n") + 4) == bytes);
+  EXPECT_EQ(test::status_of(ask("/a.bin", false)), 404);
+  EXPECT_EQ(test::status_of(ask("/../a.bin")), 404);
+  // it has gone, or is offered no more
+  std::filesystem::remove(folder / "a");
+  EXPECT_EQ(test::status_of(ask("/a.bin")), 404);
+  rig.server->offer("", "");
+  EXPECT_EQ(test::status_of(ask("/a.bin")), 404);
+  EXPECT_EQ(test::status_of(ask("/")), 200);
 }
 
 TEST(Server, SaysWhereItCannotListen) {

@@ -17,6 +17,7 @@
 #include "engine/app/viewer/shell/pacing.h"
 #include "engine/app/viewer/shell/scene_host.h"
 #include "engine/app/viewer/shell/screen.h"
+#include "engine/app/viewer/shell/step_player.h"
 #include "engine/app/viewer/shell/values.h"
 
 namespace catena::app {
@@ -80,7 +81,7 @@ struct ViewState {
   std::string loading;              ///< the path that is being opened; empty: none
   std::vector<std::string> recent;  ///< paths, the newest first
 
-  bool plays_steps = false;  ///< steps in time go by
+  StepPlayer steps;  ///< in time
 
   std::string prompt;  ///< what the person does next, until it is done; empty: nothing is asked
 

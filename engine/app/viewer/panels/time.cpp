@@ -18,7 +18,7 @@ void draw_time(PanelContext& context) {
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderInt("##step", &step, 0, last, "step %d", ImGuiSliderFlags_AlwaysClamp)) context.ask(ShowStep{step});
   tip("the step that is shown; , and . go to the one before and after");
-  if (ImGui::Button(context.state.plays_steps ? "Stop" : "Play")) context.ask(Action::play_steps);
+  if (ImGui::Button(context.state.steps.plays ? "Stop" : "Play")) context.ask(Action::play_steps);
   ImGui::SameLine();
   auto rate = static_cast<float>(scene.time.per_second);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);

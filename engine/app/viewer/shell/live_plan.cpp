@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/quality/quality.h"
 
@@ -66,6 +67,45 @@ double LivePlan::place() const {
   if (eye && !quality_stated) return place_of(eye->stops(), eye->expected_error());
   if (hand && !hand->is_empty()) return place_of(hand->stops(), hand->expected_error());
   return 1;
+}
+
+bool LivePlan::is_drawn_by(const NextPicture& next) const {
+  return eye && next.scale == 1 && !next.settings.keep && render::describe(next.settings) == render::describe(eye->settings());
+}
+
+Outcome measure_hand(LivePlan& live, SceneHost& scene, const HandHost& hand, const plan::Tell& tell) {
+  CATENA_TRY(plan::HandPlan made,
+             plan::make_hand_plan(scene.scene(), scene.document().text(), live.wanted, hand.hand().settings.rate_hz, hand.fields(), tell));
+  if (made.is_empty()) return Done{};
+  live.hand = std::move(made);
+  return scene.plan_hand(live.hand);
+}
+
+Outcome measure_eye(LivePlan& live, Pacing& pacing, render::Renderer& renderer, const render::FramePacket& packet, const SceneHost& scene,
+                    const HandHost& hand, const plan::Tell& tell) {
+  if (!render::draws_rays(packet)) {
+    tell("plan: the picture has no settings: nothing in it is drawn by rays");
+    return Done{};
+  }
+  auto made = plan::make_eye_plan(renderer, packet, live.wanted, {scene.scene(), scene.document().text(), hand.fields()}, tell);
+  if (!made) return Error{made.error().message, true};
+  live.eye = std::move(*made);
+  tell(live.eye->sentence());
+  if (const auto quality = live.quality()) pacing = Pacing(*quality);
+  return Done{};
+}
+
+void want_the_usual(LivePlan& live) {
+  if (!live.wanted.of_eye()) live.wanted.error = 2;
+  if (!live.wanted.of_hand()) live.wanted.hand_error = 1e-9;
+}
+
+Outcome follow_text(LivePlan& live, SceneHost& scene, Pacing& pacing) {
+  if (!live.follow(std::as_const(scene).scene().plan)) return Done{};
+  const Outcome planned = live.hand && live.wanted.of_hand() ? scene.plan_hand(live.hand) : Outcome(Done{});
+  if (const auto quality = live.quality(); quality && live.wanted.of_eye()) pacing = Pacing(*quality);
+  scene.take_changed();
+  return planned;
 }
 
 }  // namespace catena::app

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/app/hand/device_file.h"
-#include "engine/app/plan/make_plan.h"
 #include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
@@ -220,8 +219,7 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   const double ms = ms_since(start), drawing_ms = recovered ? ms : clock.ms();
   pacing.drawn(ms);
   LivePlan& live = shared_.plan;
-  const bool as_planned = live.eye && next.scale == 1 && !next.settings.keep && !for_file && shared_.times.count() > 0 &&
-                          render::describe(next.settings) == render::describe(live.eye->settings());
+  const bool as_planned = live.is_drawn_by(next) && !for_file && shared_.times.count() > 0;
   if (as_planned && live.drawn(drawing_ms))
     if (const auto quality = live.quality()) pacing = Pacing(*quality);
   if (shared_.times.count() == 0) tell_notes();
@@ -262,19 +260,9 @@ std::optional<Failure> PictureView::plan() {
   lay_out();
   auto packet = this->packet();
   if (!packet) return Failure{2, packet.error().message};
-  LivePlan& live = shared_.plan;
-  const SceneHost& scene = shared_.scene;
-  if (!render::draws_rays(*packet)) {
-    shared_.state.say("plan: the picture has no settings: nothing in it is drawn by rays");
-    return std::nullopt;
-  }
-  auto made =
-      plan::make_eye_plan(screen_->renderer(), *packet, live.wanted, {scene.scene(), scene.document().text(), shared_.hand.fields()},
-                          [this](const std::string& line) { shared_.state.say(line); });
+  const Outcome made = measure_eye(shared_.plan, shared_.pacing, screen_->renderer(), *packet, shared_.scene, shared_.hand,
+                                   [this](const std::string& line) { shared_.state.say(line); });
   if (!made) return Failure{1, made.error().message};
-  live.eye = std::move(*made);
-  shared_.state.say(live.eye->sentence());
-  if (const auto quality = live.quality()) shared_.pacing = Pacing(*quality);
   picked_stale_ = damaged_ = true;
   return std::nullopt;
 }

@@ -6,13 +6,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "engine/app/plan/make_plan.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
-#include "engine/field/kept.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -78,12 +75,7 @@ std::optional<Failure> Session::open() {
 bool Session::take_edits() {
   SceneHost& scene = shared_.scene;
   if (!scene.take_changed()) return false;
-  LivePlan& live = shared_.plan;
-  if (live.follow(scene.scene().plan)) {
-    if (live.hand && live.wanted.of_hand()) shared_.state.say_if_wrong(scene.plan_hand(live.hand));
-    if (const auto quality = live.quality(); quality && live.wanted.of_eye()) shared_.pacing = Pacing(*quality);
-    scene.take_changed();
-  }
+  shared_.state.say_if_wrong(follow_text(shared_.plan, scene, shared_.pacing));
   shared_.state.say_if_wrong(shared_.hand.publish(scene.scene(), scene.felt_text()));
   observe_hand_anew();
   look_for_pulses();
@@ -102,20 +94,8 @@ void Session::forget_plan() {
 /// The curves of this scene, whatever is wanted of it: the slider goes by them.
 std::optional<Failure> Session::measure_plan() {
   LivePlan& live = shared_.plan;
-  SceneHost& scene = shared_.scene;
-  const auto tell = [&](const std::string& line) { shared_.state.say(line); };
-  scene::Plan wanted = live.wanted;
-  if (!wanted.of_eye()) wanted.error = 2;
-  // as good as what a scene without a plan has
-  if (!wanted.of_hand()) wanted.hand_error = 1e-9;
-  auto hand = plan::make_hand_plan(scene.scene(), scene.document().text(), wanted, shared_.hand.hand().settings.rate_hz,
-                                   shared_.hand.fields(), tell);
-  if (!hand) tell(hand.error().message);
-  live.wanted = wanted;
-  if (hand && !hand->is_empty()) {
-    live.hand = std::move(*hand);
-    shared_.state.say_if_wrong(scene.plan_hand(live.hand));
-  }
+  want_the_usual(live);
+  shared_.state.say_if_wrong(measure_hand(live, shared_.scene, shared_.hand, [&](const std::string& line) { shared_.state.say(line); }));
   if (live.quality_stated) return std::nullopt;
   return picture_.plan();
 }
@@ -162,40 +142,7 @@ bool Session::follow_head() {
   return moved;
 }
 
-/// What cannot be loaded is said, and the step stays.
-void Session::show_step(int step) {
-  scene::Scene& scene = shared_.scene.scene();
-  const int count = scene::step_count(scene), wanted = (step % count + count) % count;
-  if (count < 2 || wanted == scene.time.step) return;
-  for (const field::LoadRequest& request : scene::requests_at(scene, wanted))
-    if (const auto loaded = field::load_kept(request); !loaded) {
-      shared_.state.plays_steps = false;
-      return shared_.state.say(loaded.error().message, true);
-    }
-  last_step_ns_ = now_ns();
-  if (scene::set_step(scene, wanted)) shared_.scene.touch();
-}
-
-/// A step that is not loaded when its time has come is waited for, without holding up the window.
-void Session::run_steps() {
-  const scene::Scene& scene = std::as_const(shared_.scene).scene();
-  const int count = shared_.state.plays_steps ? scene::step_count(scene) : 1;
-  if (count < 2) return;
-  const int next = (scene.time.step + 1) % count;
-  std::vector<field::LoadRequest> ahead = scene::requests_at(scene, next);
-  const bool ready = std::all_of(ahead.begin(), ahead.end(), field::is_kept);
-  constexpr double kLongestWaitS = 30;  // then it is loaded here, which says what is wrong
-  const double since_s = s_since(last_step_ns_), period_s = 1 / scene.time.per_second;
-  if (since_s >= period_s && (ready || since_s >= period_s + kLongestWaitS)) return show_step(next);
-  if (steps_ahead_ == next) return;
-  steps_ahead_ = next;
-  constexpr int kAhead = 3;
-  for (int k = 2; k <= kAhead; ++k) {
-    const auto more = scene::requests_at(scene, (scene.time.step + k) % count);
-    ahead.insert(ahead.end(), more.begin(), more.end());
-  }
-  field::load_ahead(std::move(ahead));
-}
+void Session::show_step(int step) { shared_.state.say_if_wrong(shared_.state.steps.show(shared_.scene, step)); }
 
 void Session::update_title() {
   const double since_s = s_since(last_title_ns_);
@@ -254,7 +201,7 @@ std::optional<Failure> Session::run() {
       changed_ = true;
     }
     // what has changed since the last picture
-    run_steps();
+    shared_.state.say_if_wrong(shared_.state.steps.run(scene));
     const bool opened = files_.take_loaded();
     if (opened) {
       forget_plan();

@@ -42,7 +42,6 @@ class Session {
   bool run_pulses();
   bool follow_head();
   void show_step(int step);
-  void run_steps();
   void update_title();
   PanelContext context();
   std::optional<Failure> finish();
@@ -74,8 +73,6 @@ class Session {
   std::optional<Interrupt>& interrupt_;
   WidgetEdits widget_edits_;
   PulseClock pulses_;
-  std::int64_t last_step_ns_ = 0;  ///< in time
-  int steps_ahead_ = -1;           ///< the step that is loaded ahead
   bool has_pulses_ = false, pulses_run_ = true;
   std::int64_t start_ns_ = 0;             ///< of the loop
   bool changed_ = false;                  ///< a command has changed what the picture shows

@@ -101,7 +101,7 @@ void Session::act(Action action) {
     case Action::pulses:
       return toggle(pulses_run_);
     case Action::play_steps:
-      return toggle(state.plays_steps);
+      return toggle(state.steps.plays);
     case Action::next_step:
       return show_step(scene.scene().time.step + 1);
     case Action::step_before:

@@ -74,6 +74,20 @@ TEST(InABrowser, ThePageShowsTurnsFeelsAndChanges) {
   const double exact = browser.number("catena.exact");
   EXPECT_TRUE(browser.until("catena.exact > " + std::to_string(exact)));
   keep(browser, "changed");
+
+  // taken back; no steps in time here; a recording, which a link brings
+  const auto click = [&](const std::string& id) { browser.value("document.getElementById('" + id + "').click()"); };
+  EXPECT_TRUE(browser.until("undoButton.title.includes('colours') && !undoButton.disabled && redoButton.disabled"));
+  browser.value("undoButton.click()");
+  EXPECT_TRUE(browser.until("catena.scene.volumes[0].map == 'viridis' && !redoButton.disabled"));
+  EXPECT_TRUE(browser.value("at('steps').hidden").boolean);
+  click("record");
+  EXPECT_TRUE(browser.until("catena.state.recording.mb > 0 && at('record').textContent == 'Stop'"));
+  keep(browser, "recording");
+  click("record");
+  EXPECT_TRUE(browser.until("document.querySelector('#recorded a')"));
+  EXPECT_GT(browser.value("fetch(document.querySelector('#recorded a').href).then(a => a.arrayBuffer()).then(b => b.byteLength)").number,
+            100);
   EXPECT_EQ(browser.value("catena.note").string, "");
 
   EXPECT_EQ(served.interrupt(), 0);

@@ -135,6 +135,112 @@ TEST(Serve, AVolumesTransferFunctionIsChanged) {
   EXPECT_EQ(test::told(*page, "note").kind, catena::json::Kind::string);
 }
 
+TEST(Serve, StepsUndoAndRecordings) {
+  const test::TemporaryFolder folder;
+  for (const char* step : {"0", "1", "2"}) {
+    const test::ProgramResult made = test::run_catena({"generate", "sphere", "--resolution", "12", "--scale", step[0] == '1' ? "2" : "1",
+                                                       "-o", folder / ("a_" + std::string(step) + ".vdb")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  test::write_file(folder / "series.json", R"({"fields": {"f": {"file": "a_*.vdb"}}, "isosurfaces": [{"field": "f", "level": 1}],
+    "chain": [{"name": "skin", "type": "isosurface", "field": "f", "level": 1, "free": "above"}], "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}})");
+  test::Served served(folder / "series.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  const auto step_is = [](int wanted) { return [wanted](const Node& s) { return number_of(*s.find("step"), "now") == wanted; }; };
+  EXPECT_EQ(number_of(*test::told(*page, "state").find("step"), "count"), 3);
+  page->say(R"({"do": "step", "value": 1})");
+  test::told(*page, "state", step_is(1));
+  page->say(R"({"do": "next_step"})");
+  test::told(*page, "state", step_is(2));
+  page->say(R"({"do": "next_step"})");  // round and round
+  test::told(*page, "state", step_is(0));
+  page->say(R"({"do": "play_steps"})");
+  for (const int wanted : {1, 2, 0}) EXPECT_EQ(test::told(*page, "state", step_is(wanted)).kind, catena::json::Kind::object) << wanted;
+  page->say(R"({"do": "play_steps"})");
+
+  // what is changed is taken back
+  const auto level_is = [](double wanted) {
+    return [wanted](const Node& s) { return number_of(s.find("isosurfaces")->items.at(0), "level") == wanted; };
+  };
+  std::string undo;  // what is told once may come before the scene or after it
+  const auto look = [&](const Node& message) {
+    if (const Node* state = message.find("state")) undo = word_of(*state, "undo");
+  };
+  page->say(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.5})");
+  test::told(*page, "scene", level_is(0.5), look);
+  if (undo.empty())
+    test::told(
+        *page, "state", [](const Node& state) { return word_of(state, "undo") != ""; }, look);
+  EXPECT_EQ(undo, "isolevel");
+  page->say(R"({"do": "undo"})");
+  EXPECT_EQ(test::told(*page, "scene", level_is(1)).kind, catena::json::Kind::object);
+  page->say(R"({"do": "redo"})");
+  EXPECT_EQ(test::told(*page, "scene", level_is(0.5)).kind, catena::json::Kind::object);
+
+  // what was felt can be fetched, and is a recording like any other; the next one takes its place
+  const auto fetched = [&](const std::string& name) {
+    const std::string answer = test::answer_to(
+        served.port(), test::request_of("/" + name, {{"Host", "127.0.0.1:" + std::to_string(served.port())}, {"Cookie", served.cookie()}}));
+    return test::status_of(answer) == 200 ? answer.substr(answer.find("\r\n\r\n") + 4) : "";
+  };
+  const auto file_is = [](const std::string& wanted) {
+    return [wanted](const Node& s) { return word_of(*s.find("recording"), "file") == wanted; };
+  };
+  for (const std::string name : {"recording-1.catlog", "recording-2.catlog"}) {
+    page->say(R"({"do": "record"})");
+    test::told(*page, "state",
+               [](const Node& s) { return s.find("recording")->find("on")->boolean && number_of(*s.find("recording"), "mb") > 0; });
+    EXPECT_EQ(fetched("recording-1.catlog"), "") << "it is not whole, or not there any more";
+    page->say(R"({"do": "stop_recording"})");
+    test::told(*page, "state", file_is(name));
+    test::write_file(folder / name, fetched(name));
+    const test::ProgramResult info = test::run_catena({"replay", "--log", folder / name});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+  }
+  EXPECT_EQ(served.interrupt(), 0);
+  EXPECT_EQ(served.err(), "");
+}
+
+TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "line.json", R"({"fields": {"flow": {"analytic": "circle"}},
+    "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.5, 0, 0]}],
+    "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}})");
+  test::Served served(folder / "line.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  page->say(R"({"do": "plan", "place": 0.5})");
+  EXPECT_EQ(test::told(*page, "note").kind, catena::json::Kind::string) << "nothing is measured yet";
+  page->say(R"({"do": "plan"})");
+  const auto planned = [](const Node& s) { return s.find("plan") != nullptr && s.find("plan")->kind == catena::json::Kind::object; };
+  const Node measured = test::told(*page, "state", planned);
+  ASSERT_TRUE(planned(measured));
+  EXPECT_NE(word_of(*measured.find("plan"), "hand").find("curve"), std::string::npos);
+  page->say(R"({"do": "plan", "place": 0})");
+  const Node chosen = test::told(*page, "state", [](const Node& s) { return word_of(s, "undo") == "plan"; });
+  EXPECT_EQ(word_of(chosen, "undo"), "plan");
+  EXPECT_TRUE(planned(chosen));
+}
+
+TEST(Serve, EndsWithTheProgramThatStartedIt) {
+  const Ball ball;
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+  const int before = dup(0);
+  dup2(ends[0], 0);
+  test::Served served(ball.path, {"--until-stdin-ends"});
+  dup2(before, 0);
+  for (const int end : {before, ends[0]}) close(end);
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  ASSERT_EQ(write(ends[1], "x\n", 2), 2) << "what is said to it is of no interest";
+  EXPECT_NE(test::shown(*page).number, 0u);
+  close(ends[1]);
+  EXPECT_EQ(test::shown(*page, [](const test::SentPicture&) { return false; }).number, 0u);
+  EXPECT_EQ(served.wait(), 0);
+}
+
 TEST(Serve, BadInputIsOneLine) {
   const Ball ball;
   for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{{"serve", "missing.json"},

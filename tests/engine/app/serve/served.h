@@ -31,6 +31,7 @@ class Served {
     if (child_ == 0) {
       dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
       dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
+      setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
       execv(argv[0], argv.data());
       _exit(127);
     }
@@ -52,6 +53,7 @@ class Served {
 
   const std::string& url() const { return url_; }
   int port() const { return port_; }
+  const std::string& cookie() const { return cookie_; }
   std::string out() const { return exists(folder_ / "out") ? read_file(folder_ / "out") : ""; }
   std::string err() const { return exists(folder_ / "err") ? read_file(folder_ / "err") : ""; }
   std::unique_ptr<Page> page() const {
@@ -60,6 +62,10 @@ class Served {
   /// By Ctrl-C; its exit code.
   int interrupt() {
     kill(child_, SIGINT);
+    return wait();
+  }
+  /// Until it has ended; its exit code.
+  int wait() {
     waitpid(child_, &status_, 0);
     ended_ = true;
     return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);

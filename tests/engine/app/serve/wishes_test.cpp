@@ -23,6 +23,12 @@ TEST(Wishes, SayWhatAPageMayAskFor) {
   ASSERT_TRUE(opacity);
   EXPECT_LT(std::get<OpacityWish>(*opacity).points[1].alpha, 1);
   EXPECT_EQ(std::get<HandWish>(*parse_wish(R"({"do": "take"})")), HandWish::take);
+  EXPECT_EQ(std::get<Action>(*parse_wish(R"({"do": "undo"})")), Action::undo);
+  EXPECT_EQ(std::get<StepWish>(*parse_wish(R"({"do": "step", "value": 3})")).step, 3);
+  EXPECT_TRUE(std::get<RecordWish>(*parse_wish(R"({"do": "record"})")).on);
+  EXPECT_FALSE(std::get<RecordWish>(*parse_wish(R"({"do": "stop_recording"})")).on);
+  EXPECT_EQ(std::get<PlanWish>(*parse_wish(R"({"do": "plan", "place": 0.25})")).place, 0.25);
+  EXPECT_FALSE(std::get<PlanWish>(*parse_wish(R"({"do": "plan"})")).place);
 }
 
 TEST(Wishes, NothingElseIsTaken) {
@@ -50,6 +56,13 @@ TEST(Wishes, NothingElseIsTaken) {
                           R"({"do": "level", "item": 3, "value": 1})",
                           R"({"do": "level", "item": "x", "value": 1e999})",
                           R"({"do": "opacity", "item": "volumes[0]", "points": {}})",
+                          R"({"do": "step"})",
+                          R"({"do": "step", "value": -1})",
+                          R"({"do": "step", "value": 0.5})",
+                          R"({"do": "step", "value": 1e12})",
+                          R"({"do": "plan", "place": 1.5})",
+                          R"({"do": "plan", "place": "fast"})",
+                          R"({"do": "record", "do": "x"})",
                           R"({"do": "map", "item": "volumes[0]"})"})
     EXPECT_FALSE(parse_wish(bad)) << bad;
   std::string pieces;

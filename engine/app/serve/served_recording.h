@@ -1,0 +1,37 @@
+/// ServedRecording is what pages of `catena serve` record: every tick of the hand, from a button to the next one, in a folder of its own
+/// below the machine's temporary one that goes with the program. There is one file at a time, the newest, which pages can fetch; it has at
+/// most kMostBytes. Frame thread.
+#pragma once
+#include <string>
+
+#include "engine/app/viewer/shell/hand_host.h"
+#include "engine/app/viewer/shell/scene_host.h"
+
+namespace catena::app {
+
+class ServedRecording {
+ public:
+  static constexpr std::uint64_t kMostBytes = 256'000'000;
+
+  ServedRecording() = default;
+  ~ServedRecording();
+  ServedRecording(const ServedRecording&) = delete;
+  ServedRecording& operator=(const ServedRecording&) = delete;
+
+  /// In the place of the one before. An error of the disk: nothing is recorded.
+  Outcome begin(const SceneHost& scene, HandHost& hand);
+  /// Nothing where none is under way.
+  Outcome end(HandHost& hand);
+  /// It has to end: there is no more room, or it cannot be written.
+  bool is_over(const HandHost& hand) const;
+
+  /// Of the one that is whole; empty: none.
+  const std::string& name() const { return name_; }
+  std::string path() const { return name_.empty() ? "" : folder_ + "/" + name_; }
+
+ private:
+  std::string folder_, name_;
+  int count_ = 0;
+};
+
+}  // namespace catena::app
