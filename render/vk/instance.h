@@ -13,6 +13,7 @@
 
 namespace catena::render::vk {
 
+/// "VK_ERROR_DEVICE_LOST" and so on.
 const char* result_name(VkResult result);
 /// "Vulkan could not WHAT: VK_ERROR_..."
 Error vulkan_error(VkResult result, const std::string& what);
@@ -29,8 +30,9 @@ namespace catena::render::vk {
 
 /// Where a window's surface comes from; the viewer passes it, headless programs have none.
 struct SurfaceFactory {
-  std::vector<std::string> instance_extensions;
-  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;
+  std::vector<std::string> instance_extensions;               ///< that the surface needs
+  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;  ///< Makes the surface of an instance.
+  /// Whether there is a window.
   explicit operator bool() const { return static_cast<bool>(create); }
 };
 
@@ -55,7 +57,9 @@ struct VulkanMaker {
 /// Warnings and errors so far; the driver may report from any thread.
 class Messages {
  public:
+  /// Adds a message.
   void add(std::string text);
+  /// Messages so far.
   std::uint64_t count() const;
   std::vector<std::string> texts() const;  ///< the first 64
 
@@ -65,15 +69,20 @@ class Messages {
   std::vector<std::string> texts_;
 };
 
+/// An instance. Frame thread.
 class Instance {
  public:
+  /// Makes or borrows it. An error is one sentence.
   static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanMaker& maker = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
+  /// Vulkan's handle.
   VkInstance handle() const { return instance_; }
+  /// The window's surface; null without a window.
   VkSurfaceKHR surface() const { return surface_; }
+  /// Warnings and errors so far.
   const Messages& messages() const { return messages_; }
 
  private:
