@@ -3,8 +3,7 @@ if(NOT TARGET catena_library)
   return()
 endif()
 find_program(CATENA_DOXYGEN doxygen)
-find_program(CATENA_PERL perl)
-if(NOT CATENA_DOXYGEN OR NOT CATENA_PERL)
+if(NOT CATENA_DOXYGEN)
   add_custom_target(docs COMMAND ${CMAKE_COMMAND} -E echo "The site is not made: doxygen is missing (apt-get install doxygen)"
     COMMAND ${CMAKE_COMMAND} -E false VERBATIM)
   return()
@@ -14,8 +13,8 @@ list(TRANSFORM CATENA_PUBLIC_HEADERS PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIA
 string(REPLACE ";" " " CATENA_SITE_INPUT "${pages};${headers}")
 configure_file(docs/site/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
 # beside the pages: what they link to that is no page
-add_custom_target(docs
-  COMMAND ${CATENA_DOXYGEN} ${PROJECT_BINARY_DIR}/Doxyfile
-  COMMAND ${CMAKE_COMMAND} -E copy_directory ${PROJECT_SOURCE_DIR}/docs/examples ${PROJECT_BINARY_DIR}/site/examples
-  COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_BINARY_DIR}/site
-  COMMENT "The documents' site: site/index.html" VERBATIM)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/site.cmake @ONLY CONTENT [[
+execute_process(COMMAND "@CATENA_DOXYGEN@" "@PROJECT_BINARY_DIR@/Doxyfile" COMMAND_ERROR_IS_FATAL ANY)
+file(COPY "@PROJECT_SOURCE_DIR@/docs/examples" "@PROJECT_SOURCE_DIR@/LICENSE" DESTINATION "@PROJECT_BINARY_DIR@/site")
+]])
+add_custom_target(docs COMMAND ${CMAKE_COMMAND} -P ${PROJECT_BINARY_DIR}/site.cmake COMMENT "The documents' site: site/index.html" VERBATIM)

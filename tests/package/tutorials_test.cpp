@@ -108,8 +108,9 @@ void numbers_are_said(const Page& page, const std::string& path) {
   }
 }
 
-void follow(const std::string& name) {
-  const std::string path = "docs/tutorials/" + name + ".md";
+/// Does what docs/IN/NAME.md says.
+void follow(const std::string& name, const std::string& in = "tutorials/") {
+  const std::string path = "docs/" + in + name + ".md";
   const Page page = read_page(path);
   test::TemporaryFolder folder;
   const std::string work = folder / name;
@@ -151,6 +152,11 @@ TEST(Tutorials, OwnExperiment) { follow("own-experiment"); }
 TEST(Tutorials, FromPython) {
   if (std::string(CATENA_PYTHON_FOLDER).empty()) GTEST_SKIP() << "the Python module was not built";
   follow("from-python");
+}
+
+TEST(Tutorials, FromOtherPrograms) {
+  for (const char* name : {"from-chai3d", "from-h3d", "from-paraview"}) follow(name, "");
+  if (!std::string(CATENA_PYTHON_FOLDER).empty()) follow("from-vtk", "");
 }
 
 TEST(Tutorials, EveryPageIsFollowed) {
