@@ -12,6 +12,7 @@ namespace catena {
 [[noreturn]] void assertion_failed(const char* expression, const char* file, int line);
 }  // namespace catena
 
+/// Prints the place and aborts unless the expression holds, in every build type. For bugs in Catena, never for what comes from outside.
 #define CATENA_ASSERT(expression) ((expression) ? static_cast<void>(0) : ::catena::assertion_failed(#expression, __FILE__, __LINE__))
 
 /// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick.
@@ -71,14 +72,16 @@ using Outcome = Result<Done>;
 
 }  // namespace catena
 
-/// Takes the value out of a Result or returns its error from the function around it.
+// how CATENA_TRY is made
 #define CATENA_CONCAT_(a, b) a##b
 #define CATENA_CONCAT(a, b) CATENA_CONCAT_(a, b)
 #define CATENA_TRY_(temporary, declaration, expression) \
   auto temporary = (expression);                        \
   if (!temporary) return temporary.error();             \
   declaration = std::move(*temporary)
+/// CATENA_TRY(const double x, number_of(text)): takes the value out of a Result, or returns its error from the function around it.
 #define CATENA_TRY(declaration, expression) CATENA_TRY_(CATENA_CONCAT(try_result_, __LINE__), declaration, expression)
+/// Goes on where an Outcome or Result is a success, or returns its error from the function around it.
 #define CATENA_CHECK(expression) \
   if (auto check_result = (expression); !check_result) return check_result.error()
 
