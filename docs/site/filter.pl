@@ -18,7 +18,7 @@ sub declared {
 
 my $name = $ARGV[0];
 while (<>) {
-  s/^\/\/\/ /\/\/\/ \\file $name\n\/\/\/ / if $. == 1;  # what a header says of itself; warnings count one line more
+  s/^\/\/\/ /\/\/\/ \\file \"$name\"\n\/\/\/ / if $. == 1;  # what a header says of itself; warnings count one line more
   s/^[^\/]*(= default|= delete);.*$//;
   s/^\s*(virtual )?~\w+\(\)( override)?( noexcept)?;.*$//;
   s/^\s*friend .*$//;
