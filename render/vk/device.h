@@ -119,6 +119,7 @@ class Device {
   const DeviceCounters& counters() const { return counters_; }
   /// What stands in for embedded shaders.
   ShaderReplacements& shaders() { return shaders_; }
+  /// What takes the time of the work that was submitted (stopwatch.h).
   Stopwatch& stopwatch() { return *stopwatch_; }
   /// Bytes that the budget still holds.
   std::uint64_t memory_left() const { return counters_.bytes < info_.memory_budget ? info_.memory_budget - counters_.bytes : 0; }
