@@ -22,6 +22,7 @@ while (<>) {
     s/\]\(#([\w-]+)\)/](#$page-$1)/g;
     s/\]\((?:[\w.-]+\/)*([\w-]+)\.md#([\w-]+)\)/](#$1-$2)/g;
     s/\]\([\w.\/]*viewer\/README\.md\)/](#page-viewer)/g;
+    s/\]\((?:\.\.\/)*README\.md\)/](index.html)/g;
     s/(!\[[^\]]*\]\()[\w.\/]*\/([\w-]+\.(?:png|gif)\))/$1$2/g;  # Doxygen looks for pictures by their names
   }
   print;

@@ -15,7 +15,6 @@ namespace catena {
 /// Prints the place and aborts unless the expression holds, in every build type. For bugs in Catena, never for what comes from outside.
 #define CATENA_ASSERT(expression) ((expression) ? static_cast<void>(0) : ::catena::assertion_failed(#expression, __FILE__, __LINE__))
 
-/// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick.
 namespace catena {
 
 /// Why something could not be done.
@@ -24,7 +23,8 @@ struct Error {
   bool machine = false;  ///< this machine does not give what is needed (a thread, memory): no fault of the input
 };
 
-/// A value, or the Error in its place. Asking for the one that is not there is a bug and aborts; nothing throws.
+/// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick. Asking for the one
+/// that is not there is a bug and aborts.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -85,10 +85,10 @@ using Outcome = Result<Done>;
 #define CATENA_CHECK(expression) \
   if (auto check_result = (expression); !check_result) return check_result.error()
 
-/// Whether a file cannot be opened because this process, or the machine, may have no more open: an error of the machine, not of the file.
 namespace catena {
 
-/// True for EMFILE and ENFILE, values of errno.
+/// Whether a file cannot be opened because this process, or the machine, may have no more open (EMFILE, ENFILE of errno): an error of the
+/// machine, not of the file.
 inline bool too_many_files(int code) { return code == EMFILE || code == ENFILE; }
 
 }  // namespace catena

@@ -24,8 +24,6 @@ Error vulkan_error(VkResult result, const std::string& what);
 #define CATENA_VK(call, what) \
   if (const VkResult vk_result = (call); vk_result != VK_SUCCESS) return ::catena::render::vk::vulkan_error(vk_result, what)
 
-/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
-/// the layer and the loader are counted and their texts kept; tests assert that there are none.
 namespace catena::render::vk {
 
 /// Where a window's surface comes from; the viewer passes it, headless programs have none.
@@ -69,7 +67,8 @@ class Messages {
   std::vector<std::string> texts_;
 };
 
-/// An instance. Frame thread.
+/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
+/// the layer and the loader are counted and their texts kept; tests assert that there are none. Frame thread.
 class Instance {
  public:
   /// Makes or borrows it. An error is one sentence.
