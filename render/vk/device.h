@@ -18,9 +18,10 @@
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
 #include "render/vk/requirements.h"
-#include "render/vk/stopwatch.h"
 
 namespace catena::render::vk {
+
+class Stopwatch;  ///< stopwatch.h
 
 /// A shader's words.
 using Spirv = std::span<const std::uint32_t>;
