@@ -4,7 +4,9 @@
 
 namespace catena {
 
+/// Monotonic time in nanoseconds since an arbitrary start. Any thread.
 std::int64_t now_ns();
+/// Milliseconds from an earlier now_ns() to now.
 double ms_since(std::int64_t start_ns);
 /// Processor time of all threads of this process: what it did, whatever else the machine does.
 std::int64_t processor_ns();

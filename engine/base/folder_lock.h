@@ -13,6 +13,7 @@ class FolderLock {
   /// An error where another process has it, or this one already: "FOLDER: another session writes to it; ...".
   static Result<FolderLock> take(const std::string& folder);
   ~FolderLock();
+  /// Takes the lock over; `other` holds none then.
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&&) = delete;
 

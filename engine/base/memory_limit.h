@@ -14,6 +14,7 @@ namespace catena {
 
 /// In bytes; nullopt: three quarters of what is free.
 void set_memory_limit(std::optional<std::uint64_t> bytes);
+/// Bytes that data may still take now. Any thread.
 std::uint64_t allowed_memory();
 
 /// Fine, or one line: "WHAT needs 274878 MB of memory, expected at most 15123 MB (--memory MB allows more)". `bytes` may be of any size.
@@ -29,9 +30,12 @@ Outcome ask_for_text_memory(const std::string& what, double bytes);
 class HeldMemory {
  public:
   HeldMemory() = default;
+  /// Counts `bytes` as held.
   explicit HeldMemory(std::uint64_t bytes);
   ~HeldMemory();
+  /// Takes the count over; `other` counts nothing then.
   HeldMemory(HeldMemory&& other) noexcept : bytes_(std::exchange(other.bytes_, 0)) {}
+  /// Exchanges the counts.
   HeldMemory& operator=(HeldMemory&& other) noexcept {
     std::swap(bytes_, other.bytes_);
     return *this;
@@ -48,9 +52,11 @@ class HeldMemory {
 /// Allocations made by this thread so far, as far as they are counted.
 inline thread_local std::uint64_t thread_allocations = 0;
 
+/// Counts from where it is made.
 class AllocationGuard {
  public:
   AllocationGuard() : start_(thread_allocations) {}
+  /// Allocations of this thread since then.
   std::uint64_t count() const { return thread_allocations - start_; }
 
  private:

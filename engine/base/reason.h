@@ -4,6 +4,7 @@
 
 namespace catena {
 
+/// Why the field says nothing at a place.
 enum class Reason : std::uint8_t {
   none,
   zero,        ///< no direction: |v| (or the gradient) vanishes, or the speed is not above min_speed

@@ -9,12 +9,17 @@
 
 namespace catena {
 
+/// Three doubles: a place or an arrow. World units unless a name says otherwise (`_m` metres, `_n` newtons).
 using Vec3 = glm::dvec3;
 using Mat3 = glm::dmat3;  ///< columns first, as GLM keeps them
 
+/// The scalar product.
 inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+/// The vector product, right-handed.
 inline Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+/// The largest of |x|, |y|, |z|.
 inline double max_abs(const Vec3& v) { return std::max(std::max(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)); }
+/// Whether all components are finite.
 inline bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// |v| without overflow or underflow: divides by max|v_i| before squaring (correct from 1e-323 to 1e308). Not finite where v is not.
@@ -41,8 +46,9 @@ inline Vec3 direction(const Vec3& v) {
 
 using Quat = glm::dquat;  ///< Quat(w, x, y, z); the identity is Quat(1, 0, 0, 0)
 
-inline const Quat kNoRotation{1.0, 0.0, 0.0, 0.0};
+inline const Quat kNoRotation{1.0, 0.0, 0.0, 0.0};  ///< The rotation that turns nothing.
 
+/// Whether all components are finite.
 inline bool is_finite(const Quat& q) { return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z); }
 
 /// Unit length; what is zero or not finite is no rotation.

@@ -3,6 +3,6 @@
 
 namespace catena {
 
-inline constexpr const char* kVersion = "0.1.0";
+inline constexpr const char* kVersion = "0.1.0";  ///< MAJOR.MINOR.PATCH
 
 }  // namespace catena

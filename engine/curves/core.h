@@ -9,10 +9,12 @@
 
 namespace catena::curves {
 
+/// What core_of() finds.
 struct Core {
   Bounds box;              ///< of the points that are no strays; empty: there are no points
   std::size_t strays = 0;  ///< how many are
 };
+/// The box of all points but strays.
 Core core_of(std::span<const glm::vec3> points);
 
 }  // namespace catena::curves

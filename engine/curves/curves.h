@@ -17,10 +17,11 @@ namespace catena::curves {
 
 /// A number at every point, by the name that the file has for it.
 struct PointValues {
-  std::string name;
-  std::vector<float> values;
+  std::string name;           ///< the file's word for it
+  std::vector<float> values;  ///< one a point
 };
 
+/// A set of polylines. Plain data.
 struct CurveSet {
   std::string name;                   ///< of the file
   std::vector<glm::vec3> points;      ///< line after line; neighbours on a line differ
@@ -29,19 +30,22 @@ struct CurveSet {
   std::string unit{};                 ///< of lengths; empty: the file does not say
   bool patient = false;               ///< axes as above
   std::string note{};                 ///< what was left out, in words; may be empty
-  Vec3 lowest{0.0}, highest{0.0};
-  std::uint64_t version = 0;  ///< unique in the process
-  HeldMemory held{};
+  Vec3 lowest{0.0}, highest{0.0};     ///< corners of the box of all points
+  std::uint64_t version = 0;          ///< unique in the process
+  HeldMemory held{};                  ///< counts the memory as data
 
+  /// How many lines there are.
   std::size_t lines() const { return first.size() - 1; }
+  /// Memory that it holds.
   std::size_t bytes() const;
   const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
   /// The line that a point is on.
   std::uint32_t line_of(std::uint32_t point) const;
 };
+/// Sets of curves are shared and never change.
 using CurveSetPtr = std::shared_ptr<const CurveSet>;
 
-inline constexpr std::size_t kMaxPoints = 1'000'000'000;
+inline constexpr std::size_t kMaxPoints = 1'000'000'000;  ///< More are refused.
 
 /// Private to this room: collects what a reader finds. A point that equals the one before it on its line is left out, and so is a line of
 /// fewer than two points.
@@ -52,7 +56,9 @@ class Builder {
 
   /// False: not finite, or beyond 1e15, where squares of distances lose their meaning. `values`: as many as there are names.
   bool add(const Vec3& point, const float* values = nullptr);
+  /// Ends the line; the next add() begins another.
   void end_line();
+  /// Lines that have ended so far.
   std::size_t lines() const { return made_.first.size() - 1; }
 
   /// A line that is still open ends here. The error: no line is left.

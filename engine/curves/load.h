@@ -15,12 +15,15 @@
 namespace catena::curves {
 
 bool is_curve_file(std::string_view path);  ///< by its ending, any case; .vtp, .vtk and .vtu may hold other things instead
+/// The endings, in lower case with the dot.
 const std::vector<std::string_view>& curve_endings();
 
+/// Reads a file of any of these formats.
 Result<CurveSetPtr> load_curves(const std::string& path);
 
 /// The contents of a file; `name` begins every message.
 Result<CurveSet> parse_tck(std::string_view bytes, const std::string& name);
+/// The contents of a .trk file.
 Result<CurveSet> parse_trk(std::string_view bytes, const std::string& name);
 /// The lines in a file of the program catena-read-vtk.
 Result<CurveSet> read_line_shape(const std::string& path);

@@ -10,30 +10,35 @@
 
 namespace catena::curves {
 
+/// A set of points. Plain data.
 struct PointSet {
-  std::string name;  ///< of the file
-  Vec3 origin{0.0};  ///< of `points`; 0 unless they are far from it and near to each other
-  std::vector<glm::vec3> points;
-  std::vector<PointValues> values{};
-  std::string note{};  ///< what was left out, in words; may be empty
-  Vec3 lowest{0.0}, highest{0.0};
-  Core core;                  ///< all but strays
-  double spacing = 0;         ///< the median distance of a point from the nearest other one, of a sample; 0: there is none
-  std::uint64_t version = 0;  ///< unique in the process
-  HeldMemory held{};
+  std::string name;                   ///< of the file
+  Vec3 origin{0.0};                   ///< of `points`; 0 unless they are far from it and near to each other
+  std::vector<glm::vec3> points;      ///< the places, less `origin`
+  std::vector<PointValues> values{};  ///< columns of numbers
+  std::string note{};                 ///< what was left out, in words; may be empty
+  Vec3 lowest{0.0}, highest{0.0};     ///< corners of the box of all points, world
+  Core core;                          ///< all but strays
+  double spacing = 0;                 ///< the median distance of a point from the nearest other one, of a sample; 0: there is none
+  std::uint64_t version = 0;          ///< unique in the process
+  HeldMemory held{};                  ///< counts the memory as data
 
   /// Of a point in the world.
   Vec3 place(std::size_t i) const { return origin == Vec3(0.0) ? Vec3(points[i]) : origin + Vec3(points[i]); }
   /// Keeps these places as origin and points.
   void keep(const std::vector<Vec3>& places);
+  /// Memory that it holds.
   std::size_t bytes() const { return points.size() * (sizeof(glm::vec3) + values.size() * sizeof(float)); }
   const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
 };
+/// Sets of points are shared and never change.
 using PointSetPtr = std::shared_ptr<const PointSet>;
 
 bool is_point_file(std::string_view path);  ///< by its ending, any case
+/// The endings, in lower case with the dot.
 const std::vector<std::string_view>& point_endings();
 
+/// Reads a file.
 Result<PointSetPtr> load_points(const std::string& path);
 /// The contents of a file; `name` begins every message.
 Result<PointSet> parse_points(std::string_view text, const std::string& name);

@@ -10,25 +10,28 @@
 
 namespace catena::exchange {
 
-inline constexpr int kMaxWidgets = 8;
+inline constexpr int kMaxWidgets = 8;  ///< Widgets of a scene.
 
 /// One word a widget and tick.
 ///   cutting plane: away, explore (the probe is held on the plane), translate, rotate (on the sphere), turn (on the sphere, turning it)
 ///   the others:    away, hover (the probe is drawn to a handle), drag
 enum class WidgetMode : std::uint8_t { away, explore, translate, rotate, turn, hover, drag };
+/// "away", "explore" and so on.
 const char* mode_word(WidgetMode mode);
 
+/// Where a widget is. World units.
 struct WidgetPose {
-  std::array<Vec3, 2> points{Vec3(0.0), Vec3(0.0)};
-  Quat orientation{kNoRotation};  ///< world from widget, unit
+  std::array<Vec3, 2> points{Vec3(0.0), Vec3(0.0)};  ///< what they are depends on the kind: engine/widget/widget.h
+  Quat orientation{kNoRotation};                     ///< world from widget, unit
   bool operator==(const WidgetPose&) const = default;
 };
 
+/// What a tick says of a widget.
 struct WidgetReport {
-  WidgetPose pose;
-  double value = 0;            ///< isolevel: of the field at the handle
-  std::uint32_t revision = 0;  ///< of the pose that the hand began with; Spec::revision
-  WidgetMode mode = WidgetMode::away;
+  WidgetPose pose;                     ///< where it is
+  double value = 0;                    ///< isolevel: of the field at the handle
+  std::uint32_t revision = 0;          ///< of the pose that the hand began with; Spec::revision
+  WidgetMode mode = WidgetMode::away;  ///< what it does
   std::int8_t handle = -1;  ///< rake, ruler: 0, 1 its ends, 2 the whole; box: 0..5 faces -x +x -y +y -z +z, 6 the whole; -1: none
   std::uint8_t held = 0;    ///< bit i: the plane across the widget's axis i is active
 };
@@ -52,6 +55,7 @@ const char* condition_word(Condition condition);  ///< NORMAL LATE NO_DEVICE WAT
 enum class ForceState : std::uint8_t { on, off, ramping_in, held, ramping_out, stopped };
 const char* force_state_word(ForceState state);  ///< ON OFF RAMPING_IN HELD RAMPING_OUT STOPPED
 
+/// What a tick says of a link.
 struct LinkReport {
   Vec3 proxy{0.0};                ///< world units
   Vec3 force_n{0.0};              ///< this link's own share, before the limit
@@ -63,11 +67,11 @@ struct LinkReport {
   Vec3 torque_nm{0.0};            ///< its share of the torque
   double booked_j = 0;            ///< given to the hand and stored for it beyond what it put in; a switch or snap shows as a jump
   double leaving = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
-  std::int32_t evaluations = 0;
-  Status status = Status::ok;
-  bool active = false;           ///< enabled and not released
-  bool left = false;             ///< the hand has left the feature: leaving >= 1, or let go
-  Reason reason = Reason::none;  ///< why: of CRITICAL, BOUNDARY and BAD_PROBE
+  std::int32_t evaluations = 0;   ///< field fetches of this tick
+  Status status = Status::ok;     ///< how the link is
+  bool active = false;            ///< enabled and not released
+  bool left = false;              ///< the hand has left the feature: leaving >= 1, or let go
+  Reason reason = Reason::none;   ///< why: of CRITICAL, BOUNDARY and BAD_PROBE
 
   /// Stored in the link's spring, joules; the largest double for what is larger.
   double energy_j(double metres_per_unit) const {
@@ -76,31 +80,32 @@ struct LinkReport {
   }
 };
 
+/// All that one tick says. Written by the haptic thread, crosses to the frame by a TripleBuffer.
 struct HapticState {
   // written by the tick
-  std::uint64_t tick = 0;
-  double t_s = 0;
-  Vec3 probe{0.0};    ///< world units
-  Vec3 force_n{0.0};  ///< on the hand, after all limits, world axes
-  std::uint32_t buttons = 0;
-  std::int32_t link_count = 0;
-  std::int32_t mode = -1;  ///< the mode of operation; -1: none, all links as listed
-  std::array<LinkReport, kMaxLinks> links{};
-  std::int32_t widget_count = 0;
-  std::array<WidgetReport, kMaxWidgets> widgets{};
-  Quat orientation{kNoRotation};  ///< of the probe
-  Vec3 torque_nm{0.0};            ///< on the hand, world axes
-  Vec3 coupling_force_n{0.0};     ///< what the chain asks for, before what the device allows: equal to force_n without a device
-  double energy_j = 0;            ///< of the passivity observer: what the hand may still get back
-  double dissipated_j = 0;        ///< what the passivity controller has taken
-  Condition condition = Condition::normal;
-  ForceState force_state = ForceState::on;
+  std::uint64_t tick = 0;                           ///< counts from 1
+  double t_s = 0;                                   ///< the probe's time, seconds
+  Vec3 probe{0.0};                                  ///< world units
+  Vec3 force_n{0.0};                                ///< on the hand, after all limits, world axes
+  std::uint32_t buttons = 0;                        ///< bit n - 1: button n is held
+  std::int32_t link_count = 0;                      ///< links of the program, the widgets' with them
+  std::int32_t mode = -1;                           ///< the mode of operation; -1: none, all links as listed
+  std::array<LinkReport, kMaxLinks> links{};        ///< the first link_count of them
+  std::int32_t widget_count = 0;                    ///< widgets of the program
+  std::array<WidgetReport, kMaxWidgets> widgets{};  ///< the first widget_count of them
+  Quat orientation{kNoRotation};                    ///< of the probe
+  Vec3 torque_nm{0.0};                              ///< on the hand, world axes
+  Vec3 coupling_force_n{0.0};               ///< what the chain asks for, before what the device allows: equal to force_n without a device
+  double energy_j = 0;                      ///< of the passivity observer: what the hand may still get back
+  double dissipated_j = 0;                  ///< what the passivity controller has taken
+  Condition condition = Condition::normal;  ///< how the tick came about
+  ForceState force_state = ForceState::on;  ///< what became of the force
   // written by the servo
-  std::uint64_t program_epoch = 0;  ///< the newest program that the tick has run
-  std::uint64_t missed_deadlines = 0;
-  double period_us = 0;   ///< since the last tick began
-  double compute_us = 0;  ///< the tick alone
-  double device_us = 0;   ///< reading and writing the device
+  std::uint64_t program_epoch = 0;     ///< the newest program that the tick has run
+  std::uint64_t missed_deadlines = 0;  ///< since the servo began
+  double period_us = 0;                ///< since the last tick began
+  double compute_us = 0;               ///< the tick alone
+  double device_us = 0;                ///< reading and writing the device
 };
 
 }  // namespace catena::exchange

@@ -7,6 +7,7 @@
 
 namespace catena::exchange {
 
+/// Three slots of T, swapped without a lock.
 template <class T>
 class TripleBuffer {
   static_assert(std::is_trivially_copyable_v<T>, "only plain data crosses threads");
@@ -15,7 +16,9 @@ class TripleBuffer {
  public:
   /// Writer's thread only.
   T& back() { return slots_[back_]; }
+  /// Hands the back slot over; back() is another one then.
   void publish() { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
+  /// Writes and hands over.
   void publish(const T& value) {
     back() = value;
     publish();
@@ -27,6 +30,7 @@ class TripleBuffer {
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
     return true;
   }
+  /// What take() took last. Reader's thread only.
   const T& front() const { return slots_[front_]; }
 
  private:

@@ -9,33 +9,40 @@
 
 namespace catena::field {
 
+/// The index of a voxel.
 struct Index3 {
-  std::int32_t x = 0, y = 0, z = 0;
+  std::int32_t x = 0, y = 0, z = 0;  ///< along the grid's axes
   bool operator==(const Index3&) const = default;
 };
 
+/// Eight corners of a scalar grid.
 struct ScalarCell {
-  Index3 base;
-  bool valid = false;  ///< inside the domain, and all eight corners valid where the grid has a `valid` mask
-  std::array<double, 8> corner{};
+  Index3 base;                     ///< index of corner 0
+  bool valid = false;              ///< inside the domain, and all eight corners valid where the grid has a `valid` mask
+  std::array<double, 8> corner{};  ///< values, corner[i + 2 j + 4 k]
 
+  /// The trilinear value at f in [0, 1]^3; beyond, the same polynomial.
   double value(const Vec3& f) const;
   Vec3 gradient(const Vec3& f) const;  ///< by index
   /// Mixed second derivatives by index; the diagonal of a trilinear function is zero. Returns (d2/dydz, d2/dxdz, d2/dxdy).
   Vec3 mixed_second(const Vec3& f) const;
+  /// Both in one pass; `gradient` is by index.
   void value_and_gradient(const Vec3& f, double& value, Vec3& gradient) const;
 };
 
+/// Eight corners of a vector grid.
 struct VectorCell {
-  Index3 base;
-  bool valid = false;
-  std::array<Vec3, 8> corner{};
+  Index3 base;                   ///< index of corner 0
+  bool valid = false;            ///< as of ScalarCell
+  std::array<Vec3, 8> corner{};  ///< vectors, corner[i + 2 j + 4 k], world axes
 
+  /// The trilinear vector at f.
   Vec3 value(const Vec3& f) const;
 };
 
 // The hot path is in the header: one fetch costs a few nanoseconds, and so would the call.
 
+/// The trilinear polynomial of eight numbers at f, with its gradient by index.
 inline void trilinear(const std::array<double, 8>& c, const Vec3& f, double& value, Vec3& gradient) {
   // along x, then y, then z
   const double d00 = c[1] - c[0], d10 = c[3] - c[2], d01 = c[5] - c[4], d11 = c[7] - c[6];
@@ -47,6 +54,7 @@ inline void trilinear(const std::array<double, 8>& c, const Vec3& f, double& val
   gradient = Vec3(x0 + (x1 - x0) * f.z, e0 + (e1 - e0) * f.z, w1 - w0);
 }
 
+/// The trilinear mix of eight vectors at f.
 inline Vec3 trilinear(const std::array<Vec3, 8>& c, const Vec3& f) {
   const auto mix = [](const Vec3& a, const Vec3& b, double t) {
     return Vec3(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);

@@ -12,8 +12,9 @@
 
 namespace catena::field {
 
+/// What coarsen() gives.
 struct CoarseGrid {
-  std::shared_ptr<const ScalarGrid> grid;
+  std::shared_ptr<const ScalarGrid> grid;  ///< the coarse grid; its own mapping and version
   Box domain;  ///< of the fine grid, in the coarse one's index space: within its index box, less than a voxel smaller at each face
 };
 

@@ -16,9 +16,10 @@ namespace catena::field {
 template <int C>
 using CubicSamples = std::array<float, 64 * C>;
 
+/// A cubic cell's value and slopes, of C components.
 template <int C>
 struct CubicValue {
-  std::array<double, C> value;
+  std::array<double, C> value;                 ///< by component
   std::array<std::array<double, C>, 3> slope;  ///< by index, along x, y, z
 };
 
@@ -26,9 +27,11 @@ struct CubicValue {
 /// -1/8 at most along one axis, so the three axes together weigh samples by up to (5/4)^3 in absolute value: ((5/4)^3 - 1) / 2.
 inline constexpr double kCubicOvershoot = 61.0 / 128;
 
+/// The weights of one axis at the place t in [0, 1].
 struct CubicWeights {
   double value[3], slope[3];  ///< of the samples 0, 2 and 3, less the sample 1
 
+  /// Both sets of weights at t.
   explicit CubicWeights(double t)
       : value{0.5 * t * (t * (2 - t) - 1), 0.5 * t * (1 + t * (4 - 3 * t)), 0.5 * t * t * (t - 1)},
         slope{0.5 * (t * (4 - 3 * t) - 1), 0.5 * (1 + t * (8 - 9 * t)), 0.5 * t * (3 * t - 2)} {}
@@ -42,6 +45,7 @@ inline void cubic_values(const T* rows, const CubicWeights& w, double* value) {
     value[n] = c + (w.value[0] * a + w.value[1] * b + w.value[2] * d);
   }
 }
+/// The same with the slope along that axis, by index.
 template <int N, class T>
 inline void cubic_values(const T* rows, const CubicWeights& w, double* value, double* slope) {
   for (int n = 0; n < N; ++n) {

@@ -10,8 +10,9 @@
 
 namespace catena::field {
 
+/// How a program hands its numbers over.
 struct Layers {
-  Index3 size{0, 0, 0};
+  Index3 size{0, 0, 0};  ///< voxels along x, y, z; at least 2 each
   bool vectors = false;  ///< three numbers a voxel
   /// Writes the layers z, z + 1, ... that fill `out`: x fastest, then y, then z; vectors as three numbers a voxel. Called with z rising.
   std::function<void(int z, std::span<float> out)> read;

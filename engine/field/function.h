@@ -15,12 +15,14 @@ namespace catena::field {
 
 /// Gives the value and sets the gradient.
 using ScalarFunction = std::function<double(const Vec3& world, Vec3& gradient)>;
+/// Gives the vector in world axes; not finite: there is none at this place.
 using VectorFunction = std::function<Vec3(const Vec3& world)>;
 
 /// `least` and `most`: the values that it attains over all space. An isosurface beyond them is refused.
 ScalarFieldPtr make_function(std::string name, const Bounds& domain, ScalarFunction function,
                              double least = -std::numeric_limits<double>::infinity(),
                              double most = std::numeric_limits<double>::infinity());
+/// The same of vectors.
 VectorFieldPtr make_function(std::string name, const Bounds& domain, VectorFunction function);
 
 }  // namespace catena::field

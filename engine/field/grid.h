@@ -12,13 +12,15 @@
 
 namespace catena::field {
 
+/// Counts and ranges over a grid's active voxels.
 struct GridStats {
-  std::uint64_t active_voxels = 0;
-  std::uint64_t nan_count = 0;  ///< active voxels with a NaN or an infinity
-  double min = 0, max = 0;      ///< scalars: values; vectors: magnitudes (finite ones only)
-  Vec3 component_min{0.0}, component_max{0.0};
+  std::uint64_t active_voxels = 0;              ///< active (and valid) voxels
+  std::uint64_t nan_count = 0;                  ///< active voxels with a NaN or an infinity
+  double min = 0, max = 0;                      ///< scalars: values; vectors: magnitudes (finite ones only)
+  Vec3 component_min{0.0}, component_max{0.0};  ///< vectors: by component, finite ones only
 };
 
+/// A scalar grid: immutable, shared; every const function is for any thread.
 class ScalarGrid final : public ScalarField {
  public:
   struct Storage;  ///< the NanoVDB buffers
@@ -27,18 +29,26 @@ class ScalarGrid final : public ScalarField {
              Interpolation interpolation = Interpolation::linear, std::shared_ptr<const Ghosts> ghosts = {});
   ~ScalarGrid() override;
 
+  /// As ScalarField says, by the grid's interpolation.
   ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
   Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override;
   double min_value() const noexcept override { return stats_.min; }
+  /// As ScalarField says.
   double max_value() const noexcept override { return stats_.max; }
+  /// Itself.
   const ScalarGrid* grid() const noexcept override { return this; }
+  /// True.
   bool is_grid() const noexcept override { return true; }
+  /// As it was made.
   Interpolation interpolation() const noexcept override { return interpolation_; }
+  /// Of voxels, mask and ghosts.
   std::size_t bytes() const noexcept override;
   /// The same voxels read in another way: they are shared, the version is its own. Cubic: an error (one phrase) where there is no memory
   /// for its ghosts; the others never fail.
   Result<std::shared_ptr<const ScalarGrid>> cubic() const;
+  /// Reads trilinearly.
   std::shared_ptr<const ScalarGrid> linear() const { return interpolated(Interpolation::linear); }
+  /// The same voxels, read trilinearly or by the nearest one.
   std::shared_ptr<const ScalarGrid> interpolated(Interpolation linear_or_nearest) const;
   /// Of a cubic grid, the samples of a legal cell that is valid; null elsewhere. Good until the cursor's next use.
   const CubicSamples<1>* samples(const Index3& base, Cursor& cursor) const noexcept;
@@ -46,7 +56,9 @@ class ScalarGrid final : public ScalarField {
   /// The cell whose base is the nearest legal one to `base` (clamped so that base and base + 1 lie in the index box).
   ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept;
   Index3 base_of(const Vec3& index) const noexcept;  ///< floor, clamped to legal bases
+  /// Of all its voxels, taken when it was made.
   const GridStats& stats() const { return stats_; }
+  /// The value of voxels that the tree does not hold.
   float background() const;
   bool has_mask() const;  ///< some cells may be invalid: a `valid` mask, or values that are not finite
   /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background. Of a cubic grid
@@ -65,30 +77,44 @@ class ScalarGrid final : public ScalarField {
   std::shared_ptr<const Ghosts> ghosts_;  ///< of a cubic grid
 };
 
+/// A vector grid: immutable, shared; every const function is for any thread.
 class VectorGrid final : public VectorField {
  public:
   struct Storage;
   struct Ghosts;
+  /// From NanoVDB's buffers; programs use make_vector_grid() or load().
   VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage, const GridStats& stats,
              std::shared_ptr<const Ghosts> ghosts = {});
   ~VectorGrid() override;
 
+  /// As VectorField says.
   VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
   LineSample sample_line(const Vec3& world, Cursor& cursor) const noexcept override;
   Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override;
+  /// Itself.
   const VectorGrid* grid() const noexcept override { return this; }
+  /// True.
   bool is_grid() const noexcept override { return true; }
+  /// Linear, or cubic where it was made so.
   Interpolation interpolation() const noexcept { return ghosts_ ? Interpolation::cubic : Interpolation::linear; }
   /// As of scalar grids. A line field's axes are mixed linearly either way (line_axis.h).
   Result<std::shared_ptr<const VectorGrid>> cubic() const;
+  /// Reads trilinearly.
   std::shared_ptr<const VectorGrid> linear() const;
+  /// As of scalar grids.
   const CubicSamples<3>* samples(const Index3& base, Cursor& cursor) const noexcept;
+  /// Of voxels, mask and ghosts.
   std::size_t bytes() const noexcept override;
 
+  /// As of scalar grids.
   VectorCell cell(const Index3& base, Cursor& cursor) const noexcept;
+  /// As of scalar grids.
   Index3 base_of(const Vec3& index) const noexcept;
+  /// Of all its voxels, taken when it was made.
   const GridStats& stats() const { return stats_; }
+  /// As of scalar grids.
   bool has_mask() const;
+  /// As of scalar grids, three floats a voxel.
   void read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const;
   const Storage& storage() const { return *storage_; }  ///< opaque outside this room
 
@@ -102,11 +128,13 @@ class VectorGrid final : public VectorField {
 /// Voxels whose value is not finite are kept and counted.
 std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                    std::span<const float> values, std::span<const std::uint8_t> valid = {});
+/// The same of vectors, three floats a voxel in world axes.
 std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
                                                    std::span<const std::uint8_t> valid = {});
 
 /// Samples any field at `resolution` nodes an axis, both ends included, over the cube lo..hi (the grid `generate` writes).
 std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
+/// The same of vectors.
 std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
 /// The same for what a user asks for: an error where the samples hold nothing (too coarse for the field's domain) or do not
 /// fit into 32-bit floats.

@@ -13,7 +13,8 @@ namespace catena::field {
 
 /// A symmetric 3x3 matrix.
 struct Dyad {
-  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;  ///< its six numbers
+  /// Adds weight times m.
   void add(double weight, const Dyad& m) {
     xx += weight * m.xx;
     yy += weight * m.yy;
@@ -22,6 +23,7 @@ struct Dyad {
     xz += weight * m.xz;
     xy += weight * m.xy;
   }
+  /// Adds weight times v v^T.
   void add(double weight, const Vec3& v) {
     const Vec3 w = weight * v;
     xx += w.x * v.x;
@@ -33,16 +35,18 @@ struct Dyad {
   }
 };
 
+/// What a line field says at a place.
 struct LineAxis {
-  Vec3 axis{0.0};  ///< unit, of either sign; zero where there is none
-  double speed = 0;
-  double coherence = 0;
+  Vec3 axis{0.0};        ///< unit, of either sign; zero where there is none
+  double speed = 0;      ///< sqrt(l1), the field's unit
+  double coherence = 0;  ///< 0 to 1; below 0.2 (flow::kCoherent) the axis says nothing
 };
 
 /// The dyads of a cell as a trilinear polynomial, for many places in one cell.
 class DyadCell {
  public:
   DyadCell() = default;
+  /// From the vectors at the eight corners (cell.h).
   explicit DyadCell(const std::array<Vec3, 8>& corner) noexcept;
   /// As line_axis at f, but of either sign.
   LineAxis at(const Vec3& f) const noexcept;

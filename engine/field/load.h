@@ -14,16 +14,18 @@
 
 namespace catena::field {
 
+/// What a .raw file does not say of itself.
 struct RawLayout {
-  Index3 shape{0, 0, 0};
-  Vec3 spacing{1.0};
-  Vec3 origin{0.0};
+  Index3 shape{0, 0, 0};         ///< voxels along x, y, z
+  Vec3 spacing{1.0};             ///< world units a voxel
+  Vec3 origin{0.0};              ///< world place of voxel (0, 0, 0)
   std::string type = "float32";  ///< float32 float64 uint8 int8 uint16 int16 uint32 int32; little-endian, x fastest; "float32x3" a vector
   bool operator==(const RawLayout&) const = default;
 };
 
+/// Which grid of which file, and how it is to be read.
 struct LoadRequest {
-  std::string path;
+  std::string path;                                     ///< the file, or a folder of DICOM images
   std::string grid;                                     ///< empty: the only usable grid of the file, or an error that lists them
   std::optional<std::string> valid_grid = "valid";      ///< nullopt: no mask ("valid": null); a missing default mask is fine
   bool valid_required = false;                          ///< the user named the mask: it must exist
@@ -42,43 +44,48 @@ Result<AnyField> load(const LoadRequest& request);
 
 /// Voxels an axis: a file's indices may be farther apart than an index can say.
 struct Size3 {
-  std::int64_t x = 0, y = 0, z = 0;
+  std::int64_t x = 0, y = 0, z = 0;  ///< along x, y, z
   Size3() = default;
+  /// From three counts.
   Size3(std::int64_t nx, std::int64_t ny, std::int64_t nz) : x(nx), y(ny), z(nz) {}
+  /// From an index's three counts.
   Size3(const Index3& n) : x(n.x), y(n.y), z(n.z) {}
   bool operator==(const Size3&) const = default;
 };
 
 /// What values belong to: a grid's voxels, or the points or cells of a mesh that a grid is resampled from.
 enum class Counted : std::uint8_t { voxels, points, cells };
+/// "voxels", "points" or "cells".
 std::string_view counted_word(Counted counted);
 
+/// What a file says of one of its grids, without loading it.
 struct GridInfo {
-  std::string name, type;  ///< type as the file says: float, half, vec3s, bool, ...
-  Size3 size;
-  Index3 lowest{0, 0, 0};
-  Mapping mapping;
-  GridStats stats;  ///< active_voxels: how many of what is counted
-  Counted counted = Counted::voxels;
-  std::size_t bytes = 0;  ///< in memory, as NanoVDB
-  bool usable = false;    ///< Catena can load it as a field
-  bool is_vector = false;
+  std::string name, type;             ///< type as the file says: float, half, vec3s, bool, ...
+  Size3 size;                         ///< voxels along x, y, z
+  Index3 lowest{0, 0, 0};             ///< index of the first voxel
+  Mapping mapping;                    ///< world from index
+  GridStats stats;                    ///< active_voxels: how many of what is counted
+  Counted counted = Counted::voxels;  ///< what size and active_voxels count
+  std::size_t bytes = 0;              ///< in memory, as NanoVDB
+  bool usable = false;                ///< Catena can load it as a field
+  bool is_vector = false;             ///< Vectors of three components.
 };
 /// Describes every grid of a file.
 Result<std::vector<GridInfo>> describe(const std::string& path);
 
 /// What of a file of the program catena-read-vtk is drawn as it lies, beside points.
 struct Shapes {
-  bool triangles = false, lines = false;
+  bool triangles = false, lines = false;  ///< which of them there are
 };
 /// Empty where the file cannot be read.
 std::optional<Shapes> shapes_in(const std::string& path);
 
 /// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
 struct WriteItem {
-  AnyField field;  ///< grids only
-  std::string name;
+  AnyField field;    ///< grids only
+  std::string name;  ///< of the grid in the file
 };
+/// Writes the grids. An error names the file; what was there stays then.
 Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items);
 
 /// Reads one grid and writes it to a .vdb; raw and NIfTI files layer by layer, without a grid in this process's memory. Returns the grid's
@@ -90,6 +97,7 @@ struct LoadCounters {
   std::uint64_t files = 0, grids = 0;  ///< fields
   std::uint64_t masks = 0;             ///< `valid` grids read along with them
 };
+/// Since the program began. Any thread.
 LoadCounters load_counters();
 
 }  // namespace catena::field

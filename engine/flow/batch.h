@@ -13,11 +13,12 @@
 
 namespace catena::flow {
 
+/// How finely and how far.
 struct BatchOptions {
-  double length = 0;          ///< longest arc length in each direction, world units; 0: 10 L
-  double tolerance = 1e-7;    ///< of the estimated error of one step, times L; never above a hundredth of the step
-  double longest_step = 0.5;  ///< voxels: bounds what the estimate cannot see, the kinks at the faces of cells
-  std::size_t max_knots = 2000000;
+  double length = 0;                ///< longest arc length in each direction, world units; 0: 10 L
+  double tolerance = 1e-7;          ///< of the estimated error of one step, times L; never above a hundredth of the step
+  double longest_step = 0.5;        ///< voxels: bounds what the estimate cannot see, the kinks at the faces of cells
+  std::size_t max_knots = 2000000;  ///< of one line, both directions together
 };
 
 class VelocityBricks;
@@ -25,6 +26,7 @@ class VelocityBricks;
 /// Keeps what it has read of the grid between calls: the flow's field must outlive it.
 class BatchTracer {
  public:
+  /// Of a flow, whose field outlives this.
   BatchTracer(const Flow& flow, const BatchOptions& options = {});
   ~BatchTracer();
   /// One result a seed, in their order; errors are trace()'s.

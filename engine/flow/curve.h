@@ -42,12 +42,13 @@ double illinois_root(double a, double fa, double b, double fb, F&& f) noexcept {
 
 /// The cubic Hermite of one step: place and rate at both ends. c(theta), theta in [0, 1]; exact at theta = 0.
 struct Hermite {
-  Vec3 c0, c1, c2, c3;
+  Vec3 c0, c1, c2, c3;  ///< coefficients of 1, theta, theta^2, theta^3; world units
 
   /// From q over `displacement`, in a step of length h with rates w0 and w1 at its ends.
   Hermite(const Vec3& q, const Vec3& displacement, double h, const Vec3& w0, const Vec3& w1)
       : c0(q), c1(h * w0), c2(3.0 * displacement - 2.0 * c1 - h * w1), c3(c1 + h * w1 - 2.0 * displacement) {}
 
+  /// The place at theta.
   Vec3 at(double theta) const { return c0 + theta * (c1 + theta * (c2 + theta * c3)); }
   Vec3 derivative(double theta) const { return c1 + theta * (2.0 * c2 + theta * (3.0 * c3)); }  ///< by theta
 
@@ -62,43 +63,55 @@ struct Hermite {
 /// Immutable once traced. Any thread; reading allocates nothing.
 struct Knot {
   double s = 0;  ///< arc length from the seed, signed, world units
-  Vec3 p{0.0};
-  Vec3 t{0.0};  ///< unit tangent
+  Vec3 p{0.0};   ///< the place, world units
+  Vec3 t{0.0};   ///< unit tangent
   /// What p has lost by rounding, of grids so far from the origin that it counts; else 0. A piece between two knots may be so short that
   /// the rounding of its ends would turn it.
   glm::vec3 low{0.0f};
 
   /// From here to a place; from here to the next knot.
   Vec3 to(const Vec3& x) const { return low == glm::vec3(0.0f) ? x - p : x - p - Vec3(low); }
+  /// From here to the next knot.
   Vec3 to(const Knot& next) const { return low == next.low ? next.p - p : next.p - p + (Vec3(next.low) - Vec3(low)); }
 };
 
+/// Why a line ends: at the domain's boundary, at a critical point, at the length that was asked for, after a lap, in an incoherent cell.
 enum class End { boundary, critical, length, lap, incoherent };
 const char* end_word(End end);  ///< BOUNDARY CRITICAL LENGTH LAP INCOHERENT
 
 /// How a line ends, and what the field says there: boundary (box, mask or not_finite), critical (zero), incoherent, or nothing.
 struct LineEnd {
-  End end;
-  Reason reason;
+  End end;        ///< how
+  Reason reason;  ///< what the field says there
+  /// As trace() makes them.
   LineEnd(End how = End::length, Reason why = Reason::none) : end(how), reason(why) {}
   bool operator==(const LineEnd&) const = default;
+  /// Compares how it ends, whatever the reason.
   bool operator==(End how) const { return end == how; }
 };
 
+/// A streamline, traced once. Arc lengths and places in world units. Immutable; any thread.
 class Curve {
  public:
+  /// From knots in order, at least two; `closed`: the last one repeats the first one's place.
   Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length);
 
+  /// All knots, s rising.
   const std::vector<Knot>& knots() const { return knots_; }
   bool closed() const { return closed_; }  ///< the last knot repeats the first one's place; s wraps with period()
+  /// Arc length from the first knot to the last.
   double period() const { return knots_.back().s - knots_.front().s; }
+  /// At the least s.
   const LineEnd& first_end() const { return first_end_; }
+  /// At the greatest s.
   const LineEnd& last_end() const { return last_end_; }
+  /// L of the field that it was traced in, world units.
   double domain_length() const { return domain_length_; }
 
   /// Cubic Hermite on the knot interval k: position and d/ds at s (world units; s within the interval).
   void evaluate_in(std::size_t k, double s, Vec3& p, Vec3& derivative) const noexcept;
   Vec3 position(double s) const noexcept;  ///< clamped to the ends, or wrapped
+  /// The interval of knots that s lies in, clamped to the ends.
   std::size_t interval_of(double s) const noexcept;
 
  private:
@@ -107,13 +120,15 @@ class Curve {
   LineEnd first_end_, last_end_;
   double domain_length_;
 };
+/// Curves are shared and never change.
 using CurvePtr = std::shared_ptr<const Curve>;
 
+/// How finely and how far trace() goes.
 struct TraceOptions {
   double length = 0;                 ///< longest arc length in each direction, world units; 0: 10 L
   double tolerance = 1e-10;          ///< of the embedded error of one step, times L
   double hermite_tolerance = 1e-11;  ///< of the Hermite midpoint against a half step, times L
-  std::size_t max_knots = 2000000;
+  std::size_t max_knots = 2000000;   ///< of both directions together
 };
 
 /// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. Ends at the domain's boundary, a
@@ -121,13 +136,14 @@ struct TraceOptions {
 /// or at a zero is an error (the caller prefixes file and line).
 Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options = {});
 
-inline constexpr int kNearestWork = 512;
+inline constexpr int kNearestWork = 512;  ///< Boxes and pieces that a search may look at.
 
+/// What NearestOnCurve finds.
 struct NearestPlace {
-  std::size_t interval = 0;
-  double s = 0;          ///< arc length, within the interval
-  double distance2 = 0;  ///< squared, world units
-  int work = 0;          ///< boxes and pieces looked at
+  std::size_t interval = 0;  ///< the interval between knots
+  double s = 0;              ///< arc length, within the interval
+  double distance2 = 0;      ///< squared, world units
+  int work = 0;              ///< boxes and pieces looked at
 };
 
 /// The place of a curve nearest to any point, over the whole curve and in bounded work: a tree of boxes about runs of knot
@@ -136,6 +152,7 @@ struct NearestPlace {
 /// equally near (the centre of a circle) one of them is taken. Made off the tick; asked on any thread, without allocation.
 class NearestOnCurve {
  public:
+  /// Builds the tree; off the tick.
   explicit NearestOnCurve(CurvePtr curve);
   /// |x| <= 1e150, or squares overflow.
   NearestPlace at(const Vec3& x) const noexcept;

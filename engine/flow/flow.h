@@ -14,14 +14,16 @@ namespace catena::flow {
 /// linear (Eqs. 1-2 as printed), euler (Eq. 1), rk2 (midpoint), rk3 (Kutta), rk4, rkf34 (Fehlberg 3(4), FSAL, the paper's), dp54
 /// (Dormand-Prince). Their coefficients: runge_kutta.h.
 enum class Method { linear, euler, rk2, rk3, rk4, rkf34, dp54 };
+/// The method of that name, "rkf34" for instance.
 std::optional<Method> method_from_word(std::string_view word);
+/// The name of a method, as scenes have it.
 const char* method_word(Method method);
 
 /// A direction field to follow: V itself, or a line field (v ~ -v), with speeds at or below min_speed counted as zero.
 struct Flow {
-  const field::VectorField* field = nullptr;
-  bool line = false;
-  double min_speed = 0;
+  const field::VectorField* field = nullptr;  ///< the field; outlives this
+  bool line = false;                          ///< read as a line field
+  double min_speed = 0;                       ///< speeds up to this count as zero, the field's unit
 };
 
 /// Why a rate could not be given: outside the domain (or not finite), too slow, no single axis, or turned too far from the step's start.

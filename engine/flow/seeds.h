@@ -31,10 +31,10 @@ std::vector<Vec3> seeds_on_isosurface(const field::ScalarField& field, double le
 ///           shorter than `distance` are dropped
 /// Lines of the batch tracer (batch.h), which are the same whatever the number of threads: so is the set. Off the tick.
 struct EvenlySpaced {
-  double distance = 0;  ///< world units, > 0
-  double test = 0.5;    ///< times the distance, 0 < test <= 1
-  std::vector<Vec3> start;
-  std::size_t most_lines = 20000;
+  double distance = 0;             ///< world units, > 0
+  double test = 0.5;               ///< times the distance, 0 < test <= 1
+  std::vector<Vec3> start;         ///< where the first lines begin, world; empty: the middle of the domain
+  std::size_t most_lines = 20000;  ///< no more are made
 };
 
 /// In order of acceptance; the first start that begins a line is the first line. Empty where none does.

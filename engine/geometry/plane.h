@@ -8,7 +8,7 @@ namespace catena {
 
 /// `normal` need not be unit.
 struct Plane {
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< a place on the plane and an arrow across it, world units
   bool operator==(const Plane&) const = default;
 };
 

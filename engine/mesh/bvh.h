@@ -12,24 +12,29 @@
 
 namespace catena::mesh {
 
+/// The box of one face, in the mesh's own frame.
 struct FaceBox {
-  Vec3 lo{0.0}, hi{0.0};
+  Vec3 lo{0.0}, hi{0.0};  ///< least and greatest corner
 };
 
+/// Two children's boxes in one cache line.
 struct alignas(64) BvhNode {
-  std::array<float, 3> lo[2], hi[2];
-  std::int32_t child[2] = {-1, -1};        ///< >= 0: a node; else ~first face of a leaf
-  std::array<std::uint16_t, 2> count{};    ///< faces of a leaf; 0 with child < 0: nothing there
+  std::array<float, 3> lo[2], hi[2];     ///< corners of the children's boxes, rounded outwards
+  std::int32_t child[2] = {-1, -1};      ///< >= 0: a node; else ~first face of a leaf
+  std::array<std::uint16_t, 2> count{};  ///< faces of a leaf; 0 with child < 0: nothing there
+  /// Fills the cache line.
   std::array<std::uint32_t, 1> unused_{};  // fills the line
 };
 static_assert(sizeof(BvhNode) == 64);
 
+/// The hierarchy. Walks allocate nothing and may run on the haptic thread.
 class Bvh {
  public:
-  static constexpr int kStack = 64;
+  static constexpr int kStack = 64;  ///< Nodes that a walk may keep open.
 
   /// `order` becomes the faces' order: leaf ranges refer to it.
   void build(const std::vector<FaceBox>& boxes, std::vector<std::uint32_t>& order);
+  /// Memory of the nodes.
   std::size_t bytes() const { return nodes_.size() * sizeof(BvhNode); }
 
   /// Calls visit(face) for every face whose box, grown by `margin`, meets the segment from..to. visit may shorten the segment through

@@ -10,22 +10,25 @@
 
 namespace catena::mesh {
 
-inline constexpr std::size_t kMaxTriangles = 20'000'000;
+inline constexpr std::size_t kMaxTriangles = 20'000'000;  ///< More are refused.
 
 bool is_mesh_file(std::string_view path);  ///< by its ending, any case; .vtk, .vtu and .vtm may hold fields instead
+/// The endings, in lower case with the dot.
 const std::vector<std::string_view>& mesh_endings();
 
 /// world = scale * file + offset
 struct Placement {
-  double scale = 1;
-  Vec3 offset{0.0};
+  double scale = 1;  ///< of the file's numbers
+  Vec3 offset{0.0};  ///< world units, added after the scale
   bool operator==(const Placement&) const = default;
 };
 
+/// Reads a file of any of these formats and makes the mesh.
 Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement = {});
 
 /// The contents of a file; `name` begins every message.
 Result<Soup> parse_stl(std::string_view bytes, const std::string& name);
+/// The contents of an .obj file.
 Result<Soup> parse_obj(std::string_view text, const std::string& name);
 
 /// The surface in a file of the reader program: a whole sentence where there is none.

@@ -20,16 +20,17 @@
 
 namespace catena::scene {
 
+/// What a scene calls an entity.
 struct Name {
-  std::string value;
+  std::string value;  ///< unique among entities of a kind
 };
 
 struct LabelMap;  ///< labels.h
 
 /// The surface of labels of another field (engine/field/label_surface.h), as a field of its own.
 struct LabelSource {
-  std::string of;  ///< the label map's name
-  std::vector<double> values;
+  std::string of;                  ///< the label map's name
+  std::vector<double> values;      ///< the labels whose voxels are inside; empty with `any`
   std::vector<std::string> names;  ///< of the map's table
   bool any = false;                ///< every label but 0
   double smooth = 0;               ///< voxels
@@ -45,12 +46,12 @@ struct FieldSource {
   bool stepped = false;                    ///< it has gone from one step to another
   bool own_step = false;                   ///< it states its step, and does not follow the scene's
   std::string analytic;                    ///< or this
-  field::AnalyticParameters parameters;
-  int resolution = 128;  ///< analytic fields are drawn from a sampled grid: nodes an axis
-  std::array<double, 2> box{-2, 2};
-  std::optional<LabelSource> label;  ///< or this
-  std::string labels_file;           ///< the table that a label map's names and colours come from; empty: the scene's own
-  LabelTable labels_table;
+  field::AnalyticParameters parameters;    ///< of `analytic`
+  int resolution = 128;                    ///< analytic fields are drawn from a sampled grid: nodes an axis
+  std::array<double, 2> box{-2, 2};        ///< least and greatest coordinate of the cube that it is sampled in, world units
+  std::optional<LabelSource> label;        ///< or this
+  std::string labels_file;                 ///< the table that a label map's names and colours come from; empty: the scene's own
+  LabelTable labels_table;                 ///< values rising; empty: none
   std::shared_ptr<const LabelMap> labels;  ///< with `loaded`: what the voxels of a field that is read by the nearest of them stand for
   field::AnyField loaded;                  ///< exact (the hand's)
   field::AnyField drawn;                   ///< a grid (the eye's); the same object for files
@@ -67,23 +68,27 @@ struct NamedColors {
 /// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear. A factor that follows the
 /// length of the field's gradient (field units per world unit) multiplies sigma.
 struct TransferFunction {
+  /// A colour at a value.
   struct ColorPoint {
-    double value;
-    Color color;
+    double value;  ///< the field's unit
+    Color color;   ///< where nothing else gives one
   };
+  /// An extinction at a value.
   struct ExtinctionPoint {
-    double value, sigma;
+    double value, sigma;  ///< the field's unit; per world unit
   };
+  /// An opacity at a value.
   struct OpacityPoint {
-    double value, alpha;
+    double value, alpha;  ///< the field's unit; 0 to 1 over opacity_unit
   };
-  std::vector<ColorPoint> colors;
-  std::vector<OpacityPoint> opacities;
-  double opacity_unit = 0;  ///< world length; 0: the smallest voxel edge of the drawn grid
-  std::vector<ExtinctionPoint> extinctions;
-  NamedColors named;  ///< where `colors` is empty
+  std::vector<ColorPoint> colors;            ///< values rising
+  std::vector<OpacityPoint> opacities;       ///< either these
+  double opacity_unit = 0;                   ///< world length; 0: the smallest voxel edge of the drawn grid
+  std::vector<ExtinctionPoint> extinctions;  ///< or these; values rising
+  NamedColors named;                         ///< where `colors` is empty
+  /// A factor at a length of the gradient.
   struct GradientPoint {
-    double gradient, factor;
+    double gradient, factor;  ///< field units per world unit; 0 to 1
   };
   std::vector<GradientPoint> gradient_factors;  ///< gradients rising, factors 0..1; empty: 1 everywhere
   std::string file;                             ///< that it was read from; empty: the scene's own
@@ -91,107 +96,112 @@ struct TransferFunction {
 
 /// Colours that follow values. The one shape of "color_by", and what a slice shows of its own field.
 struct ColorBy {
+  /// What gives the values.
   enum class What { field, speed, arc_length, value };
-  What what = What::field;  ///< lines alone know speed and arc length, what comes from a file its values
-  std::string value{};      ///< the name that the file has for it
-  Entity field;             ///< at the same place of the world: a scalar, or the magnitude of a vector
-  json::Node where;
+  What what = What::field;                           ///< lines alone know speed and arc length, what comes from a file its values
+  std::string value{};                               ///< the name that the file has for it
+  Entity field;                                      ///< at the same place of the world: a scalar, or the magnitude of a vector
+  json::Node where;                                  ///< its place in the file, for messages
   std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
   NamedColors named{};                               ///< viridis, all values (lines, surfaces: the drawn ones), where it does not say
 };
 
+/// A scalar field that rays go through.
 struct Volume {
   /// What a ray makes of its values: emission and absorption, or the look of one value.
   enum class Projection { composite, maximum, minimum, average };
-  Entity field;
-  json::Node where;
-  TransferFunction transfer;
-  bool shade = false;
-  bool clipped = true;  ///< the clip planes count
-  Projection projection = Projection::composite;
-  std::optional<ColorBy> color_by{};  ///< composite only
+  Entity field;                                   ///< the field that it shows
+  json::Node where;                               ///< its place in the file, for messages
+  TransferFunction transfer;                      ///< colours and opacities
+  bool shade = false;                             ///< lit by the gradient
+  bool clipped = true;                            ///< the clip planes count
+  Projection projection = Projection::composite;  ///< what a ray makes of its values
+  std::optional<ColorBy> color_by{};              ///< composite only
 };
 
+/// The surface on which a scalar field has one value.
 struct Isosurface {
-  Entity field;
-  json::Node where;
-  double level = 0;
-  Entity level_from{};  ///< the isolevel widget whose value the level follows
-  Color color{0.8f, 0.8f, 0.9f};
-  double opacity = 1;
-  bool clipped = true;  ///< the clip planes count
-  std::optional<ColorBy> color_by{};
+  Entity field;                       ///< the field that it shows
+  json::Node where;                   ///< its place in the file, for messages
+  double level = 0;                   ///< the value
+  Entity level_from{};                ///< the isolevel widget whose value the level follows
+  Color color{0.8f, 0.8f, 0.9f};      ///< where nothing else gives one
+  double opacity = 1;                 ///< 0 to 1, of one side
+  bool clipped = true;                ///< the clip planes count
+  std::optional<ColorBy> color_by{};  ///< none: `color` everywhere
 };
 
 /// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
 struct MeshSource {
-  json::Node where;
-  std::string path;
+  json::Node where;           ///< its place in the file, for messages
+  std::string path;           ///< the file, as the program opens it
   mesh::Placement placement;  ///< world = scale * file + offset
   mesh::MeshPtr loaded;       ///< felt and drawn: one object
 };
 
 /// A mesh that is drawn.
 struct SurfaceMesh {
-  Entity mesh;
-  json::Node where;
-  Color color{0.8f, 0.8f, 0.9f};
-  bool clipped = true;  ///< the clip planes count
-  double opacity = 1;
-  bool smooth = false;  ///< "shading": the felt mesh is flat
-  bool edges = false;
-  std::optional<ColorBy> color_by;
+  Entity mesh;                      ///< the mesh that it shows
+  json::Node where;                 ///< its place in the file, for messages
+  Color color{0.8f, 0.8f, 0.9f};    ///< where nothing else gives one
+  bool clipped = true;              ///< the clip planes count
+  double opacity = 1;               ///< 0 to 1, of one side
+  bool smooth = false;              ///< "shading": the felt mesh is flat
+  bool edges = false;               ///< the triangles' edges are drawn, too
+  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
 };
 
 /// Curves from a file: drawn as tubes, and felt by links that name them.
 struct DrawnCurves {
-  json::Node where;
-  std::string path;
-  curves::CurveSetPtr loaded;  ///< felt and drawn: one object; none before something asks for it
-  double radius = 0;           ///< of the tubes; 0: fitted
-  std::optional<Color> color;  ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
-  std::optional<ColorBy> color_by;
-  bool clipped = true;  ///< the clip planes count
+  json::Node where;                 ///< its place in the file, for messages
+  std::string path;                 ///< the file, as the program opens it
+  curves::CurveSetPtr loaded;       ///< felt and drawn: one object; none before something asks for it
+  double radius = 0;                ///< of the tubes; 0: fitted
+  std::optional<Color> color;       ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
+  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
+  bool clipped = true;              ///< the clip planes count
 };
 
 /// Points from a table: drawn as balls, and felt by links that name them.
 struct DrawnPoints {
-  json::Node where;
-  std::string path;
-  curves::PointSetPtr loaded;  ///< felt and drawn: one object; none before something asks for it
-  double radius = 0;           ///< of all balls; 0: by `radius_by`, or fitted
-  std::string radius_by;       ///< the column that says each ball's; empty: the column "radius", where the table has one
-  Color color{0.9f, 0.75f, 0.45f};
-  std::optional<ColorBy> color_by;
-  bool clipped = true;  ///< the clip planes count
+  json::Node where;                 ///< its place in the file, for messages
+  std::string path;                 ///< the file, as the program opens it
+  curves::PointSetPtr loaded;       ///< felt and drawn: one object; none before something asks for it
+  double radius = 0;                ///< of all balls; 0: by `radius_by`, or fitted
+  std::string radius_by;            ///< the column that says each ball's; empty: the column "radius", where the table has one
+  Color color{0.9f, 0.75f, 0.45f};  ///< where nothing else gives one
+  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
+  bool clipped = true;              ///< the clip planes count
 };
 
 /// A plane through a field, coloured by its values, with lines of constant value.
 struct Slice {
-  ColorBy shown;
-  json::Node where;
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
-  Entity widget{};  ///< the cutting plane that the plane follows
-  double opacity = 1;
-  bool lit = false;
-  bool clipped = true;  ///< the clip planes count
+  ColorBy shown;                           ///< the field, and its colours
+  json::Node where;                        ///< its place in the file, for messages
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< a place on the plane and an arrow across it, world
+  Entity widget{};                         ///< the cutting plane that the plane follows
+  double opacity = 1;                      ///< 0 to 1
+  bool lit = false;                        ///< lit, or the plain colours of the values
+  bool clipped = true;                     ///< the clip planes count
+  /// Lines of constant value.
   struct Contours {
-    json::Node where;
+    json::Node where;            ///< its place in the file, for messages
     std::vector<double> levels;  ///< rising; or
     int count = 0;               ///< so many within the colours' range, its ends left out; or
     double spacing = 0;          ///< all multiples
-    Color color{0, 0, 0};
-    double width = 1;  ///< pixels
+    Color color{0, 0, 0};        ///< of the lines
+    double width = 1;            ///< pixels
   };
-  std::optional<Contours> contours;
+  std::optional<Contours> contours;  ///< none: no lines
 };
-inline constexpr int kMaxContours = 1000;
+inline constexpr int kMaxContours = 1000;  ///< On one slice.
 
 /// Seeds that are not listed one by one. Which members mean something follows from the kind.
 struct SeedPattern {
+  /// Where the seeds lie.
   enum class Kind { line, plane, sphere, isosurface, evenly_spaced };
-  Kind kind = Kind::line;
-  json::Node where;
+  Kind kind = Kind::line;   ///< which of the members count
+  json::Node where;         ///< its place in the file, for messages
   Vec3 origin{0.0};         ///< a line's first end, a plane's corner, a sphere's centre
   Vec3 u{0.0}, v{0.0};      ///< a line's other end (u); a plane's edges
   int count = 1;            ///< of seeds; a plane's along u; evenly spaced: the most lines
@@ -205,8 +215,9 @@ struct SeedPattern {
   std::vector<Vec3> start;  ///< evenly spaced: where the first lines begin; empty: the middle of the domain
 };
 
+/// Where streamlines begin.
 struct Seeds {
-  std::vector<Vec3> points;
+  std::vector<Vec3> points;            ///< listed one by one, world
   std::optional<SeedPattern> pattern;  ///< instead of points
   Entity widget{};                     ///< the seed or rake that the points follow
   int count = 1;                       ///< of the points along a rake
@@ -214,29 +225,31 @@ struct Seeds {
 
 /// Tubes along streamlines.
 struct StreamlineSet {
-  Entity field;
-  json::Node where;
-  Seeds seeds;
-  double radius = 0;  ///< 0: fitted to the domain
-  Color color{1.0f, 0.3f, 0.2f};
-  std::optional<ColorBy> color_by;
-  bool line = false;  ///< "kind": "line"
-  double min_speed = 0;
-  double length = 0;     ///< 0: 10 L, each direction
-  double tolerance = 0;  ///< times L; 0: by the seeds' kind (lines.h)
-  double arrows = 0;     ///< arrowheads every so far along a line, world units; 0: none
-  double pulse = 0;      ///< bands of this length run along the lines as the scene's phase goes from 0 to 1; 0: none
-  bool clipped = true;   ///< the clip planes count
+  Entity field;                     ///< the field that it shows
+  json::Node where;                 ///< its place in the file, for messages
+  Seeds seeds;                      ///< where they begin
+  double radius = 0;                ///< 0: fitted to the domain
+  Color color{1.0f, 0.3f, 0.2f};    ///< where nothing else gives one
+  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
+  bool line = false;                ///< "kind": "line"
+  double min_speed = 0;             ///< the lines end where the field is slower; its unit
+  double length = 0;                ///< 0: 10 L, each direction
+  double tolerance = 0;             ///< times L; 0: by the seeds' kind (lines.h)
+  double arrows = 0;                ///< arrowheads every so far along a line, world units; 0: none
+  double pulse = 0;                 ///< bands of this length run along the lines as the scene's phase goes from 0 to 1; 0: none
+  bool clipped = true;              ///< the clip planes count
 };
 
 /// Arrows of a vector field, evenly placed; of a line field, rods.
 struct GlyphSet {
+  /// What the glyphs lie on.
   enum class On { box, plane, slice, isosurface, mesh };
+  /// What of a glyph lies at its place.
   enum class At { center, tail, head };
-  Entity field;
-  json::Node where;
-  bool line = false;  ///< "kind": "line"
-  On on = On::box;
+  Entity field;                      ///< the field that it shows
+  json::Node where;                  ///< its place in the file, for messages
+  bool line = false;                 ///< "kind": "line"
+  On on = On::box;                   ///< what they lie on
   Entity base{};                     ///< the slice, the isosurface or the mesh that they lie on, drawn or not
   Vec3 point{0.0}, normal{0, 0, 1};  ///< of a plane of their own
   Entity widget{};                   ///< the cutting plane that this plane follows
@@ -248,61 +261,61 @@ struct GlyphSet {
   double min_speed = 0;              ///< speeds up to this have none
   double radius = 0;                 ///< of the longest one's shaft, world units; 0: a share of its length
   At at = At::center;                ///< what of it lies at its place
-  Color color{1.0f, 0.75f, 0.2f};
-  std::optional<ColorBy> color_by;
-  bool clipped = true;  ///< the clip planes count
+  Color color{1.0f, 0.75f, 0.2f};    ///< where nothing else gives one
+  std::optional<ColorBy> color_by;   ///< none: `color` everywhere
+  bool clipped = true;               ///< the clip planes count
 };
 inline constexpr std::size_t kMaxGlyphs = 20000;  ///< of one set
 
 /// A short piece of the streamline through the cursor, with an arrowhead: what the flow does here.
 struct Indicator {
-  Entity field;
-  json::Node where;
-  double length = 0;  ///< world units; 0: a tenth of L
-  double radius = 0;  ///< 0: fitted
-  Color color{1.0f, 0.85f, 0.1f};
-  bool ahead = false;  ///< the piece begins at the cursor; else the cursor is its middle
+  Entity field;                    ///< the field that it shows
+  json::Node where;                ///< its place in the file, for messages
+  double length = 0;               ///< world units; 0: a tenth of L
+  double radius = 0;               ///< 0: fitted
+  Color color{1.0f, 0.85f, 0.1f};  ///< where nothing else gives one
+  bool ahead = false;              ///< the piece begins at the cursor; else the cursor is its middle
 };
 
 /// The cursor: what the hand holds, as the last tick left it. Written by the cursor system, drawn as a glyph.
 struct Cursor {
-  Vec3 probe{0.0};
-  std::vector<Vec3> proxies;
-  std::vector<bool> active;
-  std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it
-  std::vector<exchange::Status> statuses;
-  std::vector<std::string> names;  ///< of the links, once the chain is made
-  Vec3 force_n{0.0};
-  double size = 0;  ///< glyph radius, world units; 0: fitted
-  bool visible = false;
-  bool ghost = true;           ///< shines through what hides it
-  bool drop_line = false;      ///< a line leads down to the floor of what is drawn
-  bool crosshair = false;      ///< three rods that cross at the hand, and nothing that says what is felt
-  bool pseudo_haptic = false;  ///< nothing pushes the hand: lag and colour show the force
+  Vec3 probe{0.0};                         ///< the hand, world
+  std::vector<Vec3> proxies;               ///< by link, world
+  std::vector<bool> active;                ///< by link: it holds
+  std::vector<double> leaving;             ///< by link: 0 on its feature .. 1 where the hand has left it
+  std::vector<exchange::Status> statuses;  ///< by link
+  std::vector<std::string> names;          ///< of the links, once the chain is made
+  Vec3 force_n{0.0};                       ///< on the hand, world axes, newtons
+  double size = 0;                         ///< glyph radius, world units; 0: fitted
+  bool visible = false;                    ///< drawn at all
+  bool ghost = true;                       ///< shines through what hides it
+  bool drop_line = false;                  ///< a line leads down to the floor of what is drawn
+  bool crosshair = false;                  ///< three rods that cross at the hand, and nothing that says what is felt
+  bool pseudo_haptic = false;              ///< nothing pushes the hand: lag and colour show the force
 };
 
 /// One link of the chain; its own keys are read by the constraint that it names.
 struct Link {
-  std::string name, type;
-  json::Node node;
+  std::string name, type;  ///< the link's name; the constraint's word
+  json::Node node;         ///< all of its keys
 };
 
 /// A mode of operation: while its switch is on, these links run in this order. The switch is read by haptics/extract.
 struct Mode {
-  std::string name;
-  std::vector<std::string> links;
-  json::Node node;
+  std::string name;                ///< its name
+  std::vector<std::string> links;  ///< names of links, in the order of the chain
+  json::Node node;                 ///< all of its keys, the switch with them
 };
 
 /// A thing that the hand takes hold of (engine/widget/widget.h); its pose as the last tick left it. Slices, clips, seeds and levels follow
 /// it.
 struct Widget {
-  json::Node where;
-  widget::Spec spec;  ///< as stated; use_widget (scene.h) completes it
-  widget::Report state;
-  Entity field;                    ///< isolevel
-  std::vector<std::string> along;  ///< ruler: names of links
-  Color color{1.0f, 0.75f, 0.2f};
+  json::Node where;                      ///< its place in the file, for messages
+  widget::Spec spec;                     ///< as stated; use_widget (scene.h) completes it
+  widget::Report state;                  ///< as the last tick left it
+  Entity field;                          ///< isolevel
+  std::vector<std::string> along;        ///< ruler: names of links
+  Color color{1.0f, 0.75f, 0.2f};        ///< where nothing else gives one
   bool complete = false;                 ///< use_widget has been here
   std::optional<widget::Pose> followed;  ///< the pose that its followers have
   std::optional<double> followed_value;  ///< and the isolevel's value
@@ -310,14 +323,15 @@ struct Widget {
 
 using exchange::CouplingMethod;
 
+/// How the links make one force, as the scene says it (haptics/chain/program.h has the law).
 struct Coupling {
-  double stiffness_n_per_m = 500;
-  double damping_ns_per_m = 0;
-  double max_force_n = 8;
-  std::optional<double> ramp_s;
-  double rotational_stiffness_nm_per_rad = 0.5;
-  double rotational_damping_nms_per_rad = 0;
-  CouplingMethod method = CouplingMethod::chain;
+  double stiffness_n_per_m = 500;                 ///< of links that do not say, N/m
+  double damping_ns_per_m = 0;                    ///< of the hand, N s/m
+  double max_force_n = 8;                         ///< of the whole force, newtons
+  std::optional<double> ramp_s;                   ///< seconds over which a switch fades; none: the default
+  double rotational_stiffness_nm_per_rad = 0.5;   ///< of links that align and do not say, N m/rad
+  double rotational_damping_nms_per_rad = 0;      ///< N m s/rad
+  CouplingMethod method = CouplingMethod::chain;  ///< the proxy chain, or a baseline
 };
 
 /// What may be given up for what, by measured curves (engine/app/plan): of each pair one at most.
@@ -326,24 +340,28 @@ struct Plan {
   std::optional<double> time;        ///< of a picture, ms
   std::optional<double> hand_error;  ///< of the places that links hold, world units
   std::optional<double> hand_time;   ///< of a tick, us
+  /// Whether it asks anything of the picture.
   bool of_eye() const { return error || time; }
+  /// Whether it asks anything of the hand.
   bool of_hand() const { return hand_error || hand_time; }
   bool operator==(const Plan&) const = default;
 };
 
+/// How the hand's metres lie in the world.
 struct Workspace {
-  double metres_per_unit = 1;
-  Vec3 origin{0.0};
-  Mat3 rotation{1.0};  ///< world from hand
-  bool given = false;
+  double metres_per_unit = 1;  ///< metres of hand a world unit
+  Vec3 origin{0.0};            ///< world place of the hand's origin
+  Mat3 rotation{1.0};          ///< world from hand
+  bool given = false;          ///< false: fitted to the scene
 };
 
+/// The eye. World units.
 struct Camera {
-  Vec3 position{0.0, -8.0, 3.0}, target{0.0}, up{0.0, 0.0, 1.0};
-  double fovy_deg = 30;
-  bool orthographic = false;
-  double height = 1;   ///< orthographic: world units from bottom to top
-  bool given = false;  ///< false: fitted to what is drawn
+  Vec3 position{0.0, -8.0, 3.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< where it is, what it looks at, what is up
+  double fovy_deg = 30;                                           ///< vertical angle of view, degrees
+  bool orthographic = false;                                      ///< no perspective
+  double height = 1;                                              ///< orthographic: world units from bottom to top
+  bool given = false;                                             ///< false: fitted to what is drawn
 };
 
 /// What is drawn lies on the side of the plane to which the normal points. A clip box is six of them.
@@ -355,27 +373,27 @@ struct ClipPlane : Plane {
 
 /// Help for the eye: what shows where things stand. Sizes of 0 are fitted to what is drawn.
 struct BoundingBox {
-  Entity field;  ///< none: everything that is drawn
-  json::Node where;
-  Color color{0.7f, 0.7f, 0.7f};
-  double radius = 0;
+  Entity field;                   ///< none: everything that is drawn
+  json::Node where;               ///< its place in the file, for messages
+  Color color{0.7f, 0.7f, 0.7f};  ///< where nothing else gives one
+  double radius = 0;              ///< of the edges, world units; 0: fitted
 };
 
 /// Three edges of the box with ticks and numbers, of its outline in the picture.
 struct Axes {
-  Entity field;  ///< none: everything that is drawn
-  json::Node where;
-  std::array<std::string, 3> names{"x", "y", "z"};
-  Color color{0.7f, 0.7f, 0.7f};
-  int ticks = 5;  ///< about so many an axis
-  double radius = 0;
+  Entity field;                                     ///< none: everything that is drawn
+  json::Node where;                                 ///< its place in the file, for messages
+  std::array<std::string, 3> names{"x", "y", "z"};  ///< at the ends of the axes
+  Color color{0.7f, 0.7f, 0.7f};                    ///< where nothing else gives one
+  int ticks = 5;                                    ///< about so many an axis
+  double radius = 0;                                ///< of the edges, world units; 0: fitted
 };
 
 /// A checkerboard across z.
 struct Ground {
-  std::optional<double> at;  ///< z; none: just below what is drawn
-  double size = 0, tile = 0;
-  std::array<Color, 2> colors{Color{0.42f, 0.42f, 0.44f}, Color{0.32f, 0.32f, 0.34f}};
+  std::optional<double> at;   ///< z; none: just below what is drawn
+  double size = 0, tile = 0;  ///< of the whole; of one square; world units, 0: fitted
+  std::array<Color, 2> colors{Color{0.42f, 0.42f, 0.44f}, Color{0.32f, 0.32f, 0.34f}};  ///< of the squares in turn
 };
 
 /// Depth cue: colours turn to the fog's as the view depth goes from start to end.
@@ -388,20 +406,21 @@ struct Fog {
 /// A light from far away. Without one there is a headlight.
 struct Light {
   Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light; camera: right, up, towards the eye
-  Color color{1, 1, 1};
-  double intensity = 1;
-  bool with_camera = false;
+  Color color{1, 1, 1};           ///< display colour
+  double intensity = 1;           ///< factor on its colour
+  bool with_camera = false;       ///< it goes with the camera; else it rests in the world
 };
 
 /// Steps in time (steps.h).
 struct TimeLine {
-  int step = 0;
-  double per_second = 5;
+  int step = 0;           ///< the step that is shown, from 0
+  double per_second = 5;  ///< steps a second while it plays
 };
 
+/// What stands behind all that is drawn.
 struct Background {
-  Color color{0, 0, 0};
-  bool transparent = false;
+  Color color{0, 0, 0};      ///< where nothing else gives one
+  bool transparent = false;  ///< pictures with an alpha channel; the colour does not count
 };
 
 }  // namespace catena::scene

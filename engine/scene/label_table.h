@@ -19,20 +19,22 @@
 
 namespace catena::scene {
 
+/// One row of a table.
 struct LabelName {
-  double value = 0;  ///< a whole number
-  std::string name;
-  std::optional<Color> color{};
+  double value = 0;              ///< a whole number
+  std::string name;              ///< empty: none
+  std::optional<Color> color{};  ///< none: the table has no colours
   bool operator==(const LabelName&) const = default;
 };
 /// Values rising.
 using LabelTable = std::vector<LabelName>;
 
-inline constexpr std::size_t kMostLabelRows = 65536;
-inline constexpr double kGreatestLabel = 1 << 24;  ///< in size: floats hold no greater ones apart
+inline constexpr std::size_t kMostLabelRows = 65536;  ///< More are refused.
+inline constexpr double kGreatestLabel = 1 << 24;     ///< in size: floats hold no greater ones apart
 
 /// Errors: "FILE:LINE: what; what was expected".
 Result<LabelTable> parse_label_table(std::string_view text, const std::string& file);
+/// Reads the file of a table.
 Result<LabelTable> read_label_table(const std::string& path);
 
 /// The table that stands beside a label map: of the same name, its ending replaced by, or followed by, one of .txt, .ctbl, .label, .csv,

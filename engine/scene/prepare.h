@@ -25,9 +25,10 @@ bool update_widgets(Scene& scene, const exchange::HapticState& state);
 
 /// What changed since the last drive_widgets.
 struct WidgetChanges {
-  bool slices = false;  ///< or the planes of glyphs
-  bool clip = false, seeds = false, levels = false;
+  bool slices = false;                               ///< or the planes of glyphs
+  bool clip = false, seeds = false, levels = false;  ///< what else has to be made anew
   bool links = false;  ///< a link of the chain names a widget that moved: the program must be made and published again
+  /// Whether anything has.
   bool any() const { return slices || clip || seeds || levels || links; }
 };
 

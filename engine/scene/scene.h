@@ -15,51 +15,52 @@
 
 namespace catena::scene {
 
+/// All of a scene. One thread, the frame's; a copy is a scene of its own that shares fields, meshes and curves.
 struct Scene {
-  std::string path;
+  std::string path;                ///< the file that it was read from, as it was given
   std::vector<std::string> files;  ///< all that its text and the overrides name, as the scene opens them, read so far or not
   /// About what still reads, but is written in another way now: "FILE:LINE: ..."; of a data file: what it looks like.
   std::vector<std::string> notes;
-  World world;
+  World world;  ///< the entities: fields, what is drawn, links, widgets
   /// What was made from it, by the same entities: traced lines, sorted values, measured rulers, polylines for the eye. Nothing here is of
   /// the scene: it can be dropped, and is made again.
   World made;
-  Coupling coupling;
-  Workspace workspace;
-  std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
-  Camera camera;
-  Stereo stereo;
-  Background background;
-  TimeLine time;
-  Annotations annotations;
-  std::vector<ClipPlane> clip;
-  std::optional<bool> jitter;  ///< of rays; not stated: by the quality
-  std::optional<BoundingBox> bounding_box;
-  std::optional<Axes> axes;
-  std::optional<Ground> ground;
-  std::optional<Fog> fog;
-  std::vector<Light> lights;
-  std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
-  Plan plan;            ///< empty: none
-  Entity cursor;
-  double phase = 0;  ///< of what moves along the streamlines; the fraction counts
+  Coupling coupling;                        ///< how the links make a force
+  Workspace workspace;                      ///< how the hand lies in the world
+  std::optional<json::Node> device;         ///< "device": its keys are read where the device is opened
+  Camera camera;                            ///< the eye
+  Stereo stereo;                            ///< the eyes and screens
+  Background background;                    ///< behind all
+  TimeLine time;                            ///< the step in time
+  Annotations annotations;                  ///< what is written over the picture
+  std::vector<ClipPlane> clip;              ///< what of the world is left out
+  std::optional<bool> jitter;               ///< of rays; not stated: by the quality
+  std::optional<BoundingBox> bounding_box;  ///< none: not drawn
+  std::optional<Axes> axes;                 ///< none: not drawn
+  std::optional<Ground> ground;             ///< none: not drawn
+  std::optional<Fog> fog;                   ///< none: no fog
+  std::vector<Light> lights;                ///< none: a headlight
+  std::string quality;                      ///< draft, balanced, reference, time=MS, error=E; empty: not stated
+  Plan plan;                                ///< empty: none
+  Entity cursor;                            ///< what the hand holds; has a Cursor
+  double phase = 0;                         ///< of what moves along the streamlines; the fraction counts
 
   /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object. Those that nothing holds any more are
   /// dropped as seeds move (lines.h), so that hours of it do not fill the memory.
   struct CurveKey {
-    std::uint64_t field_version;
-    bool line;
-    double min_speed, length;
-    std::array<double, 3> seed;
+    std::uint64_t field_version;  ///< Field::version()
+    bool line;                    ///< followed as a line field
+    double min_speed, length;     ///< as of flow::Flow; world units, 0: 10 L
+    std::array<double, 3> seed;   ///< world
     auto operator<=>(const CurveKey&) const = default;
   };
-  std::map<CurveKey, flow::CurvePtr> curves;
+  std::map<CurveKey, flow::CurvePtr> curves;  ///< curves that something holds, or held lately
 };
 
 /// "--field NAME=FILE[:GRID]": replaces the source of a named field, or adds one. Or a program gives the field itself.
 struct FieldOverride {
-  std::string name, file, grid;
-  field::AnyField given{};  ///< made by the program: `file` and `grid` are not looked at. Not a grid: drawn from samples of its bounds
+  std::string name, file, grid;  ///< the field's name in the scene; the file; its grid, empty: the only one
+  field::AnyField given{};       ///< made by the program: `file` and `grid` are not looked at. Not a grid: drawn from samples of its bounds
 };
 
 /// "error=2,hand_time=5": a plan as the command line has it. The error begins with the words.
@@ -68,7 +69,9 @@ Result<Plan> parse_plan(std::string_view words);
 /// Reads and checks the whole file; every error names file, line and what was expected. Does not load fields, but every
 /// file that it names must exist.
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
-Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
+Result<Scene> parse_scene(std::string_view text, const std::string& path,
+                          const std::vector<FieldOverride>& overrides =
+                              {});  ///< The same of a text; `path` is where relative names begin, and what messages call it.
 /// A bare data file: its (first usable) scalar grid as the kind of its data is best shown (first_look.h), a vector grid as streamlines,
 /// a triangle mesh as it is, curves in the colours of their directions, points as balls; the camera is fitted to what can be seen. `colors`
 /// may name a colour map and a range: a scalar grid is then a volume whose opacity follows the range, lines show the speed by them.
@@ -84,6 +87,7 @@ std::vector<std::string> look_of_file(const std::string& path);
 /// What a data file is shown as: by its ending, and where that leaves it open by what it holds: fields before surfaces, lines and points.
 /// Of a pattern: its first file.
 enum class FileKind { field, mesh, curves, points };
+/// The kind of that file. It is looked into only where its ending leaves it open.
 FileKind kind_of_file(const std::string& path);
 
 /// What a scene file may say, part by part (engine/schema): docs/scene.md, the JSON Schema and the reader are made of it. The links of
@@ -99,12 +103,16 @@ Entity find_named(const Scene& scene, std::string_view name) {
   });
   return found;
 }
+/// The field of that name; none: an entity that is false.
 inline Entity find_field(const Scene& scene, std::string_view name) { return find_named<FieldSource>(scene, name); }
+/// The mesh of that name; none: an entity that is false.
 inline Entity find_mesh(const Scene& scene, std::string_view name) { return find_named<MeshSource>(scene, name); }
+/// The widget of that name; none: an entity that is false.
 inline Entity find_widget(const Scene& scene, std::string_view name) { return find_named<Widget>(scene, name); }
 
 /// Loads on first use. `where` is the place that names the field, for messages.
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where);
+/// The same by its name.
 Result<field::AnyField> use_field(Scene& scene, const std::string& name, const json::Node& where);
 /// The same as a grid that can be drawn (analytic fields are sampled once). Volumes over the field that state no colours or
 /// no opacity get theirs from its histogram.
@@ -113,13 +121,17 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
 Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh);
 /// What has been loaded; empty where nothing has asked for it yet.
 inline const field::AnyField& loaded_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).loaded; }
+/// The grid that is drawn; empty where nothing has asked for it yet.
 inline const field::AnyField& drawn_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).drawn; }
+/// The same by its name.
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where);
 /// Curves from a file; loaded on first use.
 Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity curves);
+/// The same by their name.
 Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, const json::Node& where);
 /// The same of points from a table.
 Result<curves::PointSetPtr> use_points(Scene& scene, Entity points);
+/// The same by their name.
 Result<curves::PointSetPtr> use_points(Scene& scene, const std::string& name, const json::Node& where);
 /// The one curve of (field, flow, seed, length), while something holds it.
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);

@@ -25,10 +25,11 @@ enum class StereoMode {
   column_interlaced,
   checkerboard
 };
-inline constexpr int kStereoModes = 13;
+inline constexpr int kStereoModes = 13;  ///< How many modes there are.
 
 /// "side-by-side" and so on.
 std::string_view stereo_word(StereoMode mode);
+/// The mode of that word.
 std::optional<StereoMode> stereo_mode(std::string_view word);
 /// "mono, left, .. or checkerboard"
 std::string stereo_words();
@@ -37,22 +38,22 @@ bool needs_a_pair(StereoMode mode);
 
 /// A flat display that shows what lies behind it as a window does. World units.
 struct DisplayScreen {
-  std::string name;
+  std::string name;                                         ///< what --screen calls it
   Vec3 lower_left{0.0}, lower_right{0.0}, upper_left{0.0};  ///< corners, as one sees them who stands before it
 };
-inline constexpr std::size_t kMaxScreens = 64;
+inline constexpr std::size_t kMaxScreens = 64;  ///< More are refused.
 
 /// The eyes of the picture, and the screens that they may look through. Lengths in world units.
 struct Stereo {
-  StereoMode mode = StereoMode::mono;
+  StereoMode mode = StereoMode::mono;   ///< how the eyes' pictures make one
   std::optional<double> separation;     ///< of neighbouring eyes; none: a 30th of the zero-parallax distance
   std::optional<double> zero_parallax;  ///< distance from the eyes to where both see the same; none: to the camera's target
   int views = 2;                        ///< for the modes that take any number
   bool swap = false;                    ///< the right eye's picture in the left eye's place
-  std::vector<DisplayScreen> screens;
-  std::optional<std::size_t> through;  ///< which of them the picture is of: the camera's position is the head, beside which the eyes are
+  std::vector<DisplayScreen> screens;   ///< screens that a picture may be of
+  std::optional<std::size_t> through;   ///< which of them the picture is of: the camera's position is the head, beside which the eyes are
 };
-inline constexpr int kMaxStereoViews = 64;
+inline constexpr int kMaxStereoViews = 64;            ///< More are refused.
 inline constexpr double kMaxStereoSeparation = 1e15;  ///< world units
 
 }  // namespace catena::scene

@@ -12,9 +12,11 @@
 
 namespace catena::scene {
 
+/// A number that stands for a thing in a world. False: none.
 struct Entity {
-  std::uint32_t id = 0xffffffffu;
+  std::uint32_t id = 0xffffffffu;  ///< unique in its world; the greatest number: none
   bool operator==(const Entity&) const = default;
+  /// Whether it stands for something.
   explicit operator bool() const { return id != 0xffffffffu; }
 };
 
@@ -22,6 +24,7 @@ struct Entity {
 template <class T>
 class Pool {
  public:
+  /// Gives the entity one; it must have none.
   T& emplace(Entity e, T value) {
     CATENA_ASSERT(!contains(e));
     if (sparse_.size() <= e.id) sparse_.resize(e.id + 1, kNone);
@@ -30,15 +33,19 @@ class Pool {
     dense_.push_back(std::move(value));
     return dense_.back();
   }
+  /// Whether the entity has one.
   bool contains(Entity e) const { return e.id < sparse_.size() && sparse_[e.id] != kNone; }
+  /// The entity's; it must have one.
   T& get(Entity e) {
     CATENA_ASSERT(contains(e));
     return dense_[sparse_[e.id]];
   }
+  /// The entity's; it must have one.
   const T& get(Entity e) const {
     CATENA_ASSERT(contains(e));
     return dense_[sparse_[e.id]];
   }
+  /// Takes the entity's away; nothing where it has none. The last one moves into its place.
   void remove(Entity e) {
     if (!contains(e)) return;
     const std::uint32_t hole = sparse_[e.id];
@@ -49,7 +56,9 @@ class Pool {
     dense_.pop_back();
     owners_.pop_back();
   }
+  /// How many entities have one.
   std::size_t size() const { return dense_.size(); }
+  /// The entities that have one, in the order of the pool.
   const std::vector<Entity>& owners() const { return owners_; }
 
  private:
@@ -59,29 +68,36 @@ class Pool {
   std::vector<T> dense_;
 };
 
+/// Entities with their components of any types.
 class World {
  public:
+  /// A new entity, without components.
   Entity create() { return Entity{next_++}; }
 
+  /// Gives the entity a T; it must have none.
   template <class T>
   T& emplace(Entity e, T value = {}) {
     return pool<T>().emplace(e, std::move(value));
   }
+  /// Whether the entity has a T.
   template <class T>
   bool has(Entity e) const {
     const auto* p = find_pool<T>();
     return p != nullptr && p->contains(e);
   }
+  /// The entity's T; it must have one. References last until a T is added or removed.
   template <class T>
   T& get(Entity e) {
     return pool<T>().get(e);
   }
+  /// The entity's T; it must have one.
   template <class T>
   const T& get(Entity e) const {
     const auto* p = find_pool<T>();
     CATENA_ASSERT(p != nullptr);
     return p->get(e);
   }
+  /// Takes the entity's T away; nothing where it has none.
   template <class T>
   void remove(Entity e) {
     pool<T>().remove(e);
@@ -94,6 +110,7 @@ class World {
       mine->take(here, *slot, there);
     }
   }
+  /// How many entities have a T.
   template <class T>
   std::size_t count() const {
     const auto* p = find_pool<T>();
@@ -104,6 +121,7 @@ class World {
   void each(F&& f) {
     for (Entity e : pool<T>().owners()) f(e, pool<T>().get(e));
   }
+  /// The same, to read.
   template <class T, class F>
   void each(F&& f) const {
     if (const auto* p = find_pool<T>())

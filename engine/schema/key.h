@@ -39,47 +39,55 @@ enum class Role { none, scalar_field, vector_field, any_field, mesh, curves, poi
 
 /// Bounds of a number, or of each number of a vector. An open bound does not belong to the range.
 struct Limits {
-  std::optional<double> lo, hi;
-  bool lo_open = false, hi_open = false;
+  std::optional<double> lo, hi;           ///< least and greatest number; none: no bound
+  bool lo_open = false, hi_open = false;  ///< the bound itself does not belong to it
+  /// Whether a number lies within them.
   bool contains(double x) const;
   /// "> 0", "0 to 1", "at most 8"; empty: any.
   std::string words() const;
 };
 
+/// One key. Plain data, made by the functions below and changed by its own, which give a changed copy.
 struct Key {
-  std::string name;
-  Form form = Form::number;
+  std::string name;           ///< as the file has it
+  Form form = Form::number;   ///< the shape of its value
   std::string unit;           ///< "world" (world units), "value" (of the field), "N/m" ...
   std::string help;           ///< one sentence
   std::string range = {};     ///< in words, where the limits do not say it: "rising", "not 0"
   std::string fallback = {};  ///< the default in words; JSON text where it is a value
-  Limits limits = {};
-  int count = 0;  ///< of a vector's numbers, of a row's
-  int least = 0;  ///< items of a list
-  int most = 0;   ///< items of a list, bytes of a text; 0: any number
-  Role role = Role::none;
-  bool is_required = false;
-  bool is_stated = false;  ///< a new component states it though it need not: without it the component means little
+  Limits limits = {};         ///< of a number, or of each of several
+  int count = 0;              ///< of a vector's numbers, of a row's
+  int least = 0;              ///< items of a list
+  int most = 0;               ///< items of a list, bytes of a text; 0: any number
+  Role role = Role::none;     ///< what of the scene it names
+  bool is_required = false;   ///< the file must have it
+  bool is_stated = false;     ///< a new component states it though it need not: without it the component means little
   /// How a new one begins in the window: JSON text, "0.1 L" (a share of the length of all that is there), "hand" (a place where the hand
   /// is) or "hand + 0.1 L"; empty: places begin at the hand, lengths with 0.02 L, words with the first one.
   std::string begin = {};
-  bool is_identifier = false;  ///< [a-z][a-z0-9_]*
-  bool has_default = true;
-  bool follows_field = false;   ///< a number that may be an object {"field", "map", ...} instead
-  bool follows_widget = false;  ///< or {"widget": NAME}
-  std::vector<std::string> words = {};
+  bool is_identifier = false;                          ///< [a-z][a-z0-9_]*
+  bool has_default = true;                             ///< what is left out means `fallback`
+  bool follows_field = false;                          ///< a number that may be an object {"field", "map", ...} instead
+  bool follows_widget = false;                         ///< or {"widget": NAME}
+  std::vector<std::string> words = {};                 ///< of Form::word
   std::vector<Key> choices = {};                       ///< any_of
   std::shared_ptr<const std::vector<Key>> inner = {};  ///< object
 
+  /// A copy: the file must have the key.
   Key required() const {
     return with([](Key& k) { k.is_required = true; });
   }
+  /// A copy: new components state the key.
   Key stated() const {
     return with([](Key& k) { k.is_stated = true; });
   }
+  /// A copy: more than 0.
   Key positive() const { return limited({0.0, {}, true}); }
+  /// A copy: 0 or more.
   Key not_negative() const { return limited({0.0, {}}); }
+  /// A copy: from lo to hi, both included.
   Key within(double lo, double hi) const { return limited({lo, hi}); }
+  /// A copy with these limits.
   Key limited(const Limits& l) const {
     return with([&](Key& k) { k.limits = l; });
   }
@@ -95,18 +103,23 @@ struct Key {
   Key by_default(const std::string& text) const {
     return with([&](Key& k) { k.fallback = text; });
   }
+  /// A copy that begins like this in the window.
   Key begins(const std::string& text) const {
     return with([&](Key& k) { k.begin = text; });
   }
+  /// A copy that names such a thing of the scene.
   Key as(Role r) const {
     return with([&](Key& k) { k.role = r; });
   }
+  /// A copy that takes from lo to hi items; hi 0: any number.
   Key items(int lo, int hi) const {
     return with([&](Key& k) { k.least = lo, k.most = hi; });
   }
+  /// A copy that may be an object which follows a field.
   Key or_field() const {
     return with([](Key& k) { k.follows_field = true; });
   }
+  /// A copy that may name a widget.
   Key or_widget() const {
     return with([](Key& k) { k.follows_widget = true; });
   }
@@ -120,40 +133,59 @@ struct Key {
   }
 };
 
+/// Keys in the order of the documents.
 using Keys = std::vector<Key>;
 
+/// A number with a unit; "" has none.
 Key number(const std::string& name, const std::string& unit, const std::string& help);
+/// A whole number from `least` to `most`.
 Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
+/// True or false.
 Key boolean(const std::string& name, const std::string& help);
+/// Any text.
 Key text(const std::string& name, const std::string& help);
 /// A name that others may use: [a-z][a-z0-9_]*.
 Key identifier(const std::string& name, const std::string& help);
+/// One of `words`.
 Key word(const std::string& name, std::vector<std::string> words, const std::string& help);
+/// Three numbers.
 Key vec3(const std::string& name, const std::string& unit, const std::string& help);
 /// An arrow of any length but 0.
 Key direction(const std::string& name, const std::string& help);
+/// `count` numbers.
 Key vector(const std::string& name, int count, const std::string& unit, const std::string& help);
+/// [r, g, b], 0 to 1.
 Key color(const std::string& name, const std::string& help);
+/// A list of numbers of any length.
 Key numbers(const std::string& name, const std::string& unit, const std::string& help);
+/// A list of texts.
 Key texts(const std::string& name, const std::string& help);
+/// A list of [x, y, z].
 Key places(const std::string& name, const std::string& unit, const std::string& help);
+/// A list of rows of `width` numbers.
 Key table(const std::string& name, int width, const std::string& unit, const std::string& help);
+/// A rotation, as json::as_rotation reads it.
 Key rotation(const std::string& name, const std::string& help);
+/// The word null, as one of several choices.
 Key null();
+/// An object with keys of its own.
 Key object(const std::string& name, Keys inner, const std::string& help);
 /// Several forms in one key; the first is the usual one.
 Key any_of(const std::string& name, Keys choices, const std::string& help);
 /// The name of a field, a mesh, curves, points, a widget.
 Key named(const std::string& name, Role role, const std::string& help);
+/// A file's name, relative to the scene's file.
 Key file(const std::string& name, const std::string& help);
 /// "kind" of a vector field: vectors, or lines without a direction.
 Key line_kind_key();
 
+/// The key of that name; null: none.
 const Key* find(const Keys& keys, std::string_view name);
 /// `first`, then `second`.
 Keys joined(Keys first, const Keys& second);
 /// The names of the keys, for json::only_keys.
 std::vector<std::string_view> names_of(const Keys& keys);
+/// Of both, in order.
 std::vector<std::string_view> names_of(const Keys& first, const Keys& second);
 /// The words of a choice as json::get_choice takes them.
 std::vector<std::string_view> words_of(const Key& key);
@@ -167,6 +199,7 @@ struct Variant {
 
 /// A part of the scene file: what stands at one of its top-level keys.
 struct Component {
+  /// What stands at the key.
   enum class Shape {
     object,
     list,    ///< an array of objects
@@ -174,11 +207,11 @@ struct Component {
     on_off,  ///< true, false, or an object
     value    ///< `keys` has one key: the part itself
   };
-  std::string name;  ///< "isosurfaces"
-  std::string help;  ///< one or two sentences
-  Shape shape = Shape::object;
-  Keys keys = {};
-  int most = 0;  ///< items of a list; 0: any number
+  std::string name;             ///< "isosurfaces"
+  std::string help;             ///< one or two sentences
+  Shape shape = Shape::object;  ///< what stands at its key
+  Keys keys = {};               ///< of the object, or of each item
+  int most = 0;                 ///< items of a list; 0: any number
   /// Empty, or each item is one of these; told by "type" where `keys` has that.
   std::vector<Variant> variants = {};
 };

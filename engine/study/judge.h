@@ -13,17 +13,20 @@
 
 namespace catena::study {
 
+/// What a trial gave.
 struct Measured {
-  bool by_target = false;  ///< else by the limit
-  double time_s = 0;       ///< of the clock
-  double error_mm = 0;
+  bool by_target = false;   ///< else by the limit
+  double time_s = 0;        ///< of the clock
+  double error_mm = 0;      ///< as of the task's kind, see above
   double travelled_mm = 0;  ///< by the cursor
   double peak_force_n = 0;  ///< while the clock ran
   Vec3 end_mm{0.0};         ///< the crossing, or the last cursor; world axes
 };
 
+/// The judge of one trial.
 class Judge {
  public:
+  /// Where the trial is.
   enum class Phase { waiting, ready, running, ended };  ///< for the cursor at the start; at the start; the clock runs; over
 
   /// `task` outlives it.
@@ -31,7 +34,9 @@ class Judge {
 
   /// `t_s` rises. After the end it does nothing.
   Phase tick(double t_s, const Vec3& cursor, double force_n) noexcept;
+  /// Where the trial is now.
   Phase phase() const { return phase_; }
+  /// Seconds since the clock started; 0 before and after.
   double running_s() const { return phase_ == Phase::running ? last_s_ - start_s_ : 0; }
   /// Once it has ended.
   const Measured& measured() const { return measured_; }

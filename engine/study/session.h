@@ -12,19 +12,20 @@
 
 namespace catena::study {
 
+/// One trial of the design.
 struct Trial {
-  int subject = 1;
-  int index = 0;      ///< in the session, from 0, training counted
-  int block = 0;      ///< from 0
-  int task = 0;       ///< index into the study's tasks
-  int condition = 0;  ///< index into its conditions
-  int stimulus = 0;   ///< number within the task, from 0; of training trials, behind those
-  int seed = 0;       ///< of the stimulus
-  bool training = false;
+  int subject = 1;        ///< from 1
+  int index = 0;          ///< in the session, from 0, training counted
+  int block = 0;          ///< from 0
+  int task = 0;           ///< index into the study's tasks
+  int condition = 0;      ///< index into its conditions
+  int stimulus = 0;       ///< number within the task, from 0; of training trials, behind those
+  int seed = 0;           ///< of the stimulus
+  bool training = false;  ///< not analysed
   bool operator==(const Trial&) const = default;
 };
 
-inline constexpr int kMaxSubject = 9999;
+inline constexpr int kMaxSubject = 9999;  ///< Greater numbers are refused.
 
 /// The order of `count` tasks for a row of the square; it has `count` rows, or twice as many where `count` is odd.
 std::vector<int> latin_row(int count, int row);

@@ -19,6 +19,7 @@
 
 namespace catena::study {
 
+/// The places of one trial. World units.
 struct Stimulus {
   int seed = 0;                            ///< of the field: the trial's, or the first of those that follow from it whose field has a start
   Vec3 start{0.0}, middle{0.0}, end{0.0};  ///< world, of the path

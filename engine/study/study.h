@@ -17,6 +17,7 @@ namespace catena::study {
 
 /// Advection: where does the flow lead? The path is not shown. Tracing: a path that is shown is followed to its end.
 enum class TaskKind { advection, tracing };
+/// "advection" or "tracing".
 const char* kind_word(TaskKind kind);
 
 /// What ends a trial: the circle about the start that the path first crosses at its end, the ground plane through the end, or the end.
@@ -36,45 +37,50 @@ struct StimulusRules {
   double region = 0.5;       ///< share of the field's box, about its middle, in which starts lie
 };
 
+/// Times and errors of a task.
 struct Limits {
   double told_s = 10;                               ///< what the subject is told; not enforced
   double ends_s = 30;                               ///< here a trial ends
   double reject_error_mm = 30, reject_time_s = 10;  ///< analyse: trials beyond are left out
 };
 
+/// One task of the experiment.
 struct Task {
-  std::string name;
-  TaskKind kind = TaskKind::tracing;
-  int dimensions = 2;
-  Target target = Target::end;
-  StimulusRules rules;
-  Limits limits;
-  double start_mm = 4;       ///< the clock starts when the cursor leaves this ball (2D: circle) about the start
-  double reach_mm = 4;       ///< tracing: so near, the end is reached
-  double indicator_mm = 20;  ///< advection: length of the local indicator, as the operator model sees it
-  std::string field;         ///< of `scene`: the one that the path follows
-  json::Node scene;          ///< the template of a trial's scene (trial_scene.h)
-  json::Node where;
+  std::string name;                   ///< in the tables
+  TaskKind kind = TaskKind::tracing;  ///< what is asked
+  int dimensions = 2;                 ///< 2: all is measured in the picture plane; 3
+  Target target = Target::end;        ///< what ends a trial
+  StimulusRules rules;                ///< how its places are found
+  Limits limits;                      ///< times and errors
+  double start_mm = 4;                ///< the clock starts when the cursor leaves this ball (2D: circle) about the start
+  double reach_mm = 4;                ///< tracing: so near, the end is reached
+  double indicator_mm = 20;           ///< advection: length of the local indicator, as the operator model sees it
+  std::string field;                  ///< of `scene`: the one that the path follows
+  json::Node scene;                   ///< the template of a trial's scene (trial_scene.h)
+  json::Node where;                   ///< its place in the file, for messages
 
   // of the scene
-  double metres_per_unit = 1;
-  Vec3 eye{0.0};              ///< world
-  Vec3 view{0.0, 0.0, -1.0};  ///< unit, into the picture: the depth
-  Vec3 plane{0.0};            ///< a place of the picture plane: what the camera looks at; 2D tasks lie in that plane
-  bool orthographic = false;
+  double metres_per_unit = 1;  ///< metres of hand a world unit
+  Vec3 eye{0.0};               ///< world
+  Vec3 view{0.0, 0.0, -1.0};   ///< unit, into the picture: the depth
+  Vec3 plane{0.0};             ///< a place of the picture plane: what the camera looks at; 2D tasks lie in that plane
+  bool orthographic = false;   ///< the camera has no perspective
 
+  /// World units of so many millimetres of the hand.
   double world(double mm) const { return 1e-3 * mm / metres_per_unit; }
+  /// Millimetres of the hand of a length in the world.
   double mm(double world_length) const { return 1e3 * metres_per_unit * world_length; }
 };
 
+/// What is felt.
 struct Condition {
-  std::string name;
+  std::string name;                ///< in the tables
   std::vector<json::Node> chains;  ///< a task's, in the order of the tasks
 };
 
 /// A model of a subject (operator.h). It stands in for nobody: what it gives tells about the model.
 struct OperatorModel {
-  double speed_mm_per_s = 55;
+  double speed_mm_per_s = 55;                                     ///< how fast the hand reaches, in the median
   double speed_spread_subject = 0.36, speed_spread_trial = 0.27;  ///< of the speed's logarithm; together 0.45
   double motor_noise = 0.25;                                      ///< standard deviation of the velocity, times the speed
   double motor_noise_s = 0.1;                                     ///< how long it lasts: correlation time
@@ -83,37 +89,41 @@ struct OperatorModel {
   double depth_bias_mm = 5;                                       ///< standard deviation over subjects of a constant one
   double seeing_noise_s = 0.5;                                    ///< correlation time of both noises
   double tremor_mm = 0.3;                                         ///< root mean square, each axis
-  double tremor_lo_hz = 8, tremor_hi_hz = 10.6;
-  double delay_s = 0.2;             ///< from what is seen to what the hand does
-  double correction_per_s = 2.5;    ///< how fast a deviation that is seen is taken back
-  double stiffness_n_per_mm = 0.5;  ///< of the hand about where it wants to be
-  double damping_ns_per_m = 15;
-  double yield_n = 3;  ///< the hand gives way to a greater force
+  double tremor_lo_hz = 8, tremor_hi_hz = 10.6;                   ///< the tremor's lowest and highest frequency
+  double delay_s = 0.2;                                           ///< from what is seen to what the hand does
+  double correction_per_s = 2.5;                                  ///< how fast a deviation that is seen is taken back
+  double stiffness_n_per_mm = 0.5;                                ///< of the hand about where it wants to be
+  double damping_ns_per_m = 15;                                   ///< of the hand about where it wants to be, N s/m
+  double yield_n = 3;                                             ///< the hand gives way to a greater force
 };
 
 inline constexpr std::size_t kMostAnswers = 9;  ///< to choose from, a key each
 
+/// A question after the session.
 struct Question {
-  std::string name, question;
+  std::string name, question;        ///< the column of the table; what is asked
   std::vector<std::string> answers;  ///< to choose from; empty: any text
 };
 
+/// A whole study. Immutable once read.
 struct Study {
-  std::string path, text;  ///< as it was read, verbatim
-  json::Node document;     ///< all of it; "compare" and "findings" are read by what analyses
-  std::string name;
-  int seed = 1;
-  int subjects = 20;  ///< that the design was made for
-  int trials = 10;    ///< of every task in every condition: so many stimuli
-  int training = 1;   ///< before them, of every task in every condition; not analysed
-  std::vector<Task> tasks;
+  std::string path, text;             ///< as it was read, verbatim
+  json::Node document;                ///< all of it; "compare" and "findings" are read by what analyses
+  std::string name;                   ///< for titles
+  int seed = 1;                       ///< of everything that is drawn by chance
+  int subjects = 20;                  ///< that the design was made for
+  int trials = 10;                    ///< of every task in every condition: so many stimuli
+  int training = 1;                   ///< before them, of every task in every condition; not analysed
+  std::vector<Task> tasks;            ///< in the order of the file
   std::vector<Condition> conditions;  ///< the first is the baseline
-  OperatorModel model;
-  std::string instructions;  ///< a text file, its path as the program opens it; empty: none
-  std::vector<Question> questions;
+  OperatorModel model;                ///< the model of a subject, for `study simulate`
+  std::string instructions;           ///< a text file, its path as the program opens it; empty: none
+  std::vector<Question> questions;    ///< after the session
 };
 
+/// Reads and checks a file. An error is one line with the file's name and line.
 Result<Study> read_study(const std::string& path);
+/// The same of a text; `path` is what messages call it, and where relative names begin.
 Result<Study> parse_study(std::string_view text, const std::string& path);
 
 /// The keys of the file, for its schema and docs/study.md.

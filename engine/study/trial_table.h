@@ -17,24 +17,27 @@
 
 namespace catena::study {
 
+/// One finished trial, as a row of the table.
 struct Row {
-  int subject = 1, index = 0, block = 0;
-  std::string task, kind;  ///< "advection", "tracing"
-  int dimensions = 2;
-  std::string condition;
-  int stimulus = 0, seed = 0;
-  bool training = false;
-  bool by_target = true;
-  double time_s = 0, error_mm = 0, travelled_mm = 0, peak_force_n = 0;
-  Vec3 end_mm{0.0};
+  int subject = 1, index = 0, block = 0;                                ///< as of Trial
+  std::string task, kind;                                               ///< "advection", "tracing"
+  int dimensions = 2;                                                   ///< 2 or 3
+  std::string condition;                                                ///< its name
+  int stimulus = 0, seed = 0;                                           ///< as of Trial
+  bool training = false;                                                ///< not analysed
+  bool by_target = true;                                                ///< ended by its target; else by the limit
+  double time_s = 0, error_mm = 0, travelled_mm = 0, peak_force_n = 0;  ///< as of Measured; of the cursor, not of a proxy
+  Vec3 end_mm{0.0};                                                     ///< where it ended, world axes, millimetres of the hand
   bool operator==(const Row&) const = default;
 };
 
+/// The row of a trial that has been measured.
 Row row_of(const Study& study, const Trial& trial, const Measured& measured);
 
 /// "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
 std::string table_header();
 std::string row_text(const Row& row);  ///< with its line end
+/// All rows, a header first.
 std::string table_text(const std::vector<Row>& rows);
 /// `torn_end`: a last line without its end is left out rather than an error; `whole` gets the bytes before it.
 Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false, std::size_t* whole = nullptr);
@@ -64,6 +67,7 @@ class DataFolder {
   /// where people's are to come, or people's where a model's are.
   static Result<DataFolder> open(const std::string& path, const Study& study, Who who);
 
+  /// The folder, as it was given.
   const std::string& path() const { return path_; }
   /// rows_in(), but a torn end is cut off the file, so that rows can be appended.
   Result<std::vector<Row>> rows(int subject) const;
@@ -86,9 +90,10 @@ class DataFolder {
 
 /// The rows of a data folder: of DIR/subjects/*.csv, or of DIR/trials.csv where there are none of those.
 struct TrialTable {
-  std::vector<Row> rows;
+  std::vector<Row> rows;           ///< in the order of subjects and trials
   std::vector<std::string> notes;  ///< lines: what of the folder was not taken, or torn, and that trials.csv differs from what was
 };
+/// Reads all rows of a folder. An error names file and line.
 Result<TrialTable> read_table(const std::string& folder);
 
 /// Whether a model did the trials.

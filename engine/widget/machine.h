@@ -19,7 +19,7 @@ struct Facts {
   bool sphere = false;   ///< ... of the sphere
   bool plane = false;    ///< within `snap` of the cutting plane; where it explores: within `release`
   bool pressed = false;  ///< the button went down in this tick
-  bool down = false;
+  bool down = false;     ///< the button is down
   bool touch = false;    ///< Spec::touch
   bool gripped = false;  ///< the mode was entered, or kept, by a press
 };
@@ -27,24 +27,28 @@ struct Facts {
 /// All transitions of all widgets.
 Mode next_mode(Kind kind, Mode mode, const Facts& facts) noexcept;
 
+/// Whether the hand has taken hold of the widget.
 constexpr bool is_grabbed(Mode mode) noexcept { return mode == Mode::translate || mode == Mode::turn || mode == Mode::drag; }
 
+/// What the machine gets of a tick.
 struct Input {
-  Vec3 probe{0.0};            ///< finite
-  Vec3 last_probe{0.0};       ///< of the last tick that had one
-  std::uint32_t buttons = 0;  ///< bit n - 1: button n
-  std::uint32_t last_buttons = 0;
-  bool back = false;  ///< the ticks before had no probe
+  Vec3 probe{0.0};                 ///< finite
+  Vec3 last_probe{0.0};            ///< of the last tick that had one
+  std::uint32_t buttons = 0;       ///< bit n - 1: button n
+  std::uint32_t last_buttons = 0;  ///< of the tick before
+  bool back = false;               ///< the ticks before had no probe
 };
 
 /// The pose as the Spec says, away.
 void begin(const Spec& spec, State& state) noexcept;
 /// The engaged widget; -1: none.
 int step_modes(std::span<const Spec> specs, std::span<State> states, const Input& input) noexcept;
+/// The chain that the engaged widget asks for in this tick.
 Plan plan(const Spec& spec, State& state, const Vec3& probe) noexcept;
 /// `proxy`: the last one of the chain that `plan` asked for.
 void finish(const Spec& spec, State& state, const Vec3& proxy) noexcept;
 
+/// What the frame is told of it.
 Report report_of(const State& state) noexcept;
 
 /// Is this a state that the machine can leave, as far as it indexes with it? For states that come from a file; off the tick.

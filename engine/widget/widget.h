@@ -44,30 +44,35 @@ inline Quat turn_about(const Vec3& e, const Vec3& a, const Vec3& b) noexcept {
 ///   ruler          from points[0] to points[1]
 
 using exchange::kMaxWidgets;
+/// What a widget does.
 using Mode = exchange::WidgetMode;
+/// Where a widget is.
 using Pose = exchange::WidgetPose;
+/// What a tick says of a widget.
 using Report = exchange::WidgetReport;
 
+/// What a widget is.
 enum class Kind : std::uint8_t { cutting_plane, seed, rake, isolevel, box, ruler };
 
 /// The turns of a cutting plane that the hand may make: about an axis where it takes the sphere near one of the three great circles and
 /// else freely; freely only; about the nearest axis only.
 enum class Turning : std::uint8_t { any, free, axis };
 
+/// What a widget is made of. Off the tick; it does not change while a program runs.
 struct Spec {
-  Kind kind = Kind::cutting_plane;
-  Pose pose;                   ///< at the start, or as set since
-  double value = 0;            ///< isolevel: at the start, where the field says nothing at the handle
-  std::uint32_t revision = 0;  ///< counts the poses that were set from outside (a panel, undo): a higher one replaces the hand's
-  double length = 4;           ///< L, which the sizes that are not stated follow
-  double radius = 0;           ///< of the sphere; of a handle's ball
-  double snap = 0;             ///< the cutting plane takes hold of a probe this near
-  double release = 0;          ///< and lets it go this far; more than snap
-  double near = 0;             ///< the sphere, a great circle, a handle: taken hold of within it
-  double step = 0;             ///< a plane that holds an axis lets go where the probe is this far from it
-  Turning turning = Turning::any;
-  bool touch = false;                               ///< the sphere turns without the button
-  int button = 1;                                   ///< 1..32
+  Kind kind = Kind::cutting_plane;  ///< what it is
+  Pose pose;                        ///< at the start, or as set since
+  double value = 0;                 ///< isolevel: at the start, where the field says nothing at the handle
+  std::uint32_t revision = 0;       ///< counts the poses that were set from outside (a panel, undo): a higher one replaces the hand's
+  double length = 4;                ///< L, which the sizes that are not stated follow
+  double radius = 0;                ///< of the sphere; of a handle's ball
+  double snap = 0;                  ///< the cutting plane takes hold of a probe this near
+  double release = 0;               ///< and lets it go this far; more than snap
+  double near = 0;                  ///< the sphere, a great circle, a handle: taken hold of within it
+  double step = 0;                  ///< a plane that holds an axis lets go where the probe is this far from it
+  Turning turning = Turning::any;   ///< which turns the hand may make
+  bool touch = false;               ///< the sphere turns without the button
+  int button = 1;                   ///< 1..32
   std::shared_ptr<const field::ScalarField> field;  ///< isolevel
   std::vector<int> along;                           ///< ruler: links of the program that its ends keep to while they are dragged
 };
@@ -76,24 +81,27 @@ struct Spec {
 
 /// A feature that a link of the program has been put on; widgets share four links: planes x, y, z, and the sphere.
 struct Shape {
+  /// What the link is put on.
   enum class Kind : std::uint8_t { none, plane, sphere, point };
-  Kind kind = Kind::none;
-  Vec3 origin{0.0};
-  Vec3 normal{0.0};   ///< plane: unit
-  double radius = 0;  ///< sphere
+  Kind kind = Kind::none;  ///< none: the link lets its probe through
+  Vec3 origin{0.0};        ///< a place on it; a sphere's centre
+  Vec3 normal{0.0};        ///< plane: unit
+  double radius = 0;       ///< sphere
   bool operator==(const Shape&) const = default;
 };
 
-inline constexpr int kSlots = 4, kSphereSlot = 3;
-inline constexpr std::array<const char*, kSlots> kLinkNames{"widget_x", "widget_y", "widget_z", "widget_sphere"};
+inline constexpr int kSlots = 4, kSphereSlot = 3;  ///< Links that widgets share; the one that is the sphere.
+inline constexpr std::array<const char*, kSlots> kLinkNames{"widget_x", "widget_y", "widget_z",
+                                                            "widget_sphere"};  ///< Their names, which no link of a scene may have.
 
 /// The chain that a widget asks for in this tick.
 struct Plan {
-  bool alone = false;  ///< the scene's links are off
-  bool along = false;  ///< Spec::along in place of slots
-  int count = 0;
+  bool alone = false;                       ///< the scene's links are off
+  bool along = false;                       ///< Spec::along in place of slots
+  int count = 0;                            ///< slots in use
   std::array<std::int8_t, kSlots> slots{};  ///< in order
   std::array<Shape, kSlots> shapes{};       ///< by slot
+  /// Puts the next link in order on a shape.
   void add(int slot, const Shape& shape) noexcept {
     slots[static_cast<std::size_t>(count++)] = static_cast<std::int8_t>(slot);
     shapes[static_cast<std::size_t>(slot)] = shape;
@@ -110,20 +118,21 @@ struct Grip {
   std::uint8_t loose = 0;   ///< bits: axes that always move
 };
 
+/// What a widget remembers.
 struct State {
-  bool known = false;    ///< begun
-  bool gripped = false;  ///< by the button
-  bool rebase = false;   ///< a turn: the next arm is where it goes on from
-  Mode mode = Mode::away;
-  std::int8_t handle = -1;
-  std::int8_t axis = -1;  ///< of a turn; -1: free
-  std::uint8_t held = 0;  ///< planes that are active
-  std::uint32_t revision = 0;
-  Pose pose;
-  double value = 0;
-  Pose start;     ///< at the press
-  Grip grip;      ///< translate, drag
-  Vec3 arm{0.0};  ///< turn: unit, about an axis at its start, freely in the last tick
+  bool known = false;          ///< begun
+  bool gripped = false;        ///< by the button
+  bool rebase = false;         ///< a turn: the next arm is where it goes on from
+  Mode mode = Mode::away;      ///< what it does
+  std::int8_t handle = -1;     ///< as of Report
+  std::int8_t axis = -1;       ///< of a turn; -1: free
+  std::uint8_t held = 0;       ///< planes that are active
+  std::uint32_t revision = 0;  ///< of the pose that the hand began with
+  Pose pose;                   ///< where it is now
+  double value = 0;            ///< isolevel: the field's value at the handle
+  Pose start;                  ///< at the press
+  Grip grip;                   ///< translate, drag
+  Vec3 arm{0.0};               ///< turn: unit, about an axis at its start, freely in the last tick
 };
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Plan>);
 

@@ -14,6 +14,7 @@
 
 namespace catena::haptics {
 
+/// What the rotational chain remembers.
 struct AlignmentState {
   std::array<Vec3, kMaxLinks> axes{};  ///< n_i of the last tick; zero: none
   Fade fade;                           ///< of torques
@@ -27,10 +28,11 @@ struct AlignmentState {
   }();
 };
 
+/// What a tick tells it.
 struct AlignmentStep {
-  bool first_tick = false;
-  double dt_s = 0;
-  double ramp_step = 1;
+  bool first_tick = false;  ///< there was no tick before
+  double dt_s = 0;          ///< since the last tick, seconds
+  double ramp_step = 1;     ///< as of step_fade()
 };
 
 /// After the chain of this tick. Returns the torque that the links ask for; fills every link's orientation and torque in `out`.

@@ -14,33 +14,35 @@
 
 namespace catena::haptics {
 
+/// What the baselines remember.
 struct SingleProxy {
+  /// What is remembered of a link.
   struct Watch {
-    double height = 0;  ///< of the probe above a surface that has let go
-    bool known = false;
-    bool released = false;
-    bool holds = false;  ///< in the last tick
+    double height = 0;      ///< of the probe above a surface that has let go
+    bool known = false;     ///< `height` means something
+    bool released = false;  ///< it has let go
+    bool holds = false;     ///< in the last tick
   };
-  Vec3 proxy{0.0};
-  Vec3 probe{0.0};       ///< of the last tick
-  bool started = false;  ///< `proxy` means something
-  bool settled = false;  ///< a probe that rests gives the same again
-  std::array<Watch, kMaxLinks> watches{};
+  Vec3 proxy{0.0};                         ///< p, world units
+  Vec3 probe{0.0};                         ///< of the last tick
+  bool started = false;                    ///< `proxy` means something
+  bool settled = false;                    ///< a probe that rests gives the same again
+  std::array<Watch, kMaxLinks> watches{};  ///< by link
 };
 
 /// One tick as the methods see it; they find p and set `holds`, and each link's status and residual.
 struct SingleTick {
-  const Program& program;
-  const Order& order;
-  Vec3 probe;
-  double dt_s;
-  bool first_tick;
-  SingleProxy& single;
-  std::array<LinkState, kMaxLinks>& links;
-  std::array<LinkScratch, kMaxLinks>& scratch;
-  double length = 0;  ///< L, the largest of the links
-  int passes = 0;     ///< of the pipe, in this tick
-  std::array<bool, kMaxLinks> holds{};
+  const Program& program;                       ///< what runs
+  const Order& order;                           ///< which links run
+  Vec3 probe;                                   ///< the hand, world units
+  double dt_s;                                  ///< since the last tick
+  bool first_tick;                              ///< there was no tick before
+  SingleProxy& single;                          ///< p, and what else is remembered
+  std::array<LinkState, kMaxLinks>& links;      ///< by link
+  std::array<LinkScratch, kMaxLinks>& scratch;  ///< by link
+  double length = 0;                            ///< L, the largest of the links
+  int passes = 0;                               ///< of the pipe, in this tick
+  std::array<bool, kMaxLinks> holds{};          ///< by link: it holds in this tick
 
   /// Calls f(i) for the links that run and have not let go, in order.
   template <class F>
@@ -59,9 +61,13 @@ struct SingleTick {
 /// Moves state.proxy by the probe; `same_order`: the order of the last tick.
 void advance_single_proxy(SingleTick& tick, bool same_order) noexcept;
 
+/// By "pipe": where p comes to rest.
 Vec3 pipe(SingleTick& tick) noexcept;
+/// By "balance".
 Vec3 balance(SingleTick& tick) noexcept;
+/// By "closest".
 Vec3 closest(SingleTick& tick) noexcept;
+/// By "linear".
 Vec3 linear(SingleTick& tick) noexcept;
 
 /// The directions that some primitives take away, and the shortest way onto all of them.

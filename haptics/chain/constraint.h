@@ -16,8 +16,9 @@
 
 namespace catena::haptics {
 
+/// Limits of the device; infinity: none.
 struct Limits {
-  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  static constexpr double kNone = std::numeric_limits<double>::infinity();  ///< no limit
 
   double max_stiffness_n_per_m = kNone;                ///< cap of every k_i
   double max_rotational_stiffness_nm_per_rad = kNone;  ///< cap of the rotational coupling
@@ -44,7 +45,7 @@ inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, 
 /// All that takes time in a link's tick goes into one counter, in units of about 20 ns: a field fetch counts kFetchWork (of a cell that
 /// may lie anywhere in a grid, kCellWork more, of a cubic one kCubicWork), and every evaluation of a cell's polynomial, node of a search,
 /// knot or face that is visited 1. A constraint stops before kWorkCap, with BUDGET, and goes on in the next tick.
-inline constexpr int kWorkCap = 4096, kFetchWork = 7, kCellWork = 8, kCubicWork = 16;
+inline constexpr int kWorkCap = 4096, kFetchWork = 7, kCellWork = 8, kCubicWork = 16;  ///< units of work of a link and tick
 inline constexpr int kLastStep = 256;  ///< of the cap: for what is begun before it is used up
 /// Of max_force: what a proxy's slip may add to the force in one tick, so that with its probe's motion it stays below 5 %.
 inline constexpr double kSlipPart = 0.04;
@@ -53,8 +54,9 @@ inline constexpr double kRearmPart = 0.1;  ///< of `release`: within it a link t
 /// What "bit for bit" means: tells -0 from 0, and a NaN is itself.
 inline bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
 
+/// What a link remembers from tick to tick: plain data, copied bit for bit into recordings. Only the haptic thread changes it.
 struct LinkState {
-  Vec3 proxy{0.0};
+  Vec3 proxy{0.0};                           ///< where the constraint holds the probe, world units
   double residual = 0;                       ///< distance from the constraint, world units
   double limit = 0;                          ///< |probe - proxy| at which the link slips or lets go now, world units; 0: never
   double dt_s = 0;                           ///< since the last tick; 0 in the first
@@ -64,9 +66,9 @@ struct LinkState {
   std::int32_t most = kWorkCap - kLastStep;  ///< of this tick's work; a constraint may ask for less
   /// How far the proxy may slip in this tick beyond what its probe moves, world units: kSlipPart max_force / (k_i S).
   double slip = std::numeric_limits<double>::infinity();
-  Status status = Status::ok;
-  Reason reason = Reason::none;  ///< set together with a status of critical or boundary; means nothing beside another
-  bool started = false;
+  Status status = Status::ok;                        ///< how the link is
+  Reason reason = Reason::none;                      ///< set together with a status of critical or boundary; means nothing beside another
+  bool started = false;                              ///< `start` has been called
   bool released = false;                             ///< let go; re-arms by the constraint's own rule
   bool on = false;                                   ///< its switch
   double weight = 1;                                 ///< w_i
@@ -77,12 +79,15 @@ struct LinkState {
   /// How far the proxy may move in a tick in which its probe moves by `moved` and is `gap` away. A gap that is more than max_force allows
   /// gives max_force all the same: there a part of the gap turns it as little as the slip would.
   double travel(double moved, double gap) const { return moved + std::max(slip, kSlipPart * gap); }
+  /// Whether it is switched on and has not let go.
   bool active() const { return on && !released; }
+  /// Units of work of this tick so far.
   int work() const { return kFetchWork * evaluations + steps; }
   /// Of `wanted` steps, how many may still be made.
   int affordable(int wanted) const { return std::max(0, std::min(wanted, most - work())); }
   /// Less than `reserve` units are left.
   bool exhausted(int reserve = 0) const { return work() + reserve >= most; }
+  /// Sets the counters back, before a tick.
   void begin_tick() {
     evaluations = steps = 0;
     most = kWorkCap - kLastStep;
@@ -110,15 +115,18 @@ T& outer_of(LinkState& state) {
   return *std::launder(reinterpret_cast<T*>(state.outer.data()));
 }
 
+/// The same, to read.
 template <class T>
 const T& memory_of(const LinkState& state) {
   return memory_of<T>(const_cast<LinkState&>(state));
 }
+/// The same, to read.
 template <class T>
 const T& outer_of(const LinkState& state) {
   return outer_of<T>(const_cast<LinkState&>(state));
 }
 
+/// Caches of a link that never change a result. Haptic thread.
 struct LinkScratch {
   std::array<field::Cursor, 4> cursors{};  ///< the constraint's
   field::Cursor parameter{}, stiffness{};  ///< of its parameters, of the link's stiffness
@@ -127,12 +135,14 @@ struct LinkScratch {
 /// A constraint near a place, as the baselines of the paper's section 3 see it: a haptic primitive.
 ///   point: p = origin;   line: p = origin + s axis;   plane: axis . (p - origin) = 0
 struct Primitive {
+  /// What it leaves free: nothing, a line, a plane.
   enum class Kind { point, line, plane };
-  Kind kind = Kind::point;
-  Vec3 origin{0.0};
-  Vec3 axis{0.0};  ///< unit: the line's direction, the plane's normal
+  Kind kind = Kind::point;  ///< which equation holds
+  Vec3 origin{0.0};         ///< a place on it, world units
+  Vec3 axis{0.0};           ///< unit: the line's direction, the plane's normal
 };
 
+/// A rule that keeps a proxy. Derive from it, describe it by a ConstraintType (haptics/constraints/registry.h), and scenes can name it.
 class Constraint {
  public:
   virtual ~Constraint() = default;

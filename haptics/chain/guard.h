@@ -18,23 +18,24 @@ namespace catena::haptics {
 using exchange::Condition;
 using exchange::ForceState;
 
+/// What the guard remembers, and what it lets through.
 struct GuardState {
-  Vec3 force_n{0.0};  ///< the last one that was sent
-  Vec3 torque_nm{0.0};
-  Vec3 held_n{0.0};  ///< at the first of the late ticks
-  Vec3 held_nm{0.0};
-  double ramp = 0;  ///< 0..1: the part of the chain's force that is let through
-  double hold = 1;  ///< 1..0: the part of what is held
-  int late = 0;     ///< ticks in a row
-  ForceState force_state = ForceState::on;
+  Vec3 force_n{0.0};                        ///< the last one that was sent
+  Vec3 torque_nm{0.0};                      ///< the last one that was sent
+  Vec3 held_n{0.0};                         ///< at the first of the late ticks
+  Vec3 held_nm{0.0};                        ///< at the first of the late ticks
+  double ramp = 0;                          ///< 0..1: the part of the chain's force that is let through
+  double hold = 1;                          ///< 1..0: the part of what is held
+  int late = 0;                             ///< ticks in a row
+  ForceState force_state = ForceState::on;  ///< what became of the force
 };
 
 /// What the guard looks at, beside its state. World axes, newtons.
 struct GuardInput {
-  Vec3 force_n{0.0}, torque_nm{0.0};  ///< what the chain asks for
-  Condition condition = Condition::normal;
-  bool forces_on = true;
-  double dt_s = 0;
+  Vec3 force_n{0.0}, torque_nm{0.0};        ///< what the chain asks for
+  Condition condition = Condition::normal;  ///< how the tick came about
+  bool forces_on = true;                    ///< the person's switch and the device's
+  double dt_s = 0;                          ///< since the last tick, seconds
 };
 
 /// Sets state.force_n, torque_nm, force_state: what the hand gets in this tick.

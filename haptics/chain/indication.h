@@ -6,10 +6,11 @@
 
 namespace catena::haptics {
 
+/// What the cue of a link remembers.
 struct IndicationState {
-  double pulse = 0;  ///< 1..0, what is left of a detent
-  Vec3 way{0.0};     ///< unit, towards the feature
-  bool left = false;
+  double pulse = 0;    ///< 1..0, what is left of a detent
+  Vec3 way{0.0};       ///< unit, towards the feature
+  bool left = false;   ///< the hand has left the feature
   bool fresh = false;  ///< `left` means something
 };
 

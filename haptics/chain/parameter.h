@@ -14,29 +14,38 @@
 
 namespace catena::haptics {
 
+/// How a parameter follows a field. Made off the tick, immutable.
 struct ParameterMap {
+  /// What of the field counts.
   enum class By { value, gradient, magnitude };
+  /// An output at a value.
   struct Point {
-    double value, output;
+    double value, output;  ///< the field's unit (0 to 1 with `normalise`); the parameter's own
   };
-  field::AnyField field;
-  By by = By::value;
-  bool normalise = false;
+  field::AnyField field;      ///< the field
+  By by = By::value;          ///< what of it counts
+  bool normalise = false;     ///< over the field's range
   double lo = 0, hi = 0;      ///< `normalise` maps them to 0 and 1; where hi > lo does not hold, all is 0
   std::vector<Point> points;  ///< values rising, at least one
-  double outside = 0;
+  double outside = 0;         ///< the output where the field says nothing
 };
 
+/// A number, or what a field says. Immutable; any thread.
 class Parameter {
  public:
+  /// Always this number.
   Parameter(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor): a number is a parameter
+  /// Follows a field.
   explicit Parameter(std::shared_ptr<const ParameterMap> map) : map_(std::move(map)) {}
 
+  /// The parameter at a place; a fetch is added to `evaluations`.
   double at(const Vec3& world, field::Cursor& cursor, std::int32_t& evaluations) const noexcept {
     return map_ ? of_field(world, cursor, evaluations) : constant_;
   }
+  /// Whether it is a number.
   bool is_constant() const { return map_ == nullptr; }
   double least() const;  ///< the smallest and the largest value that it can take
+  /// The largest value that it can take.
   double most() const;
 
  private:

@@ -27,10 +27,11 @@
 
 namespace catena::haptics {
 
+/// The ledger. Joules and newtons, world axes.
 struct PassivityState {
   /// What was sent in a tick.
   struct Sent {
-    Vec3 force_n{0.0};
+    Vec3 force_n{0.0};    ///< all of it
     Vec3 granted_n{0.0};  ///< its part that is granted
     Vec3 fading_n{0.0};   ///< its part that fades after a switch
     Vec3 added_n{0.0};    ///< the controller's
@@ -40,33 +41,35 @@ struct PassivityState {
   std::array<double, kMaxLinks> given_j{};   ///< sum of W_i
   std::array<double, kMaxLinks> stored_j{};  ///< V_i
   std::array<Vec3, kMaxLinks> sent_n{};      ///< f_i, of the last tick
-  std::array<double, kMaxLinks> weights{};
-  std::array<bool, kMaxLinks> apart{};  ///< not held: off, let go, or nothing there
-  Order order;
-  std::array<Sent, kPast> past{};  ///< by tick
-  std::uint32_t next = 0;
-  double ramp = 0;
-  double storage_j = 0;  ///< V
-  double balance_j = 0;  ///< B
-  double granted_j = 0;  ///< since the start
-  double let_go_j = 0;   ///< by springs that a switch took away: what may still fade
-  double dissipated_j = 0;
-  double damping_ns_per_m = 0;  ///< that the controller adds now
-  bool anew = true;             ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
+  std::array<double, kMaxLinks> weights{};   ///< w_i of the last tick
+  std::array<bool, kMaxLinks> apart{};       ///< not held: off, let go, or nothing there
+  Order order;                               ///< of the last tick
+  std::array<Sent, kPast> past{};            ///< by tick
+  std::uint32_t next = 0;                    ///< where the next one goes in `past`
+  double ramp = 0;                           ///< the part of the chain's force that the guard let through in the last tick, 0 to 1
+  double storage_j = 0;                      ///< V
+  double balance_j = 0;                      ///< B
+  double granted_j = 0;                      ///< since the start
+  double let_go_j = 0;                       ///< by springs that a switch took away: what may still fade
+  double dissipated_j = 0;                   ///< by the controller, since the start
+  double damping_ns_per_m = 0;               ///< that the controller adds now
+  bool anew = true;  ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
 
+  /// The account of a link.
   double booked_j(std::size_t link) const noexcept { return given_j[link] + stored_j[link]; }
+  /// E: what the hand may still get back.
   double energy_j() const noexcept { return storage_j + balance_j; }
 };
 
 /// One tick as the ledger sees it, before and after the guard.
 struct LedgerTick {
-  Vec3 move{0.0};   ///< x_k - x_(k-1), world units
-  Vec3 reach{0.0};  ///< p_n - x, world units
-  double dt_s = 0;
-  const Order& order;
-  const std::array<Vec3, kMaxLinks>& shares_n;
-  Vec3 cues_n{0.0}, fading_n{0.0};
-  Vec3 sum_n{0.0};  ///< shares, others and damping, before any limit
+  Vec3 move{0.0};                               ///< x_k - x_(k-1), world units
+  Vec3 reach{0.0};                              ///< p_n - x, world units
+  double dt_s = 0;                              ///< since the last tick
+  const Order& order;                           ///< the links that run
+  const std::array<Vec3, kMaxLinks>& shares_n;  ///< f_i as the chain asks for them
+  Vec3 cues_n{0.0}, fading_n{0.0};              ///< cues; what fades after a switch
+  Vec3 sum_n{0.0};                              ///< shares, others and damping, before any limit
 };
 
 /// Books the tick; adds the controller's force to guard.force_n. `guard` is this tick's, `links` are.

@@ -15,11 +15,11 @@ namespace catena::haptics {
 /// "on": {"button": n} (n = 1 is bit 0), with "toggle": each press turns it over; or {"force_above": newtons}, until the force
 /// is at most "force_below" (default: the same). Neither: always on. The force is the last tick's.
 struct Switch {
-  bool never = false;  ///< off whatever else it says ("enabled": false)
-  int button = 0;      ///< 0: none
-  bool toggle = false;
+  bool never = false;        ///< off whatever else it says ("enabled": false)
+  int button = 0;            ///< 0: none
+  bool toggle = false;       ///< each press turns it over
   double force_above_n = 0;  ///< 0: none
-  double force_below_n = 0;
+  double force_below_n = 0;  ///< it goes off at or below this
 };
 
 /// "indicate": how the hand is told that it leaves the link's feature, beside the report of every link (paper, section 2).
@@ -28,72 +28,78 @@ struct Switch {
 ///   vibration: a triangle wave of `amplitude` and `frequency` along the gap while m >= from
 /// Both times w_i, and faded out with the link's share where it is switched off.
 struct Indication {
+  /// How it is told.
   enum class Cue { none, detent, vibration };
-  Cue cue = Cue::none;
-  double at = 0;  ///< world units; 0: where the link slips or lets go
-  double from = 0.8;
-  double amplitude_n = 0.5;
-  double frequency_hz = 150;
-  double duration_s = 0.02;
+  Cue cue = Cue::none;        ///< none: by the report alone
+  double at = 0;              ///< world units; 0: where the link slips or lets go
+  double from = 0.8;          ///< vibration: from this m on
+  double amplitude_n = 0.5;   ///< newtons
+  double frequency_hz = 150;  ///< of the vibration
+  double duration_s = 0.02;   ///< of a detent
 };
 
 /// "align": turns the tool's axis onto the link's: a surface's normal, a curve's tangent (alignment.h).
 struct Align {
+  /// Whether the axis has a direction.
   enum class Sign { either, same };
-  bool on = false;
+  bool on = false;                    ///< the link has "align"
   Vec3 tool_axis{0.0, 0.0, 1.0};      ///< unit, tool frame
   double stiffness_nm_per_rad = 0.5;  ///< kappa_i
   Sign sign = Sign::either;           ///< either: an axis has no sense of direction
 };
 
+/// One link of the chain. Immutable.
 struct Link {
-  std::string name;
-  std::shared_ptr<const Constraint> constraint;
-  Parameter stiffness_n_per_m = 500;
-  Switch on;
-  Indication indication;
-  Align align;
-  double release = 0;        ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
-  bool one_sided = false;    ///< it has a free side; it is told here for the baselines and for what a person reads
+  std::string name;                              ///< unique in the program
+  std::shared_ptr<const Constraint> constraint;  ///< what keeps its proxy
+  Parameter stiffness_n_per_m = 500;             ///< k_i; may follow a field
+  Switch on;                                     ///< its switch
+  Indication indication;                         ///< its cue
+  Align align;                                   ///< whether it turns the tool
+  double release = 0;                            ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
+  bool one_sided = false;                        ///< it has a free side; it is told here for the baselines and for what a person reads
   std::string lies_on;       ///< the name of what it lies on, for a person: "Precentral_L"; empty: the link's own says it
   std::uint64_t recipe = 0;  ///< what it was built from: links of the same name and recipe keep their state; 0: of the same object
 };
 
 /// A mode of operation (section 6.2): while its switch is on, these links run, in this order; the others are off.
 struct Mode {
-  std::string name;
+  std::string name;        ///< unique in the program
   std::vector<int> links;  ///< indices into Program::links
-  Switch on;
+  Switch on;               ///< its switch
 };
 
 using exchange::CouplingMethod;
 
+/// How the links make one force; the law stands in tick.h.
 struct Coupling {
-  double stiffness_n_per_m = 500;
-  double damping_ns_per_m = 0;
-  double max_force_n = 8;
-  double ramp_s = 0;
-  double rotational_stiffness_nm_per_rad = 0.5;  ///< of links that align and do not say
-  double rotational_damping_nms_per_rad = 0;     ///< b_r
-  CouplingMethod method = CouplingMethod::chain;
+  double stiffness_n_per_m = 500;                 ///< of links that do not say
+  double damping_ns_per_m = 0;                    ///< b, of the hand
+  double max_force_n = 8;                         ///< of the whole force
+  double ramp_s = 0;                              ///< seconds over which a switch fades; 0: at once
+  double rotational_stiffness_nm_per_rad = 0.5;   ///< of links that align and do not say
+  double rotational_damping_nms_per_rad = 0;      ///< b_r
+  CouplingMethod method = CouplingMethod::chain;  ///< the chain, or a baseline
 };
 
+/// All that a tick needs to know. Made off the tick (extract_program()), immutable, read by the haptic thread.
 struct Program {
-  std::uint64_t epoch = 0;
-  std::vector<Link> links;            ///< at most kMaxLinks
-  int first_widget_link = -1;         ///< the widgets' links x, y, z, sphere: the last four of `links`; -1: no widgets
-  std::vector<widget::Spec> widgets;  ///< at most kMaxWidgets
-  std::vector<std::string> widget_names;
-  std::vector<Mode> modes;  ///< at most kMaxModes; the first whose switch is on orders the chain; none: all links as listed
-  Coupling coupling;
-  Limits limits;                 ///< what the device allows; all off without one
-  double metres_per_unit = 1;    ///< S: metres of hand a world unit
-  Vec3 workspace_origin{0.0};    ///< world position of the device's origin
-  Mat3 workspace_rotation{1.0};  ///< world from device axes
+  std::uint64_t epoch = 0;                ///< unique and rising among the programs of a servo
+  std::vector<Link> links;                ///< at most kMaxLinks
+  int first_widget_link = -1;             ///< the widgets' links x, y, z, sphere: the last four of `links`; -1: no widgets
+  std::vector<widget::Spec> widgets;      ///< at most kMaxWidgets
+  std::vector<std::string> widget_names;  ///< in the order of `widgets`
+  std::vector<Mode> modes;                ///< at most kMaxModes; the first whose switch is on orders the chain; none: all links as listed
+  Coupling coupling;                      ///< how the links make a force
+  Limits limits;                          ///< what the device allows; all off without one
+  double metres_per_unit = 1;             ///< S: metres of hand a world unit
+  Vec3 workspace_origin{0.0};             ///< world position of the device's origin
+  Mat3 workspace_rotation{1.0};           ///< world from device axes
 
+  /// Links of the scene, without the widgets'.
   std::size_t scene_links() const { return first_widget_link < 0 ? links.size() : static_cast<std::size_t>(first_widget_link); }
 };
 
-inline constexpr int kMaxModes = 8;
+inline constexpr int kMaxModes = 8;  ///< Modes of a scene.
 
 }  // namespace catena::haptics

@@ -23,6 +23,7 @@ bool are_bools(const Flags&... flags) noexcept {
   return (is_one(flags) && ...);
 }
 
+/// The same of an array.
 template <std::size_t n>
 bool are_bools(const std::array<bool, n>& flags) noexcept {
   for (std::size_t i = 0; i < n; ++i)
@@ -43,6 +44,7 @@ bool is_one_of(const Enum& word, Enum last) noexcept {
 /// equal behaviour to the bit.
 class StateHash {
  public:
+  /// Adds one tick.
   void add(const exchange::HapticState& state) noexcept {
     const auto vector = [&](const Vec3& v) {
       fnv_.add(v.x);
@@ -61,6 +63,7 @@ class StateHash {
         fnv_.add(static_cast<std::uint8_t>(v));
     }
   }
+  /// The hash of the ticks so far.
   std::uint64_t value() const noexcept { return fnv_.value; }
 
  private:

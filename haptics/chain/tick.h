@@ -19,36 +19,39 @@
 
 namespace catena::haptics {
 
+/// What a tick gets of the hand.
 struct ProbeSample {
-  double t_s = 0;
-  Vec3 position{0.0};  ///< world units
-  std::uint32_t buttons = 0;
+  double t_s = 0;                           ///< rises from tick to tick, seconds
+  Vec3 position{0.0};                       ///< world units
+  std::uint32_t buttons = 0;                ///< bit n - 1: button n is held
   Quat orientation{kNoRotation};            ///< of the tool, world axes
   Condition condition = Condition::normal;  ///< what the servo knows of this tick
   bool forces_on = true;                    ///< the hand's own switch
 };
 
+/// All that the chain remembers from tick to tick: plain data, allocated before the loop. One thread at a time.
 struct ChainState {
-  std::array<LinkState, kMaxLinks> links{};
-  std::array<IndicationState, kMaxLinks> indications{};
-  SwitchState switches;
-  Fade fade;
-  AlignmentState alignment;
-  WidgetsState widgets;
-  SingleProxy single;  ///< baselines
-  Vec3 last_probe{0.0};
-  double last_t_s = 0;   ///< of the last tick with a probe
-  double clock_t_s = 0;  ///< of the last tick: what a ramp of the guard counts, however long there was no probe
-  Vec3 force_n{0.0};     ///< that the chain asks for
-  GuardState guard;      ///< what the hand gets
-  PassivityState passivity;
-  std::uint64_t ticks = 0;
-  bool has_probe = false;
+  std::array<LinkState, kMaxLinks> links{};              ///< by link
+  std::array<IndicationState, kMaxLinks> indications{};  ///< by link
+  SwitchState switches;                                  ///< which links are on
+  Fade fade;                                             ///< what fades after a switch
+  AlignmentState alignment;                              ///< the rotational chain
+  WidgetsState widgets;                                  ///< the widgets
+  SingleProxy single;                                    ///< baselines
+  Vec3 last_probe{0.0};                                  ///< of the last tick that had one, world units
+  double last_t_s = 0;                                   ///< of the last tick with a probe
+  double clock_t_s = 0;      ///< of the last tick: what a ramp of the guard counts, however long there was no probe
+  Vec3 force_n{0.0};         ///< that the chain asks for
+  GuardState guard;          ///< what the hand gets
+  PassivityState passivity;  ///< the energy account
+  std::uint64_t ticks = 0;   ///< so far
+  bool has_probe = false;    ///< there was a probe
 };
 static_assert(std::is_trivially_copyable_v<ChainState>);
 
+/// Caches beside the state that never change a result. Zero at first; one a state.
 struct ChainScratch {
-  std::array<LinkScratch, kMaxLinks> links{};
+  std::array<LinkScratch, kMaxLinks> links{};  ///< by link
 };
 
 /// Advances `state` and fills `out` (everything but what the servo writes).

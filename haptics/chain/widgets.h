@@ -10,19 +10,21 @@
 
 namespace catena::haptics {
 
+/// What the widgets remember.
 struct WidgetsState {
-  std::array<widget::State, widget::kMaxWidgets> widgets{};
-  std::array<std::uint8_t, widget::kSlots> takes{};  ///< counts the shapes of a link
-  Vec3 probe{0.0};                                   ///< of the last tick that had one
-  std::uint32_t buttons = 0;
-  std::int8_t engaged = -1;
-  bool started = false;  ///< there was a probe
-  bool gone = false;     ///< the last tick had none
+  std::array<widget::State, widget::kMaxWidgets> widgets{};  ///< by widget
+  std::array<std::uint8_t, widget::kSlots> takes{};          ///< counts the shapes of a link
+  Vec3 probe{0.0};                                           ///< of the last tick that had one
+  std::uint32_t buttons = 0;                                 ///< of the last tick that had a probe
+  std::int8_t engaged = -1;                                  ///< the engaged widget; -1: none
+  bool started = false;                                      ///< there was a probe
+  bool gone = false;                                         ///< the last tick had none
 };
 
+/// What the widgets get of a tick.
 struct WidgetsInput {
-  Vec3 probe{0.0};
-  std::uint32_t buttons = 0;
+  Vec3 probe{0.0};            ///< the hand, world units
+  std::uint32_t buttons = 0;  ///< bit n - 1: button n is held
 };
 
 /// The order of this tick: `scene`'s links and the widgets'. Puts shapes on links.
@@ -30,7 +32,9 @@ Order engage_widgets(const Program& program, const WidgetsInput& input, const Or
                      std::array<LinkState, kMaxLinks>& links, WidgetsState& state) noexcept;
 /// After the chain, whose last proxy this is.
 void move_widgets(const Program& program, const Vec3& last_proxy, WidgetsState& state) noexcept;
+/// A tick without a probe.
 void lose_probe(WidgetsState& state) noexcept;
+/// Fills in the reports of all widgets.
 void report_widgets(const Program& program, const WidgetsState& state, exchange::HapticState& out) noexcept;
 
 /// Another program takes over: a widget of the same name and kind keeps what the hand has made of it, unless its pose was set since

@@ -17,7 +17,7 @@ namespace catena::haptics {
 
 /// What a constraint may ask for while it is built (off the tick). Errors come back with the node's file and line.
 struct BuildContext {
-  std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;
+  std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;  ///< the field of that name, loaded
   /// The one curve object of (field, flow, seed): the same that is drawn.
   std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)>
       curve;
@@ -29,18 +29,22 @@ struct BuildContext {
   std::function<Result<curves::PointSetPtr>(const json::Node& where, const std::string& name)> points;
 };
 
+/// A type of constraint, as scenes name it and documents describe it.
 struct ConstraintType {
   std::string type;   ///< the word in the scene file
   std::string help;   ///< one sentence for docs/scene.md
   std::string paper;  ///< equations and sections it comes from
   schema::Keys keys;  ///< its own keys, beside common_keys()
+  /// Makes the constraint of a link whose keys have been checked. Off the tick; an error names the link's line.
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
   bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
   bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
   std::string feels{};           ///< the part of a scene whose items a link of this type lies on, "isosurfaces"; empty: none
 };
 
+/// All types, in the order of the documents. Any thread once programs have added theirs.
 const std::vector<ConstraintType>& registry();
+/// The type of that word; null: none.
 const ConstraintType* find_constraint(std::string_view type);
 /// One more type, of a program that brings its own constraint. At start-up, before anything reads a scene.
 void add_constraint(ConstraintType type);
@@ -51,7 +55,9 @@ const schema::Keys& common_keys();
 schema::Component chain_component();
 
 // keys that several types have
+/// A key that names a scalar field, required.
 schema::Key scalar_field_key(const std::string& name);
+/// A key that names a vector field, required.
 schema::Key vector_field_key(const std::string& name);
 /// A value of the field, or the isolevel widget that states it.
 schema::Key level_key(const std::string& help);

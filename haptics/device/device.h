@@ -9,34 +9,36 @@
 
 namespace catena::haptics {
 
+/// Whether the device can be used in this tick.
 enum class DeviceStatus : std::uint8_t {
   ready,     ///< the pose is good
   starting,  ///< not there yet: firmware, homing; the servo sends zero
   lost       ///< unplugged or silent; the servo sends zero in that tick. It may come back
 };
 
+/// What a device says of the hand.
 struct DeviceInput {
-  Vec3 position_m{0.0};
-  Quat orientation{kNoRotation};  ///< of the grip; the identity where the device has none
-  std::uint32_t buttons = 0;
-  DeviceStatus status = DeviceStatus::ready;
-  bool forces_on = true;  ///< the hand's own switch; false also while it clutches
-  double age_s = 0;       ///< of the pose
-  bool recorded = false;  ///< a recorded path brings its own time, and its position is in world units already
-  double t_s = 0;
+  Vec3 position_m{0.0};                       ///< where the hand is; of a recorded path: world units
+  Quat orientation{kNoRotation};              ///< of the grip; the identity where the device has none
+  std::uint32_t buttons = 0;                  ///< bit n - 1: button n is held
+  DeviceStatus status = DeviceStatus::ready;  ///< whether the pose is good
+  bool forces_on = true;                      ///< the hand's own switch; false also while it clutches
+  double age_s = 0;                           ///< of the pose
+  bool recorded = false;                      ///< a recorded path brings its own time, and its position is in world units already
+  double t_s = 0;                             ///< seconds; of a recorded path
 };
 
 /// What the hand gets.
 struct DeviceOutput {
-  Vec3 force_n{0.0};
-  Vec3 torque_nm{0.0};
+  Vec3 force_n{0.0};    ///< newtons, the device's axes
+  Vec3 torque_nm{0.0};  ///< N m, the device's axes
   bool live = true;     ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
   double booked_j = 0;  ///< of all links: given to the hand and ready for it (haptics/chain/passivity.h); falls by what friction takes
 };
 
 /// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.
 struct Mechanics {
-  double mass_kg = 0.15;
+  double mass_kg = 0.15;                      ///< that a hand moves with it
   double damping_ns_per_m = 0;                ///< viscous, of the device alone
   double friction_n = 0;                      ///< Coulomb
   double encoder_step_m = 0;                  ///< 0: continuous
@@ -44,25 +46,30 @@ struct Mechanics {
   double rotational_damping_nms_per_rad = 0;  ///< viscous, about any axis; where the device has torque
 };
 
+/// What a device can do. Constant while it is open.
 struct DeviceCapabilities {
-  std::string name;
-  double workspace_m = 0.2;  ///< edge of a cube that the hand reaches
-  Vec3 workspace_centre_m{0.0};
-  bool has_orientation = false;
-  int buttons = 1;
-  bool vibrates = false;     ///< what it has in place of force: a person feels how the force changes
-  double max_force_n = 0;    ///< 0: no force output (pseudo-haptics only)
-  double max_torque_nm = 0;  ///< 0: no torque output
-  Mechanics mechanics{};
+  std::string name;              ///< for people
+  double workspace_m = 0.2;      ///< edge of a cube that the hand reaches
+  Vec3 workspace_centre_m{0.0};  ///< middle of that cube
+  bool has_orientation = false;  ///< the grip's orientation is measured
+  int buttons = 1;               ///< how many
+  bool vibrates = false;         ///< what it has in place of force: a person feels how the force changes
+  double max_force_n = 0;        ///< 0: no force output (pseudo-haptics only)
+  double max_torque_nm = 0;      ///< 0: no torque output
+  Mechanics mechanics{};         ///< what bounds the stiffness that it can show
 };
 
+/// A device. The program owns it; it outlives the servo.
 class Device {
  public:
   virtual ~Device() = default;
   /// What a person must know or do now, one line ("Falcon: pull the grip fully out, then push it in"); empty: nothing. Frame thread.
   virtual std::string status_text() const { return {}; }
+  /// What it can do. Any thread.
   virtual const DeviceCapabilities& capabilities() const = 0;
+  /// The newest pose. Haptic thread.
   virtual DeviceInput read() noexcept = 0;
+  /// The force of this tick. Haptic thread.
   virtual void write(const DeviceOutput& output) noexcept = 0;
   /// Zero force now and until resume(), whatever is written. Any thread (the servo's watchdog; the servo at its end).
   virtual void stop() noexcept {}
@@ -77,8 +84,11 @@ class Device {
 class NullDevice final : public Device {
  public:
   NullDevice() { capabilities_.name = "null"; }
+  /// No force.
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  /// The origin.
   DeviceInput read() noexcept override { return {}; }
+  /// Nothing happens.
   void write(const DeviceOutput&) noexcept override {}
 
  private:

@@ -9,6 +9,7 @@
 
 namespace catena::haptics {
 
+/// One device that could be used.
 struct DeviceInfo {
   std::string name;     ///< what `open_device` takes
   bool present = true;  ///< it can be opened now
@@ -16,6 +17,7 @@ struct DeviceInfo {
 };
 
 std::string device_type_of(const std::string& name);  ///< TYPE
+/// Whether open_device() knows the type.
 bool is_device_type(const std::string& type);
 bool is_hardware(const std::string& type);  ///< a thing on the desk: it may not be plugged in
 /// Its metres are of a thing that stands still on the desk: it can be registered to the room of a headset.

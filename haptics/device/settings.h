@@ -12,20 +12,22 @@
 
 namespace catena::haptics {
 
+/// Settings as they were read. Plain data.
 struct DeviceSettings {
   json::Node where;           ///< its place in the scene, for messages
   std::string type = "null";  ///< a name of the registry
   double rate_hz = 1000;      ///< of the servo
 
   // the mechanism, where it differs from what the driver knows
-  std::optional<double> mass_kg, damping_ns_per_m, friction_n, encoder_step_m, delay_s;
+  std::optional<double> mass_kg, damping_ns_per_m, friction_n, encoder_step_m, delay_s;  ///< none: as the driver says; kg, N s/m, N, m, s
 
   // limits; unstated: the device's own, and the defaults of haptics/servo/limits_for.h
+  /// How the stiffness is capped.
   enum class Cap { safe, none, value };
-  Cap cap = Cap::safe;               ///< "stiffness_cap": "safe", "none" or a number
-  double stiffness_cap_n_per_m = 0;  ///< of Cap::value
-  std::optional<double> max_force_n, max_torque_nm, slew_n_per_s, ramp_in_s;
-  bool passivity = true;
+  Cap cap = Cap::safe;                                                        ///< "stiffness_cap": "safe", "none" or a number
+  double stiffness_cap_n_per_m = 0;                                           ///< of Cap::value
+  std::optional<double> max_force_n, max_torque_nm, slew_n_per_s, ramp_in_s;  ///< none: the device's own; N, N m, N/s, s
+  bool passivity = true;                                                      ///< observer and controller are on
 
   // the way from the device to the hand (haptics/device/hand_map.h)
   Mat3 hand_from_device{1.0};  ///< "axes": three of x, -x, y, -y, z, -z: which device axis each hand axis is

@@ -18,6 +18,7 @@ namespace catena::haptics {
 Mechanics mechanics_of(const DeviceCapabilities& device, const DeviceSettings& settings);
 /// What the passivity controller may add: m / (4 (T + t_d)).
 double most_added_damping(double mass_kg, double period_s, double delay_s);
+/// The limits for extract_program().
 Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settings);
 
 }  // namespace catena::haptics

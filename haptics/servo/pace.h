@@ -18,19 +18,23 @@ namespace catena::haptics {
 struct Beat {
   std::int64_t time_ns = 0;  ///< of the tick, since the first deadline
   std::int64_t missed = 0;   ///< deadlines between the last tick's and its own
-  bool late = false;
-  bool stalled = false;
+  bool late = false;         ///< its time is more than two periods after the last tick's
+  bool stalled = false;      ///< the thread did not run for longer than `stall`
 };
 
+/// The grid. One thread.
 class Pace {
  public:
-  static constexpr std::int64_t kNeverStalls = std::numeric_limits<std::int64_t>::max();
+  static constexpr std::int64_t kNeverStalls = std::numeric_limits<std::int64_t>::max();  ///< As `stall_ns`: stalls are not looked for.
 
+  /// A grid of this period from `first_ns` on, all of now_ns().
   Pace(std::int64_t period_ns, std::int64_t first_ns, std::int64_t stall_ns = kNeverStalls)
       : period_ns_(period_ns), first_ns_(first_ns), stall_ns_(stall_ns), last_end_ns_(first_ns) {}
 
+  /// The deadline to sleep until, of now_ns().
   std::int64_t next_wake_ns() const noexcept { return first_ns_ + next_ * period_ns_; }
 
+  /// A tick begins now.
   Beat begins(std::int64_t now_ns) noexcept {
     const std::int64_t since = std::max<std::int64_t>(0, now_ns - first_ns_), deadline = std::max(next_, since / period_ns_);
     Beat beat;
@@ -44,6 +48,7 @@ class Pace {
     return beat;
   }
 
+  /// It ends now.
   void ends(std::int64_t now_ns) noexcept {
     const std::int64_t since = std::max(now_ns - first_ns_, last_time_ns_ + (period_ns_ - 1) / 2);
     next_ = std::max(last_, since / period_ns_) + 1;

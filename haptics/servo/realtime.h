@@ -7,20 +7,22 @@
 
 namespace catena::haptics {
 
+/// What a servo's thread asks for.
 struct RealtimeOptions {
-  bool fifo = true;
-  int priority = 80;  ///< 1..98; the watchdog has one more
-  bool lock_memory = true;
+  bool fifo = true;                        ///< ask for a fixed priority
+  int priority = 80;                       ///< 1..98; the watchdog has one more
+  bool lock_memory = true;                 ///< ask for memory that is never paged out
   int cpu = kAnyWithFifo;                  ///< the core to stay on, or one of these:
   static constexpr int kAnyWithFifo = -1;  ///< the last allowed core, if there is more than one and the priority was granted
   static constexpr int kUnbound = -2;      ///< wherever the system likes
 };
 
+/// What it got.
 struct RealtimeReport {
-  bool fifo = false;
-  bool locked = false;  ///< all of the process's memory
-  int cpu = -1;         ///< -1: not bound to a core
-  std::vector<std::string> notes;
+  bool fifo = false;               ///< a fixed priority
+  bool locked = false;             ///< all of the process's memory
+  int cpu = -1;                    ///< -1: not bound to a core
+  std::vector<std::string> notes;  ///< what was not permitted, a sentence each
 };
 
 /// Fixed priority (SCHED_FIFO, not inherited by children) for the calling thread. On failure one sentence in `notes`.
@@ -28,7 +30,7 @@ bool take_fifo(int priority, std::vector<std::string>& notes);
 /// How long this process may run at a fixed priority without a pause: beyond `soft_s` SIGXCPU, beyond `hard_s` SIGKILL, so that a tick that
 /// never ends gives the machine back. Only ever lowers a limit. A servo that is merely too slow has left the priority before (servo.h).
 void limit_realtime_run(double soft_s, double hard_s) noexcept;
-inline constexpr double kRealtimeRunS = 2, kRealtimeEndS = 3;
+inline constexpr double kRealtimeRunS = 2, kRealtimeEndS = 3;  ///< what a servo sets for its process, seconds
 
 /// Back to normal priority.
 void leave_fifo() noexcept;
@@ -41,11 +43,13 @@ void leave_core() noexcept;
 /// memory would make later allocations fail. Undone by the destructor, on the same thread.
 class RealtimeThread {
  public:
+  /// Of the calling thread; `own` is memory to lock where not all can be.
   RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes);
   ~RealtimeThread();
   RealtimeThread(const RealtimeThread&) = delete;
   RealtimeThread& operator=(const RealtimeThread&) = delete;
 
+  /// What it got.
   const RealtimeReport& report() const { return report_; }
 
  private:

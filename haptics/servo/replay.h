@@ -10,17 +10,20 @@
 
 namespace catena::haptics {
 
+/// What a replay took and did.
 struct ReplayStats {
-  std::uint64_t ticks = 0;
-  double tick_ns_p50 = 0, tick_ns_p99 = 0, tick_ns_p999 = 0, tick_ns_max = 0;
-  std::int64_t evaluations_p50 = 0, evaluations_max = 0;  ///< summed over links
-  std::uint64_t state_hash = 0;
+  std::uint64_t ticks = 0;                                                     ///< how many ran
+  double tick_ns_p50 = 0, tick_ns_p99 = 0, tick_ns_p999 = 0, tick_ns_max = 0;  ///< quantiles of a tick's time, nanoseconds
+  std::int64_t evaluations_p50 = 0, evaluations_max = 0;                       ///< summed over links
+  std::uint64_t state_hash = 0;                                                ///< of all ticks (StateHash)
 };
 
 /// Collects the figures of a replay, tick by tick.
 class ReplayMeter {
  public:
+  /// Takes the memory for so many ticks.
   void reserve(std::size_t ticks);
+  /// Adds a tick and how long it took.
   void add(double nanoseconds, const exchange::HapticState& state);
   ReplayStats stats();  ///< reorders what it has collected: call it last
 

@@ -15,16 +15,17 @@ namespace catena::haptics {
 
 /// What is told of a histogram, microseconds. The q-quantile as in engine/base/numbers.h.
 struct HistogramFigures {
-  std::uint64_t count = 0;
-  double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;
+  std::uint64_t count = 0;                                 ///< how many were counted
+  double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;  ///< quantiles and the greatest
   /// For a drawing: 8 an octave, those that are not empty, each from here to the next place of the scale.
   struct Bin {
-    double from_us;
-    std::uint64_t count;
+    double from_us;       ///< where the bin begins, microseconds
+    std::uint64_t count;  ///< how many lie in it
   };
-  std::vector<Bin> bins = {};
+  std::vector<Bin> bins = {};  ///< rising
 };
 
+/// The buckets.
 class Histogram {
  public:
   void add(std::int64_t ns) noexcept;  ///< writer's thread; a negative time counts as 0
@@ -50,22 +51,23 @@ struct ServoCounters {
   Histogram period;   ///< from begin to begin of two ticks
   Histogram compute;  ///< the tick alone
   Histogram device;   ///< reading and writing the device
-  std::atomic<std::uint64_t> ticks{0}, missed_deadlines{0}, late_ticks{0}, lost_ticks{0}, watchdog_trips{0};
-  std::atomic<std::int64_t> started_ns{0}, ended_ns{0};  ///< 0: not yet
-  std::atomic<bool> left_fifo{false};                    ///< gave its fixed priority back
+  std::atomic<std::uint64_t> ticks{0}, missed_deadlines{0}, late_ticks{0}, lost_ticks{0}, watchdog_trips{0};  ///< counts since the start
+  std::atomic<std::int64_t> started_ns{0}, ended_ns{0};                                                       ///< 0: not yet
+  std::atomic<bool> left_fifo{false};  ///< gave its fixed priority back
 };
 
+/// What a servo tells. Plain data.
 struct ServoReport {
-  double rate_hz = 0;
-  bool paced = true;
-  double seconds = 0;
-  std::uint64_t ticks = 0;
-  std::uint64_t missed_deadlines = 0;  ///< deadlines that got no tick (pace.h)
-  std::uint64_t late_ticks = 0;        ///< more than two periods after the tick before
-  std::uint64_t lost_ticks = 0;        ///< the device was not ready
-  std::uint64_t watchdog_trips = 0;
-  RealtimeReport realtime;
-  HistogramFigures period, compute, device;
+  double rate_hz = 0;                        ///< ticks a second that were asked for
+  bool paced = true;                         ///< woken at deadlines
+  double seconds = 0;                        ///< since it started
+  std::uint64_t ticks = 0;                   ///< that ran
+  std::uint64_t missed_deadlines = 0;        ///< deadlines that got no tick (pace.h)
+  std::uint64_t late_ticks = 0;              ///< more than two periods after the tick before
+  std::uint64_t lost_ticks = 0;              ///< the device was not ready
+  std::uint64_t watchdog_trips = 0;          ///< how often the watchdog stopped the device
+  RealtimeReport realtime;                   ///< what the machine permitted
+  HistogramFigures period, compute, device;  ///< figures of the three histograms
 };
 
 /// {"device", "rate_hz", "seconds", "ticks", "missed_deadlines", "late_ticks", "lost_ticks", "watchdog_trips",

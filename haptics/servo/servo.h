@@ -16,6 +16,7 @@
 
 namespace catena::haptics {
 
+/// A sink of ticks.
 class TickSink {
  public:
   virtual ~TickSink() = default;
@@ -37,8 +38,9 @@ class TickSink {
 /// NO_DEVICE the device is not ready; LATE its time is more than two periods after the last tick's; else NORMAL.
 class Watchdog;
 
+/// How a servo runs.
 struct ServoOptions {
-  static constexpr double kMinRateHz = 100, kMaxRateHz = 10000;
+  static constexpr double kMinRateHz = 100, kMaxRateHz = 10000;  ///< rates that it takes
 
   double rate_hz = 1000;          ///< kMinRateHz..kMaxRateHz
   bool paced = true;              ///< false: as fast as it goes (soaks, determinism); never late, no watchdog, normal priority
@@ -49,6 +51,7 @@ struct ServoOptions {
   RealtimeOptions realtime = {};  ///< of a paced servo
 };
 
+/// A servo: one device, one thread, one program at a time.
 class Servo {
  public:
   /// The device must outlive the servo. Nothing runs before start().
@@ -70,12 +73,15 @@ class Servo {
   /// caller waits for that, a tick or two, and at most `patience_s`: then false, and the old one must live on (until stop(), or a true).
   bool set_sink(TickSink* sink, double patience_s = 1);
   std::uint64_t state_hash() const { return hash_.value(); }  ///< after stop()
+  /// Programs that it keeps: the one that runs and those that a tick may still name.
   std::size_t programs_alive() const { return programs_.size(); }
 
   // any thread
+  /// From the start until max_ticks, stop(), or an end of its own.
   bool running() const { return running_.load(std::memory_order_acquire); }
   /// The person's switch: with it off, or the device's own, the hand gets no force.
   void set_forces(bool on) { forces_.store(on, std::memory_order_relaxed); }
+  /// The person's switch.
   bool forces() const { return forces_.load(std::memory_order_relaxed); }
   ServoReport report() const;  ///< after start(), also while it runs
 

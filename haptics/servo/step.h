@@ -11,7 +11,9 @@
 
 namespace catena::haptics {
 
+/// The place in the program's world of the device's metres.
 Vec3 world_from_device(const Program& program, const Vec3& device_m) noexcept;
+/// The device's metres of a place in the program's world.
 Vec3 device_from_world(const Program& program, const Vec3& world) noexcept;
 /// What the device says, in the program's world. The condition is the caller's.
 ProbeSample probe_of(const Program& program, const DeviceInput& input, double t_s) noexcept;

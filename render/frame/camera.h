@@ -16,22 +16,24 @@
 
 namespace catena::render {
 
+/// Four by four doubles, columns first.
 using Mat4 = glm::dmat4;
 
+/// A camera as pictures need it.
 struct Camera {
-  Vec3 position{0.0};
+  Vec3 position{0.0};                                                 ///< the eye, world units
   Vec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, back{0.0, 0.0, 1.0};  ///< unit, orthogonal
-  bool orthographic = false;
+  bool orthographic = false;                                          ///< no perspective
   // the window, at the distance 1 (perspective) or everywhere (orthographic), world units
-  double half_height = 1, half_width = 1;
-  double centre_x = 0, centre_y = 0;  ///< of the window, from the axis, right and up
-  double near = 1, far = 2;           ///< along the axis, world units
-  double width = 1, height = 1;       ///< pixels
+  double half_height = 1, half_width = 1;  ///< of the window
+  double centre_x = 0, centre_y = 0;       ///< of the window, from the axis, right and up
+  double near = 1, far = 2;                ///< along the axis, world units
+  double width = 1, height = 1;            ///< pixels
 };
 
 /// A half line; `direction` is unit.
 struct Ray {
-  Vec3 origin{0.0}, direction{0.0};
+  Vec3 origin{0.0}, direction{0.0};  ///< where it begins, world units; where it goes
 };
 
 /// Width by height of the view's symmetric frustum: as stated, or by square pixels.
@@ -40,8 +42,11 @@ double frustum_aspect(const View& view, double width_px, double height_px);
 /// A degenerate up (along the axis) is replaced by another; a target at the position looks along +y.
 Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
 
+/// View axes from the world.
 Mat4 view_from_world(const Camera& camera);
+/// Vulkan's clip axes from view axes.
 Mat4 clip_from_view(const Camera& camera);
+/// Vulkan's clip axes from the world.
 Mat4 clip_from_world(const Camera& camera);
 /// Its inverse, from the closed form (not by elimination).
 Mat4 world_from_clip(const Camera& camera);
@@ -64,8 +69,8 @@ View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = def
 
 /// Places to fit a picture to. `ignored`: the share of them that may lie outside, for specks.
 struct FitPlaces {
-  std::vector<Vec3> places;
-  double ignored = 0;
+  std::vector<Vec3> places;  ///< world units
+  double ignored = 0;        ///< share from 0 to 1
 };
 /// A view whose middle is the middle of the places as it shows them, and in which they take `width` and `height` of the picture: one of
 /// the two exactly, the other at most. Shares from 0 to 1. In perspective every place p = (x, y, z) in the axes of the eye (z towards it)

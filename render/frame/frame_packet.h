@@ -24,40 +24,41 @@ namespace catena::render {
 
 /// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
 struct Window {
-  double left = -1, right = 1, bottom = -1, top = 1;
+  double left = -1, right = 1, bottom = -1, top = 1;  ///< -1 and 1 are the edges of the symmetric frustum
   bool operator==(const Window&) const = default;
 };
 
+/// Where the eye is and what it sees. World units.
 struct View {
-  Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};
-  double fovy_deg = 30;
-  bool orthographic = false;
-  double height = 1;
-  Window window{};
-  double aspect = 0;  ///< width by height of the symmetric frustum; 0: as pixels are square
+  Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< the eye, what it looks at, what is up
+  double fovy_deg = 30;                                ///< vertical angle of view, degrees
+  bool orthographic = false;                           ///< no perspective
+  double height = 1;                                   ///< orthographic: world units from bottom to top
+  Window window{};                                     ///< the part of it that is drawn
+  double aspect = 0;                                   ///< width by height of the symmetric frustum; 0: as pixels are square
   bool operator==(const View&) const = default;
 };
 
 /// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
 struct LightItem {
-  Vec3 direction{0.0, 0.0, 1.0};
-  Color color{1, 1, 1};  ///< times the intensity
-  bool with_camera = false;
+  Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light
+  Color color{1, 1, 1};           ///< times the intensity
+  bool with_camera = false;       ///< the axes are the view's
   bool operator==(const LightItem&) const = default;
 };
 
 /// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
 struct FogItem {
-  Color color;
-  double start = 0, end = 1, most = 0.8;
+  Color color;                            ///< the fog's
+  double start = 0, end = 1, most = 0.8;  ///< view depths in world units; share at `end`
   bool operator==(const FogItem&) const = default;
 };
 
 /// What an id of the picture stands for.
 struct ObjectName {
-  std::uint32_t id = 0;
-  std::string kind, name;
-  std::string item{};  ///< where it stands in the scene, "isosurfaces[1]"; empty: it is no item of a list
+  std::uint32_t id = 0;    ///< as in the id picture, from 1 on
+  std::string kind, name;  ///< "isosurface" and the like; the name in the scene
+  std::string item{};      ///< where it stands in the scene, "isosurfaces[1]"; empty: it is no item of a list
 };
 
 /// Linear between points (value, columns..) that rise, constant beyond them; 0 without any. Of two at one value the later counts from
@@ -93,52 +94,55 @@ enum class Projection { composite, maximum, minimum, average };
 
 /// Colours by another field at the same world place. Where that field has no value the item's own colour holds.
 struct ColorSource {
-  std::shared_ptr<const field::ScalarGrid> grid;
-  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b
-  bool labels = false;                        ///< values are whole numbers, each with a colour of its own; 0 is no label and has none
-  bool spread = false;                        ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< whose values give the colours
+  std::vector<std::array<double, 4>> colors;      ///< value, r, g, b
+  bool labels = false;                            ///< values are whole numbers, each with a colour of its own; 0 is no label and has none
+  bool spread = false;  ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
   bool operator==(const ColorSource&) const = default;
 };
 
+/// A volume that rays go through.
 struct VolumeItem {
-  std::shared_ptr<const field::ScalarGrid> grid;
-  TransferTable transfer;
-  bool shade = false;
-  std::uint32_t id = 0;
-  bool clipped = true;
-  Projection projection = Projection::composite;
-  std::optional<ColorSource> color_by{};  ///< composite only
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< the values
+  TransferTable transfer;                         ///< colours and extinctions
+  bool shade = false;                             ///< lit by the gradient
+  std::uint32_t id = 0;                           ///< in the id picture; 0: none
+  bool clipped = true;                            ///< the clip planes cut it
+  Projection projection = Projection::composite;  ///< what a ray makes of its values
+  std::optional<ColorSource> color_by{};          ///< composite only
   bool operator==(const VolumeItem&) const = default;
 };
 
+/// An isosurface that rays meet.
 struct IsosurfaceItem {
-  std::shared_ptr<const field::ScalarGrid> grid;
-  double level = 0;
-  Color color;
-  float opacity = 1;
-  std::uint32_t id = 0;
-  bool clipped = true;
-  std::optional<ColorSource> color_by{};
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< the values
+  double level = 0;                               ///< the value on the surface
+  Color color;                                    ///< where nothing else gives one
+  float opacity = 1;                              ///< 0 to 1, of one side
+  std::uint32_t id = 0;                           ///< in the id picture; 0: none
+  bool clipped = true;                            ///< the clip planes cut it
+  std::optional<ColorSource> color_by{};          ///< none: `color` everywhere
   bool operator==(const IsosurfaceItem&) const = default;
 };
 
 /// Triangles as they are: what the hand feels. Made once a mesh, shared by frames.
 struct MeshGeometry {
-  std::vector<Vec3> vertices;
+  std::vector<Vec3> vertices;            ///< places, world units
   std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
   std::vector<Vec3> normals{};           ///< by vertex, for smooth shading; may be empty without it
   std::vector<Color> colors{};           ///< by vertex; empty: the item's everywhere
   bool operator==(const MeshGeometry&) const = default;
 };
 
+/// Triangles that are drawn.
 struct MeshItem {
-  std::shared_ptr<const MeshGeometry> geometry;
-  Color color;
-  std::uint32_t id = 0;
-  bool clipped = true;
-  float opacity = 1;    ///< of one side; < 1: drawn in the layers
-  bool smooth = false;  ///< lit by the vertices' normals, not by each triangle's own
-  bool edges = false;   ///< the triangles' edges as lines
+  std::shared_ptr<const MeshGeometry> geometry;  ///< shared by frames
+  Color color;                                   ///< where nothing else gives one
+  std::uint32_t id = 0;                          ///< in the id picture; 0: none
+  bool clipped = true;                           ///< the clip planes cut it
+  float opacity = 1;                             ///< of one side; < 1: drawn in the layers
+  bool smooth = false;                           ///< lit by the vertices' normals, not by each triangle's own
+  bool edges = false;                            ///< the triangles' edges as lines
   /// Equal triangles are equal, wherever they are kept.
   bool operator==(const MeshItem& other) const {
     const bool alike = geometry == other.geometry || (geometry && other.geometry && *geometry == *other.geometry);
@@ -149,75 +153,75 @@ struct MeshItem {
 
 /// A plane through a grid, coloured by its values. Lines of constant value lie over it, opaque whatever the slice is.
 struct SliceItem {
-  std::shared_ptr<const field::ScalarGrid> grid;
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};     ///< world; normal need not be unit
-  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b; piecewise linear
-  float opacity = 1;                          ///< < 1: drawn in the layers
-  bool lit = false;
-  std::vector<double> levels{};  ///< of the lines, rising
-  Color line_color{0, 0, 0};
-  float line_width = 1;  ///< pixels
-  std::uint32_t id = 0;
-  bool clipped = true;
-  int over = 0;                    ///< so many slices before it lie in the same plane: it lies over them
-  std::optional<double> hidden{};  ///< nothing is drawn within a half of this value
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< the values
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};         ///< world; normal need not be unit
+  std::vector<std::array<double, 4>> colors;      ///< value, r, g, b; piecewise linear
+  float opacity = 1;                              ///< < 1: drawn in the layers
+  bool lit = false;                               ///< lit, or the plain colours of the values
+  std::vector<double> levels{};                   ///< of the lines, rising
+  Color line_color{0, 0, 0};                      ///< of the lines
+  float line_width = 1;                           ///< pixels
+  std::uint32_t id = 0;                           ///< in the id picture; 0: none
+  bool clipped = true;                            ///< the clip planes cut it
+  int over = 0;                                   ///< so many slices before it lie in the same plane: it lies over them
+  std::optional<double> hidden{};                 ///< nothing is drawn within a half of this value
 };
 
 /// A tube around a polyline, already flattened from the curve finely enough for its radius.
 struct TubeItem {
-  SharedList<Vec3> points;
-  double radius = 0;
-  Color color;
+  SharedList<Vec3> points;     ///< corners of the polyline, world units; one: a ball
+  double radius = 0;           ///< world units
+  Color color;                 ///< where nothing else gives one
   SharedList<Color> colors{};  ///< by point; empty: `color` everywhere
-  std::uint32_t id = 0;
-  bool clipped = true;
+  std::uint32_t id = 0;        ///< in the id picture; 0: none
+  bool clipped = true;         ///< the clip planes cut it
   bool operator==(const TubeItem&) const = default;
 };
 
 /// An arrowhead: a cone.
 struct ArrowItem {
-  Vec3 base{0.0}, tip{0.0};
-  double radius = 0;
-  Color color;
-  std::uint32_t id = 0;
-  bool clipped = true;
+  Vec3 base{0.0}, tip{0.0};  ///< middle of the cone's base; its tip; world units
+  double radius = 0;         ///< of the base, world units
+  Color color;               ///< where nothing else gives one
+  std::uint32_t id = 0;      ///< in the id picture; 0: none
+  bool clipped = true;       ///< the clip planes cut it
   bool operator==(const ArrowItem&) const = default;
 };
 
 /// An arrow of a vector.
 struct Glyph {
-  Vec3 tail{0.0}, tip{0.0};
-  Color color;
+  Vec3 tail{0.0}, tip{0.0};  ///< its two ends, world units
+  Color color;               ///< where nothing else gives one
   bool operator==(const Glyph&) const = default;
 };
 
 /// Arrows of one shape: a cylinder and a cone, whose sizes follow each one's length.
 struct GlyphItem {
-  SharedList<Glyph> glyphs;
+  SharedList<Glyph> glyphs;    ///< of this shape
   double shaft = 0.06;         ///< its radius
   double head = 0.36;          ///< the cone's length; 0: none, the cylinder goes to the tip
   double head_radius = 0.144;  ///< of the cone's base
-  std::uint32_t id = 0;
-  bool clipped = true;
+  std::uint32_t id = 0;        ///< in the id picture; 0: none
+  bool clipped = true;         ///< the clip planes cut it
   bool operator==(const GlyphItem&) const = default;
 };
 
 /// The local indicator: a short piece of the streamline through the cursor, with an arrowhead downstream.
 struct IndicatorItem {
-  TubeItem tube;
-  ArrowItem arrow;
+  TubeItem tube;    ///< the piece
+  ArrowItem arrow;  ///< its arrowhead
   bool operator==(const IndicatorItem&) const = default;
 };
 
 /// The cursor: probe, the proxy of every link, the links between them, the force. Clip planes do not touch it.
 struct CursorItem {
-  Vec3 probe{0.0};
-  std::vector<Vec3> proxies;
-  std::vector<bool> active;
-  Vec3 force_n{0.0};
+  Vec3 probe{0.0};              ///< the hand, world units
+  std::vector<Vec3> proxies;    ///< by link, world units
+  std::vector<bool> active;     ///< by link: it holds
+  Vec3 force_n{0.0};            ///< world axes, newtons
   double size = 0;              ///< radius of the probe's ball, world units
   std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it; empty: all 0
-  std::uint32_t id = 0;
+  std::uint32_t id = 0;         ///< in the id picture; 0: none
   /// Where nothing can push back (a mouse), the picture does: the cursor is the last proxy, the probe a small ball on a tether whose
   /// colour and width say the force, 0..1 of the largest. None: as it is.
   std::optional<double> strain{};
@@ -229,64 +233,68 @@ struct CursorItem {
 
 /// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
 struct AidItems {
-  std::vector<TubeItem> tubes;
-  std::vector<MeshItem> meshes;
+  std::vector<TubeItem> tubes;   ///< edges
+  std::vector<MeshItem> meshes;  ///< faces
+  /// Whether there is nothing.
   bool empty() const { return tubes.empty() && meshes.empty(); }
   bool operator==(const AidItems&) const = default;
 };
 
 /// What the hand takes hold of (paper, Figure 6). A tube of a single point is a ball. The camera is not fitted to them.
 struct WidgetItems {
-  std::vector<TubeItem> tubes;
-  std::vector<ArrowItem> arrows;
-  std::vector<MeshItem> meshes;
+  std::vector<TubeItem> tubes;    ///< edges and handles
+  std::vector<ArrowItem> arrows;  ///< arrowheads
+  std::vector<MeshItem> meshes;   ///< faces
+  /// Whether there is nothing.
   bool empty() const { return tubes.empty() && arrows.empty() && meshes.empty(); }
   bool operator==(const WidgetItems&) const = default;
 };
 
 /// Balls at points, made once a set, shared by frames.
 struct Balls {
-  Vec3 origin{0.0};  ///< of the places
-  std::vector<glm::vec3> places;
+  Vec3 origin{0.0};                                                     ///< of the places
+  std::vector<glm::vec3> places;                                        ///< less `origin`
   std::vector<float> radii;                                             ///< one a place
   std::vector<Color> colors;                                            ///< one a place
   Bounds core{};                                                        ///< what a first view shows of them; empty: all
   Vec3 place(std::size_t i) const { return origin + Vec3(places[i]); }  ///< in the world
 };
 
+/// Balls at points.
 struct BallsItem {
-  std::shared_ptr<const Balls> balls;
-  std::uint32_t id = 0;
-  bool clipped = true;
+  std::shared_ptr<const Balls> balls;  ///< shared by frames
+  std::uint32_t id = 0;                ///< in the id picture; 0: none
+  bool clipped = true;                 ///< the clip planes cut it
   bool operator==(const BallsItem&) const = default;
 };
 
+/// All that one picture shows, how large, and from where.
 struct FramePacket {
-  View view;
-  std::vector<View> eyes{};  ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
-  Packing packing = Packing::single;
-  std::uint32_t width = 1024, height = 768;
+  View view;                                    ///< the eye
+  std::vector<View> eyes{};                     ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
+  Packing packing = Packing::single;            ///< how the eyes' pictures make one
+  std::uint32_t width = 1024, height = 768;     ///< pixels, of each eye
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
-  std::vector<VolumeItem> volumes;
-  std::vector<IsosurfaceItem> isosurfaces;
-  std::vector<MeshItem> meshes;
-  std::vector<SliceItem> slices;
-  std::vector<TubeItem> tubes;
-  std::vector<ArrowItem> arrows;
-  std::vector<GlyphItem> glyphs;
-  std::vector<BallsItem> balls;
-  std::vector<CursorItem> cursors;
-  std::vector<IndicatorItem> indicators;
-  Overlay overlay;
-  std::vector<Plane> clip;        ///< what all planes keep is drawn; at most kMaxClipPlanes
-  std::vector<LightItem> lights;  ///< none: a headlight; at most kMaxLights
-  std::optional<FogItem> fog;
-  double vignette = 0;  ///< 0..1: how far the picture narrows while the world moves around a person; 0: not at all
-  AidItems aids;
-  WidgetItems widgets;
-  std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter
-  std::vector<ObjectName> objects;
-  std::string left_out;  ///< what of curves and points is not drawn, in words; empty: nothing
+  std::vector<VolumeItem> volumes;              ///< what rays go through
+  std::vector<IsosurfaceItem> isosurfaces;      ///< surfaces that rays meet
+  std::vector<MeshItem> meshes;                 ///< triangles
+  std::vector<SliceItem> slices;                ///< planes through grids
+  std::vector<TubeItem> tubes;                  ///< streamlines and curves
+  std::vector<ArrowItem> arrows;                ///< their arrowheads
+  std::vector<GlyphItem> glyphs;                ///< arrows at places
+  std::vector<BallsItem> balls;                 ///< points
+  std::vector<CursorItem> cursors;              ///< hands
+  std::vector<IndicatorItem> indicators;        ///< what the flow does at a hand
+  Overlay overlay;                              ///< what is written over it
+  std::vector<Plane> clip;                      ///< what all planes keep is drawn; at most kMaxClipPlanes
+  std::vector<LightItem> lights;                ///< none: a headlight; at most kMaxLights
+  std::optional<FogItem> fog;                   ///< none: no fog
+  double vignette = 0;                          ///< 0..1: how far the picture narrows while the world moves around a person; 0: not at all
+  AidItems aids;                                ///< boxes, axes, the ground
+  WidgetItems widgets;                          ///< what the hand takes hold of
+  std::optional<bool> jitter;                   ///< of rays; overrides RenderSettings::jitter
+  std::vector<ObjectName> objects;              ///< what the ids stand for
+  std::string left_out;                         ///< what of curves and points is not drawn, in words; empty: nothing
 
   /// The next id, from 1 on.
   std::uint32_t add_object(std::string kind, std::string name, std::string item = {}) {

@@ -19,6 +19,7 @@
 
 namespace catena::render {
 
+/// The ways to pack.
 enum class Packing {
   single,
   side_by_side,
@@ -32,8 +33,9 @@ enum class Packing {
   checkerboard
 };
 
+/// Pixels of a picture.
 struct PackedSize {
-  std::uint64_t width = 0, height = 0;
+  std::uint64_t width = 0, height = 0;  ///< pixels
 };
 
 /// Of the finished picture; 0 where a view has fewer pixels than there are views.
@@ -80,22 +82,34 @@ inline bool is_interlaced(Packing packing) {
 template <class T>
 class SharedList {
  public:
+  /// What it holds.
   using value_type = T;
   SharedList() = default;
+  /// Of these items.
   SharedList(std::initializer_list<T> items) : SharedList(std::vector<T>(items)) {}
+  /// Of these items, without a copy.
   SharedList(std::vector<T> items) : items_(items.empty() ? nullptr : std::make_shared<std::vector<T>>(std::move(items))) {}
 
+  /// The items.
   const std::vector<T>& list() const {
     static const std::vector<T> none;
     return items_ ? *items_ : none;
   }
+  /// As of a vector.
   auto begin() const { return list().begin(); }
+  /// As of a vector.
   auto end() const { return list().end(); }
+  /// As of a vector.
   std::size_t size() const { return list().size(); }
+  /// As of a vector.
   bool empty() const { return list().empty(); }
+  /// As of a vector; `i` below size().
   const T& operator[](std::size_t i) const { return list()[i]; }
+  /// As of a vector that is not empty.
   const T& front() const { return list().front(); }
+  /// As of a vector that is not empty.
   const T& back() const { return list().back(); }
+  /// Appends; a list that is shared is copied first.
   void push_back(const T& item) { own().push_back(item); }
   /// One list in memory: nothing has to be compared.
   bool is_same(const SharedList& other) const { return items_ == other.items_; }

@@ -10,18 +10,22 @@
 
 namespace catena::render {
 
+/// What the file will be.
 struct PngFormat {
-  std::uint32_t width = 0, height = 0;
-  int bits = 8;      ///< 8 or 16
-  int channels = 4;  ///< 1, 3 or 4
+  std::uint32_t width = 0, height = 0;  ///< pixels
+  int bits = 8;                         ///< 8 or 16
+  int channels = 4;                     ///< 1, 3 or 4
   /// A text chunk, if the key is not empty: what the numbers of the picture mean.
-  std::string text_key{}, text{};
+  std::string text_key{}, text{};  ///< no line ends in the key
 };
 
+/// The writer.
 class PngWriter {
  public:
+  /// Begins the file beside its place. An error names it.
   static Result<PngWriter> open(const std::string& path, const PngFormat& format);
   ~PngWriter();
+  /// Takes the file over; `other` has none then.
   PngWriter(PngWriter&&) noexcept;
   PngWriter& operator=(PngWriter&&) = delete;
 

@@ -22,38 +22,45 @@
 
 namespace catena::render {
 
-inline constexpr int kBrick = 8;
+inline constexpr int kBrick = 8;           ///< Cells along the edge of a brick.
 inline constexpr int kApron = kBrick + 1;  ///< a brick as it is stored: with one layer of its neighbours
 
+/// How texels lie on the device.
 enum class MirrorLayout { automatic, dense, atlas };
 
+/// How a grid is mirrored.
 struct MirrorOptions {
-  bool float32 = false;
+  bool float32 = false;                           ///< 32-bit texels; else 16
   MirrorLayout layout = MirrorLayout::automatic;  ///< automatic: dense unless less than about a third of the leaves would be stored
 };
 
+/// Least and greatest value of a brick.
 struct BrickRange {
-  float least = 1, greatest = 0;
+  float least = 1, greatest = 0;  ///< the field's unit
+  /// Whether no cell of it is valid.
   bool empty() const { return least > greatest; }
 };
 
+/// A mirror. Frame thread.
 struct GridMirror {
-  bool drawable = false;  ///< false: thinner than a cell along some axis, nothing below is set
-  bool atlas = false;
+  bool drawable = false;                 ///< false: thinner than a cell along some axis, nothing below is set
+  bool atlas = false;                    ///< bricks; else one dense image
   bool masked = false;                   ///< there is a mask image
   bool nearest = false;                  ///< the value of the nearest voxel centre counts (field::Interpolation)
   bool cubic = false;                    ///< the cubic of 4^3 samples counts
   field::Index3 origin;                  ///< index = origin + local
   Vec3 box_lo{0.0}, box_hi{0.0};         ///< the domain, local
   std::array<std::int32_t, 3> bricks{};  ///< an axis
-  float offset = 0, scale = 1;
-  vk::Image values;
-  vk::Sampler one;                   ///< with `nearest`: reads one texel, never a mix
-  vk::Image mask;                    ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
-  std::vector<BrickRange> ranges;    ///< x fastest
-  std::vector<std::uint32_t> slots;  ///< atlas: x | y << 8 | z << 16, in bricks
+  float offset = 0, scale = 1;           ///< value = offset + scale * texel
+  vk::Image values;                      ///< the texels
+  vk::Sampler one;                       ///< with `nearest`: reads one texel, never a mix
+  vk::Image mask;                        ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
+  std::vector<BrickRange> ranges;        ///< x fastest
+  std::vector<std::uint32_t> slots;      ///< atlas: x | y << 8 | z << 16, in bricks
 
+  /// The place of a brick in `ranges` and `slots`.
   std::size_t brick_index(int x, int y, int z) const { return (std::size_t(z) * bricks[1] + y) * bricks[0] + x; }
+  /// Device memory of its images.
   std::uint64_t bytes() const { return values.bytes() + mask.bytes(); }
 
   int factor = 1;                                   ///< 2, 4, 8: coarser
@@ -69,6 +76,7 @@ std::optional<std::uint64_t> mirror_image_bytes(vk::Device& device, const field:
 /// What make_grid_mirror and the maps of a volume or a surface need, staging included; none where the device cannot hold it at any price.
 std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
 
+/// Makes the mirror at full resolution. An error where the device has no memory for it.
 Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
 /// At 1/factor (2, 4, 8) of the resolution.
 Result<GridMirror> make_coarse_mirror(vk::Device& device, const field::CoarseGrid& grid, int factor, const MirrorOptions& options);

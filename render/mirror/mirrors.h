@@ -14,7 +14,7 @@ namespace catena::render {
 
 /// A grid that is drawn at less than its resolution because the whole does not fit into the memory budget.
 struct MirrorCoarsening {
-  std::string grid;
+  std::string grid;                                ///< its name
   int factor = 1;                                  ///< 2, 4, 8
   std::string size;                                ///< of the grid: "256^3", "512 x 512 x 90"
   std::uint64_t needed_bytes = 0, left_bytes = 0;  ///< of the whole grid; of the budget, when it was mirrored
@@ -22,20 +22,26 @@ struct MirrorCoarsening {
   std::string words() const;
 };
 
+/// The mirrors. Frame thread.
 class Mirrors {
  public:
+  /// On a device that outlives this.
   explicit Mirrors(vk::Device& device) : device_(device) {}
   /// Builds it at the first call.
   Result<std::shared_ptr<const GridMirror>> get(const field::ScalarGrid& grid, const MirrorOptions& options);
   /// `reserved` bytes of the budget are for others. `sharers` > 1: so many grids are to share the rest.
   void begin_frame(std::uint64_t reserved, std::size_t sharers = 1);
+  /// Frees those that the frame has not asked for.
   void drop_unused();
   /// Those of a grid that the frame has not asked for so far.
   void drop_unused(const field::ScalarGrid& grid);
+  /// Frees all.
   void clear() { entries_.clear(); }
+  /// Mirrors that are kept.
   std::size_t count() const { return entries_.size(); }
   /// Of their images.
   std::uint64_t bytes() const;
+  /// Milliseconds spent on building mirrors so far.
   double build_ms() const { return build_ms_; }
   /// Bytes of the budget that a grid may take now.
   std::uint64_t left() const;

@@ -30,11 +30,12 @@ class Image;
 class Swapchain;
 }  // namespace vk
 
+/// What a renderer tells of itself. Plain data.
 struct RenderStats {
-  std::string device, driver;
-  std::uint64_t gpu_bytes = 0;  ///< held now
-  std::uint64_t uploads = 0;    ///< copies to the device so far
-  std::uint64_t upload_bytes = 0;
+  std::string device, driver;                       ///< the device's name; its driver's
+  std::uint64_t gpu_bytes = 0;                      ///< held now
+  std::uint64_t uploads = 0;                        ///< copies to the device so far
+  std::uint64_t upload_bytes = 0;                   ///< bytes of these copies
   std::uint64_t pipelines = 0;                      ///< created so far
   std::vector<std::string> passes;                  ///< of the last picture, in order
   std::uint64_t mirrors = 0;                        ///< grids mirrored now
@@ -59,24 +60,25 @@ bool same_rays(const FramePacket& a, const FramePacket& b);
 
 /// The nearest opaque object of every pixel, 0: none.
 struct IdPicture {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint32_t> ids;
+  std::uint32_t width = 0, height = 0;  ///< pixels
+  std::vector<std::uint32_t> ids;       ///< rows from the top
 };
 
 /// View depth of the nearest opaque surface: distance along the view axis, world units; infinite where there is none.
 struct DepthPicture {
-  std::uint32_t width = 0, height = 0;
-  std::vector<float> depth;
+  std::uint32_t width = 0, height = 0;  ///< pixels
+  std::vector<float> depth;             ///< rows from the top
 };
 
+/// What was marched.
 struct MarchedTiles {
-  std::uint32_t marched = 0, all = 0;
+  std::uint32_t marched = 0, all = 0;  ///< tiles of 16 x 16 pixels
 };
 
 /// What one pixel shows, of the first eye: the id of the nearest opaque object (0: none) and its view depth (infinite: none).
 struct Picked {
-  std::uint32_t id = 0;
-  double depth = 0;
+  std::uint32_t id = 0;  ///< as of IdPicture
+  double depth = 0;      ///< as of DepthPicture
 };
 
 /// The last picture where it lies on the device: straight alpha, display values. Good until the next call of the renderer.
@@ -84,16 +86,18 @@ struct Picked {
 /// usage allows copies from it. All writes to it are done and visible once `timeline`, a timeline semaphore of the device, has reached
 /// `value`; draw() has waited for that, so that other queues of the same family need wait for nothing.
 struct DrawnImage {
-  VkImage image = VK_NULL_HANDLE;
-  VkFormat format = VK_FORMAT_UNDEFINED;
-  VkExtent2D extent{};
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  VkSemaphore timeline = VK_NULL_HANDLE;
-  std::uint64_t value = 0;
+  VkImage image = VK_NULL_HANDLE;                    ///< it belongs to the renderer
+  VkFormat format = VK_FORMAT_UNDEFINED;             ///< of the texels
+  VkExtent2D extent{};                               ///< pixels
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< the image's now
+  VkSemaphore timeline = VK_NULL_HANDLE;             ///< it belongs to the device
+  std::uint64_t value = 0;                           ///< that the semaphore has to reach
 };
 
+/// Draws frame packets on one device.
 class Renderer {
  public:
+  /// Makes the device and what all pictures need. An error where there is no device, or it lacks something: one sentence.
   static Result<std::unique_ptr<Renderer>> create(const vk::DeviceOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -110,9 +114,10 @@ class Renderer {
   /// The opaque depth of the last picture in world units along the axis, less `reference`; NO_DEPTH (shaders/shared/frame.h) where nothing
   /// is. Nothing at all where there is nothing opaque.
   struct OpaqueDepth {
-    vk::Image* image;
-    double reference;
+    vk::Image* image;  ///< R32_SFLOAT, on the device
+    double reference;  ///< world units
   };
+  /// Nothing where nothing opaque was drawn.
   std::optional<OpaqueDepth> opaque_depth();
   /// What stands for the depth of volumes and translucent surfaces in the last picture: where a ray's alpha passes 0.5, in the red of a
   /// texel for every `spacing`-th pixel each way, counted as the opaque depth; NO_DEPTH where it never does before something opaque.
@@ -166,8 +171,11 @@ class Renderer {
   /// The embedded shaders again.
   void restore_shaders();
 
+  /// As of now.
   RenderStats stats() const;
+  /// Texts of the validation layer's messages, the first 64.
   std::vector<std::string> validation_texts() const;
+  /// The device that it draws with.
   vk::Device& device();
 
  private:

@@ -14,6 +14,7 @@
 #include "engine/base/numbers.h"
 #include "render/image/measure.h"
 #include "render/quality/refinement.h"
+#include "render/vk/stopwatch.h"
 
 namespace catena::render {
 namespace {

@@ -13,13 +13,13 @@ namespace catena::render {
 
 /// How the fast raycast of one volume (fast_volume.h) trades error for time.
 struct FastSettings {
-  double step_voxels = 4;         ///< in smallest voxel edges
-  std::uint32_t spacing = 1;      ///< pixels between the first rays: 1, 2 or 4
-  double refine_half_255 = 0;     ///< spacing 4: marches every 2nd pixel where interpolation is expected to err by more; < 0: nowhere
-  double refine_full_255 = -1;    ///< the same for every pixel
-  bool smooth_gradients = false;  ///< shading by central differences, as the exact raycast has it, for 4 bytes a voxel more
-  double termination = 1.0 / 512;
-  bool skip = true;
+  double step_voxels = 4;          ///< in smallest voxel edges
+  std::uint32_t spacing = 1;       ///< pixels between the first rays: 1, 2 or 4
+  double refine_half_255 = 0;      ///< spacing 4: marches every 2nd pixel where interpolation is expected to err by more; < 0: nowhere
+  double refine_full_255 = -1;     ///< the same for every pixel
+  bool smooth_gradients = false;   ///< shading by central differences, as the exact raycast has it, for 4 bytes a voxel more
+  double termination = 1.0 / 512;  ///< a ray ends when less than this gets through
+  bool skip = true;                ///< leap over bricks that the transfer function leaves empty
   /// On the device, for packed words and gradients; the budget's rest, where that is less. What needs more is drawn exactly.
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
   /// Away from where the eye looks interpolation may err by more: both thresholds times max(1, e / fovea)^2, e the tangent of the angle
@@ -31,14 +31,16 @@ struct FastSettings {
   bool operator==(const FastSettings&) const = default;
 };
 
+/// What a voxel is stored as on the device.
 enum class TexelFormat { automatic, r16f, r32f };
 
+/// How one picture is drawn; the packet says what.
 struct RenderSettings {
-  double step_voxels = 1;                       ///< in smallest voxel edges
-  double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
-  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere
-  MirrorLayout layout = MirrorLayout::automatic;
-  bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  double step_voxels = 1;                         ///< in smallest voxel edges
+  double termination = 1.0 / 512;                 ///< a ray ends when less than this gets through
+  TexelFormat texels = TexelFormat::automatic;    ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere
+  MirrorLayout layout = MirrorLayout::automatic;  ///< how texels lie on the device
+  bool skip = true;                               ///< leap over bricks that the transfer function leaves empty
   /// The picture target holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). What is opaque has 11 bits of mantissa.
   bool float_picture = false;
   /// Rays begin with a part of a step, another one at every pixel: grain instead of rings where the step is coarse. The packet may
@@ -59,32 +61,33 @@ RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
 /// What rays are told and what they meet beside grids.
 inline constexpr VkFormat kVolumeFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< of what rays blend; premultiplied
 
+/// How rays are marched.
 struct RaySettings {
-  double step_voxels = 1;
-  double termination = 1.0 / 512;
-  bool skip = true;
-  bool jitter = false;
+  double step_voxels = 1;          ///< in smallest voxel edges
+  double termination = 1.0 / 512;  ///< a ray ends when less than this gets through
+  bool skip = true;                ///< leap over what is empty
+  bool jitter = false;             ///< rays begin with a part of a step
 };
 
 /// Something translucent that triangles drew, to be blended with what rays meet, in order: premultiplied colours, and the depth t
 /// (shaders/shared/frame.h, R32_SFLOAT) of each; NO_DEPTH: nothing at this pixel. Of the picture's size.
 struct Layer {
-  vk::Image* color = nullptr;
-  vk::Image* depth = nullptr;
+  vk::Image* color = nullptr;  ///< premultiplied
+  vk::Image* depth = nullptr;  ///< R32_SFLOAT
 };
 
 /// What a picture's rays meet beside grids.
 struct RayScene {
   const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
-  std::span<const Layer> layers{};
-  const vk::Image* none = nullptr;  ///< bound where there is nothing
+  std::span<const Layer> layers{};          ///< in any order
+  const vk::Image* none = nullptr;          ///< bound where there is nothing
 };
 
 /// An item with the mirror of its grid, and of the grid that colours it, if there is one.
 template <class Item>
 struct Mirrored {
-  const Item* item = nullptr;
-  std::shared_ptr<const GridMirror> mirror, colors;
+  const Item* item = nullptr;                        ///< what is drawn
+  std::shared_ptr<const GridMirror> mirror, colors;  ///< of its grid; of the grid that colours it, or null
 };
 
 }  // namespace catena::render

@@ -10,6 +10,7 @@
 
 #include "render/vk/pipeline.h"
 #include "render/vk/resources.h"
+#include "render/vk/stopwatch.h"
 
 namespace catena::render::vk {
 

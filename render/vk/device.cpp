@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "render/vk/instance.h"
+#include "render/vk/stopwatch.h"
 
 namespace catena::render::vk {
 

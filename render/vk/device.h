@@ -18,10 +18,12 @@
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
 #include "render/vk/requirements.h"
-#include "render/vk/stopwatch.h"
 
 namespace catena::render::vk {
 
+class Stopwatch;  ///< stopwatch.h
+
+/// A shader's words.
 using Spirv = std::span<const std::uint32_t>;
 
 /// Shaders that stand in for embedded ones, by the embedded words themselves: what creates pipelines need not know of it. Frame thread.
@@ -29,6 +31,7 @@ class ShaderReplacements {
  public:
   /// Pipelines created from now on have `words` in the place of `embedded` (which outlives this).
   void replace(Spirv embedded, std::vector<std::uint32_t> words);
+  /// The embedded ones again.
   void clear() { all_.clear(); }
   /// What stands in for `embedded`: itself, where nothing does.
   Spirv of(Spirv embedded) const;
@@ -43,11 +46,12 @@ std::vector<std::uint32_t> declared_bindings(Spirv words);
 /// The calls that a driver may refuse at any time: what a test can make fail.
 enum class DriverCall { allocate, submit, wait };
 
+/// How a device is made.
 struct DeviceOptions {
-  bool validation = false;
-  std::string choose;      ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best one
-  SurfaceFactory surface;  ///< empty: headless
-  VulkanMaker maker{};     ///< empty: Catena makes all of it
+  bool validation = false;  ///< with the validation layer, where it is installed
+  std::string choose;       ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best one
+  SurfaceFactory surface;   ///< empty: headless
+  VulkanMaker maker{};      ///< empty: Catena makes all of it
   /// Of device memory, all that Catena allocates on this device. 0: nine tenths of what the driver offers now
   /// (VK_EXT_memory_budget), or eight tenths of the largest heap where it does not say.
   std::uint64_t memory_budget_bytes = 0;
@@ -55,51 +59,68 @@ struct DeviceOptions {
   std::function<VkResult(DriverCall)> fail{};
 };
 
+/// What the device is.
 struct DeviceInfo {
-  std::string name, driver;
-  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
-  VkPhysicalDeviceLimits limits{};
-  std::uint64_t memory_bytes = 0;   ///< of the largest device-local heap
-  std::uint64_t memory_budget = 0;  ///< bytes that Catena may hold
+  std::string name, driver;                                   ///< its name; its driver's name and version
+  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;  ///< GPU, CPU ..
+  VkPhysicalDeviceLimits limits{};                            ///< as Vulkan gives them
+  std::uint64_t memory_bytes = 0;                             ///< of the largest device-local heap
+  std::uint64_t memory_budget = 0;                            ///< bytes that Catena may hold
+  /// Whether the processor draws.
   bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 };
 
 /// What the device has done so far; tests read it.
 struct DeviceCounters {
-  std::uint64_t bytes = 0;    ///< device memory held now
-  std::uint64_t peak = 0;     ///< the most that was ever held
-  std::uint64_t uploads = 0;  ///< copies from staging memory
-  std::uint64_t upload_bytes = 0;
-  std::uint64_t pipelines = 0;  ///< created
-  std::uint64_t submissions = 0;
-  std::uint64_t allocations = 0;
-  std::uint64_t refused = 0;  ///< allocations that the budget did not hold
-  double work_ns = 0;         ///< of what was submitted and is done, by the device's clock (stopwatch.h)
+  std::uint64_t bytes = 0;         ///< device memory held now
+  std::uint64_t peak = 0;          ///< the most that was ever held
+  std::uint64_t uploads = 0;       ///< copies from staging memory
+  std::uint64_t upload_bytes = 0;  ///< bytes of these copies
+  std::uint64_t pipelines = 0;     ///< created
+  std::uint64_t submissions = 0;   ///< of command buffers
+  std::uint64_t allocations = 0;   ///< of device memory
+  std::uint64_t refused = 0;       ///< allocations that the budget did not hold
+  double work_ns = 0;              ///< of what was submitted and is done, by the device's clock (stopwatch.h)
 };
 
+/// The device. All handles belong to it, or to who lent them (VulkanMaker).
 class Device {
  public:
+  /// Makes or borrows instance, device and queue. An error where no device has what Catena needs: one sentence.
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
+  /// Vulkan's handle.
   VkDevice handle() const { return device_; }
+  /// Vulkan's handle.
   VkPhysicalDevice physical() const { return physical_; }
+  /// Vulkan's handle.
   VkInstance instance() const { return instance_->handle(); }
+  /// Its one queue.
   VkQueue queue() const { return queue_; }
+  /// The queue's family.
   std::uint32_t queue_family() const { return queue_family_; }
   /// Held while the queue is used: others may use it, too (VulkanMaker).
   [[nodiscard]] std::unique_lock<std::mutex> queue_turn() const {
     return maker_.queue_lock != nullptr ? std::unique_lock(*maker_.queue_lock) : std::unique_lock<std::mutex>();
   }
+  /// The pool of its command buffers.
   VkCommandPool command_pool() const { return pool_; }
+  /// The window's surface; null without a window.
   VkSurfaceKHR surface() const { return instance_->surface(); }
+  /// What the device is.
   const DeviceInfo& info() const { return info_; }
+  /// Warnings and errors so far.
   const Messages& messages() const { return instance_->messages(); }
+  /// What it has done so far.
   DeviceCounters& counters() { return counters_; }
+  /// What it has done so far.
   const DeviceCounters& counters() const { return counters_; }
+  /// What stands in for embedded shaders.
   ShaderReplacements& shaders() { return shaders_; }
+  /// What takes the time of the work that was submitted (stopwatch.h).
   Stopwatch& stopwatch() { return *stopwatch_; }
   /// Bytes that the budget still holds.
   std::uint64_t memory_left() const { return counters_.bytes < info_.memory_budget ? info_.memory_budget - counters_.bytes : 0; }
@@ -107,18 +128,23 @@ class Device {
   bool lost() const { return lost_; }
   /// What a test pretends that the driver says.
   VkResult pretended(DriverCall call) const { return fail_ ? fail_(call) : VK_SUCCESS; }
+  /// VkCmdPushDescriptorSetKHR of this device.
   PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
 
   /// Its one timeline semaphore, and the value that the last submission reaches.
   VkSemaphore timeline() const { return timeline_; }
+  /// The value that the last submission reaches.
   std::uint64_t submitted() const { return submitted_; }
   /// Submits and returns the timeline value that is reached when the work is done. Optional binary semaphores for a swapchain.
   Result<std::uint64_t> submit(VkCommandBuffer commands, VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
+  /// Waits until the timeline has reached `value`, and destroys what is retired by then. An error where the device is lost.
   Outcome wait(std::uint64_t value);
+  /// Waits for all that was submitted.
   Outcome wait_idle() { return wait(submitted_); }
 
   /// Calls `destroy` once everything submitted so far is done (at a later wait, or when the device goes).
   void retire(std::function<void()> destroy);
+  /// Things that wait to be destroyed.
   std::size_t retired() const { return retired_.size(); }
 
  private:

@@ -13,6 +13,7 @@
 
 namespace catena::render::vk {
 
+/// "VK_ERROR_DEVICE_LOST" and so on.
 const char* result_name(VkResult result);
 /// "Vulkan could not WHAT: VK_ERROR_..."
 Error vulkan_error(VkResult result, const std::string& what);
@@ -23,14 +24,13 @@ Error vulkan_error(VkResult result, const std::string& what);
 #define CATENA_VK(call, what) \
   if (const VkResult vk_result = (call); vk_result != VK_SUCCESS) return ::catena::render::vk::vulkan_error(vk_result, what)
 
-/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
-/// the layer and the loader are counted and their texts kept; tests assert that there are none.
 namespace catena::render::vk {
 
 /// Where a window's surface comes from; the viewer passes it, headless programs have none.
 struct SurfaceFactory {
-  std::vector<std::string> instance_extensions;
-  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;
+  std::vector<std::string> instance_extensions;               ///< that the surface needs
+  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;  ///< Makes the surface of an instance.
+  /// Whether there is a window.
   explicit operator bool() const { return static_cast<bool>(create); }
 };
 
@@ -55,7 +55,9 @@ struct VulkanMaker {
 /// Warnings and errors so far; the driver may report from any thread.
 class Messages {
  public:
+  /// Adds a message.
   void add(std::string text);
+  /// Messages so far.
   std::uint64_t count() const;
   std::vector<std::string> texts() const;  ///< the first 64
 
@@ -65,15 +67,21 @@ class Messages {
   std::vector<std::string> texts_;
 };
 
+/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
+/// the layer and the loader are counted and their texts kept; tests assert that there are none. Frame thread.
 class Instance {
  public:
+  /// Makes or borrows it. An error is one sentence.
   static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanMaker& maker = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
+  /// Vulkan's handle.
   VkInstance handle() const { return instance_; }
+  /// The window's surface; null without a window.
   VkSurfaceKHR surface() const { return surface_; }
+  /// Warnings and errors so far.
   const Messages& messages() const { return messages_; }
 
  private:

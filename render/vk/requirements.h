@@ -13,9 +13,9 @@ inline constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;  ///< of the in
 
 /// The chain that vkCreateDevice takes as pNext = &core. It points into itself, so it does not move.
 struct DeviceFeatures {
-  VkPhysicalDeviceFeatures2 core{};
-  VkPhysicalDeviceVulkan12Features v12{};
-  VkPhysicalDeviceVulkan13Features v13{};
+  VkPhysicalDeviceFeatures2 core{};        ///< begins the chain
+  VkPhysicalDeviceVulkan12Features v12{};  ///< next in it
+  VkPhysicalDeviceVulkan13Features v13{};  ///< last in it
   DeviceFeatures();
   DeviceFeatures(const DeviceFeatures&) = delete;
   DeviceFeatures& operator=(const DeviceFeatures&) = delete;

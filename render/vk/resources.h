@@ -12,19 +12,26 @@ namespace catena::render::vk {
 /// Where a buffer lives: on the device, or on the host (mapped, coherent) for writing or for reading back.
 enum class Memory { device, upload, readback };
 
+/// A buffer with its memory. Frame thread.
 class Buffer {
  public:
   Buffer() = default;
+  /// Makes one. An error where the budget or the device has no memory.
   static Result<Buffer> create(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
   ~Buffer() { release(); }
+  /// Takes the buffer over; `other` has none then.
   Buffer(Buffer&& other) noexcept { swap(other); }
+  /// Exchanges the buffers.
   Buffer& operator=(Buffer&& other) noexcept {
     swap(other);
     return *this;
   }
 
+  /// Vulkan's handle; null: there is none.
   VkBuffer handle() const { return buffer_; }
+  /// Bytes.
   VkDeviceSize size() const { return size_; }
+  /// Whether there is one.
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
   /// Mapped bytes; empty on the device.
   std::span<std::byte> bytes() const { return {static_cast<std::byte*>(mapped_), mapped_ ? std::size_t(size_) : 0}; }
@@ -39,11 +46,12 @@ class Buffer {
   void* mapped_ = nullptr;
 };
 
+/// What an image is to be.
 struct ImageInfo {
-  VkImageType type = VK_IMAGE_TYPE_2D;
-  VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
-  VkExtent3D extent{1, 1, 1};
-  VkImageUsageFlags usage = 0;
+  VkImageType type = VK_IMAGE_TYPE_2D;         ///< 1D, 2D or 3D
+  VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;  ///< of the texels
+  VkExtent3D extent{1, 1, 1};                  ///< texels
+  VkImageUsageFlags usage = 0;                 ///< as Vulkan's flags
 };
 
 /// Of three dimensions, uploaded once and read by shaders.
@@ -59,25 +67,34 @@ std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& i
 class Image {
  public:
   Image() = default;
+  /// Makes one. An error where the budget or the device has no memory.
   static Result<Image> create(Device& device, const ImageInfo& info);
   ~Image() { release(); }
+  /// Takes the image over; `other` has none then.
   Image(Image&& other) noexcept { swap(other); }
+  /// Exchanges the images.
   Image& operator=(Image&& other) noexcept {
     swap(other);
     return *this;
   }
 
+  /// Vulkan's handle; null: there is none.
   VkImage handle() const { return image_; }
+  /// Of all of it.
   VkImageView view() const { return view_; }
+  /// What it was asked to be.
   const ImageInfo& info() const { return info_; }
+  /// Device memory that it holds.
   VkDeviceSize bytes() const { return allocated_; }
+  /// Colour or depth.
   VkImageAspectFlags aspect() const;
+  /// Whether there is one.
   explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
   // written by Commands::use, as recorded
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_NONE;
-  VkAccessFlags2 access = VK_ACCESS_2_NONE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;        ///< that it is in once what was recorded has run
+  VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_NONE;  ///< that used it last
+  VkAccessFlags2 access = VK_ACCESS_2_NONE;                ///< how they used it
 
  private:
   void swap(Image& other) noexcept;
@@ -94,21 +111,27 @@ class Image {
 Outcome fit_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
                   VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
 
+/// Between texels: the nearest, or a mix.
 enum class Filter { nearest, linear };
 
 /// Clamped to the edge.
 class Sampler {
  public:
   Sampler() = default;
+  /// Makes one. An error is one sentence.
   static Result<Sampler> create(Device& device, Filter filter);
   ~Sampler();
+  /// Takes the sampler over; `other` has none then.
   Sampler(Sampler&& other) noexcept : device_(other.device_), sampler_(other.sampler_) { other.sampler_ = VK_NULL_HANDLE; }
+  /// Exchanges the samplers.
   Sampler& operator=(Sampler&& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(sampler_, other.sampler_);
     return *this;
   }
+  /// Vulkan's handle; null: there is none.
   VkSampler handle() const { return sampler_; }
+  /// Whether there is one.
   explicit operator bool() const { return sampler_ != VK_NULL_HANDLE; }
 
  private:

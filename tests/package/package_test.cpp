@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/package/installed.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
@@ -17,10 +18,7 @@ namespace package_test {
 namespace fs = std::filesystem;
 namespace test = catena::test;
 
-const std::string& prefix() {
-  static const std::string path = test::binary_dir() + "/installed";
-  return path;
-}
+const std::string& prefix() { return test::installed(); }
 
 std::string words_of(const std::vector<std::string>& words) {
   std::string all;
@@ -57,7 +55,7 @@ void write_if_changed(const std::string& path, const std::string& text) {
 }
 
 struct Package : testing::Test {
-  static void SetUpTestSuite() { cmake({"--install", test::binary_dir(), "--prefix", prefix()}); }
+  static void SetUpTestSuite() { prefix(); }
   test::TemporaryFolder folder;
 
   /// An example that was built by build_outside.

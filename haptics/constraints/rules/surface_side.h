@@ -16,21 +16,25 @@
 
 namespace catena::haptics {
 
+/// Which side is free: none, or that where the value is above or below the level.
 enum class FreeSide { none, above, below };
 
+/// The rules of one tick.
 struct SideRules {
-  FreeSide free = FreeSide::none;
-  double release = 0;  ///< 0: never lets go
+  FreeSide free = FreeSide::none;  ///< the free side
+  double release = 0;              ///< 0: never lets go
 };
 
 /// The rules as the scene states them: `release` may follow a field, asked at the last proxy.
 struct SideSpec {
-  FreeSide free = FreeSide::none;
-  Parameter release;
+  FreeSide free = FreeSide::none;  ///< the free side
+  Parameter release;               ///< may follow a field, world units
 
+  /// The rules at the last proxy.
   SideRules now(LinkState& state, LinkScratch& scratch) const noexcept {
     return {free, release.at(state.proxy, scratch.parameter, state.evaluations)};
   }
+  /// The rules at a probe, before there is a proxy.
   SideRules at(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept {
     return {free, release.at(probe, scratch.parameter, state.evaluations)};
   }
@@ -39,17 +43,19 @@ struct SideSpec {
 /// Reads `free` (if asked for) and `release` (which is not the surface's where the link has `snap`: snap.h).
 Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context);
 
+/// On which side of a surface a place is.
 struct SideValue {
   double value = 0;     ///< value - level
   bool known = false;   ///< false where the field says nothing (outside the mask)
   bool broken = false;  ///< the field is not finite here
 };
 
+/// Where a surface holds a probe.
 struct Hold {
-  bool found = false;
-  Vec3 proxy{0.0};
-  double residual = 0;
-  Status status = Status::ok;
+  bool found = false;            ///< it does hold it
+  Vec3 proxy{0.0};               ///< there, world units
+  double residual = 0;           ///< the proxy's distance from the surface, world units
+  Status status = Status::ok;    ///< how well it holds
   Reason reason = Reason::none;  ///< of a status critical or boundary
 };
 
@@ -57,6 +63,7 @@ struct Hold {
 class Surface {
  public:
   virtual ~Surface() = default;
+  /// The side of a place; the rules call it for the probe.
   virtual SideValue side(const Vec3& at) noexcept = 0;
   /// The projection of the probe, with no earlier point to start from.
   virtual Hold place(const Vec3& probe) noexcept = 0;
@@ -72,23 +79,24 @@ class Surface {
   virtual double march_step() const noexcept { return 0; }
   /// True where `slide` keeps the face held on the far side too: then a thin body that is passed slowly holds as a sheet does.
   virtual bool follows_through() const noexcept { return false; }
+  /// L, world units.
   virtual double domain_length() const noexcept = 0;
 };
 
 /// What the rules remember; part of the constraint's memory.
 struct SideMemory {
-  Vec3 probe{0.0};   ///< the last incoming probe
-  Vec3 proxy{0.0};   ///< as it was left, to notice a proxy moved by others
-  double value = 0;  ///< at the last probe
-  double residual = 0;
-  bool known;    ///< `value` means something
-  bool fresh;    ///< `probe` and `proxy` mean something
-  bool holding;  ///< the surface has a point to go on from
-  bool settled;  ///< nothing to gain from another tick at the same probe
-  bool sheet;    ///< holding from the near face of a thin sheet
-  bool gliding;  ///< has let go of a sheet that is far, and is on its way to the probe
-  Status status;
-  Reason reason;
+  Vec3 probe{0.0};      ///< the last incoming probe
+  Vec3 proxy{0.0};      ///< as it was left, to notice a proxy moved by others
+  double value = 0;     ///< at the last probe
+  double residual = 0;  ///< of the proxy
+  bool known;           ///< `value` means something
+  bool fresh;           ///< `probe` and `proxy` mean something
+  bool holding;         ///< the surface has a point to go on from
+  bool settled;         ///< nothing to gain from another tick at the same probe
+  bool sheet;           ///< holding from the near face of a thin sheet
+  bool gliding;         ///< has let go of a sheet that is far, and is on its way to the probe
+  Status status;        ///< of the last tick
+  Reason reason;        ///< of the last tick
 };
 
 /// Of a state from a file: see Constraint::is_sane.
@@ -100,7 +108,9 @@ inline bool is_sane(const SideMemory& m) noexcept {
 /// How far the proxy may move in this tick, `gap` from its probe; without a last tick, anywhere.
 double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) noexcept;
 
+/// The first tick: Constraint::start for a surface.
 void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
+/// One tick: Constraint::advance for a surface.
 void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
 
 }  // namespace catena::haptics

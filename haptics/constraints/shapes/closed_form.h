@@ -7,18 +7,24 @@
 
 namespace catena::haptics {
 
+/// A straight piece. Plain data.
 struct Straight {
-  Vec3 a{0.0}, b{0.0};
-  Vec3 d{0.0};        ///< unit
-  double length = 0;  ///< finite and > 0, or the piece is not usable
+  Vec3 a{0.0}, b{0.0};  ///< its ends
+  Vec3 d{0.0};          ///< unit
+  double length = 0;    ///< finite and > 0, or the piece is not usable
 
   Straight() = default;
+  /// From one end to the other.
   Straight(const Vec3& from, const Vec3& to) : a(from), b(to), d(direction(to - from)), length(norm(to - from)) {}
+  /// Whether it has a length and a direction.
   bool usable() const noexcept { return length > 0 && std::isfinite(length) && max_abs(d) > 0; }
 
+  /// S of a place: how far along from a, world units; may lie beyond the ends.
   double along(const Vec3& x) const noexcept { return dot(d, x - a); }
   int end_of(double s) const noexcept { return s <= 0 ? -1 : s >= length ? 1 : 0; }  ///< -1: a, 1: b, 0: between
+  /// The place at s, clamped to the ends.
   Vec3 at(double s) const noexcept { return s <= 0 ? a : s >= length ? b : a + d * s; }
+  /// The distance of a place from the whole line.
   double off_axis(const Vec3& p) const noexcept {
     const Vec3 away = p - a;
     return norm(away - d * dot(d, away));
@@ -26,17 +32,19 @@ struct Straight {
 };
 
 /// A constraint whose closest point is a formula: the rules of surface_side.h around a shape that is plain data. No field fetch.
-///   ClosedForm<S>  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
+///   `ClosedForm<S>`  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
 ///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start); static
 ///                  bool is_sane(shape, memory): of memory from a file, see Constraint::is_sane.
-///   Feature<S>     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
+///   `Feature<S>`     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
 /// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
 /// Haptic thread: no allocation, lock, or throw.
 inline constexpr double kSceneLength = 4;  ///< L where no field says otherwise: the box -2..2
 
+/// A Constraint made of a shape S.
 template <class S>
 class ClosedForm final : public Constraint {
  public:
+  /// Of a shape that has been checked.
   ClosedForm(typename S::Shape shape, const SideSpec& rules) : shape_(std::move(shape)), rules_(rules) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
@@ -84,14 +92,20 @@ class ClosedForm final : public Constraint {
 
 struct NoMemory {};
 
+/// A Surface made of a ShapeType that is a point or a curve: nothing is inside or outside.
 template <class ShapeType>
 class Feature final : public Surface {
  public:
+  /// What it is of.
   using Shape = ShapeType;
+  /// None.
   using Memory = NoMemory;
+  /// As ClosedForm makes it in every tick.
   Feature(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
+  /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
 
+  /// Neither.
   SideValue side(const Vec3&) noexcept override { return {}; }
   Hold place(const Vec3& probe) noexcept override { return shape_.closest(probe); }
   Hold slide(const Vec3& probe) noexcept override { return shape_.closest(probe); }
@@ -101,7 +115,9 @@ class Feature final : public Surface {
     return norm(probe - hold.proxy) <= limit ? hold : Hold{};
   }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
+  /// L of the shape.
   double domain_length() const noexcept override { return shape_.length(); }
+  /// The shape's primitive at a place.
   bool primitive(const Vec3& at, Primitive& out) const noexcept {
     out = shape_.primitive(at);
     return true;
@@ -111,6 +127,7 @@ class Feature final : public Surface {
   const Shape& shape_;
 };
 
+/// The constraint of a shape, for a ConstraintType's `build`.
 template <class S>
 std::shared_ptr<const Constraint> make_closed_form(typename S::Shape shape, const SideSpec& rules) {
   return std::make_shared<ClosedForm<S>>(std::move(shape), rules);

@@ -7,16 +7,23 @@
 
 namespace catena::haptics {
 
+/// A plane. Plain data.
 struct PlaneShape {
-  Vec3 point, normal;
+  Vec3 point, normal;  ///< a place on it; unit, world units
 };
 
+/// The Surface of a plane.
 class PlaneSurface final : public Surface {
  public:
+  /// What it is of.
   using Shape = PlaneShape;
+  /// None.
   using Memory = NoMemory;
+  /// As ClosedForm makes it in every tick.
   PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
+  /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
+  /// Above is where the normal points.
   SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
   Hold place(const Vec3& probe) noexcept override {
     // a second projection takes off what rounding left
@@ -28,7 +35,9 @@ class PlaneSurface final : public Surface {
   Hold cross(const Vec3&, const Vec3& probe) noexcept override { return place(probe); }
   Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
   Vec3 normal() const noexcept override { return normal_; }
+  /// L of a scene without fields.
   double domain_length() const noexcept override { return kSceneLength; }
+  /// Itself.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     out = {Primitive::Kind::plane, place(at).proxy, normal_};
     return true;
@@ -41,21 +50,29 @@ class PlaneSurface final : public Surface {
 
 /// A sphere as the rules of surface_side.h see it; the model is in shapes.h. World units. Haptic thread: no allocation, lock, throw.
 struct SphereShape {
-  Vec3 center;
-  double radius;
+  Vec3 center;    ///< world units
+  double radius;  ///< world units
+  /// Free above: a thin sphere is not passed within one tick.
   bool catches;  // free above: a thin sphere is not passed within one tick
 };
 
+/// The Surface of a sphere.
 class SphereSurface final : public Surface {
  public:
+  /// What it is of.
   using Shape = SphereShape;
+  /// What it remembers.
   struct Memory {
+    /// At the point held; against the way in while a thin sphere is held on its near half.
     Vec3 normal;  // at the point held; against the way in while a thin sphere is held on its near half
   };
+  /// As ClosedForm makes it in every tick.
   SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
       : center_(shape.center), radius_(shape.radius), catches_(shape.catches), memory_(memory), side_(side) {}
 
+  /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
+  /// Above is outside.
   SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
 
   Hold place(const Vec3& probe) noexcept override {
@@ -89,8 +106,10 @@ class SphereSurface final : public Surface {
   Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
   Vec3 normal() const noexcept override { return normal_; }
   double march_step() const noexcept override { return std::numeric_limits<double>::min(); }
+  /// L: its diameter, or that of a scene without fields.
   double domain_length() const noexcept override { return std::max(kSceneLength, 2 * radius_); }
 
+  /// The tangent plane where it holds.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     const Hold hold = slide(at);
     if (!hold.found) return false;

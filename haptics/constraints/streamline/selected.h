@@ -17,6 +17,7 @@ struct SelectedMemory {
   std::int32_t knots = 0;      ///< visited in the last tick: its work
 };
 
+/// The constraint that holds its probe on a curve. Off the tick.
 std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve);
 
 }  // namespace catena::haptics

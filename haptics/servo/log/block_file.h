@@ -9,6 +9,7 @@
 
 namespace catena::haptics::log {
 
+/// Bytes with random access. One thread.
 class Source {
  public:
   virtual ~Source() = default;
@@ -17,6 +18,7 @@ class Source {
   virtual bool read(std::uint64_t offset, void* to, std::size_t bytes) = 0;
 };
 
+/// A regular file. An error names it.
 Result<std::unique_ptr<Source>> open_file(const std::string& path);
 std::unique_ptr<Source> from_memory(std::string_view bytes);  ///< which outlive it
 
@@ -27,16 +29,22 @@ class BlockFile {
  public:
   /// Replaces what is there, unless another process is writing it. Writes the preamble.
   static Result<BlockFile> create(const std::string& path);
+  /// Takes the file over; `other` is closed then.
   BlockFile(BlockFile&& other) noexcept;
   BlockFile& operator=(BlockFile&&) = delete;
   ~BlockFile();
 
+  /// Appends a block; false: it could not, see error().
   bool write(BlockType type, std::string_view payload);
+  /// Brings what was written to the disk; false: see error().
   bool sync();
+  /// Closes the file; false: see error().
   bool close();
   void discard();  ///< closes and removes it: not even its header could be written
+  /// Whether something could not be written.
   bool failed() const { return error_ != 0; }
   std::string error() const;  ///< "FILE: cannot write: No space left on device"
+  /// Written so far.
   std::uint64_t bytes() const { return bytes_; }
 
  private:
@@ -52,21 +60,28 @@ class BlockFile {
 /// no more memory is taken than a block has bytes in the file. Off the tick.
 class BlockReader {
  public:
+  /// Of a log's bytes, from the first on.
   explicit BlockReader(std::unique_ptr<Source> source) : source_(std::move(source)) {}
 
+  /// What next() came to.
   enum class Found {
     block,
     damaged,  ///< one or more blocks are passed over
     end,      ///< the file ends with the last block
     cut_off   ///< what follows is no complete block
   };
+  /// Goes to the next good block.
   Found next();
 
   // of the last block found
+  /// What it holds.
   BlockType type() const { return static_cast<BlockType>(head_.type); }
+  /// Its number, from 0.
   std::uint64_t sequence() const { return head_.sequence; }
+  /// Its bytes, until the next call.
   std::string_view payload() const { return payload_; }
 
+  /// Where the bytes come from.
   Source& source() { return *source_; }
 
  private:

@@ -8,78 +8,95 @@
 
 namespace catena::haptics::log {
 
+/// What was known before the first tick.
 struct LogHeader {
-  std::string scene_path;           ///< as the user gave it
-  std::string working_folder;       ///< of relative paths; empty: filled in by the writer
-  std::string scene_text;           ///< the file as it was read
-  std::vector<std::string> fields;  ///< --field NAME=FILE[:GRID]
-  std::string device;
-  std::string catena_version;
-  double rate_hz = 1000;
+  std::string scene_path;            ///< as the user gave it
+  std::string working_folder;        ///< of relative paths; empty: filled in by the writer
+  std::string scene_text;            ///< the file as it was read
+  std::vector<std::string> fields;   ///< --field NAME=FILE[:GRID]
+  std::string device;                ///< its name
+  std::string catena_version;        ///< that recorded
+  double rate_hz = 1000;             ///< of the servo
   std::int64_t started_unix_ns = 0;  ///< 0: filled in by the writer
   std::string about{};               ///< what it was recorded for, one line; empty: nothing is known
 };
 
 /// All of a program that its scene's text does not say, or that the program may have got elsewhere (a fitted workspace, a ramp).
 struct LogProgram {
+  /// A link of the program.
   struct Link {
-    std::string name;
-    std::uint64_t recipe = 0;
+    std::string name;          ///< its name
+    std::uint64_t recipe = 0;  ///< as of Link::recipe
   };
-  std::uint64_t epoch = 0;
-  std::uint64_t first_tick = 0;
+  std::uint64_t epoch = 0;                ///< as of Program
+  std::uint64_t first_tick = 0;           ///< the tick that it runs from
   bool known = true;                      ///< false: the log does not say what ran here; the links are named link_1 ..
   std::optional<std::string> scene_text;  ///< none: the header's
-  Limits limits;
-  Coupling coupling;
-  double metres_per_unit = 1;
-  Vec3 workspace_origin{0.0};
-  Mat3 workspace_rotation{1.0};
-  std::vector<Link> links;
+  Limits limits;                          ///< of the device
+  Coupling coupling;                      ///< how the links made a force
+  double metres_per_unit = 1;             ///< as of Program
+  Vec3 workspace_origin{0.0};             ///< as of Program
+  Mat3 workspace_rotation{1.0};           ///< as of Program
+  std::vector<Link> links;                ///< in the order of the chain
+  /// A widget of the program.
   struct Widget {
-    std::string name;
-    std::uint32_t revision = 0;
-    widget::Pose pose;  ///< when the program was made
-    double value = 0;
+    std::string name;            ///< its name
+    std::uint32_t revision = 0;  ///< as of widget::Spec
+    widget::Pose pose;           ///< when the program was made
+    double value = 0;            ///< isolevel
   };
-  std::vector<std::string> modes;
-  std::vector<Widget> widgets;
+  std::vector<std::string> modes;  ///< names of modes
+  std::vector<Widget> widgets;     ///< in the order of the program
 
+  /// Names in the order of the ticks' columns.
   std::vector<std::string> link_names() const;
+  /// Names in the order of the ticks' columns.
   std::vector<std::string> widget_names() const;
 };
 
 /// Ticks that the log does not hold.
 struct LogGap {
+  /// Why they are not there.
   enum class Why { not_kept_up, damaged };
-  std::uint64_t first_tick = 0, ticks = 0;
-  Why why = Why::not_kept_up;
-  std::string text() const;  ///< "ticks 5 to 9 are lost: ..."
+  std::uint64_t first_tick = 0, ticks = 0;  ///< the first that is missing, and how many
+  Why why = Why::not_kept_up;               ///< why
+  std::string text() const;                 ///< "ticks 5 to 9 are lost: ..."
 };
 
+/// What the writer wrote at the end.
 struct LogEnd {
-  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;
+  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;  ///< of ticks: in the log, lost, the last, hash of the former
 };
 
 /// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`. Its bytes are the file's: they are to be
 /// run only after check_state (haptics/chain/check_state.h) with the program.
 struct LogState {
-  std::uint64_t tick = 0;
+  std::uint64_t tick = 0;           ///< the tick before the log's first
   std::optional<ChainState> chain;  ///< none: the program that recorded keeps its state in another way
 };
 
+/// What the log tells of a program; none: its scene text is the header's.
 LogProgram facts_of(const Program& program, std::optional<std::string> scene_text);
 
+/// The payload of the block.
 std::string to_bytes(const LogHeader& header);
+/// The payload of the block.
 std::string to_bytes(const LogProgram& program);
+/// The payload of the block.
 std::string to_bytes(const ChainState& state);
+/// The payload of the block.
 std::string to_bytes(const LogGap& gap);
+/// The payload of the block.
 std::string to_bytes(const LogEnd& end);
 /// Nothing where the bytes are none of these.
 std::optional<LogHeader> header_from(std::string_view bytes);
+/// Nothing where the bytes are none of these.
 std::optional<LogProgram> program_from(std::string_view bytes);
+/// Nothing where the bytes are none of these.
 std::optional<LogState> state_from(std::string_view bytes);
+/// Nothing where the bytes are none of these.
 std::optional<LogGap> gap_from(std::string_view bytes);
+/// Nothing where the bytes are none of these.
 std::optional<LogEnd> end_from(std::string_view bytes);
 
 }  // namespace catena::haptics::log

@@ -10,8 +10,10 @@
 
 namespace catena::haptics::log {
 
+/// Appends numbers and strings to bytes.
 class ByteWriter {
  public:
+  /// Appends a number, in this machine's order of bytes.
   template <class T>
   void put(const T& value) {
     static_assert(std::is_arithmetic_v<T>);
@@ -19,11 +21,14 @@ class ByteWriter {
     bytes_.resize(at + sizeof value);
     std::memcpy(bytes_.data() + at, &value, sizeof value);
   }
+  /// Appends length and bytes.
   void put_string(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     bytes_.append(text);
   }
+  /// Appends bytes as they are.
   void put_bytes(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  /// All that was appended.
   std::string& bytes() { return bytes_; }
 
  private:
@@ -33,7 +38,9 @@ class ByteWriter {
 /// After the first read past the end everything reads as zero and `good` is false.
 class ByteReader {
  public:
+  /// Of bytes that outlive it.
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
+  /// The next number.
   template <class T>
   T get() {
     static_assert(std::is_arithmetic_v<T>);
@@ -41,6 +48,7 @@ class ByteReader {
     if (const char* from = take(sizeof value)) std::memcpy(&value, from, sizeof value);
     return value;
   }
+  /// The next string.
   std::string get_string() {
     const auto size = get<std::uint32_t>();
     const char* from = take(size);
@@ -56,6 +64,7 @@ class ByteReader {
     at_ += size;
     return from;
   }
+  /// Whether nothing was read past the end.
   bool good() const { return good_; }
   bool finished() const { return good_ && at_ == bytes_.size(); }  ///< all read, nothing left
 
@@ -108,29 +117,31 @@ class ByteReader {
 /// A file cut at any byte holds every block that is complete. A block whose hashes do not fit is damaged: where its own 32 bytes
 /// are good its length is, too; else the next block is found by its mark.
 inline constexpr unsigned char kMagic[8] = {0x89, 'C', 'A', 'T', 'L', 'O', 'G', '\n'};
-inline constexpr std::uint32_t kVersion = 2;
-inline constexpr std::uint32_t kByteOrder = 0x01020304;
-inline constexpr std::uint64_t kPreambleBytes = 16;
+inline constexpr std::uint32_t kVersion = 2;             ///< Of the format; another one is refused.
+inline constexpr std::uint32_t kByteOrder = 0x01020304;  ///< As the writing machine has it.
+inline constexpr std::uint64_t kPreambleBytes = 16;      ///< Before the first block.
 
+/// What a block holds.
 enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6, poses = 7 };
 
+/// The 40 bytes before each payload.
 struct BlockHead {
-  std::uint32_t mark = kBlockMark;
-  std::uint32_t type = 0;
-  std::uint64_t sequence = 0;
-  std::uint64_t length = 0;
-  std::uint64_t payload_hash = 0;
-  std::uint64_t head_hash = 0;
+  std::uint32_t mark = kBlockMark;  ///< begins every block
+  std::uint32_t type = 0;           ///< a BlockType
+  std::uint64_t sequence = 0;       ///< 0, 1, 2 ..
+  std::uint64_t length = 0;         ///< bytes of the payload
+  std::uint64_t payload_hash = 0;   ///< FNV-1a-64 of the payload
+  std::uint64_t head_hash = 0;      ///< FNV-1a-64 of the 32 bytes before it
 
-  static constexpr std::uint32_t kBlockMark = 0x4b4c4243;
-  static constexpr std::uint64_t kHashed = 32;  ///< bytes before head_hash
+  static constexpr std::uint32_t kBlockMark = 0x4b4c4243;  ///< "CBLK"
+  static constexpr std::uint64_t kHashed = 32;             ///< bytes before head_hash
 };
 static_assert(sizeof(BlockHead) == 40);
 
 inline constexpr std::uint64_t kMaxPayload = std::uint64_t{64} << 20;  ///< of any block; a longer one is damaged
 
-inline constexpr int kTickWords = 24;
-inline constexpr int kLinkWords = 20;
-inline constexpr int kWidgetWords = 12;
+inline constexpr int kTickWords = 24;    ///< words of 8 bytes of a tick itself
+inline constexpr int kLinkWords = 20;    ///< and of each link
+inline constexpr int kWidgetWords = 12;  ///< and of each widget
 
 }  // namespace catena::haptics::log

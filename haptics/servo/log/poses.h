@@ -12,13 +12,15 @@
 
 namespace catena::haptics::log {
 
+/// What a headset tracks.
 enum class TrackedPart : std::size_t { head, left_hand, right_hand, gaze };
-inline constexpr std::size_t kTrackedParts = 4;
-const char* tracked_word(TrackedPart part);  ///< head, left_hand, right_hand, gaze
+inline constexpr std::size_t kTrackedParts = 4;  ///< How many they are.
+const char* tracked_word(TrackedPart part);      ///< head, left_hand, right_hand, gaze
 
+/// One pose.
 struct TrackedPose {
-  Vec3 position_m{0.0};
-  Quat orientation{kNoRotation};
+  Vec3 position_m{0.0};           ///< metres of the room
+  Quat orientation{kNoRotation};  ///< room from part, unit
   bool operator==(const TrackedPose&) const = default;
 };
 
@@ -29,15 +31,18 @@ struct LogPoses {
   std::array<std::optional<TrackedPose>, kTrackedParts> parts{};  ///< none: not tracked
   bool operator==(const LogPoses&) const = default;
 
+  /// The pose of a part.
   std::optional<TrackedPose>& operator[](TrackedPart part) { return parts[static_cast<std::size_t>(part)]; }
 };
 
+/// The payload of the block.
 std::string to_bytes(const std::vector<LogPoses>& poses);
 /// Nothing where the bytes are none, or a number is not finite.
 std::optional<std::vector<LogPoses>> poses_from(std::string_view bytes);
 
 /// As a table: tick, predicted_ns, then head_x,y,z,qw,qx,qy,qz and so on for each part; empty where a part was not tracked.
 std::string poses_header();
+/// One row, without a line end.
 void append_poses(std::string& line, const LogPoses& poses);
 
 }  // namespace catena::haptics::log

@@ -11,6 +11,7 @@
 
 namespace catena::haptics::log {
 
+/// What next() came to.
 enum class LogEvent {
   program,  ///< takes over with the next tick
   state,    ///< the log begins after tick state().tick
@@ -20,21 +21,30 @@ enum class LogEvent {
   done
 };
 
+/// A log that is being read. One thread.
 class LogReader {
  public:
   /// The error says what is wrong with the file's first bytes.
   static Result<LogReader> open(const std::string& path);
-  static Result<LogReader> open(std::unique_ptr<Source> source, const std::string& name);
+  static Result<LogReader> open(std::unique_ptr<Source> source,
+                                const std::string& name);  ///< The same of any source; `name` begins every message.
 
+  /// What was known before the first tick.
   const LogHeader& header() const { return header_; }
+  /// Goes on to the next event.
   LogEvent next();
   const LogProgram& program() const { return program_; }  ///< that of the ticks that follow
+  /// After LogEvent::tick.
   const LogTick& tick() const { return tick_; }
   const Words& words() const { return words_; }  ///< the same tick (record.h)
+  /// After LogEvent::gap.
   const LogGap& gap() const { return gap_; }
+  /// After LogEvent::state.
   const LogState& state() const { return state_; }
+  /// After LogEvent::poses.
   const std::vector<LogPoses>& poses() const { return poses_; }
 
+  /// Number of the newest tick so far.
   std::uint64_t last_tick() const { return last_; }
   /// Once done: the end that the writer wrote; none: the log was cut off.
   const std::optional<LogEnd>& end() const { return end_; }

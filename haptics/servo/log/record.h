@@ -25,21 +25,27 @@
 
 namespace catena::haptics::log {
 
-inline constexpr int kMaxWords = kTickWords + kLinkWords * kMaxLinks + kWidgetWords * exchange::kMaxWidgets;
+inline constexpr int kMaxWords =
+    kTickWords + kLinkWords * kMaxLinks + kWidgetWords * exchange::kMaxWidgets;  ///< Words of the longest record.
+/// A record, in its first words.
 using Words = std::array<std::uint64_t, kMaxWords>;
 
 /// What a record holds beside the tick's own.
 struct Shape {
-  int links = 0, widgets = 0;
+  int links = 0, widgets = 0;  ///< how many of each
   bool operator==(const Shape&) const = default;
+  /// Whether a record can have so many.
   bool legal() const { return links >= 0 && links <= kMaxLinks && widgets >= 0 && widgets <= exchange::kMaxWidgets; }
 };
+/// Words of a record of this shape.
 inline constexpr int words_of(const Shape& shape) { return kTickWords + kLinkWords * shape.links + kWidgetWords * shape.widgets; }
+/// The shape of a state's record.
 inline Shape shape_of(const exchange::HapticState& state) { return {state.link_count, state.widget_count}; }
 
+/// One tick of a log.
 struct LogTick {
-  ProbeSample input;
-  exchange::HapticState output;
+  ProbeSample input;             ///< what it got
+  exchange::HapticState output;  ///< what came out
 };
 
 /// The number of words written; `words` has room for kMaxWords.

@@ -9,6 +9,7 @@
 #include <random>
 #include <thread>
 
+#include "render/vk/stopwatch.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {

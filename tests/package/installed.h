@@ -1,0 +1,31 @@
+/// Catena as it is installed: below the build folder, once for all tests of this program.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace catena::test {
+
+/// The prefix: bin, lib, include, share.
+inline const std::string& installed() {
+  static const std::string prefix = [] {
+    const std::string at = binary_dir() + "/installed";
+    const ProgramResult result = run_program(CATENA_CMAKE, {"--install", binary_dir(), "--prefix", at});
+    EXPECT_EQ(result.exit_code, 0) << result.out.substr(0, 8000) << result.err.substr(0, 4000);
+    return at;
+  }();
+  return prefix;
+}
+
+/// What bash says to these lines, errors too, in a folder, where docs/tutorials.md has been obeyed. The first line that fails ends it.
+inline ProgramResult shell(const std::string& folder, const std::string& lines) {
+  const std::string& at = installed();
+  return run_program("/bin/bash", {"-c", "set -euo pipefail; exec 2>&1; cd '" + folder + "'; export CATENA=" + at + " PATH=" + at +
+                                             "/bin:$PATH PYTHONPATH=" + at + "/" CATENA_PYTHON_FOLDER " PYTHONDONTWRITEBYTECODE=1" +
+                                             " CMAKE_CXX_COMPILER_LAUNCHER=" CATENA_LAUNCHER "\n" + lines});
+}
+
+}  // namespace catena::test

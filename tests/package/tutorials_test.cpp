@@ -1,0 +1,175 @@
+/// The tutorials as a reader would do them: their blocks are taken out of the pages and run with what is installed, and what they print is
+/// what the page says. In a page
+///   "Save as `NAME`:" and a block   is a file
+///   ```sh                           is run by bash, in the page's own folder; it must succeed
+///   ```text behind it               is what it prints, errors too; ... stands for anything: in a line, or alone for any lines
+/// Other blocks are only read. Every picture that a block writes must hold something.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "render/image/picture.h"
+#include "tests/package/installed.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace tutorials_test {
+
+namespace fs = std::filesystem;
+namespace test = catena::test;
+
+struct Block {
+  std::string language, text, file;
+  int line = 0;
+};
+
+struct Page {
+  std::vector<Block> blocks;
+  std::string prose, blocks_text;
+};
+
+Page read_page(const std::string& path) {
+  Page page;
+  std::istringstream in(test::read_file(test::source_dir() + "/" + path));
+  const std::regex save("Save as `([\\w.-]+)`:\\s*$");
+  std::string line, last;
+  bool inside = false;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.starts_with("```")) {
+      inside = !inside;
+      if (inside) {
+        Block block;
+        block.language = line.substr(3);
+        block.line = number;
+        std::smatch match;
+        if (std::regex_search(last, match, save)) block.file = match[1];
+        page.blocks.push_back(block);
+      }
+    } else if (inside) {
+      page.blocks.back().text += line + "\n";
+      page.blocks_text += line + "\n";
+    } else if (!line.empty()) {
+      page.prose += line + "\n";
+    }
+    if (!line.empty()) last = line;
+  }
+  EXPECT_FALSE(inside) << path << ": a block does not end";
+  return page;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  const std::regex progress("[\\w ]+: +\\d+ %");  // only where work takes more than a second
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!std::regex_match(line, progress)) lines.push_back(line);
+  return lines;
+}
+
+bool same_line(const std::string& said, const std::string& printed) {
+  std::string pattern = std::regex_replace(said, std::regex(R"([\^$\\*+?()\[\]{}|])"), R"(\$&)");
+  pattern = std::regex_replace(pattern, std::regex(R"(\.\.\.)"), "\x01");
+  pattern = std::regex_replace(pattern, std::regex(R"(\.)"), R"(\.)");
+  pattern = std::regex_replace(pattern, std::regex("\x01"), ".*");
+  return std::regex_match(printed, std::regex(pattern));
+}
+
+bool same(const std::vector<std::string>& said, std::size_t i, const std::vector<std::string>& printed, std::size_t j) {
+  if (i == said.size()) return j == printed.size();
+  if (said[i] == "...") {
+    for (std::size_t k = j; k <= printed.size(); ++k)
+      if (same(said, i + 1, printed, k)) return true;
+    return false;
+  }
+  return j < printed.size() && same_line(said[i], printed[j]) && same(said, i + 1, printed, j + 1);
+}
+
+void pictures_hold_something(const std::string& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".png") continue;
+    const auto picture = catena::render::read_png(entry.path().string());
+    ASSERT_TRUE(picture) << picture.error().message;
+    EXPECT_GT(fs::file_size(entry.path()), 1500u) << entry.path() << " is all of one colour";
+  }
+}
+
+/// A number with a unit in a sentence is one that a block says or prints, perhaps with more digits.
+void numbers_are_said(const Page& page, const std::string& path) {
+  const std::regex number(R"((\d+(?:\.\d+)?) (?:N/m|N|mm|m|s|units?|voxels?|Hz)\b)");
+  for (auto it = std::sregex_iterator(page.prose.begin(), page.prose.end(), number); it != std::sregex_iterator(); ++it) {
+    const std::string digits = std::regex_replace((*it)[1].str(), std::regex(R"(\.)"), R"(\.)");
+    EXPECT_TRUE(std::regex_search(page.blocks_text, std::regex("(^|[^0-9.])" + digits))) << path << " says \"" << it->str() << "\"";
+  }
+}
+
+/// Does what docs/IN/NAME.md says.
+void follow(const std::string& name, const std::string& in = "tutorials/") {
+  const std::string path = "docs/" + in + name + ".md";
+  const Page page = read_page(path);
+  test::TemporaryFolder folder;
+  const std::string work = folder / name;
+  fs::create_directories(work);
+  int ran = 0;
+  test::installed();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  double first = 0;
+  for (std::size_t i = 0; i < page.blocks.size(); ++i) {
+    const Block& block = page.blocks[i];
+    if (!block.file.empty()) test::write_file(work + "/" + block.file, block.text);
+    if (block.language == "text") {
+      EXPECT_TRUE(i > 0 && page.blocks[i - 1].language == "sh") << path << ":" << block.line << ": nothing prints this";
+    }
+    if (block.language != "sh") continue;
+    const test::ProgramResult result = test::shell(work, block.text);
+    ASSERT_EQ(result.exit_code, 0) << path << ":" << block.line << "\n" << result.out;
+    if (i + 1 < page.blocks.size() && page.blocks[i + 1].language == "text") {
+      const std::string& said = page.blocks[i + 1].text;
+      EXPECT_TRUE(same(lines_of(said), 0, lines_of(result.out), 0)) << path << ":" << block.line << " says\n"
+                                                                    << said << "and got\n"
+                                                                    << result.out;
+      if (!(first > 0)) first = seconds();
+    }
+    ++ran;
+  }
+  EXPECT_GE(ran, 2) << path;
+  pictures_hold_something(work);
+  numbers_are_said(page, path);
+  std::printf("%s: the first result after %.1f s, all of it in %.1f s\n", name.c_str(), first, seconds());
+}
+
+TEST(Tutorials, FirstPicture) { follow("first-picture"); }
+TEST(Tutorials, FirstForce) { follow("first-force"); }
+TEST(Tutorials, OwnData) { follow("own-data"); }
+TEST(Tutorials, OwnConstraint) { follow("own-constraint"); }
+TEST(Tutorials, OwnExperiment) { follow("own-experiment"); }
+TEST(Tutorials, FromPython) {
+  if (std::string(CATENA_PYTHON_FOLDER).empty()) GTEST_SKIP() << "the Python module was not built";
+  follow("from-python");
+}
+
+TEST(Tutorials, FromOtherPrograms) {
+  for (const char* name : {"from-chai3d", "from-h3d", "from-paraview"}) follow(name, "");
+  if (!std::string(CATENA_PYTHON_FOLDER).empty()) follow("from-vtk", "");
+}
+
+TEST(Tutorials, EveryPageIsFollowed) {
+  std::set<std::string> pages;
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/tutorials")) pages.insert(entry.path().stem());
+  EXPECT_EQ(pages, (std::set<std::string>{"first-force", "first-picture", "from-python", "own-constraint", "own-data", "own-experiment"}));
+}
+
+TEST(Tutorials, AWrongSentenceIsFound) {
+  EXPECT_TRUE(same({"a 1.5 (x) ...", "...", "end"}, 0, {"a 1.5 (x) b", "c", "d", "end"}, 0));
+  EXPECT_FALSE(same({"a 1.5"}, 0, {"a 1x5"}, 0));
+  EXPECT_FALSE(same({"a"}, 0, {"a", "b"}, 0));
+  EXPECT_FALSE(same({"...", "b"}, 0, {"a"}, 0));
+}
+
+}  // namespace tutorials_test
