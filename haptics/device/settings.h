@@ -41,7 +41,7 @@ struct DeviceSettings {
     Vec3 origin_m{0.0};        ///< "room_origin": of the hand's metres
     Mat3 room_from_hand{1.0};  ///< "room_rotation"
   };
-  std::optional<Room> room;
+  std::optional<Room> room;  ///< none: it was not registered
 
   // drivers' own
   std::string firmware;                          ///< falcon: a file of the vendor's, sent when the device has none

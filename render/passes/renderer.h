@@ -123,10 +123,11 @@ class Renderer {
   /// texel for every `spacing`-th pixel each way, counted as the opaque depth; NO_DEPTH where it never does before something opaque.
   /// Nothing at all where nothing is drawn by rays, of a projection, or without RenderSettings::ray_depth_spacing.
   struct RayDepth {
-    vk::Image* image;
-    double reference;
-    std::uint32_t spacing;
+    vk::Image* image;       ///< the renderer's, until the next picture
+    double reference;       ///< world units along the view axis: what its depths count from
+    std::uint32_t spacing;  ///< pixels from one texel to the next
   };
+  /// That of the last picture.
   std::optional<RayDepth> ray_depth();
   /// A texel that is bound where there is no image.
   vk::Image& no_image();

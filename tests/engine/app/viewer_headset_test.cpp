@@ -186,11 +186,11 @@ TEST_F(ViewerHeadset, ADeviceThatIsRegisteredLiesInTheRoom) {
     "room_rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})");
   ASSERT_EQ(view("--device simulated --device-file " + (folder_ / "arm.json") + " --seconds 2", "size=48x40 stage=0.1:-1:0.3"), 0) << log();
   EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
-  // the camera's target is 0.7 m ahead of the room's origin; the room's z is the view's back, level
+  // the head, 2 cm above the room's origin and 1 cm behind it, is where the camera is; the room's z is the view's back, level
   const Vec3 camera(0, -6, 3), up(0, 0, 1), back = direction(Vec3(0, -6, 0)), right = cross(up, back);
   const double metres_per_unit = 0.7 / norm(camera);
-  const Vec3 room(0.1 + 0.2, -1, 0.3 - 0.5);
-  const Vec3 expected = back * (0.7 / metres_per_unit) + (right * room.x + up * room.y + back * room.z) / metres_per_unit;
+  const Vec3 room(0.1 + 0.2, -1 - 0.02, 0.3 - 0.5 - 0.01);
+  const Vec3 expected = camera + (right * room.x + up * room.y + back * room.z) / metres_per_unit;
   Vec3 probe(0.0);
   const std::string text = log();
   const std::size_t at = text.find("probe ");
