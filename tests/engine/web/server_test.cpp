@@ -202,7 +202,7 @@ TEST(Server, OneFileIsOfferedToWhoHasTheCookie) {
   const Rig rig;
   const test::TemporaryFolder folder;
   std::string bytes;
-  for (int i = 0; i < 3'000'000; ++i) bytes += static_cast<char>(i * i >> 7);
+  for (int i = 0; i < 3'000'000; ++i) bytes += static_cast<char>(std::int64_t{i} * i >> 7);
   test::write_file(folder / "a", bytes);
   const auto ask = [&](const std::string& target, bool known = true) {
     return rig.ask(target, known ? test::Headers{{"Host", rig.host}, {"Cookie", rig.cookie}} : test::Headers{{"Host", rig.host}});
