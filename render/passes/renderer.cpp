@@ -92,6 +92,7 @@ struct Renderer::Parts {
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
   Outcome draw(const FramePacket& packet, const RenderSettings& settings);
   Outcome draw_ray_depth(Frame& frame);
+  Result<std::uint64_t> count_marks(vk::Image& marks);
   Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
   Outcome paint(std::uint32_t width, std::uint32_t height, const UiItems& items);
 };
@@ -422,6 +423,13 @@ Result<IdPicture> Renderer::read_ids() {
   return picture;
 }
 
+/// Texels of an R8_UINT image that are 1.
+Result<std::uint64_t> Renderer::Parts::count_marks(vk::Image& marks) {
+  const VkExtent3D& size = marks.info().extent;
+  CATENA_TRY(const auto bytes, kept_or_dropped(bytes_of<std::uint8_t>(*device, marks, std::size_t(size.width) * size.height)));
+  return std::uint64_t(std::ranges::count(bytes, std::uint8_t(1)));
+}
+
 Result<MarchedTiles> Renderer::marched_tiles() {
   Parts& p = *parts_;
   constexpr std::uint32_t kTile = 16;
@@ -432,8 +440,8 @@ Result<MarchedTiles> Renderer::marched_tiles() {
     if (!rays || !rays->has_kept()) continue;
     tiles.marched = 0;
     if (vk::Image* changed = rays->changed_tiles()) {
-      CATENA_TRY(const auto marks, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, *changed, tiles.all)));
-      tiles.marched = std::uint32_t(std::ranges::count(marks, std::uint8_t(1)));
+      CATENA_TRY(const std::uint64_t marked, p.count_marks(*changed));
+      tiles.marched = std::uint32_t(marked);
     }
   }
   return tiles;
@@ -447,9 +455,8 @@ Result<std::array<std::uint64_t, 2>> Renderer::refined_rays() {
     const std::array<vk::Image*, 2> blocks = pass->probe()->marked_blocks();
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       if (blocks[k] == nullptr) continue;
-      const VkExtent3D& size = blocks[k]->info().extent;
-      CATENA_TRY(const auto marks, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, *blocks[k], std::size_t(size.width) * size.height)));
-      rays[k] += 16 * std::uint64_t(std::ranges::count(marks, std::uint8_t(1)));
+      CATENA_TRY(const std::uint64_t marked, p.count_marks(*blocks[k]));
+      rays[k] += 16 * marked;
     }
   }
   return rays;

@@ -11,6 +11,7 @@
 #include "engine/app/viewer/shell/scene_host.h"
 #include "engine/base/json_edit.h"
 #include "haptics/extract/extract.h"
+#include "tests/engine/app/open_scene.h"
 #include "tests/support/support.h"
 
 namespace catena::app {
@@ -25,14 +26,7 @@ constexpr const char* kScene = R"({
 })";
 
 struct Fixture {
-  explicit Fixture(const std::string& text = kScene) {
-    test::write_file(folder / "scene.json", text);
-    auto document = scene::Document::open(folder / "scene.json");
-    EXPECT_TRUE(document) << document.error().message;
-    auto opened = SceneHost::open(std::move(*document), {});
-    EXPECT_TRUE(opened) << opened.error().message;
-    host.emplace(std::move(*opened));
-  }
+  explicit Fixture(const std::string& text = kScene) { test::open_scene(folder, text, host); }
   test::TemporaryFolder folder;
   std::optional<SceneHost> host;
 };

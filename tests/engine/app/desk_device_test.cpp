@@ -10,6 +10,7 @@
 #include "engine/app/hand/device_file.h"
 #include "engine/app/viewer/shell/scene_host.h"
 #include "engine/base/json.h"
+#include "tests/engine/app/open_scene.h"
 #include "tests/support/support.h"
 
 namespace catena::app {
@@ -35,12 +36,7 @@ struct Rig {
         at_s += buttons == 1 ? 0.5 : 0.3;
       }
     test::write_file(folder / "path.csv", path);
-    test::write_file(folder / "scene.json", text);
-    auto document = scene::Document::open(folder / "scene.json");
-    EXPECT_TRUE(document) << document.error().message;
-    auto opened = SceneHost::open(std::move(*document), {});
-    EXPECT_TRUE(opened) << opened.error().message;
-    host.emplace(std::move(*opened));
+    test::open_scene(folder, text, host);
     HandHost::Options options;
     options.device = device == "simulated" ? "simulated:" + (folder / "path.csv") : device;
     options.realtime = {.fifo = false, .lock_memory = false, .cpu = haptics::RealtimeOptions::kUnbound};

@@ -10,6 +10,7 @@
 #include "engine/app/viewer/shell/pick.h"
 #include "engine/app/viewer/shell/scene_host.h"
 #include "render/extract/extract.h"
+#include "tests/engine/app/open_scene.h"
 #include "tests/render/support/frames.h"
 #include "tests/support/curve_files.h"
 #include "tests/support/mesh_shapes.h"
@@ -22,12 +23,7 @@ constexpr int kPixels = 20, kTicks = 400;
 class FeelThis : public test::PictureTest {
  protected:
   void show(const std::string& text) {
-    test::write_file(folder_ / "scene.json", text);
-    auto document = scene::Document::open(folder_ / "scene.json");
-    ASSERT_TRUE(document) << document.error().message;
-    auto opened = SceneHost::open(std::move(*document), {});
-    ASSERT_TRUE(opened) << opened.error().message;
-    host_.emplace(std::move(*opened));
+    ASSERT_NO_FATAL_FAILURE(test::open_scene(folder_, text, host_));
     auto packet = render::make_frame(host_->scene(), 320, 240);
     ASSERT_TRUE(packet) << packet.error().message;
     packet_ = std::move(*packet);

@@ -10,6 +10,7 @@
 #include "engine/app/command.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/viewer/shell/scene_host.h"
+#include "tests/engine/app/open_scene.h"
 #include "tests/support/support.h"
 
 namespace catena::app {
@@ -24,12 +25,7 @@ constexpr const char* kScene = R"({
 
 struct Rig {
   explicit Rig(HandHost::Options options = {}, const std::string& text = kScene) : hand(quiet(std::move(options))) {
-    test::write_file(folder / "scene.json", text);
-    auto document = scene::Document::open(folder / "scene.json");
-    EXPECT_TRUE(document) << document.error().message;
-    auto opened = SceneHost::open(std::move(*document), {});
-    EXPECT_TRUE(opened) << opened.error().message;
-    host.emplace(std::move(*opened));
+    test::open_scene(folder, text, host);
     bounds.add(Vec3(-1.0));
     bounds.add(Vec3(1.0));
   }

@@ -6,6 +6,7 @@
 #include "engine/app/viewer/edit/feel.h"
 #include "engine/app/viewer/shell/scene_host.h"
 #include "engine/base/json_edit.h"
+#include "tests/engine/app/open_scene.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/support.h"
 
@@ -14,14 +15,7 @@ namespace removal_test {
 
 class Removal : public testing::Test {
  protected:
-  void show(const std::string& text) {
-    test::write_file(folder_ / "s.json", text);
-    auto document = scene::Document::open(folder_ / "s.json");
-    ASSERT_TRUE(document) << document.error().message;
-    auto opened = SceneHost::open(std::move(*document), {});
-    ASSERT_TRUE(opened) << opened.error().message;
-    host_.emplace(std::move(*opened));
-  }
+  void show(const std::string& text) { ASSERT_NO_FATAL_FAILURE(test::open_scene(folder_, text, host_)); }
   void remove(const std::string& item) {
     const Outcome done = host_->apply(edits_to_remove_felt(host_->scene(), host_->document().text(), item), "remove");
     ASSERT_TRUE(done) << item << ": " << done.error().message;

@@ -83,8 +83,8 @@ std::optional<Vec3> TrackedHead::tracked(double t_s) {
 }
 
 bool TrackedHead::was_lost() {
-  const bool now = shown_.lost();
-  return now && !std::exchange(told_, now) ? true : (told_ = now, false);
+  const bool told = std::exchange(told_, shown_.lost());
+  return told_ && !told;
 }
 
 }  // namespace catena::app
