@@ -84,7 +84,7 @@ Voxels voxels_of(const py::array& array, const std::string& axes, const std::str
   v.vectors = array.ndim() == 4 && array.shape(3) == 3;
   if (array.ndim() != 3 && !v.vectors)
     throw Failure(
-        Error{name + ": the array has " + std::to_string(array.ndim()) + " dimensions; three were expected, or a fourth of 3 for vectors"});
+        Error{name + ": the array has the shape " + shape_of(array) + "; three dimensions were expected, or a fourth of 3 for vectors"});
   const auto at = [&](int axis) { return axes == "xyz" ? axis : 2 - axis; };
   for (int axis = 0; axis < 3; ++axis)
     if (array.shape(axis) > 65536) throw Failure(Error{name + ": an axis has more than 65536 voxels"});
@@ -100,6 +100,8 @@ field::Mapping mapping_of(const py::object& affine, const std::string& name) {
   const Numbers m = numbers_of(affine, name + ": affine");
   if (m.ndim() != 2 || m.shape(0) != 4 || m.shape(1) != 4)
     throw Failure(Error{name + ": the affine is no 4 x 4 matrix; the map from (i, j, k, 1) to the world was expected"});
+  for (int column = 0; column < 4; ++column)
+    if (m.at(3, column) != (column == 3 ? 1 : 0)) throw Failure(Error{name + ": the affine's last row is not 0 0 0 1, as it was expected"});
   Mat3 linear{1.0};
   Vec3 origin{0.0};
   for (int row = 0; row < 3; ++row) {
@@ -148,9 +150,7 @@ Field from_array(const py::array& array, const std::string& axes, const py::obje
 
 Field field_of(const py::handle& value, const std::string& name) {
   if (py::isinstance<Field>(value)) return py::cast<Field>(value);
-  const py::array array = py::array::ensure(py::reinterpret_borrow<py::object>(value));
-  if (!array) throw Failure(Error{name + ": a Field or an array was expected"});
-  return from_array(array, "zyx", py::none(), name, "linear");
+  return py::cast<Field>(py::module_::import("catena").attr("field")(value, py::arg("name") = name));
 }
 
 void add_arrays(py::module_& m) {

@@ -1,5 +1,8 @@
 /// catena.Chain: what a hand feels along positions of its probe, tick by tick, exactly as `catena replay` computes it.
+#include <fmt/format.h>
+
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -77,7 +80,8 @@ class Chain {
     state_ = std::make_unique<haptics::ChainState>();
     scratch_ = std::make_unique<haptics::ChainScratch>();
     hash_ = {};
-    ticks_ = 0;
+    ticks_ = since_ = 0;
+    from_s_ = 0;
   }
 
   Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
@@ -90,9 +94,12 @@ class Chain {
     Rows rows(out);
     const py::gil_scoped_release unlocked;
     const std::lock_guard turn(turn_);
+    check_times(t);
     for (std::size_t i = 0; i < places.size(); ++i) {
       haptics::ProbeSample probe;
       probe.t_s = t.empty() ? next_t_s() : t[i];
+      if (!t.empty()) from_s_ = t[i], since_ = 0;
+      ++since_;
       probe.position = places[i];
       if (!pressed.empty()) probe.buttons = pressed[i];
       haptics::tick(*program_, probe, *state_, *scratch_, last_);
@@ -119,7 +126,18 @@ class Chain {
   }
 
  private:
-  double next_t_s() const { return static_cast<double>(ticks_) / rate_hz_; }
+  double next_t_s() const { return from_s_ + static_cast<double>(since_) / rate_hz_; }
+
+  /// As `replay` asks for: finite, and each after the one before, of earlier runs too.
+  void check_times(const std::vector<double>& t) const {
+    double last = ticks_ == 0 ? -std::numeric_limits<double>::infinity() : last_.t_s;
+    for (const double s : t) {
+      if (!std::isfinite(s)) throw Failure(Error{fmt::format("t: holds {}; finite seconds were expected", s)});
+      if (s <= last)
+        throw Failure(Error{fmt::format("t: {:.9g} s after {:.9g} s; rising seconds were expected (reset() begins again)", s, last)});
+      last = s;
+    }
+  }
 
   static std::vector<double> column(const py::object& from, std::size_t rows, const std::string& what) {
     const Numbers array = numbers_of(from, what);
@@ -144,7 +162,8 @@ class Chain {
   std::unique_ptr<haptics::ChainScratch> scratch_;
   haptics::StateHash hash_;
   HapticState last_;
-  std::uint64_t ticks_ = 0;
+  std::uint64_t ticks_ = 0, since_ = 0;  ///< since_: since from_s_, where no times are given
+  double from_s_ = 0;
 };
 
 }  // namespace
@@ -162,11 +181,12 @@ void add_chain(py::module_& m) {
                     "where it was. Threads that share one wait for each other.")
       .def(py::init<const py::object&, const py::object&, double>(), py::arg("scene"), py::arg("fields") = py::none(),
            py::arg("rate_hz") = 1000.0,
-           "scene: a path, or a dict as a scene file has it. fields: names and the Fields or arrays (z, y, x) that stand for "
-           "them.\nrate_hz: "
+           "scene: a path, or a dict as a scene file has it. fields: names and the Fields, arrays (z, y, x) or paths that stand "
+           "for them.\nrate_hz: "
            "ticks a second, where run() is given no times. A scene with a \"device\" is felt within its limits.")
       .def("run", &Chain::run, py::arg("positions"), py::arg("t") = py::none(), py::arg("buttons") = py::none(),
-           "A tick for each position.\n\npositions: (N, 3) or (3,), world units. t: (N,), seconds, rising; None: evenly at rate_hz. "
+           "A tick for each position.\n\npositions: (N, 3) or (3,), world units. t: (N,), seconds, rising; None: evenly at rate_hz, from "
+           "the tick before. "
            "buttons: (N,), whole numbers, bit 0 is button 1.\nReturns Ticks. The same positions give the same bits as `catena replay`.")
       .def(
           "step",
@@ -179,8 +199,9 @@ void add_chain(py::module_& m) {
       .def_property_readonly("links", &Chain::links, "The names of the L links, in order.")
       .def_property_readonly("metres_per_unit", &Chain::metres_per_unit, "Metres of the hand a world unit.")
       .def_property_readonly("ticks", &Chain::ticks, "How many ticks there were since the start.")
-      .def_property_readonly("state_hash", &Chain::state_hash,
-                             "A number of all that the ticks said, to the bit: `catena replay --stats` has it too.");
+      .def_property_readonly(
+          "state_hash", &Chain::state_hash,
+          "A number of all that the ticks said, to the bit: `catena replay --stats` has it too, as f\"{state_hash:016x}\".");
   py::list words;
   for (int i = 0; i <= static_cast<int>(exchange::Status::bad_probe); ++i)
     words.append(exchange::status_word(static_cast<exchange::Status>(i)));

@@ -19,14 +19,13 @@ Numbers numbers_of(const py::object& array, const std::string& what) {
       Error{what + (any ? ": holds " + py::cast<std::string>(py::str(any.dtype())) : ": is no array") + "; real numbers were expected"});
 }
 
+std::string shape_of(const py::array& array) { return py::cast<std::string>(py::str(array.attr("shape"))); }
+
 std::vector<Vec3> points_of(const Points& points_given, const std::string& what) {
   const Numbers array = numbers_of(points_given, what);
   const bool one = array.ndim() == 1 && array.shape(0) == 3;
-  if (!one && !(array.ndim() == 2 && array.shape(1) == 3)) {
-    std::string shape;
-    for (py::ssize_t i = 0; i < array.ndim(); ++i) shape += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
-    throw Failure(Error{what + " has the shape (" + shape + "); (N, 3) or (3,) was expected"});
-  }
+  if (!one && !(array.ndim() == 2 && array.shape(1) == 3))
+    throw Failure(Error{what + " has the shape " + shape_of(array) + "; (N, 3) or (3,) was expected"});
   const std::size_t count = one ? 1 : static_cast<std::size_t>(array.shape(0));
   std::vector<Vec3> points(count);
   const double* from = array.data();

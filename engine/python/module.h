@@ -42,17 +42,19 @@ std::string path_of(const py::object& path);
 /// Real numbers of whatever shape; what holds none is an error that names `what`.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 Numbers numbers_of(const py::object& array, const std::string& what);
+/// As NumPy writes it: "(2, 3)".
+std::string shape_of(const py::array& array);
 /// N x 3 of them, or three; another shape is an error.
 using Points = py::object;
 std::vector<Vec3> points_of(const Points& array, const std::string& what);
 py::array_t<double> array_of(const std::vector<Vec3>& points);
 Vec3 vec3_of(const Points& array, const std::string& what);
 
-/// A Field, or an array that becomes one as catena.field(array) says.
+/// A Field, or what catena.field() makes one of: an array, masked or not, or a path.
 Field field_of(const py::handle& value, const std::string& name);
 
-/// A scene of a path (a scene file or a data file), a dict as the scene file's object, a Field or an array. `fields`: names and Fields or
-/// arrays that the scene uses, or None.
+/// A scene of a path (a scene file or a data file), a dict as the scene file's object, a Field or an array. `fields`: names and what
+/// field_of() takes, which the scene uses, or None.
 scene::Scene scene_of(const py::object& what, const py::object& fields);
 
 void add_fields(py::module_& m);

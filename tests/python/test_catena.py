@@ -4,6 +4,7 @@ import html
 import inspect
 import json
 import os
+import pathlib
 import re
 import subprocess
 import tempfile
@@ -107,11 +108,16 @@ class Errors(unittest.TestCase):
             self.assertEqual("catena: " + str(caught.exception) + "\n", told)
 
     def test_what_cannot_be_used_is_named(self):
-        self.says("2 dimensions", lambda: catena.field(np.zeros((3, 3))))
+        self.says("the shape (3, 3)", lambda: catena.field(np.zeros((3, 3))))
+        self.says("axes is \"3\"", lambda: catena.field(np.zeros((3, 3, 3)), axes=3))
+        self.says("last row", lambda: catena.field(np.zeros((3, 3, 3)), affine=np.ones((4, 4)) + np.eye(4)))
+        with self.assertRaisesRegex(TypeError, "^'float' object"):
+            catena.render({}, 10.5, 10)
+        self.says("from 1 to 16384", lambda: catena.render({}, 2 ** 70, 10))
         self.says("no finite value", lambda: catena.field(np.full((3, 3, 3), np.nan)))
         self.says("complex", lambda: catena.field(np.zeros((3, 3, 3), complex)))
         self.says("from 2 to", lambda: catena.field(np.zeros((1, 3, 3))))
-        self.says("cannot be inverted", lambda: catena.field(np.zeros((3, 3, 3)), affine=np.zeros((4, 4))))
+        self.says("cannot be inverted", lambda: catena.field(np.zeros((3, 3, 3)), affine=np.diag([0, 0, 0, 1])))
         self.says("(N, 3)", lambda: catena.analytic("sphere").sample([[1, 2]]))
         self.says("unknown field", lambda: catena.render({"isosurfaces": [{"field": "b", "level": 1}]}))
         self.says("seeds[1]", lambda: catena.trace(catena.analytic("saddle"), [[1, 1, 0], [0, 0, 0]]))
@@ -133,6 +139,9 @@ class Errors(unittest.TestCase):
         self.says("several points", lambda: chain.step([[1, 1, 1]] * 2))
         for bad in [-1, 0], [0.5, 0], [2.0 ** 32, 0], [np.nan, 0]:
             self.says("buttons: holds", lambda bad=bad: chain.run([[1, 1, 1]] * 2, buttons=bad))
+        for bad, said in ([1, 1], "t: 1 s after 1 s"), ([2, 1], "t: 1 s after 2 s"), ([1, np.nan], "t: holds nan"):
+            self.says(said, lambda bad=bad: chain.run([[1, 1, 1]] * 2, t=bad))
+        self.assertEqual(chain.ticks, 0)
         self.says("buttons does not have", lambda: chain.run([[1, 1, 1]] * 2, buttons=[1]))
         self.assertTrue(issubclass(catena.MachineError, catena.Error) and issubclass(catena.Error, ValueError))
 
@@ -180,6 +189,22 @@ class Chains(unittest.TestCase):
         np.testing.assert_array_equal(far.forces, 0)
         np.testing.assert_allclose(near.proxies[0, -1], [16.2, 16.3, 26], atol=1e-6)
         np.testing.assert_allclose(near.forces, [[0, 0, 500 * 0.01]], atol=1e-5)
+
+    def test_ticks_go_on_from_the_time_of_the_last_one(self):
+        chain = catena.Chain({}, rate_hz=500)
+        np.testing.assert_allclose(chain.run([[0, 0, 0]] * 3).t, [0, 0.002, 0.004])
+        chain.run([[0, 0, 0]] * 2, t=[3, 4])
+        np.testing.assert_allclose(chain.run([[0, 0, 0]] * 2).t, [4.002, 4.004])
+        with self.assertRaises(catena.Error):
+            chain.run([[0, 0, 0]], t=[4])
+
+    def test_what_is_masked_is_no_voxel_of_a_scene_s_field(self):
+        chain = {"chain": [{"name": "skin", "type": "isosurface", "field": "f", "level": 3, "free": "above"}]}
+        values = np.where(np.arange(17) < 10, np.abs(np.arange(17) - 8), -1)[:, None, None] * np.ones((17, 17, 17))
+        masked = np.ma.masked_less(values, 0)
+        path = np.linspace([8, 8, 1], [8, 8, 15], 200)
+        np.testing.assert_array_equal(catena.Chain(chain, fields={"f": masked}).run(path).forces,
+                                      catena.Chain(chain, fields={"f": catena.field(masked)}).run(path).forces)
 
     def test_numpy_s_numbers_are_a_scene_s(self):
         link = {"name": "skin", "type": "isosurface", "field": "f", "level": np.float32(1.5), "free": "above"}
@@ -334,6 +359,34 @@ class Pages(unittest.TestCase):
         self.assertNotIn("iframe", served._repr_html_())
         self.assertTrue(self.has_ended(served.url))
         served.stop()
+
+    def test_files_of_a_scene_are_those_of_this_program_s_folder(self):
+        before = os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                np.save("height.npy", np.mgrid[:9, :9, :9][0])
+                scene = {"fields": {"f": {"file": pathlib.Path("height.npy")}}, "isosurfaces": [{"field": "f", "level": 4}]}
+                self.assertEqual(catena.render(scene, 8, 6).color.shape, (6, 8, 4))
+                with catena.serve(scene) as served:
+                    self.assertTrue(served.running)
+            finally:
+                os.chdir(before)
+        # all keys of a scene that name files are known
+        with open(SOURCE + "/docs/scene.md", encoding="utf-8") as file:
+            self.assertEqual(set(re.findall(r"^\| `(\w+)` \| file \|", file.read(), re.M)), set(catena._FILES))
+
+    def test_what_a_killed_program_left_is_removed(self):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(tempfile, "tempdir", folder):
+            kept = catena._Folder()
+            for name in "left", "young":
+                os.mkdir(f"{folder}/catena-python-{name}")
+            for path in f"{folder}/catena-python-left", kept.name:
+                os.utime(path, (1, 1))
+            with catena._Folder() as new:
+                self.assertEqual(set(os.listdir(folder)), {os.path.basename(kept.name), os.path.basename(new), "catena-python-young"})
+            self.assertFalse(os.path.exists(new))
+            kept.cleanup()
 
     def test_what_cannot_be_served_is_the_program_s_line(self):
         with self.assertRaises(catena.Error) as caught:

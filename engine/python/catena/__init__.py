@@ -10,14 +10,17 @@
 Lengths are world units, forces newtons, times seconds. What cannot be used raises catena.Error with the one line that the program
 `catena` would print. Nothing here changes a NumPy array that it is given.
 """
+import fcntl as _fcntl
 import glob as _glob
 import html as _html
 import json as _json
+import operator as _operator
 import os as _os
 import shutil as _shutil
 import struct as _struct
 import subprocess as _subprocess
 import tempfile as _tempfile
+import time as _time
 import urllib.parse as _urls
 import weakref as _weakref
 import zlib as _zlib
@@ -26,6 +29,8 @@ import numpy as _np
 
 from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _recording, _render,
                       _study_table, analytic, analytic_names, trace)
+
+_FILES = "file", "firmware", "transfer"  # keys of a scene whose words name files
 
 __all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Served", "Ticks", "analytic", "analytic_names",
            "field", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
@@ -43,10 +48,10 @@ def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear"
     An array is read once, where it lies; the field keeps a grid of 32-bit floats of its own. What is masked, NaN or infinite is no voxel.
     """
     if isinstance(data, (str, _os.PathLike)):
-        return _from_file(data, grid, step, interpolation)
+        return _from_file(data, str(grid), _operator.index(step), str(interpolation))
     if isinstance(data, _np.ma.MaskedArray):  # what is masked has no value
         data = data.astype(_np.float32).filled(_np.nan)
-    return _from_array(_np.asarray(data), axes, affine, name, interpolation)
+    return _from_array(_np.asarray(data), str(axes), affine, str(name), str(interpolation))
 
 
 class Picture:
@@ -88,9 +93,10 @@ def render(scene, width=640, height=480, *, fields=None):
     """Draws a scene and returns a Picture.
 
     scene: a Field or an array (shown as its kind of data is best seen), a path of a scene or data file, or a dict as a scene file has it.
-    width, height: pixels. fields: names and the Fields or arrays (z, y, x) that stand for them in the scene.
+    width, height: pixels. fields: names and the Fields, arrays (z, y, x) or paths that stand for them in the scene.
     """
-    return Picture(*_render(scene, width, height, fields))
+    most = 2 ** 31 - 1
+    return Picture(*_render(scene, min(_operator.index(width), most), min(_operator.index(height), most), fields))
 
 
 def recording(path):
@@ -143,8 +149,10 @@ def _program():
 
 
 def _text_of_scene(scene):
-    """A dict as a scene file has it; NumPy's numbers and arrays are as good as Python's."""
+    """A dict as a scene file has it; NumPy's numbers and arrays, and paths, are as good as Python's."""
     def plain(value):
+        if isinstance(value, _os.PathLike):
+            return _os.fsdecode(value)
         if isinstance(value, (_np.generic, _np.ndarray)):
             return value.tolist()
         raise TypeError(f"a {type(value).__name__} has no place in a scene")
@@ -155,6 +163,50 @@ def _text_of_scene(scene):
         raise Error(f"scene: {error}") from None
 
 
+def _from_here(value):
+    """A scene's object as it may lie anywhere: its files are named from the root, not from this program's folder."""
+    if isinstance(value, dict):
+        return {key: _os.path.abspath(item) if key in _FILES and isinstance(item, str) and item else _from_here(item)
+                for key, item in value.items()}
+    return [_from_here(item) for item in value] if isinstance(value, list) else value
+
+
+class _Folder(_tempfile.TemporaryDirectory):
+    """A temporary folder with a lock that goes with this program, however it ends. What others of them left by being killed is removed."""
+
+    def __init__(self):
+        super().__init__(prefix="catena-python-")
+        self._held = self._lock(self.name)
+        again = self._lock(self.name)
+        if again is not None:  # no locks are known here
+            again.close()
+            return
+        for old in _glob.glob(_os.path.join(_glob.escape(_os.path.dirname(self.name)), "catena-python-*")):
+            try:
+                state = _os.lstat(old)
+                held = self._lock(old) if state.st_uid == _os.getuid() and _time.time() - state.st_mtime > 60 else None
+            except OSError:
+                continue
+            if held is not None:
+                _shutil.rmtree(old, ignore_errors=True)
+                held.close()
+
+    @staticmethod
+    def _lock(folder):
+        file = open(_os.path.join(folder, "lock"), "ab")  # pylint: disable=consider-using-with
+        try:
+            _fcntl.flock(file, _fcntl.LOCK_EX | _fcntl.LOCK_NB)
+            return file
+        except OSError:
+            file.close()
+            return None
+
+    def cleanup(self):
+        if self._held is not None:
+            self._held.close()
+        super().cleanup()
+
+
 def _laid_out(folder, scene, fields):
     """A scene as the program takes it: its path, and options for its fields. What has no file gets one in that folder."""
     given = dict(fields or {})
@@ -163,7 +215,7 @@ def _laid_out(folder, scene, fields):
         path = _os.fspath(scene)
     elif isinstance(scene, dict):
         path = _os.path.join(folder, "scene.json")
-        text = dict(scene)
+        text = _from_here(_json.loads(_text_of_scene(scene)))
         text["fields"] = dict(text.get("fields", {}))
         for name in given:
             text["fields"].setdefault(name, {"file": f"{name}.vdb"})
@@ -188,12 +240,12 @@ def _failure(code, told, command):
 def show(scene, *, fields=None, seconds=None, options=()):
     """Opens a scene in the window and waits until it is closed. Returns what the user did.
 
-    scene: a Field or an array, a path, or a dict as a scene file has it; fields: names and Fields or arrays of it (grids).
+    scene: a Field or an array, a path, or a dict as a scene file has it; fields: names and Fields (grids), arrays or paths of it.
     seconds: the window closes by itself after so long. options: more options of `catena view`.
     Returns a dict: "scene", the scene's text as the user left it (saved with Ctrl-S), and "changed", whether that is another one.
     A path is opened as it is and saved in its place; all else lies in a folder that is removed at the end.
     """
-    with _tempfile.TemporaryDirectory(prefix="catena-") as folder:
+    with _Folder() as folder:
         path, arguments = _laid_out(folder, scene, fields)
         saved = path if path.endswith(".json") else path + ".json"
         before = _text_of(saved)
@@ -266,7 +318,7 @@ def _end_serving(child, folder):
 def serve(scene, *, fields=None, size=(960, 600), page=None, port=0, options=()):
     """Shows a scene in a browser, by `catena serve` on this machine alone, and returns at once: a Served, which a notebook shows as a frame.
 
-    scene: a Field or an array, a path, or a dict as a scene file has it; fields: names and Fields or arrays of it (grids).
+    scene: a Field or an array, a path, or a dict as a scene file has it; fields: names and Fields (grids), arrays or paths of it.
     size: (width, height) of the frame, pixels. port: 0: any that is free. options: more options of `catena serve`.
     page: the address of the page that frames it, as the browser has it, such as "http://localhost:8888"; None: that of the Jupyter server
     that runs this, or no page. Nothing is written to the scene.
@@ -275,7 +327,7 @@ def serve(scene, *, fields=None, size=(960, 600), page=None, port=0, options=())
     parts = _urls.urlsplit(origin or "")
     if origin and (parts.scheme not in ("http", "https") or not parts.hostname):
         raise Error(f"{origin}: expected the address of a page, such as http://localhost:8888")
-    folder = _tempfile.TemporaryDirectory(prefix="catena-")
+    folder = _Folder()
     try:
         path, arguments = _laid_out(folder.name, scene, fields)
         command = [_program(), "serve", path, "--port", str(port), "--until-stdin-ends", *arguments, *options]
