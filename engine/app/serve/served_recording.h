@@ -1,11 +1,14 @@
 /// ServedRecording is what pages of `catena serve` record: every tick of the hand, from a button to the next one, in a folder of its own
-/// below the machine's temporary one that goes with the program. There is one file at a time, the newest, which pages can fetch; it has at
-/// most kMostBytes. Frame thread.
+/// below the machine's temporary one that goes with the program; where the program was killed, the next one that records removes it, by the
+/// lock that it does not hold any more. There is one file at a time, the newest, which pages can fetch; it has at most kMostBytes. Frame
+/// thread.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "engine/app/viewer/shell/hand_host.h"
 #include "engine/app/viewer/shell/scene_host.h"
+#include "engine/base/folder_lock.h"
 
 namespace catena::app {
 
@@ -30,7 +33,10 @@ class ServedRecording {
   std::string path() const { return name_.empty() ? "" : folder_ + "/" + name_; }
 
  private:
+  Outcome make_folder();
+
   std::string folder_, name_;
+  std::optional<FolderLock> lock_;
   int count_ = 0;
 };
 

@@ -1,6 +1,14 @@
 /// `catena serve` as a page sees it: pictures, the hand, what can be changed, who may change it.
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+
+#include "engine/base/folder_lock.h"
 #include "tests/engine/app/serve/served.h"
 
 namespace serve_test {
@@ -221,6 +229,66 @@ TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
   const Node chosen = test::told(*page, "state", [](const Node& s) { return word_of(s, "undo") == "plan"; });
   EXPECT_EQ(word_of(chosen, "undo"), "plan");
   EXPECT_TRUE(planned(chosen));
+}
+
+TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "cloud.json", R"({"fields": {"f": {"analytic": "marschner-lobb", "resolution": 24}},
+    "volumes": [{"field": "f", "opacity": [[0, 0], [1, 0.5]]}], "camera": {"position": [0, -4, 2], "target": [0, 0, 0]}})");
+  test::Served served(folder / "cloud.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  page->say(R"({"do": "plan"})");
+  const auto eye = [](const Node& s) {
+    const Node* plan = s.find("plan");
+    return plan != nullptr && plan->kind == catena::json::Kind::object ? word_of(*plan, "eye") : std::string();
+  };
+  const std::string measured = eye(test::told(*page, "state", [&](const Node& s) { return !eye(s).empty(); }));
+  EXPECT_NE(measured.find("/255, "), std::string::npos) << measured;
+  // the slider's two ends; the place that is told is that of the stop that was chosen
+  const auto error_of = [](const std::string& words) { return std::stod(words.substr(words.find(": ") + 2)); };
+  const auto at = [&](const char* place, double least, double most) {
+    page->say(R"({"do": "plan", "place": )" + std::string(place) + "}");
+    return eye(test::told(*page, "state", [&](const Node& s) {
+      const double told = eye(s).empty() ? -1 : number_of(*s.find("plan"), "place");
+      return word_of(s, "undo") == "plan" && told >= least && told <= most;
+    }));
+  };
+  const std::string fast = at("0", 0, 0.5), exact = at("1", 1, 1);
+  ASSERT_TRUE(!fast.empty() && !exact.empty()) << fast << " | " << exact;
+  EXPECT_LT(error_of(exact), error_of(fast)) << fast << " | " << exact;
+  EXPECT_NE(test::shown(*page, [](const test::SentPicture& p) { return p.exact; }).number, 0u);
+  EXPECT_EQ(served.interrupt(), 0);
+}
+
+TEST(Serve, WhatAKilledOneRecordedIsRemovedByTheNext) {
+  const test::TemporaryFolder temporary;
+  const auto make = [&](const char* name, std::time_t age_s) {
+    const std::string path = temporary / name;
+    std::filesystem::create_directory(path);
+    test::write_file(path + "/recording-1.catlog", "ticks");
+    const timespec then{std::time(nullptr) - age_s, 0}, both[2] = {then, then};
+    EXPECT_EQ(utimensat(AT_FDCWD, path.c_str(), both, 0), 0);
+    return path;
+  };
+  const std::string left = make("catena-serve-a", 3600), held = make("catena-serve-b", 3600), young = make("catena-serve-c", 0),
+                    other = make("somebodys", 3600);
+  const auto lock = catena::FolderLock::take(held);
+  ASSERT_TRUE(lock);
+  const Ball ball;
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before != nullptr ? before : "";
+  setenv("TMPDIR", temporary.path().c_str(), 1);
+  test::Served served(ball.path);
+  before != nullptr ? setenv("TMPDIR", kept.c_str(), 1) : unsetenv("TMPDIR");
+  ASSERT_NE(served.port(), 0) << served.err();
+  EXPECT_TRUE(test::exists(left)) << "nothing is looked for before somebody records";
+  const auto page = served.page();
+  page->say(R"({"do": "record"})");
+  test::told(*page, "state", [](const Node& s) { return s.find("recording")->find("on")->boolean; });
+  EXPECT_FALSE(test::exists(left));
+  for (const std::string& path : {held, young, other}) EXPECT_TRUE(test::exists(path + "/recording-1.catlog")) << path;
+  EXPECT_EQ(served.interrupt(), 0);
 }
 
 TEST(Serve, EndsWithTheProgramThatStartedIt) {
