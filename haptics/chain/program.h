@@ -73,7 +73,7 @@ using exchange::CouplingMethod;
 
 /// How the links make one force; the law stands in tick.h.
 struct Coupling {
-  double stiffness_n_per_m = 500;                 ///< of links that do not say
+  double stiffness_n_per_m = 500;                 ///< what make_link() gives a link that does not say; the tick reads the link's own
   double damping_ns_per_m = 0;                    ///< b, of the hand
   double max_force_n = 8;                         ///< of the whole force
   double ramp_s = 0;                              ///< seconds over which a switch fades; 0: at once
