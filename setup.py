@@ -32,6 +32,9 @@ class CMakeBuild(build_ext):
         shutil.rmtree(prefix / "catena", ignore_errors=True)  # of an earlier version
         for component in ("python", "library", "catena"):
             subprocess.run(["cmake", "--install", str(build), "--prefix", str(prefix), "--component", component, "--strip"], check=True)
+        for link in prefix.glob("catena/lib/*"):  # a wheel keeps no links: one file, by the name that the module asks for
+            if link.is_symlink():
+                link.resolve().replace(link)
         if not list(prefix.glob("catena/_catena*.so")):
             raise SystemExit("catena: the module was not built: pybind11-dev or python3-dev is missing")
 
