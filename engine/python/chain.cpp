@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <span>
 
 #include "engine/python/module.h"
 #include "haptics/chain/tick.h"
@@ -85,22 +86,25 @@ class Chain {
   }
 
   Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
-    const std::vector<Vec3> places = points_of(positions, "positions");
+    const Numbers places = rows_of(positions, "positions");  // read where they lie
+    const auto count = static_cast<std::size_t>(places.size() / 3);
     // none: evenly, and nothing is pressed
-    const std::vector<double> t = times.is_none() ? std::vector<double>() : column(times, places.size(), "t");
+    const Numbers column_t = times.is_none() ? Numbers() : column(times, count, "t");
+    const std::span<const double> t(column_t.data(), times.is_none() ? 0 : count);
     const std::vector<std::uint32_t> pressed =
-        buttons.is_none() ? std::vector<std::uint32_t>() : buttons_of(column(buttons, places.size(), "buttons"));
-    Ticks out(static_cast<py::ssize_t>(places.size()), static_cast<py::ssize_t>(program_->links.size()));
+        buttons.is_none() ? std::vector<std::uint32_t>() : buttons_of(column(buttons, count, "buttons"));
+    Ticks out(static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(program_->links.size()));
     Rows rows(out);
     const py::gil_scoped_release unlocked;
     const std::lock_guard turn(turn_);
     check_times(t);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    const double* place = places.data();
+    for (std::size_t i = 0; i < count; ++i, place += 3) {
       haptics::ProbeSample probe;
       probe.t_s = t.empty() ? next_t_s() : t[i];
       if (!t.empty()) from_s_ = t[i], since_ = 0;
       ++since_;
-      probe.position = places[i];
+      probe.position = {place[0], place[1], place[2]};
       if (!pressed.empty()) probe.buttons = pressed[i];
       haptics::tick(*program_, probe, *state_, *scratch_, last_);
       hash_.add(last_);
@@ -129,7 +133,7 @@ class Chain {
   double next_t_s() const { return from_s_ + static_cast<double>(since_) / rate_hz_; }
 
   /// As `replay` asks for: finite, and each after the one before, of earlier runs too.
-  void check_times(const std::vector<double>& t) const {
+  void check_times(std::span<const double> t) const {
     double last = ticks_ == 0 ? -std::numeric_limits<double>::infinity() : last_.t_s;
     for (const double s : t) {
       if (!std::isfinite(s)) throw Failure(Error{fmt::format("t: holds {}; finite seconds were expected", s)});
@@ -139,15 +143,15 @@ class Chain {
     }
   }
 
-  static std::vector<double> column(const py::object& from, std::size_t rows, const std::string& what) {
-    const Numbers array = numbers_of(from, what);
+  static Numbers column(const py::object& from, std::size_t rows, const std::string& what) {
+    Numbers array = numbers_of(from, what);
     if (array.size() != static_cast<py::ssize_t>(rows))
       throw Failure(Error{what + " does not have one number for each position; " + std::to_string(rows) + " were expected"});
-    return std::vector<double>(array.data(), array.data() + rows);
+    return array;
   }
-  static std::vector<std::uint32_t> buttons_of(const std::vector<double>& numbers) {
+  static std::vector<std::uint32_t> buttons_of(const Numbers& numbers) {
     std::vector<std::uint32_t> all;
-    for (const double number : numbers) {
+    for (const double number : std::span(numbers.data(), static_cast<std::size_t>(numbers.size()))) {
       if (!(number >= 0 && number <= 4294967295.0) || number != std::floor(number))
         throw Failure(Error{"buttons: holds " + std::to_string(number) + "; whole numbers of 32 bits were expected"});
       all.push_back(static_cast<std::uint32_t>(number));

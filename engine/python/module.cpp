@@ -21,13 +21,17 @@ Numbers numbers_of(const py::object& array, const std::string& what) {
 
 std::string shape_of(const py::array& array) { return py::cast<std::string>(py::str(array.attr("shape"))); }
 
-std::vector<Vec3> points_of(const Points& points_given, const std::string& what) {
-  const Numbers array = numbers_of(points_given, what);
+Numbers rows_of(const Points& points, const std::string& what) {
+  Numbers array = numbers_of(points, what);
   const bool one = array.ndim() == 1 && array.shape(0) == 3;
   if (!one && !(array.ndim() == 2 && array.shape(1) == 3))
     throw Failure(Error{what + " has the shape " + shape_of(array) + "; (N, 3) or (3,) was expected"});
-  const std::size_t count = one ? 1 : static_cast<std::size_t>(array.shape(0));
-  std::vector<Vec3> points(count);
+  return array;
+}
+
+std::vector<Vec3> points_of(const Points& given, const std::string& what) {
+  const Numbers array = rows_of(given, what);
+  std::vector<Vec3> points(static_cast<std::size_t>(array.size() / 3));
   const double* from = array.data();
   for (Vec3& p : points) p = {from[0], from[1], from[2]}, from += 3;
   return points;

@@ -44,8 +44,9 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 Numbers numbers_of(const py::object& array, const std::string& what);
 /// As NumPy writes it: "(2, 3)".
 std::string shape_of(const py::array& array);
-/// N x 3 of them, or three; another shape is an error.
+/// N x 3 of them, or three; another shape is an error. rows_of: without a copy where they are doubles in a row.
 using Points = py::object;
+Numbers rows_of(const Points& array, const std::string& what);
 std::vector<Vec3> points_of(const Points& array, const std::string& what);
 py::array_t<double> array_of(const std::vector<Vec3>& points);
 Vec3 vec3_of(const Points& array, const std::string& what);

@@ -348,7 +348,9 @@ class Pages(unittest.TestCase):
         with served:
             self.assertTrue(served.running)
             self.assertRegex(served.url, r"^http://localhost:[0-9]+/\?token=[0-9a-f]{32}$")
-            frame = re.fullmatch(r'<iframe src="([^"]*)" width="320" height="200" [^>]*></iframe>', served._repr_html_())
+            frame = re.fullmatch(r'<iframe src="([^"]*)" width="320" height="200" [^>]*></iframe><div .*>Does it stay empty\?.* at '
+                                 r'http://localhost alone .*<a href="([^"]*)" .*</div>', served._repr_html_())
+            self.assertEqual(frame.group(1), frame.group(2))
             headers, page = self.get(html.unescape(frame.group(1)))
             self.assertIn("frame-ancestors http://localhost:8888", headers["Content-Security-Policy"])
             self.assertIn("HttpOnly", headers["Set-Cookie"])

@@ -299,9 +299,11 @@ class Served:
     def _repr_html_(self):
         if not self.running:
             return "<p>The scene is not served any more.</p>"
-        width, height = self.size
-        return (f'<iframe src="{_html.escape(self.url)}" width="{width}" height="{height}" style="border: 0" title="Catena" '
-                'referrerpolicy="no-referrer"></iframe>')
+        (width, height), url = self.size, _html.escape(self.url)
+        return (f'<iframe src="{url}" width="{width}" height="{height}" style="border: 0" title="Catena" '
+                'referrerpolicy="no-referrer"></iframe><div style="font-size: small">Does it stay empty? It shows in a page at '
+                f'http://{_urls.urlsplit(self.url).hostname} alone (page= says another one). '
+                f'<a href="{url}" target="_blank" rel="noreferrer">By itself</a></div>')
 
 
 def _end_serving(child, folder):
