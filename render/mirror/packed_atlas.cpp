@@ -83,16 +83,14 @@ class ConstantBricks {
   std::vector<float> value_;
 };
 
-/// Of gradients, and of what every second one tells about those between.
+/// What every second gradient tells about those between.
 struct GradientSums {
-  GradientMean mean;
   double errors = 0, pairs = 0;
 
-  void add(const VoxelBlock& block, const Index3& o, const ValueInterval& active) {
+  void add(const VoxelBlock& block, const Index3& o) {
     for (int z = BrickBlock::first(o.z); z <= BrickBlock::last(o.z, block.size.z); z += 2)
       for (int y = BrickBlock::first(o.y); y <= BrickBlock::last(o.y, block.size.y); y += 2)
         for (int x = BrickBlock::first(o.x); x <= BrickBlock::last(o.x, block.size.x); x += 2) {
-          mean.add(block, active, o.x + x, o.y + y, o.z + z);
           if (x + 2 > BrickBlock::last(o.x, block.size.x)) continue;
           const auto at = [&](int k) { return gradient_in(block, o.x + x + k, o.y + y, o.z + z); };
           const BlockGradient a = at(0), b = at(1), c = at(2),
@@ -102,7 +100,6 @@ struct GradientSums {
         }
   }
   void add(const GradientSums& other) {
-    mean.add(other.mean);
     errors += other.errors;
     pairs += other.pairs;
   }
@@ -162,14 +159,14 @@ BrickScan scan_bricks(const field::ScalarGrid& grid, const ValueInterval& active
       if (r.greatest <= float(active.least) || r.least >= float(active.greatest)) continue;
       if (r.least < float(range.least) || r.greatest > float(range.greatest)) widen_to_cells(range, block, active);
       // a third of the bricks tells enough
-      if (gradients && (at.x + at.y + at.z) % 3 == 0) means[i / row].add(block, o, active);
+      if (gradients && (at.x + at.y + at.z) % 3 == 0) means[i / row].add(block, o);
     }
     const std::scoped_lock held(lock);
     scan.range = {std::min(scan.range.least, range.least), std::max(scan.range.greatest, range.greatest)};
   });
   GradientSums sums;
   for (const GradientSums& part : means) sums.add(part);
-  if (gradients) scan.longest_gradient = sums.mean.longest();
+  scan.gradients = gradients;
   scan.gradient_roughness = sums.pairs > 0 ? sums.errors / sums.pairs : 0;
   return scan;
 }
@@ -293,11 +290,10 @@ Outcome upload_words(vk::Device& device, const BrickSource& source, const SlotPl
 }
 
 Outcome upload_gradients(vk::Device& device, const BrickSource& source, const SlotPlan& plan, PackedAtlas& atlas) {
-  atlas.gradient_unit = source.scan.longest_gradient / 127;
   const std::size_t nodes = atlas.gradient_nodes, apart = kBrick / (nodes - 1);
-  CATENA_TRY(atlas.gradients, vk::Image::create(device, vk::volume_info(VK_FORMAT_R8G8B8A8_UNORM, plan.slots[0] * nodes,
+  CATENA_TRY(atlas.gradients, vk::Image::create(device, vk::volume_info(kGradientFormat, plan.slots[0] * nodes,
                                                                         plan.slots[1] * nodes, plan.slots[2] * nodes)));
-  return plan.upload(device, atlas.gradients, {nodes, nodes, nodes}, 4, source, 1,
+  return plan.upload(device, atlas.gradients, {nodes, nodes, nodes}, kGradientBytes, source, 1,
                      [&](const BrickBlock& brick, std::byte* out, std::size_t line, std::size_t plane) {
                        const VoxelBlock& block = brick.block;
                        const Index3 o = brick.offset;
@@ -310,7 +306,7 @@ Outcome upload_gradients(vk::Device& device, const BrickSource& source, const Sl
                            for (std::size_t x = 0; x < nodes; ++x)
                              write_gradient(
                                  gradient_in(block, voxel(x, o.x, block.size.x), voxel(y, o.y, block.size.y), voxel(z, o.z, block.size.z)),
-                                 source.scan.longest_gradient, out + z * plane + y * line + 4 * x);
+                                 atlas.codes.per_code, out + z * plane + y * line + kGradientBytes * x);
                      });
 }
 
@@ -323,9 +319,10 @@ Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGri
   PackedAtlas atlas;
   atlas.codes = codes;
   atlas.kept = std::uint64_t(std::count(keep.begin(), keep.end(), 1));
-  const bool gradients = scan.longest_gradient > 0;
-  const auto bytes_with = [&](std::uint64_t nodes) { return atlas.kept * (2 * kWordsX * kWordsY * kWordsZ + 4 * nodes * nodes * nodes); };
-  if (gradients) atlas.gradient_nodes = scan.gradient_roughness > kRough && bytes_with(kApron) <= most_bytes ? kApron : kBrick / 2 + 1;
+  const auto bytes_with = [&](std::uint64_t nodes) {
+    return atlas.kept * (2 * kWordsX * kWordsY * kWordsZ + kGradientBytes * nodes * nodes * nodes);
+  };
+  if (scan.gradients) atlas.gradient_nodes = scan.gradient_roughness > kRough && bytes_with(kApron) <= most_bytes ? kApron : kBrick / 2 + 1;
   const std::uint64_t bytes = bytes_with(atlas.gradient_nodes);
   if (bytes > most_bytes) return too_many_bytes(bytes, most_bytes);
 
@@ -340,7 +337,7 @@ Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGri
     plan.brick_of_slot.push_back(i);
   }
   CATENA_CHECK(upload_words(device, {grid, scan}, plan, atlas));
-  if (gradients) CATENA_CHECK(upload_gradients(device, {grid, scan}, plan, atlas));
+  if (scan.gradients) CATENA_CHECK(upload_gradients(device, {grid, scan}, plan, atlas));
   CATENA_TRY(atlas.map, make_map(device, scan, atlas, needs.ranges, needs.kinds));
   return atlas;
 }

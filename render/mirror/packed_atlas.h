@@ -24,16 +24,15 @@ struct BrickScan {
   std::array<std::int32_t, 3> bricks{};  ///< an axis
   std::vector<BrickRange> values;        ///< x fastest, over 9^3 voxels
   ValueInterval range;                   ///< to encode (widen_to_cells)
-  float longest_gradient = 0;            ///< that is kept whole; 0 where none are asked for
+  bool gradients = false;                ///< they are asked for
   double gradient_roughness = 0;         ///< what interpolation from every second voxel errs by, squares, in mean squares of gradients
 };
 
 struct PackedAtlas {
   CodeScale codes;
   vk::Image words;      ///< R16_UINT
-  vk::Image gradients;  ///< R8G8B8A8_UNORM, where they were asked for
+  vk::Image gradients;  ///< kGradientFormat, where they were asked for
   vk::Image map;
-  double gradient_unit = 0;          ///< values a voxel in one count of 1 / 127
   std::uint32_t gradient_nodes = 0;  ///< of a brick, an axis
   std::vector<std::uint32_t> slots;  ///< of the bricks, as in the map; kNotKept: it has none
   std::uint64_t kept = 0;

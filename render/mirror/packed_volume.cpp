@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "engine/base/threads.h"
+#include "render/mirror/gradient_volume.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -103,9 +104,9 @@ bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid) {
          n.x * n.y * n.z <= kMaxVoxels;
 }
 
-std::uint64_t packed_bytes(const field::ScalarGrid& grid) {
+std::uint64_t packed_bytes(const field::ScalarGrid& grid, bool gradients) {
   const Index3 n = voxel_extent(grid).size;
-  return sizeof(std::uint32_t) * std::uint64_t(n.x) * std::uint64_t(n.y) * std::uint64_t(n.z);
+  return (sizeof(std::uint32_t) + (gradients ? kGradientBytes : 0)) * std::uint64_t(n.x) * std::uint64_t(n.y) * std::uint64_t(n.z);
 }
 
 Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active) {

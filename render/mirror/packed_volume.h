@@ -27,8 +27,8 @@ struct PackedVolume {
 /// Whether a grid can be packed whole on this device: at least a cell thick, and of a size that pays.
 bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid);
 
-/// Of its words, and of gradients (gradient_volume.h) as many again.
-std::uint64_t packed_bytes(const field::ScalarGrid& grid);
+/// Of its words, and of gradients (gradient_volume.h) where they are wanted.
+std::uint64_t packed_bytes(const field::ScalarGrid& grid, bool gradients);
 
 Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active);
 

@@ -31,7 +31,7 @@ struct Band {
 /// Milliseconds of drawing all of them, without read-back.
 struct BandTimes {
   double wall_ms = 0;     ///< start to fence
-  double drawing_ms = 0;  ///< as DrawingClock counts (quality.h)
+  double drawing_ms = 0;  ///< as DrawingClock counts
 };
 
 /// An error is the renderer's, or the one that `take` returned; `take`

@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <thread>
 
-#include "engine/base/clock.h"
 #include "engine/base/numbers.h"
 #include "render/image/measure.h"
 #include "render/quality/refinement.h"
-#include "render/vk/stopwatch.h"
 
 namespace catena::render {
 namespace {
@@ -25,7 +21,6 @@ constexpr double kFarthest = 8;                                 // the 99.9 perc
 constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
 constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
 constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
-constexpr double kUneven = 1.1;                                 // of the ideal time: threads wait for each other
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
 constexpr double kRoughGoal = 1.5;                              // 1/255: from it on the error of step 0.25 does not count
@@ -54,14 +49,6 @@ double cost_of(const Plan& plan, const std::array<double, 2>& refined, double st
 }
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
-
-/// Of a driver that draws with the processor: a thread a core, or as many as it is told.
-double drawing_threads() {
-  const double cores = std::max(1u, std::thread::hardware_concurrency());
-  const char* told = std::getenv("LP_NUM_THREADS");
-  const double threads = told != nullptr ? std::atof(told) : cores;
-  return threads >= 1 ? std::min(threads, cores) : cores;
-}
 
 /// Errors on the lattice.
 struct Measured {
@@ -400,29 +387,6 @@ Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const Rend
   if (!draws_rays(packet)) return 0.0;
   CATENA_TRY(const MeasuredSettings one, measure_rmse(renderer, packet, {settings}, [](double) { return true; }));
   return one.rmse.front();
-}
-
-DrawingClock::DrawingClock(Renderer& renderer)
-    : DrawingClock(renderer, renderer.device().info().is_cpu()          ? By::processor
-                             : renderer.device().stopwatch().measures() ? By::device
-                                                                        : By::wall) {}
-
-DrawingClock::DrawingClock(Renderer& renderer, By by) : renderer_(&renderer), by_(by), start_ns_(now_ns()) {}
-
-double DrawingClock::now_ns() const {
-  if (by_ == By::device) return renderer_->device().counters().work_ns;
-  return double(by_ == By::processor ? processor_ns() : catena::now_ns());
-}
-
-double DrawingClock::ms() const {
-  const double ms = 1e-6 * (now_ns() - start_ns_);
-  return by_ == By::processor ? kUneven * ms / drawing_threads() : ms;
-}
-
-Result<double> drawing_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
-  const DrawingClock clock(renderer);
-  CATENA_CHECK(renderer.draw(packet, settings));
-  return clock.ms();
 }
 
 std::string describe(const RenderSettings& settings) {

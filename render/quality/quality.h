@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "render/passes/renderer.h"
+#include "render/quality/drawing_clock.h"
 
 namespace catena::render {
 
@@ -63,24 +64,6 @@ Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& pac
 
 /// The same of one.
 Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
-
-/// Milliseconds of drawing it, such that other programs on the machine do not count: of a GPU by its own clock (render/vk/stopwatch.h); of
-/// a driver that draws with the processor what its cores had to do; of a GPU without a clock wall time.
-Result<double> drawing_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
-/// The same of any work, from its making to ms(); the renderer outlives it.
-class DrawingClock {
- public:
-  enum class By { processor, device, wall };
-  explicit DrawingClock(Renderer& renderer);
-  DrawingClock(Renderer& renderer, By by);  ///< for tests
-  double ms() const;
-
- private:
-  double now_ns() const;
-  Renderer* renderer_;
-  By by_;
-  double start_ns_;
-};
 
 /// "step 3, every 4th pixel, refined to every 2nd above 0.5"
 std::string describe(const RenderSettings& settings);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "engine/base/result.h"
 
@@ -54,26 +55,39 @@ double relative_cost(const RenderSettings& settings, bool shaded) {
   return share.overhead + share.rays * a_ray * (kStepless + (1 - kStepless) / f.step_voxels);
 }
 
-// Measured on a head, vessels, and noise, plain and shaded: what lies on the front of error against time of most of them.
+namespace {
+
+/// The fast raycast's rungs: step, spacing, thresholds. Measured on a head, a heart, vessels, and noise: what lies on the front of error
+/// against time of most of them. What a threshold refines is the data's own; those that refine nothing more take no longer.
+struct FastRung {
+  double step;
+  std::uint32_t spacing;
+  double half, full;
+};
+constexpr FastRung kPlain[] = {{8, 4, -1, -1},   {6, 4, -1, -1},  {4, 4, -1, -1},  {3, 4, -1, -1},   {2, 4, -1, -1},
+                               {1.5, 4, -1, -1}, {1, 4, -1, -1},  {1, 4, 24, -1},  {1, 4, 6, -1},    {1, 2, 0, -1},
+                               {1, 2, 0, 24},    {1, 2, 0, 12},   {1, 2, 0, 4},    {1, 2, 0, 1.5},   {1, 2, 0, 0.6},
+                               {1, 1, 0, -1},    {0.7, 1, 0, -1}, {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}};
+// light wants short steps more than it wants every pixel
+constexpr FastRung kShaded[] = {{8, 4, -1, -1},  {6, 4, -1, -1},   {4, 4, -1, -1},   {3, 4, -1, -1},   {2, 4, -1, -1},   {1.5, 4, -1, -1},
+                                {1, 4, -1, -1},  {1, 4, 24, -1},   {2, 2, 0, -1},    {1.5, 2, 0, -1},  {1, 2, 0, -1},    {0.7, 2, 0, -1},
+                                {0.5, 2, 0, -1}, {0.5, 2, 0, 24},  {0.5, 2, 0, 12},  {0.5, 2, 0, 4},   {0.5, 2, 0, 1.5}, {0.7, 1, 0, -1},
+                                {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}, {0.18, 1, 0, -1}, {0.125, 1, 0, -1}};
+constexpr double kExactLadder[] = {4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
+// of exact rays that end the fast ones: lit ones have to be a fourth of the fast raycast's to be as good
+constexpr double kLastStep = 0.25, kLastShadedStep = 0.0625;
+
+}  // namespace
+
 std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
   std::vector<RenderSettings> all;
   if (kind.fast) {
-    const bool smooth = kind.shaded;
-    for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0}) all.push_back(fast_rung(step, 4, -1, -1, smooth));
-    for (const double half : {6.0, 3.0}) all.push_back(fast_rung(1, 4, half, -1, smooth));
-    all.push_back(fast_rung(1, 2, 0, -1, smooth));
-    // light wants short steps more than it wants every pixel
-    if (kind.shaded)
-      for (const double step : {0.7, 0.5}) all.push_back(fast_rung(step, 2, 0, -1, smooth));
-    const double fine = kind.shaded ? 0.5 : 1;
-    for (const double full : {12.0, 4.0}) all.push_back(fast_rung(fine, 2, 0, full, smooth));
-    if (!kind.shaded)
-      for (const double step : {1.0, 0.7}) all.push_back(fast_rung(step, 1, 0, -1));
-    for (const double step : {0.5, 0.35, 0.25}) all.push_back(fast_rung(step, 1, 0, -1, smooth));
+    for (const FastRung& r : kind.shaded ? std::span<const FastRung>(kShaded) : kPlain)
+      all.push_back(fast_rung(r.step, r.spacing, r.half, r.full, kind.shaded));
+    all.push_back(exact_rung(kind.shaded ? kLastShadedStep : kLastStep));
   } else {
-    for (const double step : {4.0, 3.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.35}) all.push_back(exact_rung(step));
+    for (const double step : kExactLadder) all.push_back(exact_rung(step));
   }
-  all.push_back(exact_rung(0.25));
   std::stable_sort(all.begin(), all.end(), [&](const RenderSettings& a, const RenderSettings& b) {
     return relative_cost(a, kind.shaded) < relative_cost(b, kind.shaded);
   });

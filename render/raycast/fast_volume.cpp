@@ -134,9 +134,9 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
   FastVolumeRaycast self(device);
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
   CATENA_CHECK(vk::fit_image(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
-  CATENA_TRY(self.no_gradients_, vk::Image::create(device, vk::volume_info(VK_FORMAT_R8G8B8A8_UNORM, 1, 1, 1)));
+  CATENA_TRY(self.no_gradients_, vk::Image::create(device, vk::volume_info(kGradientFormat, 1, 1, 1)));
   CATENA_CHECK(
-      vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 128, 4); }));
+      vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 0, kGradientBytes); }));
   return self;
 }
 
@@ -303,7 +303,6 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
                                    gaze.per_fovea,
                                    from.width,
                                    from.height,
-                                   look_.gradient_unit(),
                                    look_.gradient_nodes(),
                                    own.width,
                                    own.height,
@@ -351,7 +350,7 @@ Outcome FastVolumeRaycast::probe(vk::Commands& commands, const CameraRays& rays,
   commands.use(probe_.marks, vk::kFragmentRead);
   CATENA_CHECK(vk::write_uniform(
       *device_, probe_.data,
-      shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0, 0}));
+      shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_nodes(), 0, 0, 0, 0}));
   const VkExtent3D& extent = wanted.target->info().extent;
   wanted.skips = settings.skip;
   wanted.area = {{0, 0}, {extent.width, extent.height}};

@@ -27,7 +27,7 @@ Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings
   if (other_grid) table_ = {};
   item_ = item;
   const bool gradients = item.shade && settings.smooth_gradients, whole = can_be_packed(*device_, *item.grid);
-  const std::uint64_t bytes = whole ? packed_bytes(*item.grid) * (gradients ? 2 : 1) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
+  const std::uint64_t bytes = whole ? packed_bytes(*item.grid, gradients) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
   if (bytes > settings.most_bytes) return too_many_bytes(bytes, settings.most_bytes);
   if (!other_look && (!gradients || this->gradients())) return Done{};
   const double background = item.grid->background();
@@ -50,8 +50,8 @@ Outcome PackedLook::pack_whole(bool gradients, bool other_range) {
     packed_ = {};
     CATENA_TRY(packed_, make_packed_volume(*device_, *item_.grid, active_));
   }
-  if (gradients && !gradients_.image) {
-    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item_.grid, active_));
+  if (gradients && !gradients_) {
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item_.grid, packed_.codes.per_code));
   }
   const PreintegratedTable table = make_preintegrated(item_.transfer, packed_.codes.lo, packed_.codes.per_code, item_.shade);
   CATENA_TRY(map_, make_plain_map(*device_, packed_, table.looks));
@@ -93,12 +93,6 @@ Outcome PackedLook::upload_table(const PreintegratedTable& table) {
   return vk::upload_planes(*device_, table_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
     std::memcpy(out, table.entries.data(), table.entries.size() * sizeof(table.entries[0]));
   });
-}
-
-float PackedLook::gradient_unit() const {
-  const double unit = bricks_ ? bricks_->atlas.gradient_unit : gradients_.unit;
-  const double per_code = bricks_ ? bricks_->atlas.codes.per_code : packed_.codes.per_code;
-  return per_code > 0 ? float(unit / per_code) : 0.0f;
 }
 
 float PackedLook::gradient_nodes() const { return bricks_ ? float(bricks_->atlas.gradient_nodes) : 0.0f; }

@@ -31,8 +31,7 @@ class PackedLook {
   const vk::Image& words() const { return bricks_ ? bricks_->atlas.words : packed_.words; }
   const vk::Image& table() const { return table_; }
   const vk::Image& map() const { return bricks_ ? bricks_->atlas.map : map_.image; }
-  const vk::Image& gradients() const { return bricks_ ? bricks_->atlas.gradients : gradients_.image; }
-  float gradient_unit() const;   ///< codes a voxel in one count
+  const vk::Image& gradients() const { return bricks_ ? bricks_->atlas.gradients : gradients_; }
   float gradient_nodes() const;  ///< of a brick, an axis; 0: of the whole volume, one a voxel
   /// Where its local positions are, as of a mirror without images.
   GridMirror place() const;
@@ -50,7 +49,7 @@ class PackedLook {
   // either whole
   PackedVolume packed_;
   PlainMap map_;
-  GradientVolume gradients_;
+  vk::Image gradients_;
   // or as bricks
   struct Bricks {
     BrickScan scan;

@@ -35,19 +35,17 @@ struct Station {
   float slope;  // codes a depth, along the ray
 };
 
-// The gradient at a sample, codes a world length; w: the share of it that had to be shortened. Codes hold nothing below a hundredth.
-vec4 normal_at(Station at) {
-  if (SHADED != 2u) return vec4(frame.grids[0].world_gradient * at.s.gradient, 0.0);
+// The gradient at a sample, codes a world length.
+vec3 normal_at(Station at) {
+  if (SHADED != 2u) return frame.grids[0].world_gradient * at.s.gradient;
   vec3 place = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
   if (BRICKS != 0u) {
     const vec3 brick = floor(clamp(floor(at.p), frame.grids[0].lo, frame.grids[0].hi - 1.0) * 0.125);
     const float nodes = lattice.gradient_nodes;
     place = (nodes * slot_of(at.s.brick) + 0.125 * (nodes - 1.0) * (at.p - 8.0 * brick) + 0.5) / vec3(textureSize(gradients, 0));
-    if (!is_kept(at.s.brick)) return vec4(0.0);
+    if (!is_kept(at.s.brick)) return vec3(0.0);
   }
-  const vec4 texel = textureLod(gradients, place, 0.0);
-  const vec3 counts = 255.0 * texel.rgb - 128.0;
-  return dot(counts, counts) > 1e-4 ? vec4(frame.grids[0].world_gradient * (lattice.gradient_unit * counts), texel.a) : vec4(0.0);
+  return frame.grids[0].world_gradient * textureLod(gradients, place, 0.0).rgb;
 }
 
 // The mean light over half a segment along which the derivative goes from a to b, by the squared length of the gradient across the ray:
@@ -126,7 +124,7 @@ vec4 march_packed(vec2 q, float end) {
   vec3 sum = vec3(0.0);
   Station s = station_at(m, interval.x);
   // shading: the gradient, its share along the ray and the square of the rest
-  vec4 normal = vec4(0.0);
+  vec3 normal = vec3(0.0);
   float along = 0.0, across2 = 0.0;
   if (SHADED != 0u) {
     // to what is seen first, without light
@@ -152,8 +150,8 @@ vec4 march_packed(vec2 q, float end) {
     }
     if (behind > s.t) s = station_at(m, mix(s.t, behind, dark));
     normal = normal_at(s);
-    along = dot(normal.xyz, along_ray);
-    across2 = dot(normal.xyz, normal.xyz) - along * along;
+    along = dot(normal, along_ray);
+    across2 = dot(normal, normal) - along * along;
   }
   // what is opaque is seen within the first steps: they are short, and grow
   const float longest = m.h, voxels = length(m.ray.direction);
@@ -180,22 +178,21 @@ vec4 march_packed(vec2 q, float end) {
       return vec4(s.t + 0.5 * extent * part, 0.0, 0.0, 1.0);
     }
     if (SHADED != 0u) {
-      vec4 normal_end = normal_at(e);
+      vec3 normal_end = normal_at(e);
       if (MASKED != 0u && !e.s.valid) normal_end = normal;
-      const float along_end = dot(normal_end.xyz, along_ray), across2_end = dot(normal_end.xyz, normal_end.xyz) - along_end * along_end;
+      const float along_end = dot(normal_end, along_ray), across2_end = dot(normal_end, normal_end) - along_end * along_end;
       if (MASKED != 0u && !s.s.valid) {
         normal = normal_end;
         along = along_end;
         across2 = across2_end;
       }
-      const float both = dot(normal.xyz, normal_end.xyz) - along * along_end, ends = along + along_end;
+      const float both = dot(normal, normal_end) - along * along_end, ends = along + along_end;
       float rise = (e.s.code - s.s.code) / (extent * world_per_depth);
       if (MASKED != 0u && s.s.valid != e.s.valid) rise = 0.5 * ends;
       // central differences reach as far as a segment of two voxels: the rise over longer ones knows their slope better, over shorter
       // ones it has the kinks of the cells
       const float by_rise = clamp(0.5 * (extent * voxels - 1.0), 0.0, 1.0);
-      float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : mix(0.5 * ends, 0.75 * rise + 0.125 * ends, by_rise);
-      along_middle = mix(along_middle, 0.5 * ends, max(normal.w, normal_end.w));
+      const float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : mix(0.5 * ends, 0.75 * rise + 0.125 * ends, by_rise);
       const vec2 l0 = light_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));
       const vec2 l1 = light_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end));
       normal = normal_end;

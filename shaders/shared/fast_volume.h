@@ -15,7 +15,6 @@ struct LatticeData {
   float threshold;                 // a block is marched where interpolation is expected to err by more (display units),
   vec2 gaze, per_fovea;            // times max(1, |(pixel - gaze) per_fovea|^2): tangents a pixel, by that of the fovea
   uint width, height;              // of the lattice that this one refines, texels
-  float gradient_unit;             // codes a voxel in one count of the gradient volume
   float gradient_nodes;            // of a brick, an axis; 0: of the whole volume, one a voxel
   uint own_width, own_height;      // of this lattice, texels
   uint only_marked, only_changed;  // 1: of its tiles only those are drawn

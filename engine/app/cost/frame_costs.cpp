@@ -42,7 +42,7 @@ Outcome add_mirrors(render::Renderer& renderer, const render::FramePacket& packe
     const render::VolumeItem& volume = packet.volumes.front();
     CostRow row{"mirror", volume.grid->name(), "packed for the fast raycast", {}, {}};
     if (render::can_be_packed(renderer.device(), *volume.grid))
-      row.expected.bytes = double(render::packed_bytes(*volume.grid)) * (volume.shade && settings.fast->smooth_gradients ? 2 : 1);
+      row.expected.bytes = double(render::packed_bytes(*volume.grid, volume.shade && settings.fast->smooth_gradients));
     table.push_back(std::move(row));
   }
   std::set<std::tuple<std::uint64_t, bool>> seen;

@@ -253,6 +253,22 @@ TEST_F(FastVolume, WhatItCannotDrawIsDrawnExactly) {
   EXPECT_EQ(max_difference(draw(packet, fast(4, 4)), draw(packet)), 0);
 }
 
+TEST_F(FastVolume, PlateausBesideEdgesAreLitAsTheExactOneLightsThem) {
+  // slopes of a thousandth of the edge's, whose directions are all that the light asks for
+  const auto grid = make_grid({48, 48, 48}, [](const Vec3& p) {
+    const double edge = std::sqrt((p.x - 24) * (p.x - 24) + (p.y - 24) * (p.y - 24) + (p.z - 24) * (p.z - 24)) - 17;
+    return 0.8 / (1 + std::exp(4 * edge)) + 0.002 * std::sin(0.3 * p.x) * std::sin(0.35 * p.y + 0.2) * std::sin(0.25 * p.z + 1);
+  });
+  FramePacket packet = packet_of({110, -80, 70}, {23.5, 23.5, 23.5});
+  packet.background = {0, 0, 0, 1};
+  packet.volumes = {volume_item(grid, {{0, 0}, {0.75, 0}, {0.79, 0.1}, {1, 0.1}}, {0.9f, 0.7f, 0.4f})};
+  packet.volumes[0].shade = true;
+  const Picture exact = draw(packet, reference_settings(), "plateau");
+  RenderSettings settings = fast(0.5, 1);
+  settings.fast->smooth_gradients = true;
+  EXPECT_LT(rmse(draw(packet, settings, "plateau-fast"), exact), 1);
+}
+
 TEST_F(FastVolume, WhatDoesNotFitInMemoryIsDrawnExactlyAndSaid) {
   FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.volumes = {coloured(waves(), true)};
