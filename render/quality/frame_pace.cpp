@@ -10,13 +10,17 @@
 namespace catena::render {
 namespace {
 
-constexpr double kRoom = 0.8, kLeastRoom = 0.25, kAfterLate = 0.9, kRegained = 0.0005;
-constexpr int kUntilHalf = 8, kUntilFull = 30;  // frames
-constexpr double kFullBelow = 0.7;              // of the budget
+constexpr double kRoom = 0.8, kLeastRoom = 0.25, kAfterLate = 0.9;
+constexpr int kRecovery = 90;                                                              // frames
+constexpr double kRegain = (kRoom - kLeastRoom) / kRecovery, kLeastRegain = kRegain / 22;  // a frame
+constexpr double kForgotten = 0.95;                                                        // of the room where frames came late
+constexpr double kBeyond = 1.035;                                                          // twice in 20 frames
+constexpr int kUntilHalf = 8, kUntilFull = 30;                                             // frames
+constexpr double kFullBelow = 0.7;                                                         // of the budget
 
 }  // namespace
 
-FramePace::FramePace(const LadderKind& kind) : kind_(kind), refinement_(1, kind), room_(kRoom) {}
+FramePace::FramePace(const LadderKind& kind) : kind_(kind), refinement_(1, kind), room_(kRoom), regain_(kRegain), late_room_(kRoom) {}
 
 void FramePace::follow(const LadderKind& kind) {
   if (kind == kind_) return;
@@ -33,13 +37,27 @@ void FramePace::count(double period_ms, std::int64_t shown_ns) {
   if (shown_ns_ != 0) {
     const double periods = 1e-6 * static_cast<double>(shown_ns - shown_ns_) / period_ms;
     const bool late = periods > plan_.periods + 0.5;
-    room_ = late ? std::max(kLeastRoom, kAfterLate * room_) : std::min(kRoom, room_ + kRegained);
+    make_room(late);
     if (late) {
       ++late_;
       if (frames_ > kLearning) ++late_after_;
     }
   }
   shown_ns_ = shown_ns;
+}
+
+/// A stall says nothing of the room that a picture can have, and what comes late while the room grows does: of several late frames in a row
+/// the first one counts.
+void FramePace::make_room(bool late) {
+  if (late && !was_late_) {
+    late_room_ = std::max(room_, kForgotten * late_room_);
+    regain_ = rested_ >= kRecovery ? kRegain : std::max(kLeastRegain, regain_ / 2);
+  }
+  was_late_ = late;
+  beyond_ = late || room_ <= late_room_ ? 1 : kBeyond * beyond_;
+  regain_ = beyond_ * regain_ < kRegain ? regain_ : kRegain;
+  room_ = late ? std::max(kLeastRoom, kAfterLate * room_) : std::min(kRoom, room_ + beyond_ * regain_);
+  rested_ = late || room_ < kRoom ? 0 : rested_ + 1;
 }
 
 void FramePace::choose_rate(double coarsest_ms) {

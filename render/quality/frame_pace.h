@@ -1,7 +1,9 @@
 /// Which picture a headset's next frame is, so that it comes in time: a display that shows a frame every period, whether it is there or
 /// not. Pure logic of what it is told, no device and no clock; it shares the ladder and the times of refinement.h with the window.
-///   budget   room of the period; room is 0.8, falls by a tenth with every late frame (to 0.25 at least) and rises by 0.0005 with every
-///            other one: what the compositor and the machine need beside the picture is not known before
+///   budget   room of the period; room is 0.8 and falls by a tenth with every late frame (to 0.25 at least): what the compositor and the
+///            machine need beside the picture is not known before. After a stall it is all back within 90 frames; where frames come late
+///            again on the way, it rises half as fast after each of these (to a 22nd at least) up to where they did, and beyond, where
+///            they do not any more, twice as fast every 20 frames
 ///   rung     the best one whose expected time, of both eyes together, fits the budget; where the fast raycast cannot draw it and none
 ///            fits, fewer pixels (coarser_pixels)
 ///   rate     where even the coarsest does not fit for 8 frames in a row: that one, at half rate (two periods a frame); said once. Back at
@@ -46,12 +48,18 @@ class FramePace {
 
  private:
   void count(double period_ms, std::int64_t shown_ns);
+  void make_room(bool late);
   void choose_rate(double coarsest_ms);
 
   LadderKind kind_;
   Refinement refinement_;
   FramePlan plan_;
-  double period_ms_ = 0, room_, budget_ms_ = 0;
+  double room_, budget_ms_ = 0;
+  double regain_;      ///< of the room, with every frame in time
+  double beyond_ = 1;  ///< times that, where no frame came late
+  double late_room_;   ///< where frames came late, a twentieth less with each of them
+  int rested_ = 0;     ///< frames in time since the room was all there
+  bool was_late_ = false;
   std::int64_t shown_ns_ = 0;  ///< the last frame; 0: none
   bool asked_ = false;
   int frames_ = 0, drawn_ = 0, late_ = 0, late_after_ = 0, at_half_rate_ = 0;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 
 namespace catena::test {
 namespace frame_pace_test {
@@ -91,6 +92,45 @@ TEST(FramePace, GivesWayToWhatElseTheMachineDoesAndComesBack) {
   h.beside_ms = 0;
   h.run(1000);
   EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9);
+}
+
+/// What the machine had before a stall it has again 90 frames after it, and is not late for that.
+TEST(FramePace, AfterAStallOfAnyLengthAllIsBackInASecond) {
+  for (const int frames : {1, 3, 30, 300})
+    for (const double stall_ms : {15.0, 60.0, 3000.0}) {
+      const std::string what = std::to_string(frames) + " of " + std::to_string(stall_ms) + " ms";
+      Headset h;
+      h.run(400);
+      const double budget = h.pace.budget_ms(), cost = relative_cost(h.plan.settings, false);
+      for (int again = 0; again < 3; ++again) {
+        h.beside_ms = stall_ms;
+        h.run(frames);
+        h.beside_ms = 1;
+        h.run(2);  // the first one still shows what the stall made late
+        const int late = h.pace.late();
+        h.run(90);
+        EXPECT_NEAR(h.pace.budget_ms(), budget, 1e-9) << what;
+        EXPECT_EQ(relative_cost(h.plan.settings, false), cost) << what;
+        EXPECT_EQ(h.plan.periods, 1) << what;
+        h.run(300);
+        EXPECT_LE(h.pace.late() - late, 3) << what;
+      }
+    }
+}
+
+/// A compositor that always needs more than the usual room: the rise does not try again and again. When it needs it no more, it is back.
+TEST(FramePace, SteadyLoadDoesNotMakeItLate) {
+  for (const double beside : {3.0, 4.0, 5.0, 6.0, 7.0, 8.0}) {
+    Headset h;
+    h.beside_ms = beside;
+    h.run(500);
+    const int late = h.pace.late();
+    h.run(5000);
+    EXPECT_LE(h.pace.late() - late, 50) << beside << " ms: more than 1 % late";
+    h.beside_ms = 0;
+    h.run(600);
+    EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9) << beside << " ms";
+  }
 }
 
 TEST(FramePace, CountsWhatIsLateAndNotAPause) {
