@@ -35,7 +35,7 @@ void FramePace::count(double period_ms, std::int64_t shown_ns) {
   ++frames_;
   if (half_) ++at_half_rate_;
   if (shown_ns_ != 0) {
-    const double periods = 1e-6 * static_cast<double>(shown_ns - shown_ns_) / period_ms;
+    const double periods = 1e-6 * (static_cast<double>(shown_ns) - static_cast<double>(shown_ns_)) / period_ms;
     const bool late = periods > plan_.periods + 0.5;
     make_room(late);
     if (late) {

@@ -62,6 +62,7 @@ struct Script {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> selects;  ///< frames in which its trigger is down: from, to
   std::uint64_t menu_from = 0, menu_to = 0;                      ///< frames in which the right hand's button is down
   bool keep_pictures = false;
+  std::uint32_t images = 3;  ///< of a swapchain
 };
 
 struct KeptPicture {

@@ -7,8 +7,6 @@ namespace catena::test::xr_runtime {
 
 namespace {
 
-constexpr std::uint32_t kImages = 3;
-
 std::uint32_t memory_type(VkPhysicalDevice physical, std::uint32_t bits, VkMemoryPropertyFlags wanted) {
   VkPhysicalDeviceMemoryProperties properties{};
   vkGetPhysicalDeviceMemoryProperties(physical, &properties);
@@ -79,7 +77,7 @@ XRAPI_ATTR XrResult XRAPI_CALL create_swapchain(XrSession handle, const XrSwapch
   swapchain->device = session->device;
   swapchain->info = *info;
   const bool depth = swapchain->is_depth();
-  for (std::uint32_t i = 0; i < kImages; ++i) {
+  for (std::uint32_t i = 0; i < world().stage.script.images; ++i) {
     VkImageCreateInfo image{};
     image.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
     image.imageType = VK_IMAGE_TYPE_2D;

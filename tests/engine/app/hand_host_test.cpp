@@ -174,6 +174,48 @@ TEST(HandHost, AnotherDeviceTakesOverAndOneThatCannotLeavesTheOldOne) {
   EXPECT_TRUE(rig.until([&] { return norm(rig.hand.felt().probe - Vec3(0.5)) < 1e-9; }));
 }
 
+/// While the world moves under it: no force whatever is wished, and none before the servo runs what the world has become.
+TEST(HandHost, AHandThatIsHeldOffHasNoForceAndItRisesAgainFromZero) {
+  Rig mouse;
+  mouse.start();
+  EXPECT_TRUE(mouse.hand.hold_off(true)) << "what cannot push is off already";
+  mouse.hand.stop();
+
+  test::TemporaryFolder folder;
+  test::write_file(folder / "pressed.csv", "t,x,y,z,buttons\n0,0,0,-0.02,0\n");
+  Rig rig(asking_for("simulated:" + (folder / "pressed.csv")));
+  rig.start();
+  HandHost& hand = rig.hand;
+  const auto pushes = [&] { return hand.felt().force_state == exchange::ForceState::on && norm(hand.felt().force_n) > 0.1; };
+  hand.set_forces(true);
+  ASSERT_TRUE(rig.until(pushes));
+  const double pressed_n = norm(hand.felt().force_n);
+
+  EXPECT_FALSE(hand.hold_off(true)) << "there is force still: the world must not move yet";
+  EXPECT_TRUE(hand.forces()) << "what is wished stays";
+  ASSERT_TRUE(rig.until([&] { return hand.hold_off(true); }));
+  EXPECT_EQ(norm(hand.felt().force_n), 0);
+  hand.set_forces(false);
+  hand.set_forces(true);
+  EXPECT_FALSE(hand.servo().forces()) << "a wish does not end it";
+  ASSERT_TRUE(rig.runs_on(50));
+  EXPECT_EQ(norm(hand.felt().force_n), 0);
+
+  // the world has moved: the servo has not said yet that it runs so
+  rig.edit("/chain/1/point", "[0, 0, 0.1]");
+  EXPECT_FALSE(hand.hold_off(false));
+  EXPECT_FALSE(hand.servo().forces());
+  ASSERT_TRUE(rig.has_run());
+  EXPECT_TRUE(hand.hold_off(false));
+  EXPECT_TRUE(hand.servo().forces());
+  double first_n = 0;
+  ASSERT_TRUE(rig.until([&] {
+    if (first_n == 0) first_n = norm(hand.felt().force_n);
+    return pushes();
+  }));
+  EXPECT_LT(first_n, 0.8 * pressed_n) << "it rises";
+}
+
 TEST(HandHost, ADeviceSwitchEndsARecordingThatIsWhole) {
   Rig rig;
   rig.start();

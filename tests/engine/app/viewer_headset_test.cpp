@@ -7,14 +7,23 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 #include "engine/app/hand/device_file.h"
 #include "engine/app/viewer/shell/headset_hands.h"
+#include "engine/app/viewer/shell/headset_host.h"
+#include "engine/app/viewer/shell/scene_host.h"
+#include "engine/base/clock.h"
 #include "haptics/device/settings.h"
 #include "render/image/picture.h"
+#include "tests/engine/app/open_scene.h"
+#include "tests/support/child_test.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
+#if __has_include(<openxr/openxr.h>)
+#include "tests/render/xr/rig.h"
+#endif
 
 namespace catena::app {
 namespace viewer_headset_test {
@@ -231,6 +240,31 @@ TEST(HeadsetHands, WhatIsSqueezedStaysInTheHandAndNothingIsFeltMeanwhile) {
   EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);  // it was let go
 }
 
+TEST(HeadsetHands, AHandThatVanishesWhileItHoldsDoesNotMoveTheWorld) {
+  HeadsetHands hands;
+  Placement placement;
+  placement.metres_per_unit = 0.1;
+  const Vec3 left(-0.2, 1.0, -0.5), right(0.2, 1.0, -0.5), middle = placement.to_world((left + right) / 2.0);
+  const auto stays = [&] { return norm(placement.to_room(middle) - (left + right) / 2.0) < 1e-12 && placement.metres_per_unit == 0.1; };
+  for (int k = 0; k < 3; ++k) hands.step({hand_at(left, 1), hand_at(right, 1)}, kHead, kDt, placement);
+  // what a runtime says of a hand that it has lost: nothing that is one, the button as it was
+  RoomHand lost = hand_at(Vec3(std::nan("")), 1);
+  lost.turn = Quat(std::nan(""), 0.0, 0.0, 0.0);
+  lost.there = false;
+  hands.step({lost, hand_at(right, 1)}, kHead, kDt, placement);
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(hands.holds_world());
+  hands.step({lost, lost}, kHead, kDt, placement);
+  EXPECT_TRUE(stays());
+  EXPECT_FALSE(hands.holds_world());
+  EXPECT_FALSE(hands.held_middle({lost, lost}));
+  EXPECT_FALSE(hands.probe(lost, 1).tracked);
+  // found elsewhere, still squeezed: it takes hold there
+  hands.step({hand_at(left + Vec3(1, 1, 1), 1), lost}, kHead, kDt, placement);
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(hands.holds_world());
+}
+
 TEST(HeadsetHands, TheStickTurnsThePersonAndTheWorldTheOtherWay) {
   HeadsetHands hands;
   Placement placement;
@@ -266,6 +300,89 @@ TEST(HeadsetHands, AVibrationStopsWithTheFocus) {
   push(1.5);
   EXPECT_EQ(hands.vibration(peaks, now += 11'000'000, false, hand).what, What::nothing);
 }
+
+#if __has_include(<openxr/openxr.h>)
+
+/// A scripted clock of milliseconds, and a hand that goes one unit a millisecond: where it is drawn says from when it is. The runtime's
+/// wait and the making of a packet take their scripted time, as in the window's loop, which looks at the hand before both.
+struct LateHand {
+  double now_ms = 0;
+  double wait_ms(std::uint64_t frame) const { return 4 + double(frame % 6); }
+  double packet_ms() const { return 1.5; }
+  Vec3 place() const { return Vec3(now_ms, 0, 0); }
+};
+
+/// Run as a process on a display of its own, by the case after it.
+TEST(LateLatching, DISABLED_Child) {
+  const std::string result = test::child_variable("CATENA_LATCHING");
+  if (result.empty()) GTEST_SKIP() << "it is run by the case after it";
+  test::xr_rig::Runtime runtime;
+  ASSERT_TRUE(runtime.found());
+  runtime.script().width = runtime.script().height = 16;
+  LateHand hand;
+  runtime.script().at_frame = [&](std::uint64_t frame, test::xr_runtime::Script&) { hand.now_ms += hand.wait_ms(frame); };
+  auto window = Window::create(64, 64, "latching");
+  ASSERT_TRUE(window) << window.error().message;
+  auto headset = HeadsetHost::open();
+  ASSERT_TRUE(headset) << headset.error().message;
+  Screen::Options options;
+  (*headset)->join(options);
+  auto screen = Screen::open(**window, options);
+  ASSERT_TRUE(screen) << screen.error().message;
+  test::TemporaryFolder folder;
+  std::optional<SceneHost> host;
+  test::open_scene(folder, kScene, host);
+  HandHost holder(HandHost::Options{});
+  ASSERT_TRUE(holder.open_device(host->scene()));
+
+  Vec3 looked_at(0.0);
+  std::vector<double> late_ms, early_ms;  // how old the hand is that each eye shows, and would be
+  HeadsetHost::Content content;
+  content.make = [&]() -> Result<render::FramePacket> {
+    render::FramePacket packet = test::xr_rig::ball_packet({0.0, 0.0, -1.0}, 0.3);
+    render::CursorItem& cursor = packet.cursors.emplace_back();
+    cursor.probe = looked_at;
+    cursor.size = 0.1;
+    hand.now_ms += hand.packet_ms();
+    return packet;
+  };
+  content.latch = [&](render::FramePacket& packet) { packet.cursors[0].probe = hand.place(); };
+  content.aim = [&](const render::View&, render::FramePacket& packet) {
+    late_ms.push_back(hand.now_ms - packet.cursors[0].probe.x);
+    early_ms.push_back(hand.now_ms - looked_at.x);
+  };
+  content.kind = [](const render::FramePacket&) { return render::LadderKind{}; };
+  for (int k = 0; k < 200 && late_ms.size() < 120; ++k) {
+    looked_at = hand.place();
+    ASSERT_TRUE((*headset)->follow(**screen, now_ns(), [](const std::string&) {}));
+    if (!(*headset)->running()) continue;
+    const auto drawn = (*headset)->draw(**screen, holder, content);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+  }
+  ASSERT_EQ(late_ms.size(), 120u) << "two eyes, sixty pictures";
+  EXPECT_EQ(*std::ranges::max_element(late_ms), 0) << "each eye shows the hand as it is when its picture is drawn";
+  double gain = 0;
+  for (std::size_t k = 0; k < late_ms.size(); ++k) gain += (early_ms[k] - late_ms[k]) / double(late_ms.size());
+  test::write_file(result, fmt::format("{}", gain));
+  (*headset)->leave();
+}
+
+/// The hand in the picture is newer by the whole wait for the frame (4 to 9 ms here) and the making of the packet (1.5 ms).
+TEST(LateLatching, TheHandIsNewerByTheWaitAndThePacket) {
+  if (!test::exists(test::binary_dir() + "/libcatena_xr_runtime.so")) GTEST_SKIP() << "the scripted runtime was not built";
+  if (!test::can_drive_windows()) GTEST_SKIP() << "there is no virtual display";
+  test::TemporaryFolder folder;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const int status =
+      std::system(("env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX HOME=" + folder.path() + " CATENA_LATCHING=" + (folder / "gain") +
+                   " timeout 60 " + test::on_display("320x240") + self +
+                   " --gtest_filter=LateLatching.DISABLED_Child --gtest_also_run_disabled_tests > " + (folder / "log") + " 2>&1")
+                      .c_str());
+  ASSERT_EQ(status, 0) << test::read_file(folder / "log");
+  EXPECT_NEAR(std::stod(test::read_file(folder / "gain")), 6.5 + 1.5, 0.1) << "milliseconds";
+}
+
+#endif
 
 }  // namespace viewer_headset_test
 }  // namespace catena::app

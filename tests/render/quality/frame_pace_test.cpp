@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 #include <string>
 
@@ -154,6 +155,18 @@ TEST(FramePace, CountsWhatIsLateAndNotAPause) {
   shown += 3'000'000;  // the runtime's prediction wavers
   frame(1);
   EXPECT_EQ(pace.late(), 2);
+}
+
+TEST(FramePace, AClockThatLeapsIsAtMostLate) {
+  FramePace pace;
+  constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t shown : {std::int64_t(-5), -kFar, kFar, -kFar, std::int64_t(0), kFar}) {
+    EXPECT_GT(pace.next(10, shown).periods, 0);
+    pace.drawn(1);
+    EXPECT_GE(pace.budget_ms(), 2.5 - 1e-9);
+    EXPECT_LE(pace.budget_ms(), 8 + 1e-9);
+  }
+  EXPECT_EQ(pace.late(), 2) << "what goes back, or comes after nothing, is not late";
 }
 
 TEST(FramePace, ExactRaysSavePixels) {

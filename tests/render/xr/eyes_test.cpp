@@ -20,9 +20,9 @@ namespace eyes_test {
 
 using namespace xr_rig;
 
-double processor_s() {
+double processor_s(int whose = RUSAGE_SELF) {
   rusage used{};
-  ::getrusage(RUSAGE_SELF, &used);
+  ::getrusage(whose, &used);
   const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
@@ -85,7 +85,7 @@ TEST_F(HeadsetEyes, CostOfTheSecond) {
   const std::string folder = source_dir() + "/assets/scenes/";
   constexpr int kPictures = 12, kRounds = 7;
   struct Cost {
-    double processor_s = 0, wall_s = 0, work_s = 0;  // the last: of what was submitted, as the device measures it
+    double processor_s = 0, own_s = 0, wall_s = 0, work_s = 0;  // the last: of what was submitted, as the device measures it
   };
   for (const char* name : {"brain", "hand", "head-cut", "atlas", "left-ventricle", "rake", "ventricle-fibres"}) {
     auto scene = scene::read_scene(folder + name + ".json");
@@ -99,12 +99,13 @@ TEST_F(HeadsetEyes, CostOfTheSecond) {
         ASSERT_TRUE(open());
         draw(*scene, balanced_settings(), 4);
         packet_s_ = 0;
-        const double before = processor_s();
+        const double before = processor_s(), own = processor_s(RUSAGE_THREAD);
         const std::int64_t start = now_ns();
         const double work_ns = renderer_->device().counters().work_ns;
         draw(*scene, balanced_settings(), kPictures);
         Cost& sum = cost[which / 2];
         sum.processor_s += processor_s() - before;
+        sum.own_s += processor_s(RUSAGE_THREAD) - own;
         sum.wall_s += 1e-9 * double(now_ns() - start);
         sum.work_s += 1e-9 * (renderer_->device().counters().work_ns - work_ns);
         close();
@@ -118,8 +119,10 @@ TEST_F(HeadsetEyes, CostOfTheSecond) {
       return fmt::format("{:.3f} ({:.3f} to {:.3f})", of[of.size() / 2], of[of.size() / 4], of[of.size() * 3 / 4]);
     };
     const auto ms = [](double seconds) { return 1e3 * seconds / (2 * kPictures); };
-    fmt::print("{:16} one eye: processor {:.1f} ms, wall {:.1f} ms, device {:.1f} ms; both by one: processor {}, wall {}\n", name,
-               ms(one.processor_s), ms(one.wall_s), ms(one.work_s), quartiles(processor), quartiles(wall));
+    fmt::print(
+        "{:16} one eye: processor {:.1f} ms ({:.1f} ms of the thread that submits), wall {:.1f} ms, device {:.1f} ms; both by one: "
+        "processor {}, wall {}\n",
+        name, ms(one.processor_s), ms(one.own_s), ms(one.wall_s), ms(one.work_s), quartiles(processor), quartiles(wall));
     std::fflush(stdout);
   }
 }

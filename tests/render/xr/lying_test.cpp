@@ -78,6 +78,25 @@ TEST_F(LyingHeadset, NoViewsOrTooManyAreRefused) {
   }
 }
 
+/// One eye, or a headset of four displays, and runtimes that lend one image at a time.
+TEST_F(LyingHeadset, AnyNumberOfViewsAndOneImageAreShown) {
+  runtime_.script().width = runtime_.script().height = 16;
+  runtime_.script().images = 1;
+  const std::vector<XrView> two = runtime_.script().views;
+  for (const std::size_t count : {1u, 4u}) {
+    runtime_.script().views.assign(count, two[0]);
+    runtime_.script().views.back() = two[1];
+    ASSERT_TRUE(open());
+    const std::uint64_t before = runtime_.record().pictures;
+    const Outcome turned = turn(packet_, {}, 8);
+    ASSERT_TRUE(turned) << turned.error().message;
+    EXPECT_GT(runtime_.record().pictures, before + 4) << count;
+    headset_->stop();
+    renderer_.reset();
+    headset_.reset();
+  }
+}
+
 /// A period is what rays are given their time by.
 TEST_F(LyingHeadset, APeriodIsOneThatCanBe) {
   runtime_.script().width = runtime_.script().height = 8;

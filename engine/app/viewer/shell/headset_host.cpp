@@ -236,7 +236,7 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
     gaze = rotate(eyes->turn, Vec3(0.0, 0.0, -1.0));
   }
   hand.record_poses(poses);
-  const double dt_s = last_time == 0 ? 0 : std::clamp(1e-9 * double(frame.time - last_time), 0.0, kMostStepS);
+  const double dt_s = last_time == 0 ? 0 : std::clamp(1e-9 * (double(frame.time) - double(last_time)), 0.0, kMostStepS);
   last_time = frame.time;
   if (placement) hands.step(hands_then, head.position, dt_s, *placement);
   held_m = hands.held_middle(hands_then);
