@@ -10,10 +10,20 @@
 
 namespace catena::app {
 
+namespace {
+
+std::string listed_tics(char axis, const std::vector<double>& tics) {
+  std::string text;
+  for (const double tic : tics) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", tic);
+  return fmt::format("set {}tics ({})\n", axis, text);
+}
+
+}  // namespace
+
 std::string plot_head(int width, int height) {
   return fmt::format(
       "set terminal svg size {},{} dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%g'\n"
-      "set grid lc rgb '#888888' lw 0.5\nset key outside top center horizontal samplen 1.5 maxcols 3\n",
+      "set grid lc rgb '#888888' lw 0.5\nset key outside top center horizontal samplen 1.5 spacing 1.35 maxcols 3\n",
       width, height);
 }
 
@@ -28,13 +38,13 @@ std::string log_tics(char axis, double lo, double hi) {
       for (const double digit : digits)
         if (const double tic = digit * std::pow(10.0, power); tic >= lo && tic <= hi) tics.push_back(tic);
     if (tics.size() < kEnough) continue;
-    std::string text;
-    for (const double tic : tics) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", tic);
-    return fmt::format("set {}tics ({})\n", axis, text);
+    return listed_tics(axis, tics);
   }
   const double step = std::pow(10.0, std::floor(std::log10((hi - lo) / 2)));
   const double wide = (hi - lo) / step > kMost ? 5 * step : (hi - lo) / step > 4 ? 2 * step : step;
-  return fmt::format("set {}tics {:.6g}, {:.6g}\n", axis, std::ceil(lo / wide) * wide, wide);
+  std::vector<double> tics;  // one by one: on a logarithmic axis gnuplot multiplies by a step
+  for (double k = std::ceil(lo / wide); k * wide <= hi; ++k) tics.push_back(k * wide);
+  return listed_tics(axis, tics);
 }
 
 std::string plot_color(int i) {
