@@ -125,7 +125,6 @@ TEST(PlanOfTheEye, SettingsComeFromTheProgramAlone) {
 }
 
 TEST(PlanOfTheEye, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
-  const render::LadderKind exact{false, false};
   EyeCurve made_curve;
   const auto add = [&](double error, double time, double bytes, render::TexelFormat texels) {
     made_curve.settings.push_back(render::exact_rung(1));
@@ -149,7 +148,7 @@ TEST(PlanOfTheEye, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
 
 TEST(PlanOfTheEye, OffersFormatsOfVoxelsWhereRaysReadThem) {
   using render::TexelFormat;
-  const field::ScalarGridPtr grid = field::make_scalar_grid("g", {}, {8, 8, 8}, std::vector<float>(512, 1));
+  const auto grid = field::make_scalar_grid("g", {}, {8, 8, 8}, std::vector<float>(512, 1));
   const auto labels = grid->interpolated(field::Interpolation::nearest);
   const auto offered = [](const render::FramePacket& packet) {
     std::set<TexelFormat> formats;

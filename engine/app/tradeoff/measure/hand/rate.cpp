@@ -48,7 +48,7 @@ Result<Curve> force_curve(Subject& subject) {
   curve.title = "How often the servo ticks: the force";
   curve.what = fmt::format(
       "The hand goes {}, the same way at every rate; a force is held until the next tick, as a device holds it. "
-      "What differs is how late a force comes: it halves when the rate doubles.",
+      "What differs is how late a force comes.",
       subject.motion.words);
   curve.error_name = "difference of the force from that of 10 kHz, N (RMS)";
   curve.work_name = "ticks a second";
