@@ -28,7 +28,7 @@ std::string plot_head(int width, int height) {
 }
 
 std::string log_tics(char axis, double lo, double hi) {
-  constexpr int kEnough = 3, kMost = 8;
+  constexpr std::size_t kEnough = 3;
   if (!(lo > 0 && hi > lo) || hi / lo > 1e3) return fmt::format("set {}tics autofreq\n", axis);
   // ever finer numbers of each decade, the first set that has enough of them on the axis
   const std::vector<std::vector<double>> finer{{1}, {1, 3}, {1, 2, 5}, {1, 1.5, 2, 3, 4, 5, 6, 8}};
@@ -40,10 +40,14 @@ std::string log_tics(char axis, double lo, double hi) {
     if (tics.size() < kEnough) continue;
     return listed_tics(axis, tics);
   }
+  // a narrow axis: even steps, one by one, since on a logarithmic axis gnuplot multiplies by a step
   const double step = std::pow(10.0, std::floor(std::log10((hi - lo) / 2)));
-  const double wide = (hi - lo) / step > kMost ? 5 * step : (hi - lo) / step > 4 ? 2 * step : step;
-  std::vector<double> tics;  // one by one: on a logarithmic axis gnuplot multiplies by a step
-  for (double k = std::ceil(lo / wide); k * wide <= hi; ++k) tics.push_back(k * wide);
+  std::vector<double> tics;
+  for (const double wide : {5 * step, 2 * step, step, 0.5 * step}) {
+    tics.clear();
+    for (double k = std::ceil(lo / wide); k * wide <= hi; ++k) tics.push_back(k * wide);
+    if (tics.size() >= kEnough) break;
+  }
   return listed_tics(axis, tics);
 }
 
