@@ -3,6 +3,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/kept.h"
+#include "engine/field/units.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_named.h"
@@ -52,6 +53,23 @@ auto load_once(Scene& scene, Entity entity, const std::string& kind, const Load&
   return source.loaded;
 }
 
+/// Between labels there is nothing to mix: a note where what is marked as labels is read by cells, unless a surface of labels is made of
+/// it.
+void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource& source) {
+  const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
+  if (!source.file || grid == nullptr || grid->interpolation() == field::Interpolation::nearest) return;
+  const std::string& path = source.file->path;
+  const bool table = !source.labels_table.empty();
+  if (!table && (path.ends_with(".vdb") || !field::units_of(path, source.file->grid).labels)) return;  // a .vdb has no such mark
+  bool made = false;
+  scene.world.each<FieldSource>([&](Entity, const FieldSource& other) { made = made || (other.label && other.label->of == name); });
+  if (made) return;
+  scene.notes.push_back(fmt::format(
+      "field {}: {}, and {} cells make numbers between them that stand for nothing; \"interpolation\": \"nearest\" was expected",
+      in_quotes(name), table ? "it has \"labels\"" : path + " says that it holds labels (NIFTI_INTENT_LABEL)",
+      grid->interpolation() == field::Interpolation::cubic ? "cubic" : "linear"));
+}
+
 }  // namespace
 
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where) {
@@ -73,6 +91,7 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
   for (const std::string& note : source.stepped ? std::vector<std::string>() : loaded->notes)
     scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
   find_labels(source);
+  note_mixed_labels(scene, scene.world.get<Name>(field).value, source);
   return source.loaded;
 }
 

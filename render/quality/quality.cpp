@@ -390,7 +390,10 @@ Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const Rend
 }
 
 std::string describe(const RenderSettings& settings) {
-  if (!settings.fast) return fmt::format("exact, step {:g}", settings.step_voxels);
+  const char* bits = settings.texels == TexelFormat::automatic ? ""
+                     : settings.texels == TexelFormat::r16f    ? ", 16 bits a voxel"
+                                                               : ", 32 bits a voxel";
+  if (!settings.fast) return fmt::format("exact, step {:g}{}", settings.step_voxels, bits);
   const FastSettings& f = *settings.fast;
   std::string text = fmt::format("fast, step {:g}", f.step_voxels);
   if (f.smooth_gradients) text += ", smooth gradients";

@@ -65,7 +65,7 @@ Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& pac
 /// The same of one.
 Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
-/// "step 3, every 4th pixel, refined to every 2nd above 0.5"
+/// "fast, step 3, every 4th pixel, every 2nd above 0.5"; "exact, step 1, 32 bits a voxel" where that is stated.
 std::string describe(const RenderSettings& settings);
 
 }  // namespace catena::render

@@ -241,7 +241,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
     row(c.name,
         wanted[k].hand_error ? fmt::format("hand_error={:.3g}", *wanted[k].hand_error)
                              : fmt::format("hand_time={:.3g}", *wanted[k].hand_time),
-        chosen.setting, std::max(plans[k].expected_error(), 1e-300), chosen.error, plans[k].expected_us(), 1e-3 * chosen.time.median,
+        chosen.setting, std::max(plans[k].error_anywhere(), 1e-300), chosen.error, plans[k].expected_us(), 1e-3 * chosen.time.median,
         best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
         best < 0 ? "none" : times.points[static_cast<std::size_t>(best)].setting);
   }

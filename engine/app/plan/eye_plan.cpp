@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "engine/app/command.h"
 #include "engine/app/tradeoff/measure/eye/eye.h"
 #include "engine/app/tradeoff/measure/timing.h"
 #include "engine/base/clock.h"
@@ -18,6 +20,7 @@ constexpr double kErrorsS = 60, kTimesS = 6;  // at most for errors, and about f
 constexpr std::uint32_t kFloorWidth = 256;    // of the picture that the data's own error is looked up in
 constexpr int kRounds = 5;                    // of times
 constexpr double kHolds = 1.15;               // of a time: a setting that is there stays within it
+constexpr double kAsQuick = 1.1;              // of a time: what takes fewer bytes may take so much longer
 
 /// Small, as one eye sees it.
 render::FramePacket small(render::FramePacket packet) {
@@ -40,12 +43,40 @@ Result<render::LadderKind> kind_of(render::Renderer& renderer, const render::Fra
 
 std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind) {
   std::vector<render::RenderSettings> all;
+  const auto each_format = [&all](const render::RenderSettings& settings) {
+    all.push_back(settings);
+    if (settings.fast || settings.texels != render::TexelFormat::automatic) return;
+    for (const render::TexelFormat format : {render::TexelFormat::r16f, render::TexelFormat::r32f}) {
+      all.push_back(settings);
+      all.back().texels = format;
+    }
+  };
   // coarse pictures may do with the light of the cell's gradient, which the ladder leaves out
   if (kind.fast && kind.shaded)
     for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0}) all.push_back(render::fast_rung(step, 4, -1, -1));
-  const std::vector<render::RenderSettings> ladder = render::quality_ladder(kind);
-  all.insert(all.end(), ladder.begin(), ladder.end());
-  all.push_back(render::reference_settings());
+  std::ranges::for_each(render::quality_ladder(kind), each_format);
+  each_format(render::reference_settings());
+  return all;
+}
+
+std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind, const render::FramePacket& packet) {
+  // automatic texels have 32 bits where a grid carries a surface (render/passes/pass.h)
+  const bool surfaces = !packet.isosurfaces.empty() || !packet.slices.empty();
+  const auto labels = [](const auto& item) {
+    return item.grid->interpolation() == field::Interpolation::nearest ||
+           (item.color_by && item.color_by->grid->interpolation() == field::Interpolation::nearest);
+  };
+  const bool fewer = surfaces && packet.slices.empty() &&
+                     std::ranges::all_of(packet.isosurfaces, [](const auto& item) { return item.opacity < 1; }) &&
+                     std::ranges::none_of(packet.isosurfaces, labels) && std::ranges::none_of(packet.volumes, labels);
+  std::vector<render::RenderSettings> all = eye_settings(kind);
+  const render::RenderSettings reference = all.back();
+  all.pop_back();
+  std::erase_if(all, [&](const render::RenderSettings& s) {
+    if (s.fast || s.texels == render::TexelFormat::automatic) return false;
+    return s.texels == render::TexelFormat::r16f ? !fewer : surfaces;
+  });
+  all.push_back(reference);
   return all;
 }
 
@@ -59,20 +90,24 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
   curve.what = fmt::format("The settings of a plan on the very picture, {}x{}.", packet.width, packet.height);
   curve.error_name = "error of the picture (RMSE, 1/255)";
   curve.time_name = "ms a picture";
+  curve.bytes_name = "bytes on the device";
   at(0);
   CATENA_TRY(const tradeoff::PictureFloor floor, tradeoff::picture_floor(renderer, small(packet)));
   curve.floor = floor.error;
   curve.floor_from = floor.from;
   at(0.1);
-  const std::vector<render::RenderSettings> all = eye_settings(kind);
+  const std::vector<render::RenderSettings> all = eye_settings(kind, packet);
   const double enough = std::max(render::kLeastTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
   const std::int64_t start = now_ns();
   const auto share = [&](std::size_t done) { return double(done) / double(all.size()); };
   std::size_t count = 0;
-  // errors: what is more exact than can be told is left out, but for one
+  // errors: what is more exact than can be told is left out, but for one (of each format of voxels)
+  double best = std::numeric_limits<double>::infinity();
   const auto go_on = [&](double last) {
     at(0.1 + 0.5 * share(count));
-    const bool more = count == 0 || (last > enough && 1e-3 * ms_since(start) < kErrorsS);
+    if (count > 0) best = std::min(best, last);
+    const bool sibling = count > 0 && count < all.size() && !all[count].fast && all[count].texels != render::TexelFormat::automatic;
+    const bool more = count == 0 || ((best > enough || sibling) && 1e-3 * ms_since(start) < kErrorsS);
     count += more;
     return more;
   };
@@ -86,9 +121,14 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
     point.error = errors.rmse[i];
     curve.points.push_back(point);
     made.settings.push_back(all[i]);
-    repeats.push_back([&, i] {
+    repeats.push_back([&, i]() -> Result<double> {
       at(0.6 + 0.4 * share(i));
-      return render::drawing_ms(renderer, packet, all[i]);
+      // voxels of another format than the last picture's are put on the device first, which does not count
+      const render::RenderSettings& last = all[i > 0 ? i - 1 : errors.rmse.size() - 1];
+      if (all[i].texels != last.texels) CATENA_CHECK(renderer.draw(packet, all[i]));
+      CATENA_TRY(const double ms, render::drawing_ms(renderer, packet, all[i]));
+      curve.points[i].bytes = static_cast<double>(renderer.stats().gpu_bytes);
+      return ms;
     });
   }
   CATENA_CHECK(tradeoff::time_points(curve, repeats, kTimesS, kRounds));
@@ -102,7 +142,7 @@ std::optional<EyeCurve> eye_curve(const Curve& curve, const render::LadderKind& 
   EyeCurve made{curve, {}};
   for (const tradeoff::Point& point : curve.points) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& s) { return render::describe(s) == point.setting; });
-    if (found == all.end() || !std::isfinite(point.error) || !std::isfinite(point.time.median)) return std::nullopt;
+    if (found == all.end() || !(point.error >= 0 && point.error <= 255) || !std::isfinite(point.time.median)) return std::nullopt;
     made.settings.push_back(*found);
   }
   if (made.settings.empty()) return std::nullopt;
@@ -130,7 +170,24 @@ void EyePlan::choose() {
     time.low *= factor, time.median *= factor, time.high *= factor;
   }
   picked_ = tradeoff::pick(expected, {wanted_.error, wanted_.time});
-  now_ = std::max(0, picked_.point);
+  now_ = picked_.point = of_fewer_bytes(std::max(0, picked_.point));
+}
+
+/// The same rays on voxels of another format, where these take fewer bytes, do as well and are about as quick.
+int EyePlan::of_fewer_bytes(int point) const {
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  const std::vector<tradeoff::Point>& points = curve_.curve.points;
+  const double told = tradeoff::least_told(curve_.curve);
+  const double most = std::max({told, points[at(point)].error, picked_.reached ? wanted_.error.value_or(0) : 0});
+  int best = point;
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    const render::RenderSettings &a = curve_.settings[at(i)], &b = curve_.settings[at(point)];
+    if (a.fast || b.fast || a.step_voxels != b.step_voxels || a.termination != b.termination) continue;
+    if (points[at(i)].error <= most && points[at(i)].bytes < points[at(best)].bytes && expected_ms(i) <= kAsQuick * expected_ms(point) &&
+        (!wanted_.time || !picked_.reached || expected_ms(i) <= *wanted_.time))
+      best = i;
+  }
+  return best;
 }
 
 void EyePlan::drawn(double ms) {
@@ -164,6 +221,8 @@ std::string EyePlan::sentence() const {
       fmt::format("plan {}={}: {}; expected: error {:.2g}/255 in {:.3g} ms", wanted_.error ? "error" : "time",
                   to_text(wanted_.error ? *wanted_.error : *wanted_.time), render::describe(settings()), expected_error(), expected_ms());
   const Curve& c = curve_.curve;
+  const double bytes = c.points[static_cast<std::size_t>(now_)].bytes;
+  if (std::isfinite(bytes)) text += fmt::format(", {} on the device", human_bytes(bytes));
   const bool by_data = std::isfinite(c.floor) && c.floor >= tradeoff::least_told(c);
   if (picked_.floored)
     text += fmt::format(" (no more is asked for: {} {:.2g}/255)", by_data ? "the data's own error is" : "what can be told ends at",

@@ -2,8 +2,9 @@
 ///   error=E  the cheapest setting whose error is at most E, or the data's own if that is greater
 ///   time=T   the least error within T milliseconds
 /// Errors are root mean squares over the covered pixels, 1/255, against converged rays, on the very picture; times are of drawing it
-/// (render/quality). Where pictures follow each other, what each took moves what is expected of all settings (TimeModel), and the next
-/// picture may have another one. Frame thread.
+/// (render/quality). Exact rays may read voxels of 16 or 32 bits: of two that are as good and as quick the one of fewer bytes is taken.
+/// Fast rays pack words of their own, whatever the voxels. Where pictures follow each other, what each took moves what is expected of all
+/// settings (TimeModel), and the next picture may have another one. Frame thread.
 #pragma once
 #include <functional>
 #include <optional>
@@ -19,8 +20,10 @@ namespace catena::app::plan {
 
 /// What can draw the packet: known once it was drawn, which this does.
 Result<render::LadderKind> kind_of(render::Renderer& renderer, const render::FramePacket& packet);
-/// The ladder of refinement.h up to the reference: what a plan may choose from.
+/// The ladder of refinement.h up to the reference, exact rays with each format of voxels: what a plan may choose from.
 std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind);
+/// Those of them that differ on this packet. What is labels, or drawn by no rays (opaque surfaces, slices), is never kept in fewer bits.
+std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind, const render::FramePacket& packet);
 
 /// A curve and what its points stand for.
 struct EyeCurve {
@@ -60,6 +63,7 @@ class EyePlan {
  private:
   double expected_ms(int point) const { return times_.expected_ms(static_cast<std::size_t>(point)); }
   void choose();
+  int of_fewer_bytes(int point) const;
 
   EyeCurve curve_;
   scene::Plan wanted_;

@@ -100,6 +100,7 @@ Result<std::vector<Curve>> measure_hand(tradeoff::Subject& subject) {
   curve.points = {{kRest, "", ""}, {kBare, "", ""}};
   CATENA_CHECK(tradeoff::time_points(curve, {tradeoff::ticks_of(rest, path), tradeoff::ticks_of(bare, path)}, 0.3 * subject.effort.hand_s));
   curves.push_back(std::move(curve));
+  for (Curve& one : curves) one.part = "hand";
   return curves;
 }
 

@@ -16,7 +16,9 @@ namespace catena::app::plan {
 namespace {
 
 constexpr const char* kKeys[] = {"follow", "method", "tolerance"};
-constexpr double kWorthIt = 0.5;  ///< of what linear cells leave open, cubic ones leave less
+constexpr double kFarOff = 10;         ///< of the error on the measured way: that anywhere else is said
+constexpr std::size_t kFarColumn = 2;  ///< of a point's `more` (measure/hand/streamline.cpp)
+constexpr double kWorthIt = 0.5;       ///< of what linear cells leave open, cubic ones leave less
 
 /// The links of a scene's text by their names: "/chain/2".
 Result<std::map<std::string, std::string>> places_of_links(const json::Node& root) {
@@ -84,8 +86,10 @@ HandPlan::Choice HandPlan::pick(double error) const {
     const tradeoff::Picked picked = tradeoff::pick(link.curve, {error / link.length, {}});
     if (picked.point < 0) continue;
     const tradeoff::Point& point = link.curve.points[static_cast<std::size_t>(picked.point)];
+    const double told = tradeoff::least_told(link.curve), far = point.more.size() > kFarColumn ? point.more[kFarColumn] : 0;
     choice.links.push_back({link.link, point.setting, link.keys[static_cast<std::size_t>(picked.point)], point.error * link.length,
-                            tradeoff::least_told(link.curve) * link.length, picked.floored, picked.reached});
+                            far > kFarOff * std::max(point.error, told) ? far * link.length : 0, told * link.length, picked.floored,
+                            picked.reached});
     choice.ns += std::max(0.0, point.time.median / link.ticks_a_ms - curves_.bare_ns);
   }
   return choice;
@@ -144,6 +148,12 @@ double HandPlan::expected_error() const {
   return most;
 }
 
+double HandPlan::error_anywhere() const {
+  double most = expected_error();
+  for (const PlannedLink& link : links_) most = std::max(most, link.far);
+  return most;
+}
+
 void HandPlan::apply(scene::Scene& scene) const {
   for (const PlannedLink& planned : links_)
     scene.world.each<scene::Link>([&](scene::Entity, scene::Link& link) {
@@ -183,6 +193,10 @@ std::string HandPlan::sentence() const {
   for (const PlannedLink& link : links_)
     if (wanted_.hand_error && link.floored)
       text += fmt::format(" (of {} no more is asked for: what can be told ends at {:.2g})", link.link, link.floor);
+  for (const PlannedLink& link : links_)
+    if (link.far > 0)
+      text += fmt::format(" (far along the line of {}, small errors have grown: there up to {:.2g}{})", link.link, link.far,
+                          wanted_.hand_error && link.far > *wanted_.hand_error ? ", so that hand_error is kept near its seed only" : "");
   if (!reached_) text += wanted_.hand_error ? " (none is as exact: this is the most exact)" : " (none is as quick: this is the quickest)";
   return text;
 }

@@ -45,6 +45,7 @@ struct PlannedLink {
   std::string link, setting;
   LinkKeys keys;
   double error = 0;  ///< expected, world units
+  double far = 0;    ///< of the line that is traced once, anywhere along it; world units; 0: of what is not traced, or not known
   double floor = 0;  ///< the data's own, or what the reference can tell; world units
   bool floored = false, reached = true;
 };
@@ -58,7 +59,10 @@ class HandPlan {
   const std::vector<PlannedLink>& links() const { return links_; }
   /// The fields that become cubic.
   const std::vector<std::string>& cubic_fields() const { return cubic_; }
-  double expected_error() const;  ///< of the worst link, world units
+  double expected_error() const;  ///< of the worst link, world units, on ways like the measured one
+  /// The same wherever the hand goes, where that is much more: small errors grow along a line, and in a chaotic flow to the size of the
+  /// flow, so that a far pass of a line that was traced once may be anywhere.
+  double error_anywhere() const;
   double expected_us() const { return 1e-3 * ns_; }
   bool reached() const { return reached_; }
   const scene::Plan& wanted() const { return wanted_; }

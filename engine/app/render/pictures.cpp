@@ -214,6 +214,8 @@ Outcome render_pictures(const RenderOptions& given) {
 
   const auto tell_plan = [&](const std::string& line) { say(words, line); };
   if (plan.of_eye() && pinned) tell_plan("plan: the picture stays as it is: its quality is stated, " + quality);
+  if (o.probe.empty() && o.plan.find("hand_") != std::string::npos)
+    tell_plan("plan: no hand feels here, so that nothing is chosen for it; --probe PATH.csv was expected");
   if (!o.probe.empty()) CATENA_CHECK(plan::plan_links(scene, plan, 1000, o.fields, tell_plan));
   // the chain is checked with the picture: one scene, two senses
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));

@@ -19,13 +19,13 @@ constexpr const char* kStyle = R"html(</title><style>
 body { color: var(--ink); background: var(--paper); font: 16px/1.5 sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
 h1, h2, h3 { line-height: 1.2; } h2 { margin-top: 3rem; border-bottom: 1px solid var(--line); } h3 { margin-top: 2.5rem; }
 table { border-collapse: collapse; font-size: 0.88rem; } th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
-td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } code { background: var(--soft); padding: 0 0.25rem; }
+td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; } td.n { white-space: nowrap; } td.n small { white-space: normal; } code { background: var(--soft); padding: 0 0.25rem; }
 tr.chosen { background: var(--good); } .why { background: var(--good); padding: 0.5rem 0.8rem; } .plots { display: flex; flex-wrap: wrap; gap: 1rem; }
 .plots svg { width: 31rem; max-width: 100%; height: auto; } .wide { overflow-x: auto; } .note { font-size: 0.88rem; }
 svg :is([fill="black"], [fill="rgb(0,0,0)"], [fill="rgb(  0,   0,   0)"]) { fill: var(--ink); }
 svg :is([stroke="black"], [stroke="rgb(  0,   0,   0)"]) { stroke: var(--ink); }
 svg :is([color="black"], [color="rgb(  0,   0,   0)"]) { color: var(--ink); }
-td code, td:first-child { white-space: nowrap; }
+td:first-child { min-width: 9rem; } dt { font-weight: bold; } dd { margin: 0 0 0.5rem 1.5rem; }
 details { margin: 0.6rem 0; }
 </style></head><body>
 )html";

@@ -10,15 +10,25 @@
 
 namespace catena::app {
 
+namespace {
+
+std::string listed_tics(char axis, const std::vector<double>& tics) {
+  std::string text;
+  for (const double tic : tics) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", tic);
+  return fmt::format("set {}tics ({})\n", axis, text);
+}
+
+}  // namespace
+
 std::string plot_head(int width, int height) {
   return fmt::format(
       "set terminal svg size {},{} dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%g'\n"
-      "set grid lc rgb '#888888' lw 0.5\nset key outside top center horizontal samplen 1.5 maxcols 3\n",
+      "set grid lc rgb '#888888' lw 0.5\nset key outside top center horizontal samplen 1.5 spacing 1.35 maxcols 3\n",
       width, height);
 }
 
 std::string log_tics(char axis, double lo, double hi) {
-  constexpr int kEnough = 3, kMost = 8;
+  constexpr std::size_t kEnough = 3;
   if (!(lo > 0 && hi > lo) || hi / lo > 1e3) return fmt::format("set {}tics autofreq\n", axis);
   // ever finer numbers of each decade, the first set that has enough of them on the axis
   const std::vector<std::vector<double>> finer{{1}, {1, 3}, {1, 2, 5}, {1, 1.5, 2, 3, 4, 5, 6, 8}};
@@ -28,13 +38,17 @@ std::string log_tics(char axis, double lo, double hi) {
       for (const double digit : digits)
         if (const double tic = digit * std::pow(10.0, power); tic >= lo && tic <= hi) tics.push_back(tic);
     if (tics.size() < kEnough) continue;
-    std::string text;
-    for (const double tic : tics) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", tic);
-    return fmt::format("set {}tics ({})\n", axis, text);
+    return listed_tics(axis, tics);
   }
+  // a narrow axis: even steps, one by one, since on a logarithmic axis gnuplot multiplies by a step
   const double step = std::pow(10.0, std::floor(std::log10((hi - lo) / 2)));
-  const double wide = (hi - lo) / step > kMost ? 5 * step : (hi - lo) / step > 4 ? 2 * step : step;
-  return fmt::format("set {}tics {:.6g}, {:.6g}\n", axis, std::ceil(lo / wide) * wide, wide);
+  std::vector<double> tics;
+  for (const double wide : {5 * step, 2 * step, step, 0.5 * step}) {
+    tics.clear();
+    for (double k = std::ceil(lo / wide); k * wide <= hi; ++k) tics.push_back(k * wide);
+    if (tics.size() >= kEnough) break;
+  }
+  return listed_tics(axis, tics);
 }
 
 std::string plot_color(int i) {

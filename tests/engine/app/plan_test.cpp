@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 
 #include "engine/app/plan/make_plan.h"
 #include "engine/app/tradeoff/report/report.h"
@@ -32,6 +33,8 @@ Point made(double error, double time, const std::string& setting = "", double sp
 
 Curve four() {
   Curve curve;
+  curve.id = "eye-plan";
+  curve.part = "eye";
   curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20), made(3, 12)};
   return curve;
 }
@@ -114,8 +117,63 @@ TEST(PlanOfTheEye, SettingsComeFromTheProgramAlone) {
   const auto back = eye_curve(curve, kind);
   ASSERT_TRUE(back);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(render::describe(back->settings[i]), render::describe(all[i]));
+  curve.points[1].error = 1e308;  // no picture is so far off
+  EXPECT_FALSE(eye_curve(curve, kind));
+  curve.points[1].error = 1;
   curve.points[1].setting = "fast, step -1";
   EXPECT_FALSE(eye_curve(curve, kind));
+}
+
+TEST(PlanOfTheEye, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
+  EyeCurve made_curve;
+  const auto add = [&](double error, double time, double bytes, render::TexelFormat texels) {
+    made_curve.settings.push_back(render::exact_rung(1));
+    made_curve.settings.back().texels = texels;
+    made_curve.curve.points.push_back(made(error, time, render::describe(made_curve.settings.back())));
+    made_curve.curve.points.back().bytes = bytes;
+  };
+  add(0.5, 10, 4e6, render::TexelFormat::automatic);
+  add(0.8, 10.3, 2e6, render::TexelFormat::r16f);
+  made_curve.curve.floor = 0.4;
+  const auto texels = [&](const char* words) { return EyePlan(made_curve, wants(words)).settings().texels; };
+  EXPECT_EQ(texels("error=1"), render::TexelFormat::r16f);
+  EXPECT_EQ(texels("error=0.6"), render::TexelFormat::automatic);  // too coarse
+  EXPECT_EQ(texels("time=20"), render::TexelFormat::automatic);    // the least error
+  EXPECT_NE(EyePlan(made_curve, wants("error=1")).sentence().find("16 bits a voxel; expected: error 0.8/255 in 10.3 ms, 1.91 MiB"),
+            std::string::npos)
+      << EyePlan(made_curve, wants("error=1")).sentence();
+  made_curve.curve.points[1].time = {14, 13.9, 14.1, 9};
+  EXPECT_EQ(texels("error=1"), render::TexelFormat::automatic);  // much slower
+}
+
+TEST(PlanOfTheEye, OffersFormatsOfVoxelsWhereRaysReadThem) {
+  using render::TexelFormat;
+  const auto grid = field::make_scalar_grid("g", {}, {8, 8, 8}, std::vector<float>(512, 1));
+  const auto labels = grid->interpolated(field::Interpolation::nearest);
+  const auto offered = [](const render::FramePacket& packet) {
+    std::set<TexelFormat> formats;
+    auto all = eye_settings({false, false}, packet);
+    all.pop_back();  // the reference has 32 bits
+    for (const render::RenderSettings& s : all) formats.insert(s.texels);
+    return formats;
+  };
+  const std::set<TexelFormat> one{TexelFormat::automatic};
+  render::FramePacket packet;
+  packet.volumes.emplace_back().grid = grid;
+  EXPECT_EQ(offered(packet), (std::set{TexelFormat::automatic, TexelFormat::r32f}));
+  packet.isosurfaces.emplace_back().grid = grid;
+  packet.isosurfaces[0].opacity = 0.5;  // its voxels have 32 bits by themselves
+  EXPECT_EQ(offered(packet), (std::set{TexelFormat::automatic, TexelFormat::r16f}));
+  packet.isosurfaces[0].opacity = 1;  // no rays see it
+  EXPECT_EQ(offered(packet), one);
+  packet.isosurfaces[0].opacity = 0.5;
+  packet.volumes[0].grid = labels;  // a label that is rounded is another one
+  EXPECT_EQ(offered(packet), one);
+  // fast rays keep words of their own
+  for (const render::RenderSettings& s : eye_settings({true, true}))
+    if (s.fast) {
+      EXPECT_EQ(s.texels, TexelFormat::automatic);
+    }
 }
 
 LinkCurve link(const std::string& name, double length, std::vector<Point> points) {
@@ -154,6 +212,25 @@ TEST(PlanOfTheHand, SpendsTheTimeOnTheWorstLink) {
   const std::vector<double> stops = plan.stops();
   EXPECT_TRUE(std::is_sorted(stops.rbegin(), stops.rend()));
   EXPECT_EQ(stops.size(), 5u);
+}
+
+TEST(PlanOfTheHand, SaysWhereALineIsFarOff) {
+  HandCurves curves = two_links();
+  for (LinkCurve& one : curves.links)
+    for (Point& p : one.curve.points) p.more = {0, 0, NAN};
+  curves.links[0].curve.points[1].more[2] = 0.5;  // L is 2: 1 somewhere, where 2e-4 is expected
+  const HandPlan near(curves, wants("hand_error=1e-3"));
+  EXPECT_EQ(near.links()[0].setting, "rk2");
+  EXPECT_NEAR(near.expected_error(), 1e-3, 1e-12);  // of b
+  EXPECT_EQ(near.error_anywhere(), 1);
+  EXPECT_NE(
+      near.sentence().find("(far along the line of a, small errors have grown: there up to 1, so that hand_error is kept near its seed"),
+      std::string::npos)
+      << near.sentence();
+  curves.links[0].curve.points[1].more[2] = 2e-4;  // much the same everywhere
+  const HandPlan alike(curves, wants("hand_error=1e-3"));
+  EXPECT_EQ(alike.error_anywhere(), alike.expected_error());
+  EXPECT_EQ(alike.sentence().find("far along"), std::string::npos) << alike.sentence();
 }
 
 TEST(PlanOfTheHand, GoesIntoTheTextAndLeavesWhatIsStated) {

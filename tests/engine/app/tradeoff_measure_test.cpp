@@ -156,6 +156,9 @@ TEST(TradeoffChoice, TakesTheKneeOrWhatTheSceneHas) {
   curve.points = {made(100, 1), made(1, 1.5), made(0.5, 100)};
   choose(curve);
   EXPECT_EQ(curve.chosen, 1);
+  // both neighbours are what makes it one
+  EXPECT_NE(curve.why.find("costs 1.5 times less and has 1e+02 times the error"), std::string::npos) << curve.why;
+  EXPECT_NE(curve.why.find("costs 67 times as much and has 2 times less error"), std::string::npos) << curve.why;
   curve.points = {made(8, 1), made(4, 2), made(2, 4), made(1, 8)};  // a straight line has none
   curve.current = 2;
   choose(curve);
@@ -221,6 +224,9 @@ TEST(TradeoffReport, ReadsBackWhatItWrote) {
   EXPECT_NE(page.find("the other's time"), std::string::npos);
   EXPECT_NE(page.find("gnuplot is not installed"), std::string::npos);
   EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
+  // words that stand on the page are explained there, others are not
+  EXPECT_NE(page.find("<dt>front</dt>"), std::string::npos);
+  EXPECT_EQ(page.find("<dt>flicker</dt>"), std::string::npos);
   // gnuplot gets no quote of ours as its own
   EXPECT_EQ(plot_script(curve, nullptr, "p").files, std::vector<std::string>{"p0.svg"});
 }
@@ -299,12 +305,25 @@ TEST(TradeoffScene, BadInputIsOneLineAndNothingIsWritten) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
   test::write_file(folder / "bad.json", R"({"curves": 3})");
+  const auto report_of = [](const std::string& id, const std::string& part, int times = 1) {
+    Curve curve;
+    curve.part = part;
+    Report report;
+    for (int k = 0; k < times; ++k) report.curves.push_back(curve), report.curves.back().id = k > 0 ? id + std::to_string(k) : id;
+    return to_json(report);
+  };
+  test::write_file(folder / "away.json", report_of("../../away", "eye"));  // a table outside of the folder
+  test::write_file(folder / "nose.json", report_of("x", "nose"));
+  test::write_file(folder / "many.json", report_of("x", "eye", 3000));
   test::write_file(folder / "worse.json", R"({"catena_tradeoff": 1, "source": "s", "left_out": [], "curves": [{"id": 4}]})");
   const std::string out = folder / "out", scene = folder / "s.json";
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{folder / "none.json"},
                                                                                      {folder / "none.vdb"},
                                                                                      {folder / "bad.json"},
                                                                                      {folder / "worse.json"},
+                                                                                     {folder / "away.json"},
+                                                                                     {folder / "nose.json"},
+                                                                                     {folder / "many.json"},
                                                                                      {scene, "--compare", folder / "bad.json"},
                                                                                      {scene, "--compare", folder / "worse.json"},
                                                                                      {scene, "--compare", folder / "none.json"},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "engine/scene/document.h"
@@ -53,6 +54,40 @@ TEST_F(LabelScene, AFieldIsLinearUnlessItSaysOtherwiseOrHasLabels) {
     const auto loaded = use_field(*scene, "m", {});
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_EQ(loaded->scalar->interpolation(), wanted) << field;
+    const bool mixed = wanted == field::Interpolation::linear && *field != '\0';
+    ASSERT_EQ(scene->notes.size(), mixed ? 1u : 0u) << field;
+    if (mixed) {
+      EXPECT_NE(scene->notes[0].find("stand for nothing"), std::string::npos) << scene->notes[0];
+    }
+  }
+}
+
+TEST_F(LabelScene, AFileThatSaysSoIsNotReadByCellsWithoutAWord) {
+  // a header of 348 bytes and 4 for extensions: 4^3 bytes, intent 1002
+  std::string file(352, '\0');
+  const auto put = [&](std::size_t at, auto value) { std::memcpy(file.data() + at, &value, sizeof(value)); };
+  put(0, std::int32_t{348});
+  for (const auto& [k, n] : {std::pair{0, 3}, {1, 4}, {2, 4}, {3, 4}, {4, 1}, {5, 1}, {6, 1}, {7, 1}})
+    put(40 + 2 * static_cast<std::size_t>(k), static_cast<std::int16_t>(n));
+  put(68, std::int16_t{1002});
+  put(70, std::int16_t{2}), put(72, std::int16_t{8});
+  for (int k = 0; k < 4; ++k) put(76 + 4 * static_cast<std::size_t>(k), 1.0f);
+  put(108, 352.0f);
+  std::memcpy(file.data() + 344, "n+1", 4);
+  for (int k = 0; k < 64; ++k) file += static_cast<char>(k < 32 ? 3 : 70);
+  test::write_file(folder_ / "a.nii", file);
+  for (const auto& [more, notes] : {std::pair{"}", 1u},
+                                    {", \"interpolation\": \"cubic\"}", 1u},
+                                    {", \"interpolation\": \"nearest\"}", 0u},
+                                    {"}, \"left\": {\"label\": 3, \"of\": \"a\"}", 0u}}) {
+    auto scene = parse_scene(std::string("{\"fields\": {\"a\": {\"file\": \"a.nii\"") + more + "}}", folder_ / "s.json");
+    ASSERT_TRUE(scene) << scene.error().message;
+    const auto loaded = use_field(*scene, "a", {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(scene->notes.size(), notes) << more << (notes == 0 ? scene->notes[0] : "");
+    if (notes > 0) {
+      EXPECT_NE(scene->notes[0].find("NIFTI_INTENT_LABEL"), std::string::npos) << scene->notes[0];
+    }
   }
 }
 

@@ -149,16 +149,26 @@ void choose(Curve& curve) {
     const std::string none = reached > 0 ? fmt::format("None reaches {}, {:.2g}; t", curve.floor_name, reached) : "T";
     if (keeps) {
       curve.why = fmt::format(
-          "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {:.2g}.",
+          "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {:.2g}. Which "
+          "one is "
+          "needed is for you to say.",
           p.error);
     } else if (curve.chosen == curve.front.back()) {
       curve.why = fmt::format("{}his is the most exact, with an error of {:.2g}.", none, p.error);
     } else {
       const auto at = static_cast<std::size_t>(std::find(curve.front.begin(), curve.front.end(), curve.chosen) - curve.front.begin());
       const Point& next = points[curve.front[at + 1]];
-      curve.why = fmt::format(
-          "{}his is the knee of the front: the next more exact setting costs {:.2g} times as much and has {:.2g} times less error.", none,
-          cost_of(next, curve.cost) / cost_of(p, curve.cost), p.error / next.error);
+      curve.why = fmt::format("{}his is the knee of the front", none);
+      if (at > 0) {
+        const Point& last = points[curve.front[at - 1]];
+        curve.why += fmt::format(": {} costs {:.2g} times less and has {:.2g} times the error", last.setting,
+                                 cost_of(p, curve.cost) / cost_of(last, curve.cost), last.error / p.error);
+      }
+      curve.why += fmt::format("{} {} costs {:.2g} times as much and has {} error.", at > 0 ? ";" : ":", next.setting,
+                               cost_of(next, curve.cost) / cost_of(p, curve.cost),
+                               next.error > 0 ? fmt::format("{:.2g} times less", p.error / next.error) : "no");
+      if (p.error <= curve.reference_error)
+        curve.why += fmt::format(" What is below {:.2g}, the error of the reference, cannot be told.", curve.reference_error);
     }
   }
 }

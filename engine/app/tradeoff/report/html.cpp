@@ -5,7 +5,9 @@
 
 #include "engine/app/command.h"
 #include "engine/app/report/page.h"
+#include "engine/app/tradeoff/measure/choice.h"
 #include "engine/app/tradeoff/report/report.h"
+#include "engine/app/tradeoff/report/words.h"
 
 namespace catena::app::tradeoff {
 namespace {
@@ -21,8 +23,21 @@ const Point* same(const Curve* other, const Point& p) {
   return nullptr;
 }
 
+std::string ask(const Point& p) { return p.write.empty() ? "" : "<code>" + escaped(p.write) + "</code>"; }
+
+/// "481.4 us of processor a second".
+std::string cost_text(const Curve& c, const Point& p) {
+  const std::string& unit = c.cost == Cost::time ? c.time_name : c.cost == Cost::work ? c.work_name : c.bytes_name;
+  return fmt::format("{} <small>{}</small>", c.cost == Cost::bytes ? human_bytes(p.bytes) : short_number(cost_of(p, c.cost)),
+                     escaped(unit));
+}
+
 std::string points_table(const Curve& c, const Curve* other) {
+  // what no row has needs no column
+  const bool asked = std::any_of(c.points.begin(), c.points.end(), [](const Point& p) { return !p.write.empty(); });
   std::string text = "<div class=\"wide\"><table><tr><th>setting</th>";
+  if (asked) text += "<th>how to ask for it</th>";
+  if (!c.front.empty()) text += "<th>front</th>";
   const auto column = [&](const std::string& name) {
     if (!name.empty()) text += "<th class=\"n\">" + escaped(name) + "</th>";
   };
@@ -33,13 +48,15 @@ std::string points_table(const Curve& c, const Curve* other) {
   column(c.work_name);
   column(c.bytes_name);
   for (const std::string& name : c.more) column(name);
-  text += "<th>front</th><th>how to ask for it</th></tr>\n";
+  text += "</tr>\n";
   for (std::size_t i = 0; i < c.points.size(); ++i) {
     const Point& p = c.points[i];
     const Point* theirs = same(other, p);
     const int index = static_cast<int>(i);
     text += fmt::format("<tr{}><td>{}{}{}</td>", index == c.chosen ? " class=\"chosen\"" : "", escaped(p.setting),
                         index == c.chosen ? " <b>(chosen)</b>" : "", index == c.current ? " <b>(now)</b>" : "");
+    if (asked) text += "<td>" + ask(p) + "</td>";
+    if (!c.front.empty()) text += fmt::format("<td>{}</td>", on_front(c, index) ? "&#9679;" : "");
     const auto cell = [&](const std::string& value) { text += "<td class=\"n\">" + value + "</td>"; };
     if (!c.error_name.empty()) cell(short_number(p.error));
     if (!c.time_name.empty()) cell(time_text(p.time));
@@ -51,8 +68,7 @@ std::string points_table(const Curve& c, const Curve* other) {
     if (!c.work_name.empty()) cell(short_number(p.work));
     if (!c.bytes_name.empty()) cell(std::isfinite(p.bytes) ? human_bytes(p.bytes) : "-");
     for (const double value : p.more) cell(short_number(value));
-    text += fmt::format("<td>{}</td><td>{}</td></tr>\n", on_front(c, index) ? "&#9679;" : "",
-                        p.write.empty() ? "" : "<code>" + escaped(p.write) + "</code>");
+    text += "</tr>\n";
   }
   return text + "</table></div>\n";
 }
@@ -62,11 +78,20 @@ bool can_be_had(const Curve& c) { return c.chosen >= 0 && (c.chosen == c.current
 
 std::string section(const Curve& c, const Curve* other, const std::vector<std::string>& plots) {
   std::string text = fmt::format("<h3 id=\"{0}\">{1}</h3>\n<p>{2}</p>\n", escaped(c.id), escaped(c.title), escaped(c.what));
-  if (c.chosen >= 0)
+  if (c.chosen >= 0) {
+    const Point& p = c.points[c.chosen];
     text +=
-        fmt::format("<p class=\"why\"><b>{}: {}.</b> {}</p>\n", can_be_had(c) ? "Choose" : "What would do, though no setting asks for it",
-                    escaped(c.points[c.chosen].setting), escaped(c.why));
-  else if (!c.why.empty())
+        fmt::format("<p class=\"why\"><b>{}: {}.</b> {}", can_be_had(c) ? "Choose" : "What would do, though no setting asks for it alone",
+                    escaped(p.setting), escaped(c.why));
+    if (c.chosen == c.current)
+      text += " <b>Nothing needs to be changed.</b>";
+    else if (!p.write.empty())
+      text += " <b>Ask for it</b> by " + ask(p) + ".";
+    else if (c.part == "eye")  // a plan looks among all of them
+      text +=
+          fmt::format(" <code>--plan error={:.2g}</code> finds the cheapest picture as exact as that.", std::max(p.error, least_told(c)));
+    text += "</p>\n";
+  } else if (!c.why.empty())
     text += "<p class=\"why\">" + escaped(c.why) + "</p>\n";
   text += plots_row(plots) + points_table(c, other) + "<p class=\"note\">";
   if (std::isfinite(c.floor))
@@ -81,20 +106,34 @@ std::string section(const Curve& c, const Curve* other, const std::vector<std::s
 
 std::string summary(const Report& report) {
   std::string text =
-      "<div class=\"wide\"><table><tr><th>what</th><th>now</th><th>Catena would choose</th><th class=\"n\">error</th><th class=\"n\">the "
-      "data's own</th><th class=\"n\">cost</th></tr>\n";
+      "<div class=\"wide\"><table><tr><th>what</th><th>now</th><th>Catena would choose</th><th>how to ask for it</th><th "
+      "class=\"n\">error</th><th class=\"n\">of the data, or limit</th><th class=\"n\">cost</th></tr>\n";
   for (const Curve& c : report.curves) {
     if (!can_be_had(c)) continue;
     const Point& p = c.points[c.chosen];
-    const std::string& unit = c.cost == Cost::time ? c.time_name : c.cost == Cost::work ? c.work_name : c.bytes_name;
     text += fmt::format(
-        "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{} "
-        "<small>{}</small></td></tr>\n",
+        "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td><td class=\"n\">{} <small>{}</small></td><td "
+        "class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
         escaped(c.id), escaped(c.title), c.current >= 0 ? escaped(c.points[c.current].setting) : "-", escaped(p.setting),
-        short_number(p.error), short_number(c.floor), c.cost == Cost::bytes ? human_bytes(p.bytes) : short_number(cost_of(p, c.cost)),
-        escaped(unit));
+        c.chosen == c.current ? "as it is" : ask(p), short_number(p.error), escaped(c.error_name), short_number(c.floor), cost_text(c, p));
   }
   return text + "</table></div>\n";
+}
+
+/// The list at the end of the page.
+std::string words_used(const Report& report) {
+  std::string all;
+  for (const Curve& c : report.curves) {
+    for (const std::string* words : {&c.title, &c.what, &c.error_name, &c.work_name, &c.time_name, &c.why, &c.floor_from, &c.reference})
+      all += *words + "\n";
+    for (const std::string& name : c.more) all += name + "\n";
+    for (const Point& p : c.points) all += p.setting + "\n";
+  }
+  std::string text = "<h2 id=\"words\">The words of this page</h2>\n<dl>\n";
+  for (const Word& word : report_words())
+    if (word.shown_by == nullptr || all.find(word.shown_by) != std::string::npos)
+      text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(word.name), escaped(word.means));
+  return text + "</dl>\n";
 }
 
 std::string about_table(const Report& report, const Report* other) {
@@ -117,16 +156,18 @@ std::string to_html(const Report& report, const Report* other, const std::vector
   std::string text = page_head("What it costs, what it buys");
   text += fmt::format("<h1>{}: what it costs, what it buys</h1>\n", escaped(report.source));
   text +=
-      "<p>Every setting below was measured on this scene and this machine. Lower is more exact, further left is cheaper. The dashed line "
-      "is what the data themselves "
-      "leave open: below it, exactness shows nothing that was measured. <b>(now)</b> is what the scene has, <b>(chosen)</b> what Catena "
-      "would take. Times are medians of "
-      "repeats in turns; in brackets and as bars their quartiles.</p>\n";
-  text += about_table(report, other);
+      "<p>Every setting below was measured on this scene and this machine, one kind of setting at a time, the others held. In the plots "
+      "lower "
+      "is more exact and further left is cheaper. The dashed line is what the data themselves leave open: below it, exactness shows "
+      "nothing "
+      "that was measured. <b>(now)</b> is what the scene has, <b>(chosen)</b> what Catena would take. Times are medians of repeats in "
+      "turns; in brackets and as bars their quartiles. What is <i>asked for</i> by \"keys\" stands in the scene file, beside the link, "
+      "field or part that it is about; --options stand on the command line. <a href=\"#words\">The words of this page</a> are "
+      "explained at its end.</p>\n";
   if (other != nullptr && other->source != report.source)
     text += "<p class=\"why\">The other report is of another scene, " + escaped(other->source) +
             ": only settings of the same name stand side by side.</p>\n";
-  text += "<h2>In short</h2>\n" + summary(report);
+  text += "<h2>In short</h2>\n" + summary(report) + "<h2>Measured on</h2>\n" + about_table(report, other);
   bool drawn = false;
   for (const auto& [part, heading] : {std::pair{"data", "The data"}, {"hand", "The hand"}, {"eye", "The eye"}}) {
     bool begun = false;
@@ -143,7 +184,7 @@ std::string to_html(const Report& report, const Report* other, const std::vector
   if (!drawn) text += "<li>Plots: gnuplot is not installed, or there is no curve to draw; the tables are complete.</li>\n";
   for (const std::string& sentence : report.left_out) text += "<li>" + escaped(sentence) + "</li>\n";
   if (!report.left_out.empty() || !drawn) text += "</ul>\n";
-  return text + page_end();
+  return text + words_used(report) + page_end();
 }
 
 }  // namespace catena::app::tradeoff

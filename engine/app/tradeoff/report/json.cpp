@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr const char* kMark = "catena_tradeoff";
 constexpr int kFormat = 1;
+constexpr std::size_t kMostCurves = 256, kMostPoints = 4096, kMostId = 200;  // of a file that is read
 
 std::string json_of(const Point& p) {
   return fmt::format(
@@ -104,12 +106,20 @@ Result<Curve> read_curve(const json::Node& node) {
   for (const auto& [key, word] : words_of(c)) {
     CATENA_TRY(*word, json::require_string(node, key));
   }
+  // its table has the id's name: it leads nowhere else
+  const bool plain = !c.id.empty() && c.id.size() <= kMostId && c.id.front() != '.' &&
+                     std::ranges::none_of(c.id, [](unsigned char letter) { return letter == '/' || letter < ' '; });
+  if (!plain) return json::error_at(node, "\"id\" is " + in_quotes(c.id) + "; the name of a table was expected");
+  if (c.part != "data" && c.part != "hand" && c.part != "eye")
+    return json::error_at(node, "\"part\" is " + in_quotes(c.part) + "; data, hand or eye was expected");
   CATENA_TRY(const std::vector<json::Node> more, items_of(node, "more"));
   for (const json::Node& item : more) {
     CATENA_TRY(const std::string name, json::as_string(item, "more"));
     c.more.push_back(name);
   }
   CATENA_TRY(const std::vector<json::Node> points, items_of(node, "points"));
+  if (points.size() > kMostPoints)
+    return json::error_at(node, fmt::format("\"points\" has {}; at most {} were expected", points.size(), kMostPoints));
   for (const json::Node& item : points) {
     CATENA_TRY(Point point, read_point(item));
     point.more.resize(c.more.size(), kNotMeasured);
@@ -158,8 +168,12 @@ Result<Report> read_report(const std::string& path) {
   CATENA_TRY(const std::vector<json::Node> left_out, items_of(root, "left_out"));
   for (const json::Node& item : left_out) report.left_out.push_back(item.string);
   CATENA_TRY(const std::vector<json::Node> curves, items_of(root, "curves"));
+  if (curves.size() > kMostCurves)
+    return json::error_at(root, fmt::format("\"curves\" has {}; at most {} were expected", curves.size(), kMostCurves));
   for (const json::Node& item : curves) {
     CATENA_TRY(Curve curve, read_curve(item));
+    if (curve_of(&report, curve.id) != nullptr)
+      return json::error_at(item, "\"id\" is " + in_quotes(curve.id) + " twice; once was expected");
     report.curves.push_back(std::move(curve));
   }
   return report;

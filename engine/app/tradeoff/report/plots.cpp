@@ -18,17 +18,33 @@ std::vector<std::string> series_of(const Curve& c) {
   return all;
 }
 
-/// Rows "cost error low high" of the points that have both; what is exact is drawn at `least`.
-std::string rows(const Curve& c, Cost cost, double least, const std::string& series, int only = -1) {
+/// One axis of costs: bytes as KiB or MiB, so that its numbers are short.
+struct CostAxis {
+  Cost cost;
+  double unit = 1;
+  std::string name;
+  double at(const Point& p) const { return cost_of(p, cost) / unit; }
+};
+
+CostAxis axis_of(Cost cost, const std::string& name, double most) {
+  if (cost != Cost::bytes) return {cost, 1, name};
+  const bool mega = most >= 1 << 20;
+  return {cost, mega ? 1048576.0 : 1024.0, name + (mega ? ", MiB" : ", KiB")};
+}
+
+/// "cost error low high" of a point that has both; what is exact is drawn at `least`.
+std::string row(const Point& p, const CostAxis& axis, double least) {
+  const double x = axis.at(p);
+  if (!(x > 0) || !std::isfinite(p.error)) return {};
+  const bool times = axis.cost == Cost::time;
+  return fmt::format("{} {} {} {}\n", to_text(x), to_text(std::max(p.error, least)), to_text(times ? p.time.low : x),
+                     to_text(times ? p.time.high : x));
+}
+
+std::string rows(const Curve& c, const CostAxis& axis, double least, const std::string& series) {
   std::string text;
-  for (std::size_t i = 0; i < c.points.size(); ++i) {
-    const Point& p = c.points[i];
-    const double x = cost_of(p, cost);
-    if ((only >= 0 && static_cast<int>(i) != only) || (only < 0 && p.series != series) || !(x > 0) || !std::isfinite(p.error)) continue;
-    const bool times = cost == Cost::time;
-    text += fmt::format("{} {} {} {}\n", to_text(x), to_text(std::max(p.error, least)), to_text(times ? p.time.low : x),
-                        to_text(times ? p.time.high : x));
-  }
+  for (const Point& p : c.points)
+    if (p.series == series) text += row(p, axis, least);
   return text;
 }
 
@@ -51,37 +67,48 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
        {std::pair{Cost::time, &curve.time_name}, {Cost::work, &curve.work_name}, {Cost::bytes, &curve.bytes_name}}) {
     if (name->empty()) continue;
     PlotData drawn;
-    int k = 0;
+    int k = 0, points = 0;
     double lo = std::numeric_limits<double>::infinity(), hi = 0;
     for (const Curve* c : {&curve, other}) {
       if (c == nullptr) continue;
       for (const Point& p : c->points)
-        if (cost_of(p, cost) > 0 && std::isfinite(p.error)) lo = std::min(lo, cost_of(p, cost)), hi = std::max(hi, cost_of(p, cost));
+        if (cost_of(p, cost) > 0 && std::isfinite(p.error))
+          lo = std::min(lo, cost_of(p, cost)), hi = std::max(hi, cost_of(p, cost)), ++points;
+    }
+    if (points < 2) continue;  // one place says nothing that its number does not
+    const CostAxis axis = axis_of(cost, *name, hi);
+    lo *= 0.7 / axis.unit, hi *= 1.4 / axis.unit;
+    if (cost == curve.cost && curve.front.size() > 1) {
+      std::string front;
+      for (const int i : curve.front) front += row(curve.points[static_cast<std::size_t>(i)], axis, least);
+      drawn.add("$front", front, "using 1:2 with lines lw 9 lc rgb '#b0888888' title 'front'");
+    }
+    for (const Curve* c : {&curve, other}) {
+      if (c == nullptr) continue;
       int color = 0;
       for (const std::string& series : series_of(*c)) {
         const std::string look = fmt::format("using 1:2:3:4 with xerrorlines lw 1.6 {} pt {} ps 0.5 lc rgb '{}' title {}",
                                              c == other ? "dt 3" : "dt 1", c == other ? 6 : 7, plot_color(color++),
                                              plot_text((series.empty() ? "measured" : series) + (c == other ? " (other)" : "")));
-        drawn.add(fmt::format("$s{}", k++), rows(*c, cost, least, series), look);
+        drawn.add(fmt::format("$s{}", k++), rows(*c, axis, least, series), look);
       }
     }
-    if (drawn.items.empty() || !(hi > 0)) continue;
-    lo *= 0.7, hi *= 1.4;
     const auto level = [&](const char* block, double value, const std::string& look) {
       if (value > 0) drawn.add(block, fmt::format("{0} {2}\n{1} {2}\n", to_text(lo), to_text(hi), to_text(value)), look);
     };
     level("$floor", curve.floor, "with lines lw 2 dt 2 lc rgb '#888888' title " + plot_text(curve.floor_name));
     level("$reference", curve.reference_error, "with lines lw 1.2 dt 4 lc rgb '#888888' title 'error of the reference'");
     if (curve.current >= 0)
-      drawn.add("$now", rows(curve, cost, least, {}, curve.current), "using 1:2 with points pt 4 ps 1.7 lw 1.5 lc rgb 'black' title 'now'");
+      drawn.add("$now", row(curve.points[static_cast<std::size_t>(curve.current)], axis, least),
+                "using 1:2 with points pt 4 ps 1.7 lw 1.5 lc rgb 'black' title 'now'");
     if (curve.chosen >= 0)
-      drawn.add("$chosen", rows(curve, cost, least, {}, curve.chosen),
+      drawn.add("$chosen", row(curve.points[static_cast<std::size_t>(curve.chosen)], axis, least),
                 "using 1:2 with points pt 6 ps 2.2 lw 2 lc rgb 'black' title 'chosen'");
     const std::string file = fmt::format("{}{}.svg", prefix, script.files.size());
     script.text +=
         drawn.blocks + log_tics('x', lo, hi) + log_tics('y', 0.7 * least, 3 * most) +
         fmt::format("set output '{}'\nset xlabel {}\nset ylabel {}\nset xrange [{}:{}]\nset yrange [{}:{}]\nplot {}\nunset output\n", file,
-                    plot_text(*name), plot_text(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most),
+                    plot_text(axis.name), plot_text(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most),
                     drawn.items);
     script.files.push_back(file);
   }

@@ -74,7 +74,7 @@ Result<std::vector<Curve>> measure_cells(Subject& subject) {
         "Linear cells of eight samples, or cubic ones of 64. Every 4th and every 2nd voxel, read in either way, are held against "
         "the voxels left out; the error between the voxels that there are follows from the observed order. One fetch is value and "
         "gradient.";
-    curve.error_name = "error of interpolation / range (RMS)";
+    curve.error_name = loaded.vector ? "error of interpolation / twice the greatest length (RMS)" : "error of interpolation / range (RMS)";
     curve.time_name = "ns a fetch";
     curve.bytes_name = "bytes of the grid";
     curve.reference = "the data's own voxels";

@@ -73,16 +73,17 @@ Result<std::vector<Curve>> measure_levels(Subject& subject) {
     add("all voxels (estimated)", floor->at_h.error, bytes);
     curve.current = 2;
     curve.floor = floor->at_h.error / floor->scale;
-    curve.floor_from = fmt::format(
-        "extrapolated by the observed order {:.2f}{}", floor->at_h.order,
-        floor->at_h.settled ? "" : "; the error does not fall with the spacing: the data are not smooth at their own spacing, or noisy");
+    curve.floor_from =
+        fmt::format("extrapolated by the observed order {:.2f}{}", floor->at_h.order,
+                    floor->at_h.settled ? "" : "; the error hardly falls with the spacing: edges or noise, which no finer grid would mend");
     if (source.drawn.get() == grid.get() && source.loaded.get() != nullptr && !source.loaded.get()->is_grid())
       curve.floor_from += fmt::format("; by the formula itself it is {:.3g}", true_error(grid, source.loaded) / floor->scale);
     const field::Interpolation cells = grid.scalar ? grid.scalar->interpolation() : grid.vector->grid()->interpolation();
     curve.why = fmt::format(
-        "Between its voxels the grid, read by {} cells, is off by {:.2g} of the range: nothing that is drawn or felt of it so can be more "
-        "exact.",
-        cells == field::Interpolation::cubic ? "cubic" : "linear", curve.floor);
+        "Between its voxels the grid, read by {} cells, is off by {:.2g} of {}: values that are drawn or felt of it cannot be more exact "
+        "than that.",
+        cells == field::Interpolation::cubic ? "cubic" : "linear", curve.floor,
+        grid.vector ? "twice the greatest length of its vectors" : "the range of its values");
     curves.push_back(std::move(curve));
   });
   return curves;

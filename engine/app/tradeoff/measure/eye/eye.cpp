@@ -152,6 +152,7 @@ Outcome measure_settings(Subject& subject, const std::vector<Tried>& tried, Curv
   Eye& eye = *subject.eye;
   std::vector<Repeat> repeats;
   std::set<std::string> too_long;
+  std::vector<render::RenderSettings> drawn;
   for (const Tried& t : tried) {
     if (too_long.contains(t.series)) continue;
     const Repeat draw = drawing_of(*eye.renderer, eye.packet, t.settings);
@@ -161,8 +162,19 @@ Outcome measure_settings(Subject& subject, const std::vector<Tried>& tried, Curv
     CATENA_TRY(const render::Picture picture, eye.renderer->read_back());
     const render::PictureError error = render::measure_error(picture, eye.truth);
     curve.points.push_back(point_of(t, error, eye.renderer->stats()));
+    drawn.push_back(t.settings);
     repeats.push_back(draw);
     if (seconds > 0.2 * subject.effort.eye_s) too_long.insert(t.series);
+  }
+  // voxels of another format than the picture's before are put on the device first, which does not count
+  const std::vector<Repeat> bare = repeats;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const render::RenderSettings& before = drawn[(i + drawn.size() - 1) % drawn.size()];
+    if (drawn[i].texels == before.texels && drawn[i].layout == before.layout) continue;
+    repeats[i] = [draw = bare[i]]() -> Result<double> {
+      CATENA_CHECK(draw());
+      return draw();
+    };
   }
   return time_points(curve, repeats, subject.effort.eye_s, 15);
 }

@@ -43,9 +43,10 @@ Result<std::vector<Curve>> measure_quality(Subject& subject) {
     return std::vector<Curve>{};
   }
   Curve curve = eye_curve(
-      subject, "quality", "Which --quality",
+      subject, "quality", "How finely the picture is drawn: --quality",
       fmt::format(
-          "What may be typed after --quality, or stand in the scene as \"quality\". Flicker is of three pictures {:g} degrees apart.",
+          "What may be typed after --quality, or stand in the scene as \"quality\"; it sets steps, pixels and rays together. Flicker is of "
+          "three pictures {:g} degrees apart.",
           kTurn_deg));
   std::vector<Tried> tried;
   const auto add = [&](const std::string& words, const render::RenderSettings& settings) {

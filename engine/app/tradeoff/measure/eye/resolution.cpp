@@ -53,8 +53,12 @@ render::Picture resized(const render::Picture& from, std::uint32_t width, std::u
 Result<std::vector<Curve>> measure_resolution(Subject& subject) {
   Eye& eye = *subject.eye;
   const std::uint32_t width = eye.packet.width, height = eye.packet.height;
-  Curve curve = eye_curve(subject, "resolution", "How many samples the picture has",
-                          fmt::format("A picture of {}x{} from fewer pixels, scaled up, or from several samples a pixel.", width, height));
+  Curve curve = eye_curve(
+      subject, "resolution", "How many samples the picture has",
+      fmt::format(
+          "A picture of {}x{} from several samples a pixel; beside them from fewer pixels, scaled up, which are never chosen: how large a "
+          "picture is, is for you to say (--size).",
+          width, height));
   curve.work_name = "samples";
   const render::RenderSettings settings = eye.rays ? render::exact_rung(1) : render::RenderSettings{};
   // what 4 x 4 samples still lack is seen beside 3 x 3
@@ -69,10 +73,11 @@ Result<std::vector<Curve>> measure_resolution(Subject& subject) {
   struct Try {
     double factor;
     const char *words, *write;
+    bool offered = true;
   };
-  for (const Try& t : {Try{0.25, "a quarter of the pixels each way", "--size"},
-                       {0.5, "half of the pixels each way", "--size"},
-                       {1, "a sample a pixel", ""},
+  for (const Try& t : {Try{0.25, "a quarter of the pixels each way", "", false},
+                       {0.5, "half of the pixels each way", "", false},
+                       {1, "a sample a pixel", "--antialias 1"},
                        {2, "2 x 2 samples a pixel", "--antialias 2"},
                        {3, "3 x 3 samples a pixel", "--antialias 3"}}) {
     packets.push_back(sized(eye.packet, t.factor));
@@ -85,7 +90,8 @@ Result<std::vector<Curve>> measure_resolution(Subject& subject) {
                             double(picture.width) * picture.height,
                             {},
                             kNotMeasured,
-                            {error.p999, 100 * error.kept, 100 * error.least_kept}});
+                            {error.p999, 100 * error.kept, 100 * error.least_kept},
+                            t.offered});
   }
   curve.current = 2;
   std::vector<Repeat> repeats;

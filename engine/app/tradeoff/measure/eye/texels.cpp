@@ -13,8 +13,9 @@ Result<std::vector<Curve>> measure_texels(Subject& subject) {
     return std::vector<Curve>{};
   }
   Curve curve = eye_curve(subject, "texels", "How the grids are kept on the device",
-                          "Exact rays with steps of a quarter of a voxel, so that what differs is the texels. The command line has no "
-                          "setting for it: 16 bits are taken for volumes, 32 for surfaces and slices, 32 by --quality reference.");
+                          "Exact rays with steps of a quarter of a voxel, so that what differs is how a voxel is kept: in 16 bits (a half "
+                          "float) or 32, in one block or in bricks without the empty ones. No option asks for it: volumes take 16 bits, "
+                          "surfaces and slices 32, --quality reference 32, a plan what is cheaper at its error.");
   curve.bytes_name = "bytes on the device";
   curve.cost = Cost::bytes;
   std::vector<Tried> tried;

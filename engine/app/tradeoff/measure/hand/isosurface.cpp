@@ -35,8 +35,8 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   curve.id = "hand-isosurface-" + link.name;
   curve.title = "How exactly the surface \"" + link.name + "\" is felt";
   curve.what = fmt::format(
-      "The hand goes {} ({:g} Hz). The link has no setting for it: it stops where 1e-8 L is left along the surface. Beside it the same "
-      "link on every 2nd and 4th voxel.",
+      "The hand goes {} ({:g} Hz). The link has no setting for it: in each tick the proxy goes on until less than 1e-8 L is left along the "
+      "surface.",
       motion->words, subject.rate_hz);
   curve.error_name = "distance off the surface / L (RMS)";
   curve.work_name = "field fetches a tick";
@@ -46,7 +46,10 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   curve.reference = "the level of the field as it is, which is known at every place";
   std::vector<field::ScalarFieldPtr> fields{field};
   if (field->grid() != nullptr) {
-    if (const auto levels = make_levels(*field->grid())) fields.insert(fields.end(), {levels->at[1], levels->at[2]});
+    if (const auto levels = make_levels(*field->grid())) {
+      fields.insert(fields.end(), {levels->at[1], levels->at[2]});
+      curve.what += " Beside it the same link on every 2nd and 4th voxel.";
+    }
   } else {
     curve.floor_from = "The field is a formula: the data leave nothing open.";
   }

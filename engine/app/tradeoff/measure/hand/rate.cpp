@@ -46,11 +46,13 @@ Result<Curve> force_curve(Subject& subject) {
   Curve curve;
   curve.id = "hand-rate-force";
   curve.title = "How often the servo ticks: the force";
-  curve.what = fmt::format("The hand goes {}, the same way at every rate; a force is held until the next tick, as a device holds it.",
-                           subject.motion.words);
-  curve.error_name = "difference of the force from 10 kHz, N (RMS)";
+  curve.what = fmt::format(
+      "The hand goes {}, the same way at every rate; a force is held until the next tick, as a device holds it. "
+      "What differs is how late a force comes.",
+      subject.motion.words);
+  curve.error_name = "difference of the force from that of 10 kHz, N (RMS)";
   curve.work_name = "ticks a second";
-  curve.time_name = "us of processor a second";
+  curve.time_name = "us of processor a second of motion";
   curve.more = {"greatest force, N"};
   std::vector<std::vector<haptics::ProbeSample>> paths;
   for (const double rate : kRates_hz) paths.push_back(subject.motion.samples(rate));
@@ -107,11 +109,14 @@ Result<Curve> stability_curve(Subject& subject) {
   curve.id = "hand-rate-stability";
   curve.title = "How often the servo ticks: the spring that stays stable";
   curve.what = fmt::format(
-      "The coupling's spring of {:g} N/m beside the stiffest that {} ({:.3g} kg, {:.3g} N s/m) shows without making energy, K <= 2 b / (T "
-      "+ 2 "
-      "delay); and the stiffest at "
-      "which a simulated mass on a plane comes to rest. Above 1 it may buzz.",
-      spring, device, setting.mass_kg, setting.damping);
+      "The spring of the coupling, which pulls the hand to its proxy, has {:g} N/m. It is held against the stiffest one that {} of {:.3g} "
+      "kg "
+      "and a damping b of {:.3g} N s/m shows without making energy, 2 b / (T + 2 delay), where T is the time between two ticks and the "
+      "delay "
+      "that of the device, {:g} ms; and beside it stands the stiffest at which a simulated mass on a plane comes to rest. Above 1 the hand "
+      "may "
+      "feel a buzz.",
+      spring, device, setting.mass_kg, setting.damping, 1e3 * setting.delay_s);
   curve.error_name = "the coupling's spring / the stable one";
   curve.work_name = "ticks a second";
   curve.cost = Cost::work;

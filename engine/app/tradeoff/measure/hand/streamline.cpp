@@ -40,6 +40,18 @@ struct Line {
   Motion motion;
 };
 
+/// How far the line that is traced once is off anywhere, as long as a link has it: the hand may hold a far pass. By L.
+double anywhere(const Line& line) {
+  flow::TraceOptions usual, exact;
+  exact.tolerance = kReferenceTolerance;
+  exact.hermite_tolerance = kReferenceHermite;
+  const auto traced = flow::trace(line.flow, line.seed, usual), truth = flow::trace(line.flow, line.seed, exact);
+  if (!traced || !truth) return kNotMeasured;
+  const double lo = std::max((*truth)->knots().front().s, (*traced)->knots().front().s),
+               hi = std::min((*truth)->knots().back().s, (*traced)->knots().back().s);
+  return apart(**traced, flow::NearestOnCurve(*truth), lo, hi, line.field->length());
+}
+
 void add_floor(const Line& line, Curve& curve) {
   if (!line.field->is_grid()) {
     curve.floor_from = "The field is a formula, which the hand reads exactly: the data leave nothing open.";
@@ -141,9 +153,9 @@ Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
       "nothing in a tick, so that it has no place in a plot by fetches.",
       line.motion.words, subject.rate_hz);
   curve.error_name = "greatest distance from the line / L";
-  curve.work_name = "field fetches a millisecond";
-  curve.time_name = "ns a millisecond";
-  curve.more = {"before the first tick, ms", "ticks not OK, %"};
+  curve.work_name = "field fetches a ms of motion";
+  curve.time_name = "ns of processor a ms of motion";
+  curve.more = {"before the first tick, ms", "ticks not OK, %", "anywhere on its line, distance / L"};
 
   // the line that errors are measured from, and a less exact one
   flow::TraceOptions coarser = line.options;
@@ -160,6 +172,7 @@ Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
     programs.push_back(only_link(*subject.program, line.name, std::move(constraint)));
     rates.push_back(rate_hz);
     point.more.resize(2, 0);
+    point.more.push_back(programs.size() == 1 ? anywhere(line) : kNotMeasured);
     point.offered = rate_hz == subject.rate_hz;  // the rate is a choice of its own (rate.cpp)
     curve.points.push_back(std::move(point));
   };
