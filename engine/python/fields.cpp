@@ -1,5 +1,6 @@
 /// catena.Field and catena.analytic: samples and gradients at many places at once.
 #include <limits>
+#include <optional>
 
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
@@ -103,6 +104,16 @@ void add_fields(py::module_& m) {
   m.def("analytic", analytic, py::arg("name"), py::arg("scale") = 1.0, py::arg("part") = "", py::arg("center") = std::array<double, 3>{},
         "A field by formula: \"sphere\", \"helix\", \"hill\", \"left-ventricle\", ... (analytic_names()).\n\nscale: multiplies values. "
         "part: of \"left-ventricle\": density, transmural or fibre. center: (3,), world place of the formula's origin.");
+  m.def(
+      "memory_limit",
+      [](std::optional<double> megabytes) {
+        if (megabytes && !(*megabytes > 0 && *megabytes <= 1e12))
+          throw Failure(Error{"memory_limit: expected from 1e-6 to 1e12 MB, or None"});
+        set_memory_limit(megabytes ? std::optional(static_cast<std::uint64_t>(1e6 * *megabytes)) : std::nullopt);
+      },
+      py::arg("megabytes"),
+      "Lets data take so many megabytes from now on; None: three quarters of what is free, as at the start.\n\nWhat needs more raises "
+      "Error before it is read.");
   m.def(
       "analytic_names",
       [] {

@@ -93,8 +93,10 @@ PYBIND11_MODULE(_catena, m) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Failure& failure) {
-      // one line, whatever was named in it
+      // one line, whatever was named in it; what the program's flag does is a function here
       std::string line = failure.message;
+      constexpr std::string_view kFlag = "--memory MB";
+      if (const auto at = line.find(kFlag); at != std::string::npos) line.replace(at, kFlag.size(), "catena.memory_limit(MB)");
       std::replace_if(
           line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
       const auto text =

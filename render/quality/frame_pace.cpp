@@ -13,7 +13,7 @@ namespace {
 constexpr double kRoom = 0.8, kLeastRoom = 0.25, kAfterLate = 0.9;
 constexpr int kRecovery = 90;                                                              // frames
 constexpr double kRegain = (kRoom - kLeastRoom) / kRecovery, kLeastRegain = kRegain / 22;  // a frame
-constexpr double kForgotten = 0.95;                                                        // of the room where frames came late
+constexpr double kForgotten = 0.97;                                                        // of the room where frames came late
 constexpr double kBeyond = 1.035;                                                          // twice in 20 frames
 constexpr int kUntilHalf = 8, kUntilFull = 30;                                             // frames
 constexpr double kFullBelow = 0.7;                                                         // of the budget

@@ -57,7 +57,7 @@ class FramePace {
   double room_, budget_ms_ = 0;
   double regain_;      ///< of the room, with every frame in time
   double beyond_ = 1;  ///< times that, where no frame came late
-  double late_room_;   ///< where frames came late, a twentieth less with each of them
+  double late_room_;   ///< where frames came late, 3 % less with each of them
   int rested_ = 0;     ///< frames in time since the room was all there
   bool was_late_ = false;
   std::int64_t shown_ns_ = 0;  ///< the last frame; 0: none

@@ -52,6 +52,19 @@ class Fields(unittest.TestCase):
         np.testing.assert_array_equal(catena.field(a[::-1, :, ::2]).sample([[1, 2, 0]]), [a[3, 2, 2]])
         np.testing.assert_array_equal(a, np.arange(120).reshape(4, 5, 6))
 
+    def test_memory_has_a_limit(self):
+        a = np.zeros((80, 80, 80), np.float32)  # 2 MB
+        catena.memory_limit(1)
+        try:
+            with self.assertRaisesRegex(catena.Error, r"expected at most \d MB \(catena\.memory_limit\(MB\) allows more\)"):
+                catena.field(a)
+        finally:
+            catena.memory_limit(None)
+        catena.field(a)
+        for wrong in (0, -1, float("nan"), 1e300):
+            with self.assertRaises(catena.Error):
+                catena.memory_limit(wrong)
+
     def test_the_affine_maps_voxels_to_the_world(self):
         affine = np.array([[0, -2, 0, 10], [3, 0, 0, -4], [0, 0, 0.5, 1], [0, 0, 0, 1]], float)
         a = np.random.default_rng(1).random((5, 6, 7)).astype(np.float32)

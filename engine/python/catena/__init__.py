@@ -28,12 +28,12 @@ import zlib as _zlib
 import numpy as _np
 
 from ._catena import (Chain, Curve, Error, Field, MachineError, STATUSES, Ticks, __version__, _from_array, _from_file, _recording, _render,
-                      _study_table, analytic, analytic_names, trace)
+                      _study_table, analytic, analytic_names, memory_limit, trace)
 
 _FILES = "file", "firmware", "transfer"  # keys of a scene whose words name files
 
 __all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATUSES", "Served", "Ticks", "analytic", "analytic_names",
-           "field", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
+           "field", "memory_limit", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
 
 
 def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear", grid="", step=0):

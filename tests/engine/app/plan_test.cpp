@@ -298,6 +298,13 @@ TEST(PlanSlider, GoesFromTheFastestToTheMostExact) {
   EXPECT_TRUE(live.follow(wants("error=0.1")));
   EXPECT_FALSE(live.follow(wants("error=0.1")));
   EXPECT_EQ(live.place(), 1);
+  // a place stays where it was put, also where what is chosen is better than what it wants
+  for (const double place : {0.0, 1.0 / 3, 2.0 / 3, 1.0}) {
+    live.follow(live.at(place));
+    EXPECT_NEAR(live.place(), place, 1e-12);
+  }
+  live.follow(wants("error=7.9"));
+  EXPECT_NEAR(live.place(), 1.0 / 3, 1e-12);
 }
 
 TEST(PlanStore, KeepsCurvesAndBelievesNoOther) {

@@ -1,6 +1,7 @@
 /// Frames of a headset on a scripted machine and a scripted display: in time where that can be, at half rate where it cannot.
 #include "render/quality/frame_pace.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -37,6 +38,18 @@ struct Headset {
   double period_ms = 11.1, unit_ms = 20, beside_ms = 1;
 };
 
+double cost_of(const Headset& h) { return relative_cost(h.plan.settings, false); }
+
+/// Of the rung after the one that is drawn.
+double next_cost(const Headset& h) {
+  double next = 1e9;
+  for (const RenderSettings& s : quality_ladder({})) {
+    const double cost = relative_cost(s, false);
+    if (cost > cost_of(h)) next = std::min(next, cost);
+  }
+  return next;
+}
+
 double coarsest_cost() { return relative_cost(quality_ladder({}).front(), false); }
 
 TEST(FramePace, HoldsThePeriodWhereItCan) {
@@ -51,12 +64,7 @@ TEST(FramePace, HoldsThePeriodWhereItCan) {
     EXPECT_EQ(h.plan.periods, 1);
     // and does not waste it: the next rung would not have fitted, with the room that it needs to be taken
     if (unit < 2) continue;  // the last one
-    double next = 1e9;
-    for (const RenderSettings& s : quality_ladder({})) {
-      const double cost = relative_cost(s, false);
-      if (cost > relative_cost(h.plan.settings, false)) next = std::min(next, cost);
-    }
-    EXPECT_GT(unit * next, 0.75 * h.pace.budget_ms()) << unit;
+    EXPECT_GT(unit * next_cost(h), 0.75 * h.pace.budget_ms()) << unit;
   }
 }
 
@@ -95,14 +103,15 @@ TEST(FramePace, GivesWayToWhatElseTheMachineDoesAndComesBack) {
   EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9);
 }
 
-/// What the machine had before a stall it has again 90 frames after it, and is not late for that.
+/// What the machine had before a stall it has again 90 frames after it, and is not late for that. A rung that fitted only just may be the
+/// one below it then: a better one is taken with room only.
 TEST(FramePace, AfterAStallOfAnyLengthAllIsBackInASecond) {
   for (const int frames : {1, 3, 30, 300})
     for (const double stall_ms : {15.0, 60.0, 3000.0}) {
       const std::string what = std::to_string(frames) + " of " + std::to_string(stall_ms) + " ms";
       Headset h;
       h.run(400);
-      const double budget = h.pace.budget_ms(), cost = relative_cost(h.plan.settings, false);
+      const double budget = h.pace.budget_ms(), cost = cost_of(h);
       for (int again = 0; again < 3; ++again) {
         h.beside_ms = stall_ms;
         h.run(frames);
@@ -111,7 +120,7 @@ TEST(FramePace, AfterAStallOfAnyLengthAllIsBackInASecond) {
         const int late = h.pace.late();
         h.run(90);
         EXPECT_NEAR(h.pace.budget_ms(), budget, 1e-9) << what;
-        EXPECT_EQ(relative_cost(h.plan.settings, false), cost) << what;
+        EXPECT_TRUE(cost_of(h) == cost || (cost_of(h) < cost && h.unit_ms * next_cost(h) > 0.8 * budget)) << what;
         EXPECT_EQ(h.plan.periods, 1) << what;
         h.run(300);
         EXPECT_LE(h.pace.late() - late, 3) << what;
@@ -121,17 +130,22 @@ TEST(FramePace, AfterAStallOfAnyLengthAllIsBackInASecond) {
 
 /// A compositor that always needs more than the usual room: the rise does not try again and again. When it needs it no more, it is back.
 TEST(FramePace, SteadyLoadDoesNotMakeItLate) {
-  for (const double beside : {3.0, 4.0, 5.0, 6.0, 7.0, 8.0}) {
-    Headset h;
-    h.beside_ms = beside;
-    h.run(500);
-    const int late = h.pace.late();
-    h.run(5000);
-    EXPECT_LE(h.pace.late() - late, 50) << beside << " ms: more than 1 % late";
-    h.beside_ms = 0;
-    h.run(600);
-    EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9) << beside << " ms";
-  }
+  for (const double unit : {5.0, 10.0, 20.0, 30.0, 40.0})
+    for (const double beside : {3.0, 4.0, 5.0, 6.0, 7.0, 8.0})
+      for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+        const std::string what = fmt::format("{} ms beside, a unit of {} ms, seed {}", beside, unit, seed);
+        Headset h;
+        h.random.seed(seed);
+        h.unit_ms = unit;
+        h.beside_ms = beside;
+        h.run(500);
+        const int late = h.pace.late();
+        h.run(5000);
+        EXPECT_LE(h.pace.late() - late, 50) << what << ": more than 1 % late";
+        h.beside_ms = 0;
+        h.run(800);
+        EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9) << what;
+      }
 }
 
 TEST(FramePace, CountsWhatIsLateAndNotAPause) {

@@ -64,8 +64,8 @@ scene::Plan LivePlan::at(double place) const {
 }
 
 double LivePlan::place() const {
-  if (eye && !quality_stated) return place_of(eye->stops(), eye->expected_error());
-  if (hand && !hand->is_empty()) return place_of(hand->stops(), hand->expected_error());
+  if (eye && !quality_stated) return place_of(eye->stops(), wanted.error.value_or(eye->expected_error()));
+  if (hand && !hand->is_empty()) return place_of(hand->stops(), wanted.hand_error.value_or(hand->expected_error()));
   return 1;
 }
 
