@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "render/mirror/half.h"
+#include "render/passes/renderer_parts.h"
+
+namespace catena::render {
+namespace {
+
+/// The bytes of an image, by way of a buffer of its own.
+template <class T>
+Result<std::vector<T>> bytes_of(vk::Device& device, vk::Image& image, std::size_t count) {
+  const std::size_t bytes = count * sizeof(T);
+  CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
+  commands.copy(image, buffer);
+  CATENA_CHECK(commands.finish());
+  std::vector<T> values(count);
+  std::memcpy(values.data(), buffer.bytes().data(), bytes);
+  return values;
+}
+
+/// One texel of 4 bytes.
+void copy_texel(vk::Commands& commands, vk::Image& from, std::uint32_t x, std::uint32_t y, const vk::Buffer& to, VkDeviceSize offset) {
+  commands.use(from, vk::kTransferRead);
+  VkBufferImageCopy region{};
+  region.bufferOffset = offset;
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageOffset = {std::int32_t(x), std::int32_t(y), 0};
+  region.imageExtent = {1, 1, 1};
+  vkCmdCopyImageToBuffer(commands.handle(), from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1, &region);
+}
+
+}  // namespace
+
+Result<Picture> Renderer::read_back() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kPictureFormat);
+  Picture picture;
+  picture.width = p.shown().info().extent.width;
+  picture.height = p.shown().info().extent.height;
+  CATENA_TRY(picture.rgba,
+             p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height)));
+  return picture;
+}
+
+Result<FloatPicture> Renderer::read_back_float() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kFloatPictureFormat);
+  FloatPicture picture;
+  picture.width = p.targets.picture.info().extent.width;
+  picture.height = p.targets.picture.info().extent.height;
+  CATENA_TRY(picture.rgba,
+             p.kept_or_dropped(bytes_of<float>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height)));
+  return picture;
+}
+
+Result<DepthPicture> Renderer::read_depth() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0);
+  DepthPicture picture;
+  picture.width = p.view_width;
+  picture.height = p.view_height;
+  picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
+  if ((p.drawn & target::opaque_depth) == 0) return picture;
+  CATENA_TRY(const std::vector<float> relative,
+             p.kept_or_dropped(bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size())));
+  for (std::size_t i = 0; i < relative.size(); ++i)
+    if (relative[i] < NO_DEPTH) picture.depth[i] = float(double(relative[i]) + p.reference_depth);
+  return picture;
+}
+
+Result<IdPicture> Renderer::read_ids() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0);
+  IdPicture picture;
+  picture.width = p.view_width;
+  picture.height = p.view_height;
+  picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
+  if ((p.drawn & target::opaque_id) == 0) return picture;
+  CATENA_TRY(picture.ids, p.kept_or_dropped(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
+  return picture;
+}
+
+/// Texels of an R8_UINT image that are 1.
+Result<std::uint64_t> Renderer::Parts::count_marks(vk::Image& marks) {
+  const VkExtent3D& size = marks.info().extent;
+  CATENA_TRY(const auto bytes, kept_or_dropped(bytes_of<std::uint8_t>(*device, marks, std::size_t(size.width) * size.height)));
+  return std::uint64_t(std::ranges::count(bytes, std::uint8_t(1)));
+}
+
+Result<MarchedTiles> Renderer::marched_tiles() {
+  Parts& p = *parts_;
+  constexpr std::uint32_t kTile = 16;
+  MarchedTiles tiles;
+  tiles.all = tiles.marched = (p.view_width + kTile - 1) / kTile * ((p.view_height + kTile - 1) / kTile);
+  for (Pass* pass : p.active()) {
+    RayProbe* rays = pass->probe();
+    if (!rays || !rays->has_kept()) continue;
+    tiles.marched = 0;
+    if (vk::Image* changed = rays->changed_tiles()) {
+      CATENA_TRY(const std::uint64_t marked, p.count_marks(*changed));
+      tiles.marched = std::uint32_t(marked);
+    }
+  }
+  return tiles;
+}
+
+Result<std::array<std::uint64_t, 2>> Renderer::refined_rays() {
+  Parts& p = *parts_;
+  std::array<std::uint64_t, 2> rays{};
+  for (Pass* pass : p.active()) {
+    if (!pass->probe()) continue;
+    const std::array<vk::Image*, 2> blocks = pass->probe()->marked_blocks();
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      if (blocks[k] == nullptr) continue;
+      CATENA_TRY(const std::uint64_t marked, p.count_marks(*blocks[k]));
+      rays[k] += 16 * marked;
+    }
+  }
+  return rays;
+}
+
+Result<Picked> Renderer::pick(std::uint32_t x, std::uint32_t y) {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0 && x < p.view_width && y < p.view_height);
+  Picked picked{0, std::numeric_limits<double>::infinity()};
+  constexpr TargetSet kBoth = target::opaque_depth | target::opaque_id;
+  if ((p.drawn & kBoth) != kBoth) return picked;
+  const auto read = [&]() -> Outcome {
+    CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(*p.device, 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+    CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+    copy_texel(commands, p.targets.opaque_depth, x, y, buffer, 0);
+    copy_texel(commands, p.targets.opaque_id, x, y, buffer, 4);
+    commands.barrier(buffer, vk::kTransferWrite, vk::kHostRead);
+    CATENA_CHECK(commands.finish());
+    float relative = 0;
+    std::memcpy(&relative, buffer.bytes().data(), 4);
+    std::memcpy(&picked.id, buffer.bytes().data() + 4, 4);
+    if (relative < NO_DEPTH) picked.depth = double(relative) + p.reference_depth;
+    return Done{};
+  };
+  CATENA_CHECK(p.kept_or_dropped(read()));
+  return picked;
+}
+
+Result<Picture> Renderer::read_back_window() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.ui && p.ui->window());
+  vk::Image& window = p.ui->window();
+  Picture picture;
+  picture.width = window.info().extent.width;
+  picture.height = window.info().extent.height;
+  CATENA_TRY(picture.rgba, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, window, std::size_t(4) * picture.width * picture.height)));
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+  return picture;
+}
+
+Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
+  Parts& p = *parts_;
+  Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
+  CATENA_CHECK(p.prepare(frame));
+
+  // all before the rays, whole; then the rays, into an image of their own
+  Picture picture;
+  picture.width = (packet.width + spacing - 1) / spacing;
+  picture.height = (packet.height + spacing - 1) / spacing;
+  const std::size_t count = std::size_t(picture.width) * picture.height;
+  vk::Image target;
+  std::vector<Pass*> before;
+  RayProbe* rays = nullptr;
+  for (Pass* pass : p.active()) {
+    if ((rays = pass->probe())) break;
+    if ((pass->use(frame).writes & target::picture) == 0) before.push_back(pass);
+  }
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+  CATENA_CHECK(p.record(commands, frame, before));
+  if (rays) {
+    vk::ImageInfo info;
+    info.format = kVolumeFormat;
+    info.extent = {picture.width, picture.height, 1};
+    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    CATENA_TRY(target, vk::Image::create(*p.device, info));
+    if (frame.has(target::opaque_depth)) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
+    CATENA_CHECK(rays->record_probe(commands, frame, spacing, target));
+  }
+  CATENA_CHECK(commands.finish());
+  std::vector<float> volume(4 * count);
+  std::vector<std::uint16_t> opaque;
+  if (rays) {
+    CATENA_TRY(volume, bytes_of<float>(*p.device, target, volume.size()));
+  }
+  if (frame.has(target::opaque_color)) {
+    CATENA_TRY(opaque, bytes_of<std::uint16_t>(*p.device, p.targets.opaque_color, 4 * std::size_t(packet.width) * packet.height));
+  }
+
+  // volume over opaque over background
+  picture.rgba.assign(4 * count, 0);
+  const auto to_byte = [](float x) { return std::uint8_t(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); };
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t pixel = spacing * (i / picture.width * packet.width + i % picture.width);
+    const float behind = opaque.empty() ? 1 : 1 - float_from_half(opaque[4 * pixel + 3]), through = 1 - volume[4 * i + 3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float sum = behind * packet.background[c] + (opaque.empty() ? 0 : float_from_half(opaque[4 * pixel + c]));
+      picture.rgba[4 * i + c] = to_byte(volume[4 * i + c] + through * sum);
+    }
+    picture.rgba[4 * i + 3] = to_byte(1 - through * behind);
+  }
+  return picture;
+}
+
+}  // namespace catena::render
