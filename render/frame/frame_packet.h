@@ -165,6 +165,7 @@ struct SliceItem {
   bool clipped = true;                            ///< the clip planes cut it
   int over = 0;                                   ///< so many slices before it lie in the same plane: it lies over them
   std::optional<double> hidden{};                 ///< nothing is drawn within a half of this value
+  bool operator==(const SliceItem&) const = default;
 };
 
 /// A tube around a polyline, already flattened from the curve finely enough for its radius.

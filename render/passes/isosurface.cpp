@@ -43,7 +43,7 @@ class IsosurfacePass final : public Pass {
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
   bool finds_surfaces() const override { return true; }
-  bool has_kept() const override { return keeps_ && still_.has_kept(); }
+  bool has_kept() const override { return keeps_ && still_[eye_].has_kept(); }
 
  private:
   struct Surface {
@@ -61,7 +61,8 @@ class IsosurfacePass final : public Pass {
   Outcome draw(vk::Commands& commands, Frame& frame);
 
   std::vector<Surface> surfaces_;
-  StillSurfaces still_;
+  std::vector<StillSurfaces> still_;  ///< an eye's each
+  std::size_t eye_ = 0;
   std::uint64_t version_ = 0;  ///< counts what prepare() has found new
   bool keeps_ = false;
 };
@@ -123,17 +124,19 @@ Bounds IsosurfacePass::bounds() const {
 Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   keeps_ = false;
   if (!frame.settings.keep) return draw(commands, frame);
-  keeps_ = bool(still_.fit(frame.device, {frame.packet.width, frame.packet.height, 1}));
+  still_.resize(frame.eyes);
+  StillSurfaces& still = still_[eye_ = frame.eye];
+  keeps_ = bool(still.fit(frame.device, {frame.packet.width, frame.packet.height, 1}));
   if (keeps_) {
     StillSurfaces::Look look{{}, version_};
     for (const Surface& surface : surfaces_) {
       look.surfaces.push_back(frame.rays.frame());
       look.surfaces.back().grids[0] = surface_data(frame.rays, surface.state, surface.item);
     }
-    CATENA_CHECK(still_.update(commands, std::move(look), [&] { return draw(commands, frame); }));
+    CATENA_CHECK(still.update(commands, std::move(look), [&] { return draw(commands, frame); }));
   }
   frame.targets.begin(commands, target::opaque, target::opaque & ~frame.written);
-  CATENA_CHECK(keeps_ ? still_.draw(frame.device, commands, frame.rays.frame()) : draw(commands, frame));
+  CATENA_CHECK(keeps_ ? still.draw(frame.device, commands, frame.rays.frame()) : draw(commands, frame));
   commands.end_pass();
   return Done{};
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "render/passes/passes.h"
@@ -23,8 +24,6 @@ constexpr std::uint32_t kLayersRestShader[] = {
 constexpr std::uint64_t kLayerBytes = 12 * MAX_LAYERS + 32;
 
 using Clear = std::array<float, 4>;
-
-bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
 struct TranslucentMesh {
   MeshItem item;
@@ -59,6 +58,8 @@ class LayersPass final : public Pass {
   SliceDrawer slice_drawer_;
   std::vector<TranslucentMesh> meshes_;
   std::vector<Slice> slices_;
+  std::vector<SliceItem> slice_items_;
+  std::uint64_t version_ = 0;  ///< counts what prepare() has found new
   std::map<std::array<std::uint32_t, 2>, vk::Pipeline> mesh_pipelines_;
   vk::Pipeline rest_pipeline_;
   std::uint32_t count_ = 0;
@@ -78,7 +79,9 @@ Outcome LayersPass::prepare_meshes(Frame& frame) {
     add_mesh(shape, item);
     CATENA_CHECK(mesh.triangles.upload(frame.device, shape));
     mesh.item = item;
+    ++version_;
   }
+  version_ += meshes_.size() > count;
   while (meshes_.size() > count) meshes_.pop_back();
   return Done{};
 }
@@ -105,11 +108,16 @@ Outcome LayersPass::prepare_images(Frame& frame) {
 Outcome LayersPass::prepare(Frame& frame) {
   CATENA_CHECK(prepare_meshes(frame));
   CATENA_CHECK(prepare_slices(frame, slices_, render::is_translucent));
+  std::vector<SliceItem> items;
+  std::ranges::copy_if(frame.packet.slices, std::back_inserter(items), [](const SliceItem& item) { return is_translucent(item); });
+  version_ += items != slice_items_;
+  slice_items_ = std::move(items);
   std::stable_sort(meshes_.begin(), meshes_.end(), [](const auto& a, const auto& b) { return a.item.id < b.item.id; });
   std::stable_sort(slices_.begin(), slices_.end(), [](const auto& a, const auto& b) { return a.id() < b.id(); });
   count_ = collects_rest() ? MAX_LAYERS : std::uint32_t(slices_.size());
   CATENA_CHECK(prepare_images(frame));
   for (std::uint32_t i = 0; i < count_; ++i) frame.layers.push_back({&layers_[i].color, &layers_[i].depth});
+  frame.layers_version = version_;
   return Done{};
 }
 
@@ -211,6 +219,8 @@ Outcome LayersPass::record(vk::Commands& commands, Frame& frame) {
 }
 
 }  // namespace
+
+bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
 bool has_layers(const FramePacket& packet) {
   const auto any = [](const auto& items) {

@@ -84,6 +84,8 @@ struct Frame {
   /// The nearest first at every pixel, at most MAX_LAYERS. A pass before the raycast appends them in prepare() and draws them in
   /// record(); the raycast blends them, also where there is no volume.
   std::vector<Layer> layers{};
+  std::uint64_t layers_version = 0;  ///< RayScene::layers_version
+  std::size_t eye = 0, eyes = 1;     ///< which of the packet's: what is kept from picture to picture is an eye's own
 
   /// The hands that shine through what hides them: the first indices of the cursor's triangles. The cursor's pass states them in prepare().
   Triangles* ghosts = nullptr;

@@ -34,6 +34,8 @@ extern const PassEntry kSlicePass;
 extern const PassEntry kLayersPass;
 /// Whether the packet holds something translucent that layers are for.
 bool has_layers(const FramePacket& packet);
+/// In the layers.
+bool is_translucent(const MeshItem& item);
 
 /// Everything that a ray blends, in order: volumes, translucent isosurfaces and the layers of other passes, in front of the opaque depth. A
 /// lone volume goes to the fast raycast where the settings ask for it and it can be packed (render/raycast/fast_volume.h); all else to the

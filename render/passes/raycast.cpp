@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <ranges>
 
 #include "render/passes/passes.h"
 #include "render/passes/renderer.h"
+#include "render/passes/slice.h"
 #include "render/raycast/fast_volume.h"
 #include "render/raycast/projection.h"
 #include "render/raycast/volume.h"
@@ -14,6 +16,11 @@ namespace {
 
 bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
+/// That rays go through.
+bool has_surfaces(const FramePacket& packet) {
+  return std::ranges::any_of(packet.isosurfaces, [](const IsosurfaceItem& item) { return is_translucent(item); });
+}
+
 bool is_projected(const VolumeItem& item) { return item.projection != Projection::composite; }
 
 RaySettings ray_settings(const Frame& frame) {
@@ -22,7 +29,7 @@ RaySettings ray_settings(const Frame& frame) {
 }
 
 RayScene ray_scene(const Frame& frame) {
-  return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, &frame.targets.none};
+  return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, frame.layers_version, &frame.targets.none};
 }
 
 /// What can be drawn together.
@@ -190,6 +197,8 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &targets.opaque_depth : nullptr;
   for (const Layer& layer : frame.layers)
     for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
+  if (exact_pass_) exact_pass_->turn_to(frame.eye, frame.eyes);
+  if (fast_pass_) fast_pass_->turn_to(frame.eye, frame.eyes);
   const VkRect2D whole{{0, 0}, {frame.packet.width, frame.packet.height}};
   const VkRect2D area = frame.layers.empty() ? covered_area(grids_, frame.rays.camera) : whole;
   if (fast_) {
@@ -260,29 +269,30 @@ bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
   if (packet.volumes.size() != 1) return false;
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
-         !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
-         item.grid->interpolation() == field::Interpolation::linear && PackedLook::can_pack(device, *packet.volumes.front().grid);
+         !has_layers(packet) && !has_surfaces(packet) && item.grid->interpolation() == field::Interpolation::linear &&
+         PackedLook::can_pack(device, *packet.volumes.front().grid);
 }
 
-bool draws_rays(const FramePacket& packet) {
-  return !packet.volumes.empty() || has_layers(packet) || std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent);
-}
+bool draws_rays(const FramePacket& packet) { return !packet.volumes.empty() || has_layers(packet) || has_surfaces(packet); }
 
 bool same_rays(const FramePacket& a, const FramePacket& b) {
-  const auto surfaces = [](const FramePacket& packet) {
-    std::vector<IsosurfaceItem> list;
-    std::ranges::copy_if(packet.isosurfaces, std::back_inserter(list), is_translucent);
-    return list;
+  const auto same = []<class Item>(const std::vector<Item>& some, const std::vector<Item>& others) {
+    const auto translucent = std::views::filter([](const Item& item) { return is_translucent(item); });
+    return std::ranges::equal(some | translucent, others | translucent);
   };
-  return a.view == b.view && a.eyes.empty() && b.eyes.empty() && a.width == b.width && a.height == b.height && a.volumes == b.volumes &&
-         surfaces(a) == surfaces(b) && a.clip == b.clip && a.lights == b.lights && a.fog == b.fog && !has_layers(a) && !has_layers(b);
+  return a.view == b.view && a.eyes == b.eyes && a.packing == b.packing && a.width == b.width && a.height == b.height &&
+         a.volumes == b.volumes && same(a.isosurfaces, b.isosurfaces) && same(a.meshes, b.meshes) && same(a.slices, b.slices) &&
+         a.clip == b.clip && a.lights == b.lights && a.fog == b.fog;
 }
 
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
 
 Outcome check_rays(const FramePacket& packet) {
-  return check(packet, 0, packet.volumes.size(), static_cast<std::size_t>(std::ranges::count_if(packet.isosurfaces, is_translucent)), 0);
+  return check(
+      packet, 0, packet.volumes.size(),
+      static_cast<std::size_t>(std::ranges::count_if(packet.isosurfaces, [](const IsosurfaceItem& item) { return is_translucent(item); })),
+      0);
 }
 
 }  // namespace catena::render

@@ -87,6 +87,7 @@ std::uint64_t Renderer::Parts::reserved(const Frame& frame) const {
       a_pixel += entry->reserved_pixel_bytes;
     }
   const std::uint64_t pixels = std::uint64_t(frame.packet.width) * frame.packet.height;
+  if (frame.eyes > volumes.size() + 1) a_pixel += (frame.eyes - 1 - volumes.size()) * vk::texel_bytes(kVolumeFormat);
   return pixels * a_pixel + targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) + 1'000'000;
 }
 
@@ -147,8 +148,10 @@ Outcome Renderer::Parts::record(vk::Commands& commands, Frame& frame, const std:
 }
 
 /// One view, into targets.picture.
-Outcome Renderer::Parts::draw(const FramePacket& packet, const RenderSettings& settings) {
+Outcome Renderer::Parts::draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye, std::size_t eyes) {
   Frame frame{*device, *mirrors, targets, packet, settings, {}};
+  frame.eye = eye;
+  frame.eyes = eyes;
   CATENA_CHECK(prepare(frame));
   drawn_passes.clear();
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
@@ -185,9 +188,12 @@ Outcome Renderer::Parts::draw_eyes(const FramePacket& packet, const RenderSettin
   CATENA_CHECK(pack->begin(packet.packing, packet.eyes.size(), packet.width, packet.height));
   FramePacket one = packet;
   one.eyes.clear();
-  for (std::size_t k = packet.packing == Packing::single ? 1 : packet.eyes.size(); k-- > 0;) {
+  volumes.resize(packet.packing == Packing::single ? 0 : packet.eyes.size() - 1);
+  for (std::size_t k = volumes.size() + 1; k-- > 0;) {
     one.view = packet.eyes[k];
-    CATENA_CHECK(draw(one, settings));
+    if (k > 0) std::swap(targets.volume, volumes[k - 1]);
+    CATENA_CHECK(draw(one, settings, k, volumes.size() + 1));
+    if (k > 0) std::swap(targets.volume, volumes[k - 1]);
     pack->keep(k, targets.picture);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
@@ -210,7 +216,7 @@ Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings&
 Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
   p.packed = !packet.eyes.empty();
-  if (!p.packed) p.pack.reset();
+  if (!p.packed) p.pack.reset(), p.volumes.clear();
   return p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
 }
 

@@ -16,6 +16,7 @@ struct Renderer::Parts {
   std::unique_ptr<vk::Device> device;  // first in, last out
   std::optional<Mirrors> mirrors;
   Targets targets;
+  std::vector<vk::Image> volumes;  ///< target::volume of the eyes that are not drawn just now, but the first's, which is there at the end
   std::vector<std::unique_ptr<Pass>> passes;  ///< of the list's, in its order; null where the packet does not want it
   double gone_build_ms = 0;                   ///< of passes that have gone
   TargetSet drawn = 0;                        ///< by the last picture
@@ -40,7 +41,7 @@ struct Renderer::Parts {
   void drop_passes();
   Outcome prepare(Frame& frame);
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
-  Outcome draw(const FramePacket& packet, const RenderSettings& settings);
+  Outcome draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye = 0, std::size_t eyes = 1);
   Outcome draw_ray_depth(Frame& frame);
   Result<std::uint64_t> count_marks(vk::Image& marks);
   Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
@@ -53,6 +54,7 @@ Outcome_ Renderer::Parts::kept_or_dropped(Outcome_ result) {
   drop_passes();
   mirrors->clear();
   targets = Targets{};
+  volumes.clear();
   return result;
 }
 

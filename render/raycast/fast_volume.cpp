@@ -135,8 +135,8 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
   CATENA_CHECK(vk::fit_image(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
   CATENA_TRY(self.no_gradients_, vk::Image::create(device, vk::volume_info(kGradientFormat, 1, 1, 1)));
-  CATENA_CHECK(
-      vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 0, kGradientBytes); }));
+  CATENA_CHECK(vk::upload_planes(device, self.no_gradients_, 1,
+                                 [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 0, kGradientBytes); }));
   return self;
 }
 
@@ -180,7 +180,7 @@ Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image&
   commands.begin_pass({&target, 1}, {});
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &level.data, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, &coarser, nullptr},
-                                  {2, vk::Resource::texture, nullptr, opaque ? &opaque_->opaque() : &no_tiles_, nullptr}};
+                                  {2, vk::Resource::texture, nullptr, opaque ? &eye().opaque->opaque() : &no_tiles_, nullptr}};
   commands.bind(pipe, bindings);
   commands.draw_triangle();
   commands.end_pass();
@@ -219,7 +219,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw
       {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
       {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
       {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &look_.gradients() : &no_gradients_, &linear_},
-      {9, vk::Resource::texture, nullptr, draw.tiles == Tiles::changed ? &opaque_->changed() : &no_tiles_, nullptr}};
+      {9, vk::Resource::texture, nullptr, draw.tiles == Tiles::changed ? &eye().opaque->changed() : &no_tiles_, nullptr}};
   commands.scissor(draw.area);
   commands.bind(*pipe, bindings);
   if (draw.tiles == Tiles::all) {
@@ -254,7 +254,7 @@ Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, 
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &interpolate_data_, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, &half, nullptr},
                                   {2, vk::Resource::storage_image, nullptr, &target, nullptr},
-                                  {3, vk::Resource::texture, nullptr, keep ? &opaque_->changed() : &no_tiles_, nullptr}};
+                                  {3, vk::Resource::texture, nullptr, keep ? &eye().opaque->changed() : &no_tiles_, nullptr}};
   commands.bind(pipeline, bindings);
   if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
   return Done{};
@@ -266,18 +266,19 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
   CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
-  const Kept now{settings, {frame, look_.version(), target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
-  const bool still = has_kept_ = keep && target && kept_ && kept_->settings == settings && kept_->picture.is(now.picture);
-  kept_.reset();
+  Eye& own = eye();
+  const Kept now{settings, {frame, look_.version(), 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
+  const bool still = has_kept_ = keep && target && own.kept && own.kept->settings == settings && own.kept->picture.is(now.picture);
+  own.kept.reset();
   marched_half_ = marched_full_ = false;
   commands.use(no_tiles_, vk::kShaderRead);
   if (opaque_depth) {
-    if (!opaque_) opaque_.emplace(*device_);
-    CATENA_CHECK(opaque_->look(commands, *opaque_depth));
-    if (still) CATENA_CHECK(opaque_->find_changed(commands, kReach[settings.spacing]));
+    if (!own.opaque) own.opaque.emplace(*device_);
+    CATENA_CHECK(own.opaque->look(commands, *opaque_depth));
+    if (still) CATENA_CHECK(own.opaque->find_changed(commands, kReach[settings.spacing]));
   }
   if (still && !opaque_depth) {
-    kept_ = now;
+    own.kept = now;
     return Done{};
   }
 
@@ -286,7 +287,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   vk::Image* coarser = nullptr;
   const std::uint32_t finest = target ? 1 : 2;
   for (std::uint32_t spacing = settings.spacing; spacing >= finest; spacing /= 2) {
-    Level& level = spacing == 4 ? quarter_ : spacing == 2 ? half_ : full_;
+    Level& level = spacing == 4 ? own.quarter : spacing == 2 ? own.half : own.full;
     CATENA_CHECK(ensure(level, spacing, picture));
     vk::Image& image = spacing == 1 ? *target : level.color;
     double refine_255 = spacing == 2 ? settings.refine_half_255 : settings.refine_full_255;
@@ -294,20 +295,11 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const bool marches = !coarser || refine_255 >= 0;
     const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
-    const VkExtent3D& own = image.info().extent;
+    const VkExtent3D& size = image.info().extent;
     const bool refines = coarser && spacing == 1;
-    const shared::LatticeData data{float(spacing),
-                                   apron,
-                                   float(refine_255 / 255),
-                                   gaze.at,
-                                   gaze.per_fovea,
-                                   from.width,
-                                   from.height,
-                                   look_.gradient_nodes(),
-                                   own.width,
-                                   own.height,
-                                   refines,
-                                   still};
+    const shared::LatticeData data{float(spacing), apron,       float(refine_255 / 255), gaze.at,    gaze.per_fovea,
+                                   from.width,     from.height, look_.gradient_nodes(),  size.width, size.height,
+                                   refines,        still};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       (spacing == 2 ? marched_half_ : marched_full_) = true;
@@ -325,7 +317,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     if (spacing > 1) commands.use(image, vk::kFragmentRead);
     coarser = &image;
   }
-  if (target) kept_ = now;
+  if (target) own.kept = now;
   return Done{};
 }
 
@@ -348,9 +340,8 @@ Outcome FastVolumeRaycast::probe(vk::Commands& commands, const CameraRays& rays,
   CATENA_CHECK(write_frame(rays, settings));
   CATENA_CHECK(vk::fit_image(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
-  CATENA_CHECK(vk::write_uniform(
-      *device_, probe_.data,
-      shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_nodes(), 0, 0, 0, 0}));
+  CATENA_CHECK(vk::write_uniform(*device_, probe_.data,
+                                 shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_nodes(), 0, 0, 0, 0}));
   const VkExtent3D& extent = wanted.target->info().extent;
   wanted.skips = settings.skip;
   wanted.area = {{0, 0}, {extent.width, extent.height}};

@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "render/raycast/camera_rays.h"
 #include "render/raycast/packed_look.h"
@@ -22,6 +23,11 @@ class FastVolumeRaycast {
   static Result<FastVolumeRaycast> create(vk::Device& device);
   /// Packs the volume, if it is new. `left`: bytes of the device that it may take beside what it has.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) { return look_.prepare(item, settings, left); }
+  /// What follows is one of so many eyes' pictures: each keeps its own from picture to picture.
+  void turn_to(std::size_t eye, std::size_t eyes) {
+    eyes_.resize(eyes);
+    eye_ = eye;
+  }
   /// What is packed is too large to be held beside a mirror of its grid.
   bool is_large() const { return look_.as_bricks(); }
   /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
@@ -33,12 +39,14 @@ class FastVolumeRaycast {
   /// Whether the last call left most of it as it was.
   bool has_kept() const { return has_kept_; }
   /// The tiles that the last call has marched again, where it has kept the others; null: it has not, or nothing was opaque.
-  vk::Image* changed_tiles() { return has_kept_ && kept_->picture.opaque ? &opaque_->changed() : nullptr; }
+  vk::Image* changed_tiles() { return has_kept_ && eye().kept->picture.opaque ? &eye().opaque->changed() : nullptr; }
   /// What the last call has marched beside its first lattice, of every 2nd pixel and of every pixel: blocks of 4 x 4 rays, R8_UINT, 1:
   /// marched. Null: none of that lattice.
-  std::array<vk::Image*, 2> marked_blocks() { return {marched_half_ ? &half_.marks : nullptr, marched_full_ ? &full_.marks : nullptr}; }
-  /// Something else has drawn into the target.
-  void forget_target() { kept_.reset(); }
+  std::array<vk::Image*, 2> marked_blocks() {
+    return {marched_half_ ? &eye().half.marks : nullptr, marched_full_ ? &eye().full.marks : nullptr};
+  }
+  /// Something else has drawn into the eye's target.
+  void forget_target() { eye().kept.reset(); }
   /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
   Outcome record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
@@ -46,7 +54,7 @@ class FastVolumeRaycast {
   Outcome record_half_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                             vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
   /// Every 2nd pixel, for Upsampler.
-  vk::Image& half() { return half_.color; }
+  vk::Image& half() { return eye().half.color; }
   std::uint64_t grid_bytes() const { return look_.words().bytes() + look_.gradients().bytes(); }
   double build_ms() const { return look_.build_ms(); }
 
@@ -85,20 +93,27 @@ class FastVolumeRaycast {
     FastSettings settings;
     StillPicture picture;
   };
+  /// What stays of an eye's picture.
+  struct Eye {
+    Level quarter, half, full;
+    std::optional<StillTiles> opaque;
+    std::optional<Kept> kept;
+  };
+  Eye& eye() { return eyes_[eye_]; }
 
   vk::Device* device_;
   PackedLook look_;
   vk::Image no_gradients_;  ///< one voxel, bound where shading does not ask for them
   vk::Sampler linear_;
   vk::Buffer frame_;
-  Level quarter_, half_, full_, probe_;
+  std::vector<Eye> eyes_{1};
+  std::size_t eye_ = 0;
+  Level probe_;
   std::map<std::pair<Constants, bool>, vk::Pipeline> pipelines_;
   std::array<vk::Pipeline, 2> mark_pipelines_;         // without and with something opaque
   std::array<vk::Pipeline, 2> interpolate_pipelines_;  // of all, of what has changed
   vk::Buffer interpolate_data_;
-  std::optional<StillTiles> opaque_;
   vk::Image no_tiles_;
-  std::optional<Kept> kept_;
   bool has_kept_ = false;
   bool marched_half_ = false, marched_full_ = false;  ///< blocks of the last call
 };

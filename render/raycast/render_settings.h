@@ -48,8 +48,8 @@ struct RenderSettings {
   bool jitter = false;
   /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
   std::optional<FastSettings> fast;
-  /// While nothing but opaque things moves, only the rays of the tiles under them (fast ones: near them) are marched again. The picture is
-  /// the same to the bit, but what it took says nothing.
+  /// While nothing but opaque things moves, only the rays of the tiles under them (fast ones: near them) are marched again, of every eye.
+  /// The picture is the same to the bit, but what it took says nothing.
   bool keep = false;
   /// > 0: the rays of every so-many-th pixel each way are marched once more, after the picture, for Renderer::ray_depth().
   std::uint32_t ray_depth_spacing = 0;
@@ -80,6 +80,7 @@ struct Layer {
 struct RayScene {
   const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
   std::span<const Layer> layers{};          ///< in any order
+  std::uint64_t layers_version = 0;         ///< counts what they have shown: equal ones differ where opaque things differ, at most
   const vk::Image* none = nullptr;          ///< bound where there is nothing
 };
 

@@ -31,8 +31,8 @@ bool StillPicture::is(const StillPicture& other) const {
   shared::FrameData a = frame, b = other.frame;
   // what only triangles ask for
   a.depth_near = b.depth_near = a.depth_far = b.depth_far = 0;
-  return std::memcmp(&a, &b, sizeof(a)) == 0 && look == other.look && target == other.target && target_image == other.target_image &&
-         std::memcmp(&area, &other.area, sizeof(area)) == 0 && opaque == other.opaque;
+  return std::memcmp(&a, &b, sizeof(a)) == 0 && look == other.look && layers == other.layers && target == other.target &&
+         target_image == other.target_image && std::memcmp(&area, &other.area, sizeof(area)) == 0 && opaque == other.opaque;
 }
 
 Outcome StillTiles::look(vk::Commands& commands, const vk::Image& opaque_depth) {

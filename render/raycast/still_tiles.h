@@ -14,7 +14,8 @@ namespace catena::render {
 /// What a picture of rays follows from, beside what is opaque and how it is marched.
 struct StillPicture {
   shared::FrameData frame;
-  std::uint64_t look = 0;  ///< counts what volumes and surfaces look like
+  std::uint64_t look = 0;    ///< counts what volumes and surfaces look like
+  std::uint64_t layers = 0;  ///< RayScene::layers_version
   const vk::Image* target = nullptr;
   VkImage target_image = VK_NULL_HANDLE;
   VkRect2D area{};

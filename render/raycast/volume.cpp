@@ -173,7 +173,7 @@ std::vector<vk::Binding> VolumeRaycast::bindings(const Kind& kind, std::span<con
                                 {2, vk::Resource::texture, nullptr, scene.opaque_depth ? scene.opaque_depth : scene.none, nullptr}};
   if (!kind.layers_alone()) list.push_back({1, vk::Resource::buffer, &tables_, nullptr, nullptr});
   add_grid_bindings(list, bound, kind.grid_slots(), linear_);
-  if (kind.tiles) list.push_back({kChanged, vk::Resource::texture, nullptr, &opaque_->changed(), nullptr});
+  if (kind.tiles) list.push_back({kChanged, vk::Resource::texture, nullptr, &eye().opaque->changed(), nullptr});
   if (kind.layers == 0) return list;
   for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {
     const Layer& layer = scene.layers[std::min<std::size_t>(i, scene.layers.size() - 1)];
@@ -231,7 +231,7 @@ Outcome VolumeRaycast::draw(vk::Commands& commands, const Ready& ready, const Vk
     commands.draw_triangle();
     return Done{};
   }
-  const VkExtent3D& tiles = opaque_->changed().info().extent;
+  const VkExtent3D& tiles = eye().opaque->changed().info().extent;
   commands.draw(6, tiles.width * tiles.height);
   return Done{};
 }
@@ -252,14 +252,14 @@ Outcome VolumeRaycast::record_half_depth(vk::Commands& commands, const CameraRay
 Outcome VolumeRaycast::record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
                                    const RayScene& scene, vk::Image& target, bool keep) {
   Ready now = ready(rays, settings, scene);
-  const Kept next{now.kind, {now.frame, looks_, &target, target.handle(), area, scene.opaque_depth != nullptr}};
-  // what layers show is not known from their depth
-  const bool still = has_kept_ = keep && scene.layers.empty() && kept_ && kept_->kind == next.kind && kept_->picture.is(next.picture);
-  kept_.reset();
+  Eye& own = eye();
+  const Kept next{now.kind, {now.frame, looks_, scene.layers_version, &target, target.handle(), area, scene.opaque_depth != nullptr}};
+  const bool still = has_kept_ = keep && own.kept && own.kept->kind == next.kind && own.kept->picture.is(next.picture);
+  own.kept.reset();
   if (scene.opaque_depth) {
-    if (!opaque_) opaque_.emplace(*device_);
-    CATENA_CHECK(opaque_->look(commands, *scene.opaque_depth));
-    if (still) CATENA_CHECK(opaque_->find_changed(commands, 0));
+    if (!own.opaque) own.opaque.emplace(*device_);
+    CATENA_CHECK(own.opaque->look(commands, *scene.opaque_depth));
+    if (still) CATENA_CHECK(own.opaque->find_changed(commands, 0));
   }
   if (!still || scene.opaque_depth) {
     now.kind.tiles = still;
@@ -269,7 +269,7 @@ Outcome VolumeRaycast::record_into(vk::Commands& commands, const CameraRays& ray
     CATENA_CHECK(draw(commands, now, area, scene));
     commands.end_pass();
   }
-  kept_ = next;
+  own.kept = next;
   return Done{};
 }
 

@@ -18,6 +18,11 @@ class VolumeRaycast {
   Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
   /// Within a pass over a target of any size: a picture's rays, or some of them.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
+  /// What follows is one of so many eyes' pictures: each keeps its own from picture to picture.
+  void turn_to(std::size_t eye, std::size_t eyes) {
+    eyes_.resize(eyes);
+    eye_ = eye;
+  }
   /// Into `target` of the picture's size, not within a pass. `keep`: what it holds since the last call stays where it would come out the
   /// same, to the bit (still_tiles.h).
   Outcome record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
@@ -29,10 +34,10 @@ class VolumeRaycast {
   bool has_half_depth() const { return !volumes_.empty() || !surfaces_.empty(); }
   /// Whether the last record_into() left most of it as it was.
   bool has_kept() const { return has_kept_; }
-  /// Something else has drawn into the target.
-  void forget_target() { kept_.reset(); }
+  /// Something else has drawn into the eye's target.
+  void forget_target() { eye().kept.reset(); }
   /// Tiles that record_into() has marched again, where it has kept the others; null: it has not, or nothing was opaque.
-  vk::Image* changed_tiles() { return has_kept_ && kept_->picture.opaque ? &opaque_->changed() : nullptr; }
+  vk::Image* changed_tiles() { return has_kept_ && eye().kept->picture.opaque ? &eye().opaque->changed() : nullptr; }
 
  private:
   struct Volume {
@@ -72,6 +77,12 @@ class VolumeRaycast {
     Kind kind;
     StillPicture picture;
   };
+  /// What stays of an eye's picture.
+  struct Eye {
+    std::optional<StillTiles> opaque;
+    std::optional<Kept> kept;
+  };
+  Eye& eye() { return eyes_[eye_]; }
   VolumeRaycast() = default;
   Ready ready(const CameraRays& rays, const RaySettings& settings, const RayScene& scene) const;
   Outcome draw(vk::Commands& commands, const Ready& ready, const VkRect2D& area, const RayScene& scene);
@@ -89,9 +100,9 @@ class VolumeRaycast {
   std::vector<Surface> surfaces_;
   std::vector<Colors> colors_;
   vk::Buffer tables_, uniform_;
-  std::optional<StillTiles> opaque_;
   std::uint64_t looks_ = 0;  ///< counts what prepare() has found new
-  std::optional<Kept> kept_;
+  std::vector<Eye> eyes_{1};
+  std::size_t eye_ = 0;
   bool has_kept_ = false;
 };
 

@@ -119,6 +119,78 @@ TEST_F(StillTiles, ExactRaysAreMarchedUnderTheCursorsOldAndNewOutlineAlone) {
   }
 }
 
+TEST_F(StillTiles, EveryEyeKeepsItsOwn) {
+  packet_.width = 160;
+  packet_.height = 120;
+  packet_.packing = Packing::side_by_side;
+  packet_.eyes = {packet_.view, packet_.view};
+  packet_.eyes[1].position.x += 6;
+  IsosurfaceItem surface;
+  surface.grid = packet_.volumes[0].grid;
+  surface.level = 0.9;
+  surface.color = {0.9f, 0.5f, 0.2f};
+  RenderSettings exact;
+  exact.keep = true;
+  for (const RenderSettings& settings : {keeping(1, 0, -1), keeping(2, 0, 3), exact}) {
+    packet_.isosurfaces.resize(settings.fast ? 0 : 1, surface);
+    for (int k = 0; k < 4; ++k) {
+      packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
+      ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0) << k;
+      EXPECT_EQ(renderer_->stats().rays_kept, k > 0) << k;
+      EXPECT_EQ(renderer_->stats().surfaces_kept, k > 0 && !settings.fast) << k;
+      const MarchedTiles tiles = renderer_->marched_tiles().value();
+      EXPECT_EQ(tiles.marched<tiles.all, k> 0) << k;
+    }
+    // one eye has moved, and the other has not
+    packet_.eyes[1].position.x += 1;
+    ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    EXPECT_TRUE(renderer_->stats().rays_kept) << "the first eye's";
+  }
+}
+
+TEST_F(StillTiles, TranslucentMeshesAndSlicesAreMarchedUnderTheCursorAlone) {
+  packet_.width = 160;
+  packet_.height = 120;
+  SliceItem slice;
+  slice.grid = packet_.volumes[0].grid;
+  slice.point = {23, 19, 22};
+  slice.colors = {{0, 0.2, 0.3, 0.9}, {1, 0.9, 0.8, 0.1}};
+  slice.opacity = 0.5f;
+  MeshItem mesh;
+  auto triangle = std::make_shared<MeshGeometry>();
+  triangle->vertices = {{0, 0, 10}, {47, 0, 30}, {20, 39, 20}};
+  triangle->triangles = {0, 1, 2};
+  mesh.geometry = triangle;
+  mesh.opacity = 0.4f;
+  packet_.slices = {slice};
+  packet_.meshes = {mesh};
+  RenderSettings settings;
+  settings.keep = true;
+  for (int k = 0; k < 3; ++k) {
+    packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
+    ASSERT_EQ(max_difference(draw(packet_, settings, k == 2 ? "last" : ""), fresh(settings)), 0) << k;
+    EXPECT_EQ(renderer_->stats().rays_kept, k > 0) << k;
+    const MarchedTiles tiles = renderer_->marched_tiles().value();
+    EXPECT_EQ(tiles.marched<0.5 * tiles.all, k> 0) << k;
+  }
+  const auto expect_whole = [&](const char* what) {
+    ASSERT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0) << what;
+    EXPECT_FALSE(renderer_->stats().rays_kept) << what;
+  };
+  packet_.slices[0].point.z += 1;
+  expect_whole("the slice");
+  packet_.slices[0].opacity = 0.6f;
+  expect_whole("its opacity");
+  packet_.meshes[0].color = {0.1f, 0.9f, 0.3f};
+  expect_whole("the mesh");
+  packet_.meshes.clear();
+  expect_whole("without the mesh");
+  packet_.slices.clear();
+  expect_whole("without layers");
+  packet_.slices = {slice};
+  expect_whole("layers again");
+}
+
 TEST_F(StillTiles, OpaqueSurfacesAreFoundOnceAndSeenAmongWhatMoves) {
   packet_.width = 240;
   packet_.height = 180;
@@ -177,6 +249,18 @@ TEST(SameRays, DifferByWhatRaysMeetAndNotByWhatIsOpaque) {
   EXPECT_FALSE(same([](FramePacket& p) { p.fog = FogItem{}; }));
   EXPECT_FALSE(same([](FramePacket& p) { p.clip = {{{4, 4, 4}, {1, 0, 0}}}; }));
   EXPECT_FALSE(same([](FramePacket& p) { p.view.position.x += 1; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.eyes = {p.view, p.view}; }));
+  first.meshes.resize(2);
+  first.meshes[1].opacity = 0.5f;
+  first.slices.resize(2);
+  first.slices[1].opacity = 0.5f;
+  EXPECT_TRUE(same([](FramePacket& p) { p.meshes[0].color = {0, 1, 0}; }));
+  EXPECT_TRUE(same([](FramePacket& p) { p.slices[0].point.x += 1; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.meshes[1].color = {0, 1, 0}; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.slices[1].point.x += 1; }));
+  first.eyes = {first.view, first.view};
+  EXPECT_TRUE(same([](FramePacket& p) { p.cursors.resize(1); }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.eyes[1].position.x += 1; }));
 }
 
 TEST_F(StillTiles, FastRaysAreMarchedAsNearToTheOutlineAsTheyAreInterpolated) {
