@@ -114,7 +114,7 @@ Result<std::string> keys_text(const std::vector<Component>& parts, const std::st
     names.push_back(part.name);
     if (!name.empty() && part.name != name) continue;
     text += part.help + "\n";
-    for (const auto& [title, table] : markdown_tables(part)) text += "\n" + title + "\n" + table + behind;
+    for (const auto& [title, table] : markdown_tables(part)) text.append("\n").append(title).append("\n").append(table).append(behind);
   }
   if (!text.empty()) return text;
   return Error{command + ": " + in_quotes(name) + " is no part of " + whole + "; one of " + catena::joined(names) + " was expected" +
