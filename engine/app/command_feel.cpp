@@ -128,7 +128,7 @@ Outcome feel(const FeelOptions& options) {
   // the plan stands before the first tick, and is part of the text that is recorded
   CATENA_TRY(std::string text, plan::text_of(scene));
   CATENA_TRY(const std::optional<plan::HandPlan> plan,
-             plan::plan_links(scene, wanted, hand.settings.rate_hz, options.fields,
+             plan::plan_links(scene, text, wanted, hand.settings.rate_hz, options.fields,
                               [](const std::string& said) { print_out(printable(said) + "\n"); }));
   if (plan) {
     CATENA_TRY(text, plan->apply(text, options.scene));

@@ -242,17 +242,9 @@ Outcome describe_scene(const std::string& path) {
 }
 
 Outcome print_keys(const std::string& part) {
-  const std::vector<schema::Component> all = scene_description();
-  std::vector<std::string_view> names;
-  for (const schema::Component& component : all) {
-    names.push_back(component.name);
-    if (component.name != part) continue;
-    fmt::print("{}\n", component.help);
-    for (const auto& [name, table] : schema::markdown_tables(component)) fmt::print("\n{}\n{}", name, table);
-    return Done{};
-  }
-  return Error{"info: --keys: " + in_quotes(part) + " is no part of a scene; one of " + joined(names) + " was expected" +
-               suggestion(part, names)};
+  CATENA_TRY(const std::string text, schema::keys_text(scene_description(), part, "info: --keys", "a scene"));
+  fmt::print("{}", text);
+  return Done{};
 }
 
 }  // namespace

@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "engine/app/command.h"
+#include "engine/app/json_object.h"
 #include "engine/app/replay_log.h"
-#include "engine/base/json_text.h"
-#include "engine/base/numbers.h"
 #include "engine/curves/load.h"
 #include "engine/curves/points.h"
 #include "engine/field/formats.h"
@@ -24,41 +23,6 @@ namespace {
 
 namespace log = haptics::log;
 
-std::string json_of(const std::string& text) { return json_string(printable(text)); }
-std::string json_of(const char* text) { return json_of(std::string(text)); }
-std::string json_of(bool value) { return value ? "true" : "false"; }
-std::string json_of(double value) { return std::isfinite(value) ? to_text(value) : "null"; }
-std::string json_of(std::int64_t value) { return std::to_string(value); }
-std::string json_of(std::uint64_t value) { return std::to_string(value); }
-std::string json_of(const Vec3& v) { return fmt::format("[{},{},{}]", json_of(v.x), json_of(v.y), json_of(v.z)); }
-std::string json_of(const Bounds& box) { return fmt::format("[{},{}]", json_of(box.lo), json_of(box.hi)); }
-
-/// Of values that are JSON already.
-std::string list_of(const std::vector<std::string>& items) {
-  std::string out = "[";
-  for (const std::string& item : items) out += (out.size() > 1 ? "," : "") + item;
-  return out + "]";
-}
-
-/// An object, member by member.
-class JsonObject {
- public:
-  template <class T>
-  JsonObject& add(const std::string& key, const T& value) {
-    return raw(key, json_of(value));
-  }
-  JsonObject& raw(const std::string& key, const std::string& json) {
-    text_ += (text_.size() > 1 ? "," : "") + json_string(key) + ":" + json;
-    return *this;
-  }
-  /// Nothing where the text is empty.
-  JsonObject& add_word(const std::string& key, const std::string& word) { return word.empty() ? *this : add(key, word); }
-  std::string text() const { return text_ + "}"; }
-
- private:
-  std::string text_ = "{";
-};
-
 std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
   const Mat3& j = g.mapping.world_from_index_linear;
   const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
@@ -66,13 +30,13 @@ std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
   const field::Units units = field::units_of(path, g.name);
   JsonObject out;
   out.add("name", g.name).add("type", g.type).add("usable", g.usable).add("vector", g.is_vector);
-  out.add("size", size).add("lowest", lowest).raw("axes", list_of({json_of(j[0]), json_of(j[1]), json_of(j[2])}));
+  out.add("size", size).add("lowest", lowest).raw("axes", json_array({json_of(j[0]), json_of(j[1]), json_of(j[2])}));
   out.add("origin", g.mapping.origin).add_word("unit", units.value).add_word("length_unit", units.length).add("patient", units.patient);
   out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)}))
       .add("active_" + std::string(field::counted_word(g.counted)), g.stats.active_voxels);
   if (g.usable) {
-    out.raw("range", list_of({json_of(g.stats.min), json_of(g.stats.max)}));
-    if (g.is_vector) out.raw("component_range", list_of({json_of(g.stats.component_min), json_of(g.stats.component_max)}));
+    out.raw("range", json_array({json_of(g.stats.min), json_of(g.stats.max)}));
+    if (g.is_vector) out.raw("component_range", json_array({json_of(g.stats.component_min), json_of(g.stats.component_max)}));
     out.add("not_finite", g.stats.nan_count);
   }
   return out.add("bytes", std::uint64_t{g.bytes}).text();
@@ -84,7 +48,7 @@ Result<std::string> json_of_file(const std::string& path) {
   for (const field::GridInfo& g : grids) described.push_back(json_of_grid(path, g));
   if (!field::needs_layout(path))
     for (const std::string& line : scene::look_of_file(path)) notes.push_back(json_of(line));
-  return JsonObject().add("kind", "data").add("file", path).raw("grids", list_of(described)).raw("notes", list_of(notes)).text();
+  return JsonObject().add("kind", "data").add("file", path).raw("grids", json_array(described)).raw("notes", json_array(notes)).text();
 }
 
 void add_mesh(JsonObject& out, const mesh::TriangleMesh& mesh) {
@@ -92,7 +56,7 @@ void add_mesh(JsonObject& out, const mesh::TriangleMesh& mesh) {
   count("triangles", mesh.triangles().size());
   count("dropped", mesh.dropped());
   count("vertices", mesh.vertices().size());
-  out.raw("world_box", list_of({json_of(mesh.lowest()), json_of(mesh.highest())})).add("length", mesh.length());
+  out.raw("world_box", json_array({json_of(mesh.lowest()), json_of(mesh.highest())})).add("length", mesh.length());
   count("open_edges", mesh.open_edges());
   count("non_manifold_edges", mesh.non_manifold_edges());
   count("misoriented_edges", mesh.misoriented_edges());
@@ -125,7 +89,7 @@ Result<std::string> json_of_scene(const std::string& path) {
     field.add("name", name_of(e)).add("source", source.file ? source.file->path : source.analytic);
     if (source.file) field.add_word("grid", source.file->grid);
     field.add("vector", any.vector != nullptr).add("length", any.get()->length());
-    if (any.scalar) field.raw("range", list_of({json_of(any.scalar->min_value()), json_of(any.scalar->max_value())}));
+    if (any.scalar) field.raw("range", json_array({json_of(any.scalar->min_value()), json_of(any.scalar->max_value())}));
     field.add_word("unit", scene::unit_of(scene, e)).add("bytes", std::uint64_t{any.get()->bytes()});
     fields.push_back(field.text());
   }
@@ -154,8 +118,11 @@ Result<std::string> json_of_scene(const std::string& path) {
   drawn.add("slices", count(scene.world.count<scene::Slice>())).add("meshes", count(scene.world.count<scene::SurfaceMesh>()));
   drawn.add("streamlines", count(scene.world.count<scene::StreamlineSet>())).add("glyphs", count(scene.world.count<scene::GlyphSet>()));
   drawn.add("curves", count(scene.world.count<scene::DrawnCurves>())).add("points", count(scene.world.count<scene::DrawnPoints>()));
-  out.add("kind", "scene").add("file", path).raw("fields", list_of(fields)).add_word("length_unit", scene::unit_length(scene));
-  out.raw("meshes", list_of(meshes)).raw("links", list_of(links)).raw("widgets", list_of(widgets)).raw("coupling", coupling.text());
+  out.add("kind", "scene").add("file", path).raw("fields", json_array(fields)).add_word("length_unit", scene::unit_length(scene));
+  out.raw("meshes", json_array(meshes))
+      .raw("links", json_array(links))
+      .raw("widgets", json_array(widgets))
+      .raw("coupling", coupling.text());
   out.raw("metres_per_unit", scene.workspace.given ? json_of(scene.workspace.metres_per_unit) : "null");
   return out.raw("drawn", drawn.text()).text();
 }
@@ -177,10 +144,10 @@ Result<std::string> json_of_log(const std::string& path) {
   }
   JsonObject out;
   out.add("kind", "recording").add("file", path).add("scene", header.scene_path).add("about", header.about);
-  out.raw("fields", list_of(fields)).add("version", header.catena_version);
+  out.raw("fields", json_array(fields)).add("version", header.catena_version);
   out.add("started_unix_s", static_cast<std::int64_t>(header.started_unix_ns / 1'000'000'000));
   out.add("device", header.device).add("rate_hz", header.rate_hz).add("ticks", ticks).add("seconds", last_s - first_s);
-  return out.raw("gaps", list_of(gaps)).add("ending", std::string(reader.ending())).text();
+  return out.raw("gaps", json_array(gaps)).add("ending", std::string(reader.ending())).text();
 }
 
 /// Curves and points: what both know.
@@ -190,7 +157,7 @@ JsonObject json_of_set(const std::string& kind, const std::string& path, const S
   for (const curves::PointValues& one : set.values) values.push_back(json_of(one.name));
   JsonObject out;
   out.add("kind", kind).add("file", path).add("points", std::uint64_t{set.points.size()});
-  return out.raw("world_box", list_of({json_of(set.lowest), json_of(set.highest)})).raw("values", list_of(values));
+  return out.raw("world_box", json_array({json_of(set.lowest), json_of(set.highest)})).raw("values", json_array(values));
 }
 
 Result<std::string> json_of_data(const std::string& path) {

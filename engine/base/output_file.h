@@ -64,7 +64,7 @@ class PartFile {
 /// The name of an unfinished file or folder for `path`; another one at every call.
 std::string part_name(const std::string& path);
 
-/// Removes unfinished files and folders for `path` whose programs have ended.
+/// Removes unfinished files and folders for `path` whose programs have ended. Who makes such a folder locks it (folder_lock.h).
 void remove_stale_parts(const std::string& path);
 
 /// An output that is either complete or not there: written to an unfinished file beside its place, renamed by commit().

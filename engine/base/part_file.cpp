@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <mutex>
 #include <random>
@@ -52,7 +53,15 @@ pid_t process_of(std::string_view after_part) {
 
 bool runs(pid_t pid) { return ::kill(pid, 0) == 0 || errno != ESRCH; }
 
-/// What ended programs left in a folder. Looked up once a second at most: pictures of a long sequence go into one folder.
+/// A folder that is not just being made. Who makes one locks it: where the lock is free its program has ended, whoever has that number now
+/// (in containers every program has the same one).
+bool is_old_folder(const fs::path& path) {
+  constexpr std::time_t kYoung_s = 60;
+  struct stat about {};
+  return ::lstat(path.c_str(), &about) == 0 && S_ISDIR(about.st_mode) && std::time(nullptr) - about.st_mtime >= kYoung_s;
+}
+
+/// What ended programs may have left in a folder. Looked up once a second at most: pictures of a long sequence go into one folder.
 std::vector<std::string> left_in(const fs::path& folder) {
   static std::mutex mutex;
   static fs::path last_folder;
@@ -69,7 +78,7 @@ std::vector<std::string> left_in(const fs::path& folder) {
     const std::string name = it->path().filename().string();
     const auto at = name.rfind(".part");
     const pid_t pid = at == std::string::npos ? 0 : process_of(std::string_view(name).substr(at + 5));
-    if (pid != 0 && pid != ::getpid() && !runs(pid)) left.push_back(it->path().string());
+    if (pid != 0 && (!runs(pid) || is_old_folder(it->path()))) left.push_back(it->path().string());
   }
   return left;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/schema/key.h"
 
 namespace catena::schema {
@@ -27,5 +28,10 @@ std::string markdown_table(const Keys& keys);
 
 /// All tables of a component with their names: "volumes", "fields/raw" (a variant), "slices.contours" (an object in it).
 std::vector<std::pair<std::string, std::string>> markdown_tables(const Component& component);
+
+/// What `keys` of a command prints: sentence and tables of the part of that name, of all parts where it is empty, with `behind` a table. An
+/// Error: "COMMAND: "x" is no part of WHOLE; one of ... was expected".
+Result<std::string> keys_text(const std::vector<Component>& parts, const std::string& name, const std::string& command,
+                              const std::string& whole, const char* behind = "");
 
 }  // namespace catena::schema

@@ -1,6 +1,7 @@
 #include "engine/schema/documents.h"
 
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 
 namespace catena::schema {
 
@@ -103,6 +104,21 @@ Tables markdown_tables(const Component& component) {
   add_tables(component.name, component.keys, out);
   for (const Variant& variant : component.variants) add_tables(component.name + "/" + variant.name, variant.keys, out);
   return out;
+}
+
+Result<std::string> keys_text(const std::vector<Component>& parts, const std::string& name, const std::string& command,
+                              const std::string& whole, const char* behind) {
+  std::vector<std::string_view> names;
+  std::string text;
+  for (const Component& part : parts) {
+    names.push_back(part.name);
+    if (!name.empty() && part.name != name) continue;
+    text += part.help + "\n";
+    for (const auto& [title, table] : markdown_tables(part)) text.append("\n").append(title).append("\n").append(table).append(behind);
+  }
+  if (!text.empty()) return text;
+  return Error{command + ": " + in_quotes(name) + " is no part of " + whole + "; one of " + catena::joined(names) + " was expected" +
+               suggestion(name, names)};
 }
 
 }  // namespace catena::schema

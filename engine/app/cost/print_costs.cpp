@@ -2,7 +2,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/cost/cost.h"
-#include "engine/base/json_text.h"
+#include "engine/app/json_object.h"
 #include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
@@ -21,8 +21,6 @@ std::string time_text(const std::optional<double>& ms) {
                               : fmt::format("{:.0f} ns", 1e6 * *ms);
 }
 
-std::string number_or_null(const std::optional<double>& value) { return value ? json_number(*value) : "null"; }
-
 void print_table(const CostTable& table, bool measure) {
   fmt::print("{:8}{:20}{:44}{:>12}{:>12}", "", "", "", "bytes", "expected");
   fmt::print("{}\n", measure ? fmt::format("{:>12}{:>12}", "bytes", "measured") : "");
@@ -34,14 +32,15 @@ void print_table(const CostTable& table, bool measure) {
 }
 
 void print_json(const std::string& path, const CostTable& table) {
-  std::string rows;
-  for (const CostRow& row : table)
-    rows += fmt::format(
-        "{}{{\"part\":{},\"name\":{},\"work\":{},\"expected_bytes\":{},\"expected_ms\":{},\"measured_bytes\":{},\"measured_ms\":{}}}",
-        rows.empty() ? "" : ",", json_string(row.part), json_string(printable(row.name)), json_string(printable(row.work)),
-        number_or_null(row.expected.bytes), number_or_null(row.expected.ms), number_or_null(row.measured.bytes),
-        number_or_null(row.measured.ms));
-  fmt::print("{{\"kind\":\"cost\",\"file\":{},\"rows\":[{}]}}\n", json_string(printable(path)), rows);
+  std::vector<std::string> rows;
+  for (const CostRow& row : table) {
+    JsonObject out;
+    out.add("part", row.part).add("name", row.name).add("work", row.work);
+    out.add("expected_bytes", row.expected.bytes).add("expected_ms", row.expected.ms);
+    out.add("measured_bytes", row.measured.bytes).add("measured_ms", row.measured.ms);
+    rows.push_back(out.text());
+  }
+  fmt::print("{}\n", JsonObject().add("kind", "cost").add("file", path).raw("rows", json_array(rows)).text());
 }
 
 }  // namespace

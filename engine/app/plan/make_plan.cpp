@@ -22,23 +22,25 @@ const CurveStore& store_of(const CurveStore* given) {
   return given != nullptr ? *given : own;
 }
 
-}  // namespace
-
-Result<scene::Plan> wanted_plan(const scene::Scene& scene, const std::string& words) {
-  scene::Plan wanted = scene.plan;
-  if (words.empty()) return wanted;
-  CATENA_TRY(const scene::Plan said, scene::parse_plan(words));
+scene::Plan with(scene::Plan wanted, const scene::Plan& said) {
   if (said.of_eye()) wanted.error = said.error, wanted.time = said.time;
   if (said.of_hand()) wanted.hand_error = said.hand_error, wanted.hand_time = said.hand_time;
   return wanted;
 }
 
+}  // namespace
+
+Result<scene::Plan> wanted_plan(const scene::Scene& scene, const std::string& words) {
+  if (words.empty()) return scene.plan;
+  CATENA_TRY(const scene::Plan said, scene::parse_plan(words));
+  return with(scene.plan, said);
+}
+
 Result<scene::Plan> wanted_hand_plan(const scene::Scene& scene, const std::string& words) {
-  CATENA_TRY(const scene::Plan wanted, wanted_plan(scene, words));
-  if (words.empty()) return wanted;
+  if (words.empty()) return scene.plan;
   CATENA_TRY(const scene::Plan said, scene::parse_plan(words));
   if (said.of_eye()) return Error{one_line("--plan " + words + ": nothing is drawn here; hand_error=E or hand_time=US was expected")};
-  return wanted;
+  return with(scene.plan, said);
 }
 
 Result<std::string> text_of(const scene::Scene& scene) {
@@ -116,10 +118,9 @@ Result<HandPlan> make_hand_plan(scene::Scene& scene, const std::string& text, co
   return HandPlan(std::move(*curves), wanted);
 }
 
-Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const scene::Plan& wanted, double rate_hz,
+Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const std::string& text, const scene::Plan& wanted, double rate_hz,
                                            const std::vector<std::string>& options, const Tell& tell) {
   if (!wanted.of_hand()) return std::optional<HandPlan>();
-  CATENA_TRY(const std::string text, text_of(scene));
   CATENA_TRY(HandPlan plan, make_hand_plan(scene, text, wanted, rate_hz, options, tell));
   if (plan.is_empty()) {
     tell("plan: the hand stays as it is: no streamline link leaves its setting open");
@@ -128,6 +129,13 @@ Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const scene::Pla
   tell(plan.sentence());
   plan.apply(scene);
   return std::optional(std::move(plan));
+}
+
+Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const scene::Plan& wanted, double rate_hz,
+                                           const std::vector<std::string>& options, const Tell& tell) {
+  if (!wanted.of_hand()) return std::optional<HandPlan>();
+  CATENA_TRY(const std::string text, text_of(scene));
+  return plan_links(scene, text, wanted, rate_hz, options, tell);
 }
 
 }  // namespace catena::app::plan

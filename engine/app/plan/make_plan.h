@@ -39,7 +39,9 @@ Result<HandPlan> make_hand_plan(scene::Scene& scene, const std::string& text, co
                                 const std::vector<std::string>& options, const Tell& tell, const CurveStore* store = nullptr);
 
 /// All of it for a command: nothing where no hand_error or hand_time is wanted, or no link leaves its setting open (which is told); else
-/// the plan, told, and applied to the scene.
+/// the plan, told, and applied to the scene. `text`: the scene's, where the caller has it; else it is read where it is needed.
+Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const std::string& text, const scene::Plan& wanted, double rate_hz,
+                                           const std::vector<std::string>& options, const Tell& tell);
 Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const scene::Plan& wanted, double rate_hz,
                                            const std::vector<std::string>& options, const Tell& tell);
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/flow/curve.h"
+#include "engine/app/tradeoff/measure/hand/streamline.h"
 
 namespace catena::app::plan {
 namespace {
 
-constexpr double kTolerance = 1e-13, kTraced = 10.2, kLongest = 100;  // L
+constexpr double kTraced = 10.2, kLongest = 100;  // L
 
 }  // namespace
 
@@ -47,16 +47,11 @@ std::optional<double> HandObserver::error(scene::Scene& scene) const {
     if (track.places.empty()) continue;
     for (const tradeoff::LinkOf& link : tradeoff::links_of_type(scene, "streamline")) {
       if (link.name != track.link) continue;
-      const field::VectorFieldPtr field = tradeoff::field_of(scene, link.node).vector;
-      const auto seed = json::get_optional_vec3(link.node, "seed");
-      const auto min_speed = json::get_number(link.node, "min_speed", 0);
-      if (!field || !seed || !*seed || !min_speed) continue;
-      const json::Node* kind = link.node.find("kind");
-      flow::TraceOptions options;
+      const auto stated = tradeoff::stated_line(scene, link);
+      if (!stated) continue;
       // what is traced once may be held anywhere along it
-      options.length = std::clamp(1.1 * track.way, kTraced * field->length(), kLongest * field->length());
-      options.tolerance = options.hermite_tolerance = kTolerance;
-      const auto line = flow::trace({field.get(), kind != nullptr && kind->string == "line", *min_speed}, **seed, options);
+      const double length = stated->field->length(), far = std::clamp(1.1 * track.way, kTraced * length, kLongest * length);
+      const auto line = flow::trace(stated->flow, stated->seed, tradeoff::converged(far));
       if (!line) continue;
       const flow::NearestOnCurve nearest(*line);
       double far2 = 0;

@@ -62,7 +62,11 @@ std::string csv_words(std::string text) {
 }
 
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
-    : path_(std::move(other.path_)), staging_(std::move(other.staging_)), created_(other.created_), names_(std::move(other.names_)) {
+    : path_(std::move(other.path_)),
+      staging_(std::move(other.staging_)),
+      lock_(std::move(other.lock_)),
+      created_(other.created_),
+      names_(std::move(other.names_)) {
   other.staging_.clear();
   other.created_ = false;
 }
@@ -74,6 +78,7 @@ void ResultFolder::unstage() {
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
   if (created_) fs::remove(path_, ignored);  // only while it is empty
   staging_.clear();
+  lock_.reset();
   created_ = false;
 }
 
@@ -87,6 +92,7 @@ Outcome ResultFolder::stage() {
   remove_stale_parts(staged);
   if (::mkdir(staging.c_str(), 0777) != 0) return Error{path_ + ": cannot write into the folder: " + std::strerror(errno)};
   staging_ = staging;
+  if (auto lock = FolderLock::take(staging)) lock_.emplace(std::move(*lock));
   return Done{};
 }
 

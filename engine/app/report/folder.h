@@ -1,10 +1,13 @@
 /// Where the tables, plots and the page of a run go: a folder that gets all of them or none.
-/// They are made in a folder beside their places, DIR/tables.part<pid>-<random> (engine/base/output_file.h), and renamed at the end.
+/// They are made in a folder beside their places, DIR/tables.part<pid>-<random> (engine/base/output_file.h), and renamed at the end. What a
+/// run that was killed left there is removed by the next, by the lock that it does not hold any more.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/folder_lock.h"
 #include "engine/base/result.h"
 
 namespace catena::app {
@@ -51,6 +54,7 @@ class ResultFolder {
   Outcome stage();
   void unstage();
   std::string path_, staging_;
+  std::optional<FolderLock> lock_;  ///< of staging_
   bool created_ = false;
   std::vector<std::string> names_;
 };

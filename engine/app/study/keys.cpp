@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "engine/app/study/study_command.h"
-#include "engine/base/text.h"
 #include "engine/schema/documents.h"
 #include "engine/study/study.h"
 
@@ -14,19 +13,9 @@ namespace catena::app {
 namespace {
 
 Outcome print_study_keys(const std::string& part) {
-  const std::vector<schema::Component> all = study::study_components();
-  std::vector<std::string_view> names;
-  bool found = false;
-  for (const schema::Component& component : all) {
-    names.push_back(component.name);
-    if (!part.empty() && component.name != part) continue;
-    found = true;
-    fmt::print("{}\n", component.help);
-    for (const auto& [name, table] : schema::markdown_tables(component)) fmt::print("\n{}\n{}\n", name, table);
-  }
-  if (found) return Done{};
-  return Error{"study keys: " + in_quotes(part) + " is no part of a study; one of " + joined(names) + " was expected" +
-               suggestion(part, names)};
+  CATENA_TRY(const std::string text, schema::keys_text(study::study_components(), part, "study keys", "a study", "\n"));
+  fmt::print("{}", text);
+  return Done{};
 }
 
 /// For an editor: what stands at the top of the file beside its parts.

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "engine/scene/document.h"
 #include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"

@@ -7,6 +7,7 @@
 
 #include "engine/app/tradeoff/measure/choice.h"
 #include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/subject.h"
 #include "engine/app/tradeoff/measure/timing.h"
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/field/analytic.h"

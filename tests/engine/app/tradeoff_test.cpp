@@ -183,13 +183,19 @@ TEST(Tradeoff, WrongArgumentsAreOneLine) {
   EXPECT_EQ(test::read_file(folder / "file"), "x");
 }
 
-TEST(Tradeoff, WithoutGnuplotTheTablesAreComplete) {
-  const test::TemporaryFolder folder;
+/// Where no programs are but those of a folder.
+test::ProgramResult tradeoff_among(const std::string& programs, const std::vector<std::string>& arguments) {
   const char* path = std::getenv("PATH");
   const std::string before = path ? path : "";
-  ::setenv("PATH", folder.path().c_str(), 1);
-  const auto run = tradeoff({"--figure", "3", "-o", folder / "out"});
+  ::setenv("PATH", programs.c_str(), 1);
+  const auto run = tradeoff(arguments);
   ::setenv("PATH", before.c_str(), 1);
+  return run;
+}
+
+TEST(Tradeoff, WithoutGnuplotTheTablesAreComplete) {
+  const test::TemporaryFolder folder;
+  const auto run = tradeoff_among(folder.path(), {"--figure", "3", "-o", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("gnuplot is not installed"), std::string::npos) << run.out;
   EXPECT_EQ(files_in(folder / "out"), 3);
@@ -203,6 +209,18 @@ TEST(Tradeoff, LeavesNothingHalfWritten) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("figure3.gp"), std::string::npos) << run.err;
   EXPECT_EQ(files_in(folder / "out"), 1);
+}
+
+TEST(Tradeoff, WhatAKilledOneLeftIsRemovedByTheNext) {
+  const test::TemporaryFolder folder, programs;
+  test::write_file(programs / "gnuplot", "#!/bin/sh\nkill -9 $PPID\n");
+  fs::permissions(programs / "gnuplot", fs::perms::owner_all);
+  const std::string out = folder / "out";
+  EXPECT_EQ(tradeoff_among(programs.path(), {"--figure", "3", "-o", out}).exit_code, 128 + 9);
+  ASSERT_EQ(files_in(out), 1);
+  EXPECT_TRUE(fs::directory_iterator(out)->path().filename().string().starts_with("tables.part"));
+  ASSERT_EQ(tradeoff_among(folder.path(), {"--figure", "3", "-o", out}).exit_code, 0);
+  EXPECT_EQ(files_in(out), 3) << "two tables and the script";
 }
 
 TEST(Tradeoff, TheSameTwice) {

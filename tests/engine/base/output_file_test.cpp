@@ -10,8 +10,10 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 
+#include "engine/base/folder_lock.h"
 #include "tests/support/support.h"
 
 namespace catena {
@@ -97,6 +99,26 @@ TEST(OutputFile, WhatEndedProgramsLeftIsRemovedAndNothingElse) {
   EXPECT_TRUE(test::exists(words));
   EXPECT_TRUE(test::exists(alive));
   ::close(lock);
+}
+
+TEST(OutputFile, FoldersOfEndedProgramsGoWhoeverHasTheirNumberNow) {
+  const test::TemporaryFolder folder;
+  const auto make = [&](pid_t pid, const char* digits, std::time_t age_s) {
+    const std::string path = (folder / "tables.part") + std::to_string(pid) + "-" + digits;
+    fs::create_directory(path);
+    test::write_file(path + "/plot0.svg", "<svg");
+    const timespec then{std::time(nullptr) - age_s, 0}, both[2] = {then, then};
+    EXPECT_EQ(::utimensat(AT_FDCWD, path.c_str(), both, 0), 0);
+    return path;
+  };
+  const std::string dead = make(ended_process(), "000000000001", 0), mine = make(::getpid(), "000000000002", 3600),
+                    alive = make(::getppid(), "000000000003", 3600), held = make(::getppid(), "000000000004", 3600),
+                    young = make(::getppid(), "000000000005", 0);
+  const auto lock = FolderLock::take(held);
+  ASSERT_TRUE(lock);
+  remove_stale_parts(folder / "tables");
+  for (const std::string& path : {dead, mine, alive}) EXPECT_FALSE(test::exists(path)) << path;
+  for (const std::string& path : {held, young}) EXPECT_TRUE(test::exists(path + "/plot0.svg")) << path;
 }
 
 TEST(OutputFile, AProgramThatIsKilledLeavesTheOldFileAndItsRemainsGoWithTheNext) {

@@ -14,20 +14,6 @@ namespace {
 
 using field::Index3;
 
-constexpr int kComponents[2] = {1, 3};
-
-void read(const field::ScalarGrid& grid, const Index3& origin, const Index3& size, std::vector<float>& out) {
-  grid.read_block(origin, size, out);
-}
-void read(const field::VectorGrid& grid, const Index3& origin, const Index3& size, std::vector<float>& out) {
-  grid.read_block(origin, size, out);
-}
-
-template <class Grid>
-constexpr int components() {
-  return kComponents[std::is_same_v<Grid, field::VectorGrid>];
-}
-
 /// Read as `like` is. Without memory for the ghosts: linear.
 template <class Grid>
 std::shared_ptr<const Grid> as(const Grid& like, std::shared_ptr<const Grid> grid) {
@@ -72,9 +58,9 @@ std::optional<Levels<Grid>> levels_of(const Grid& grid, double most) {
   }
   if (double(n.x) * n.y * n.z > most) return std::nullopt;
   const Index3 origin{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
-  constexpr int k = components<Grid>();
+  constexpr int k = std::is_same_v<Grid, field::VectorGrid> ? 3 : 1;
   std::vector<float> all(std::size_t(k) * n.x * n.y * n.z);
-  read(grid, origin, n, all);
+  grid.read_block(origin, n, all);
   const std::vector<std::uint8_t> valid = valid_voxels(grid, origin, n);
   Levels<Grid> levels;
   for (int level = 0; level < 3; ++level) {

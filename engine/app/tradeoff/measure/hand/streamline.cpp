@@ -19,7 +19,7 @@
 namespace catena::app::tradeoff {
 namespace {
 
-constexpr double kReferenceTolerance = 1e-13, kReferenceHermite = 1e-13;
+constexpr double kReferenceTolerance = 1e-13;  // L
 
 /// The greatest distance of one line from another, over the arc lengths lo..hi, by L.
 double apart(const flow::Curve& line, const flow::NearestOnCurve& other, double lo, double hi, double length) {
@@ -29,11 +29,8 @@ double apart(const flow::Curve& line, const flow::NearestOnCurve& other, double 
   return std::sqrt(most) / length;
 }
 
-struct Line {
+struct Line : StatedLine {
   std::string name;
-  flow::Flow flow;
-  field::VectorFieldPtr field;
-  Vec3 seed{0.0};
   flow::TraceOptions options;
   flow::CurvePtr truth;
   double lo = 0, hi = 0;  ///< arc lengths that the hand comes to
@@ -42,10 +39,7 @@ struct Line {
 
 /// How far the line that is traced once is off anywhere, as long as a link has it: the hand may hold a far pass. By L.
 double anywhere(const Line& line) {
-  flow::TraceOptions usual, exact;
-  exact.tolerance = kReferenceTolerance;
-  exact.hermite_tolerance = kReferenceHermite;
-  const auto traced = flow::trace(line.flow, line.seed, usual), truth = flow::trace(line.flow, line.seed, exact);
+  const auto traced = flow::trace(line.flow, line.seed), truth = flow::trace(line.flow, line.seed, converged(0));
   if (!traced || !truth) return kNotMeasured;
   const double lo = std::max((*truth)->knots().front().s, (*traced)->knots().front().s),
                hi = std::min((*truth)->knots().back().s, (*traced)->knots().back().s);
@@ -82,25 +76,14 @@ void add_floor(const Line& line, Curve& curve) {
 }
 
 Result<Line> make_line(Subject& subject, const LinkOf& link) {
-  Line line;
-  line.name = link.name;
-  line.field = field_of(subject.scene, link.node).vector;
-  if (!line.field) return Error{"link \"" + link.name + "\" has no vector field"};
-  const json::Node* kind = link.node.find("kind");
-  CATENA_TRY(line.flow.min_speed, json::get_number(link.node, "min_speed", 0));
-  line.flow.field = line.field.get();
-  line.flow.line = kind != nullptr && kind->string == "line";
-  CATENA_TRY(const auto seed, json::get_optional_vec3(link.node, "seed"));
-  if (!seed) return Error{"link \"" + link.name + "\" has no seed: which line it follows is known only while it is felt"};
-  line.seed = *seed;
+  CATENA_TRY(StatedLine stated, stated_line(subject.scene, link));
+  Line line{std::move(stated), link.name, {}, {}, 0, 0, {}};
   const auto motion = along_streamline(subject.scene, link, subject.effort.motion_s);
   if (!motion) return Error{"from the seed of link \"" + link.name + "\" no line goes"};
   line.motion = *motion;
   // somewhat farther than the hand goes
-  line.options.length = std::min(0.6 * hand_speed(subject.scene) * subject.effort.motion_s, 1.2 * line.field->length());
-  line.options.length += 0.02 * line.field->length();
-  line.options.tolerance = kReferenceTolerance;
-  line.options.hermite_tolerance = kReferenceHermite;
+  const double length = std::min(0.6 * hand_speed(subject.scene) * subject.effort.motion_s, 1.2 * line.field->length());
+  line.options = converged(length + 0.02 * line.field->length());
   CATENA_TRY(line.truth, flow::trace(line.flow, line.seed, line.options));
   line.lo = line.truth->knots().front().s;
   line.hi = line.truth->knots().back().s;
@@ -108,6 +91,23 @@ Result<Line> make_line(Subject& subject, const LinkOf& link) {
 }
 
 }  // namespace
+
+Result<StatedLine> stated_line(scene::Scene& scene, const LinkOf& link) {
+  StatedLine line;
+  line.field = field_of(scene, link.node).vector;
+  if (!line.field) return Error{"link \"" + link.name + "\" has no vector field"};
+  const json::Node* kind = link.node.find("kind");
+  CATENA_TRY(const double min_speed, json::get_number(link.node, "min_speed", 0));
+  line.flow = {line.field.get(), kind != nullptr && kind->string == "line", min_speed};
+  CATENA_TRY(const auto seed, json::get_optional_vec3(link.node, "seed"));
+  if (!seed) return Error{"link \"" + link.name + "\" has no seed: which line it follows is known only while it is felt"};
+  line.seed = *seed;
+  return line;
+}
+
+flow::TraceOptions converged(double length) {
+  return {.length = length, .tolerance = kReferenceTolerance, .hermite_tolerance = kReferenceTolerance};
+}
 
 std::string StreamlineSetting::write() const {
   std::string text;

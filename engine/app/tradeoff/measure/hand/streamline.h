@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/app/tradeoff/measure/subject.h"
-#include "engine/flow/flow.h"
+#include "engine/flow/curve.h"
 
 namespace catena::app::tradeoff {
 
@@ -21,6 +21,18 @@ struct StreamlineSetting {
 
 /// All of them, the traced line first; embedded methods with tolerances 1e-3 .. 1e-13 and the link's own.
 std::vector<StreamlineSetting> streamline_settings(const json::Node& link);
+
+/// What a link says of its line.
+struct StatedLine {
+  field::VectorFieldPtr field;
+  flow::Flow flow;  ///< of that field
+  Vec3 seed{0.0};
+};
+/// An error, one sentence, where it has no vector field, or no seed before it is felt.
+Result<StatedLine> stated_line(scene::Scene& scene, const LinkOf& link);
+
+/// How a line is traced that errors are measured from: so far each way, world units; 0: as far as any is.
+flow::TraceOptions converged(double length);
 
 /// The curve of one link.
 Result<Curve> measure_followed(Subject& subject, const LinkOf& link);

@@ -1,0 +1,154 @@
+#include "render/quality/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/numbers.h"
+#include "render/image/measure.h"
+#include "render/quality/quality.h"
+#include "render/quality/refinement.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kDeviations = 2;                               // of the lattice's mean, that an estimate lies above it
+constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
+constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
+constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
+constexpr double kSamples = 6000;                               // covered pixels on the lattice
+constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
+// steps, voxels: of what is seen, the shortest that is chosen, and those of the converged picture, which is halved until the picture
+// changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
+constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3;
+
+LatticeError compare(const Picture& a, const Picture& b) {
+  PixelErrors errors = covered_errors(a, b);
+  const auto count = double(errors.squares.size());
+  if (count == 0) return {};
+  double sum = 0, squares = 0;
+  for (const double here : errors.squares) {
+    sum += here;
+    squares += here * here;
+  }
+  const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean);
+  return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 0.999)};
+}
+
+/// The same seen by a camera that has gone a little around its target.
+FramePacket turned(const FramePacket& packet) {
+  FramePacket out = packet;
+  const Vec3 turn = direction(packet.view.up) * (kTurn * std::numbers::pi / 180);
+  out.view.position = packet.view.target + rotate(rotation_of(turn), packet.view.position - packet.view.target);
+  return out;
+}
+
+/// The lattice's pixels of a finished picture.
+Picture on_lattice(const Picture& picture, std::uint32_t spacing) {
+  Picture out;
+  out.width = (picture.width + spacing - 1) / spacing;
+  out.height = (picture.height + spacing - 1) / spacing;
+  for (std::uint32_t y = 0; y < picture.height; y += spacing)
+    for (std::uint32_t x = 0; x < picture.width; x += spacing)
+      out.rgba.insert(out.rgba.end(), picture.pixel(x, y), picture.pixel(x, y) + 4);
+  return out;
+}
+
+}  // namespace
+
+Lattice::Lattice(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) {
+  packet_.background[3] = 0;
+  packet_.overlay = {};
+}
+
+Outcome Lattice::begin(double goal, bool moves) {
+  // exact rays come first: what a large grid needs for them and for the fast raycast is not held at once
+  CATENA_TRY(const Picture seen, renderer_.probe(packet_, exact_rung(kSeenStep), kSpacings[0]));
+  double covered = 0;
+  for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
+  covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);
+  covered_ = std::max(1.0, covered);
+  for (const std::uint32_t spacing : kSpacings) {
+    spacing_ = spacing;
+    if (covered / (spacing * spacing) >= kSamples) break;
+  }
+  CATENA_CHECK(find_truth(renderer_.draws_fast(packet_) ? goal : 0));
+  if (moves && renderer_.draws_fast(packet_)) {
+    CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
+    const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
+    most_flicker_ = kFlickerGoal * std::max(goal, flicker_between(none, truth_, none, next_truth_));
+  }
+  if (!renderer_.draws_fast(packet_)) return Done{};
+  // it may have no memory for the grid
+  CATENA_CHECK(renderer_.probe(packet_, fast_rung(kSeenStep, 1, 0, -1), kSpacings[0]));
+  fast_ = renderer_.draws_fast(packet_);
+  return Done{};
+}
+
+/// Opaque things of steep transfer functions want far shorter steps than haze does.
+Outcome Lattice::find_truth(double goal) {
+  RenderSettings converged = converged_rung(goal < kRoughGoal ? kTruthStep : kRoughTruthStep);
+  CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
+  do {
+    converged.step_voxels /= 2;
+    CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing_));
+    truth_error_ = compare(truth_, finer).rmse;
+    truth_ = std::move(finer);
+  } while (truth_error_ > std::max(kLeastTold, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
+  truth_step_ = converged.step_voxels;
+  return Done{};
+}
+
+Result<LatticeError> Lattice::of_rays(const RenderSettings& settings) {
+  CATENA_TRY(last_, renderer_.probe(packet_, settings, spacing_));
+  return compare(last_, truth_);
+}
+
+Result<LatticeError> Lattice::of_picture(const RenderSettings& settings) {
+  CATENA_CHECK(renderer_.draw(packet_, settings));
+  ++pictures_;
+  CATENA_TRY(last_, drawn_lattice());
+  return compare(last_, truth_);
+}
+
+Result<std::array<double, 2>> Lattice::refined() const {
+  CATENA_TRY(const auto rays, renderer_.refined_rays());
+  return std::array{4 * double(rays[0]) / covered_, double(rays[1]) / covered_};
+}
+
+Result<bool> Lattice::keeps_what_is_thin(const RenderSettings& settings, double e) {
+  if (settings.fast->spacing == 1) return true;
+  CATENA_TRY(const Picture picture, renderer_.read_back());
+  const double step = std::min(1.0, settings.fast->step_voxels);
+  if (step != all_rays_step_) {
+    CATENA_CHECK(renderer_.draw(packet_, fast_rung(step, 1, 0, -1, settings.fast->smooth_gradients)));
+    CATENA_TRY(all_rays_, renderer_.read_back());
+    all_rays_step_ = step;
+    ++pictures_;
+  }
+  const PictureError error = measure_error(picture, all_rays_, {packet_.background[0], packet_.background[1], packet_.background[2]});
+  return error.least_kept >= 1 - e / kThinGoal && error.p999 <= kFarthest * e;
+}
+
+/// Of the picture that was drawn last.
+Result<Picture> Lattice::drawn_lattice() {
+  CATENA_TRY(const Picture picture, renderer_.read_back());
+  const std::array<float, 4>& b = packet_.background;
+  return over(on_lattice(picture, spacing_), {b[0], b[1], b[2]});
+}
+
+bool Lattice::is_steady(const Picture& after) const { return flicker_between(last_, truth_, after, next_truth_) <= most_flicker_; }
+
+Result<bool> Lattice::rays_are_steady(const RenderSettings& settings) {
+  CATENA_TRY(const Picture after, renderer_.probe(turned(packet_), settings, spacing_));
+  return is_steady(after);
+}
+
+Result<bool> Lattice::picture_is_steady(const RenderSettings& settings) {
+  CATENA_CHECK(renderer_.draw(turned(packet_), settings));
+  ++pictures_;
+  CATENA_TRY(const Picture after, drawn_lattice());
+  return is_steady(after);
+}
+
+}  // namespace catena::render

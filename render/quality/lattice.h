@@ -1,0 +1,68 @@
+/// How far settings are off in one picture, measured on a sparse lattice of its pixels against converged rays through them (quality.h has
+/// the numbers). Frame thread.
+#pragma once
+#include <array>
+
+#include "render/image/picture.h"
+#include "render/passes/renderer.h"
+
+namespace catena::render {
+
+inline constexpr double kFarthest = 8;     ///< the 99.9 percentile, in errors
+inline constexpr double kRoughGoal = 1.5;  ///< 1/255: from it on the error of step 0.25 does not count
+
+/// Errors on the lattice, 1/255.
+struct LatticeError {
+  double rmse = 0;   ///< over the covered pixels
+  double above = 0;  ///< the true one is at most so, but in one of forty pictures
+  double p999 = 0;   ///< of the largest of a pixel's differences
+  bool good_for(double e) const { return above <= e && p999 <= kFarthest * e; }
+};
+
+class Lattice {
+ public:
+  /// The picture is drawn without a background, so that it says what it covers, and without what is written over it, which rays lack.
+  Lattice(Renderer& renderer, const FramePacket& packet);
+
+  /// Before all that follows. `goal`: the least error that matters, 1/255. `moves`: the error is wanted to be steady, too.
+  Outcome begin(double goal, bool moves = false);
+
+  Renderer& renderer() const { return renderer_; }
+  const FramePacket& packet() const { return packet_; }
+  bool fast() const { return fast_; }                ///< the fast raycast draws the picture
+  double truth_step() const { return truth_step_; }  ///< of the converged rays, voxels
+  double truth_error() const { return truth_error_; }
+  int pictures() const { return pictures_; }  ///< drawn so far
+
+  /// Of the rays alone; of the finished picture.
+  Result<LatticeError> of_rays(const RenderSettings& settings);
+  Result<LatticeError> of_picture(const RenderSettings& settings);
+
+  /// Of the picture that was drawn last: the rays of every 2nd pixel and of every pixel that were refined, by all such that show something.
+  Result<std::array<double, 2>> refined() const;
+  /// Whether interpolation between rays leaves what is thin, and far enough up in the tail of errors, in it.
+  Result<bool> keeps_what_is_thin(const RenderSettings& settings, double e);
+  /// Whether the error of the rays, of the picture, that were measured last stays much the same where the camera goes on.
+  Result<bool> rays_are_steady(const RenderSettings& settings);
+  Result<bool> picture_is_steady(const RenderSettings& settings);
+
+ private:
+  Outcome find_truth(double goal);
+  Result<Picture> drawn_lattice();
+  bool is_steady(const Picture& after) const;
+
+  Renderer& renderer_;
+  FramePacket packet_;
+  Picture truth_, next_truth_;               ///< the rays of the lattice; and from where the camera goes
+  double most_flicker_ = 0;                  ///< that is steady enough
+  double covered_ = 1;                       ///< pixels
+  Picture last_;                             ///< the lattice of the rays or the picture that were measured last
+  double truth_step_ = 0, truth_error_ = 0;  ///< and what it still changed by
+  Picture all_rays_;                         ///< the fast raycast's without interpolation
+  double all_rays_step_ = 0;
+  std::uint32_t spacing_ = 1;
+  bool fast_ = false;
+  int pictures_ = 0;
+};
+
+}  // namespace catena::render

@@ -1,0 +1,12 @@
+/// The search behind choose_quality (quality.h has the model): settings for a stated error or time, judged on a lattice that has begun.
+/// Frame thread.
+#pragma once
+#include "render/quality/lattice.h"
+#include "render/quality/quality.h"
+
+namespace catena::render {
+
+Result<QualityChoice> settings_for_error(Lattice& lattice, double e);
+Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const DrawTimer& timer);
+
+}  // namespace catena::render

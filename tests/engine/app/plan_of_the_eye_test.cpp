@@ -1,0 +1,101 @@
+/// Plans of the eye: the servo of pictures, and the settings that are offered.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "render/quality/quality.h"
+#include "tests/engine/app/plans.h"
+
+namespace plan_test {
+
+TEST(PlanOfTheEye, AdaptsWhereTimesDiffer) {
+  EyePlan plan(eye(), wants("time=11"));
+  EXPECT_EQ(plan.settings().step_voxels, 1);
+  EXPECT_EQ(plan.expected_ms(), 10);
+  // the machine has become three times as slow
+  for (int k = 0; k < 20; ++k) plan.drawn(3 * four().points[static_cast<std::size_t>(plan.now())].time.median);
+  EXPECT_EQ(plan.settings().step_voxels, 4);
+  EXPECT_NEAR(plan.expected_ms(), 3, 1);
+  // and quick again
+  for (int k = 0; k < 40; ++k) plan.drawn(four().points[static_cast<std::size_t>(plan.now())].time.median);
+  EXPECT_LE(plan.settings().step_voxels, 2);
+}
+
+TEST(PlanOfTheEye, KeepsItsErrorWhateverTheTimes) {
+  EyePlan plan(eye(), wants("error=1"));
+  for (int k = 0; k < 20; ++k) {
+    plan.drawn(k % 2 ? 300 : 1);
+    EXPECT_LE(plan.expected_error(), 1);
+  }
+  plan.want(wants("error=0.01"));
+  EXPECT_NE(plan.sentence().find("none is as exact"), std::string::npos) << plan.sentence();
+}
+
+TEST(PlanOfTheEye, SettingsComeFromTheProgramAlone) {
+  const render::LadderKind kind{true, false};
+  const std::vector<render::RenderSettings> all = eye_settings(kind);
+  Curve curve;
+  for (const auto& settings : all) curve.points.push_back(made(1, 1, render::describe(settings)));
+  const auto back = eye_curve(curve, kind);
+  ASSERT_TRUE(back);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(render::describe(back->settings[i]), render::describe(all[i]));
+  curve.points[1].error = 1e308;  // no picture is so far off
+  EXPECT_FALSE(eye_curve(curve, kind));
+  curve.points[1].error = 1;
+  curve.points[1].setting = "fast, step -1";
+  EXPECT_FALSE(eye_curve(curve, kind));
+}
+
+TEST(PlanOfTheEye, OfTwoFormatsOfVoxelsTakesTheOneOfFewerBytes) {
+  EyeCurve made_curve;
+  const auto add = [&](double error, double time, double bytes, render::TexelFormat texels) {
+    made_curve.settings.push_back(render::exact_rung(1));
+    made_curve.settings.back().texels = texels;
+    made_curve.curve.points.push_back(made(error, time, render::describe(made_curve.settings.back())));
+    made_curve.curve.points.back().bytes = bytes;
+  };
+  add(0.5, 10, 4e6, render::TexelFormat::automatic);
+  add(0.8, 10.3, 2e6, render::TexelFormat::r16f);
+  made_curve.curve.floor = 0.4;
+  const auto texels = [&](const char* words) { return EyePlan(made_curve, wants(words)).settings().texels; };
+  EXPECT_EQ(texels("error=1"), render::TexelFormat::r16f);
+  EXPECT_EQ(texels("error=0.6"), render::TexelFormat::automatic);  // too coarse
+  EXPECT_EQ(texels("time=20"), render::TexelFormat::automatic);    // the least error
+  EXPECT_NE(EyePlan(made_curve, wants("error=1")).sentence().find("16 bits a voxel; expected: error 0.8/255 in 10.3 ms, 1.91 MiB"),
+            std::string::npos)
+      << EyePlan(made_curve, wants("error=1")).sentence();
+  made_curve.curve.points[1].time = {14, 13.9, 14.1, 9};
+  EXPECT_EQ(texels("error=1"), render::TexelFormat::automatic);  // much slower
+}
+
+TEST(PlanOfTheEye, OffersFormatsOfVoxelsWhereRaysReadThem) {
+  using render::TexelFormat;
+  const auto grid = field::make_scalar_grid("g", {}, {8, 8, 8}, std::vector<float>(512, 1));
+  const auto labels = grid->interpolated(field::Interpolation::nearest);
+  const auto offered = [](const render::FramePacket& packet) {
+    std::set<TexelFormat> formats;
+    auto all = eye_settings({false, false}, packet);
+    all.pop_back();  // the reference has 32 bits
+    for (const render::RenderSettings& s : all) formats.insert(s.texels);
+    return formats;
+  };
+  const std::set<TexelFormat> one{TexelFormat::automatic};
+  render::FramePacket packet;
+  packet.volumes.emplace_back().grid = grid;
+  EXPECT_EQ(offered(packet), (std::set{TexelFormat::automatic, TexelFormat::r32f}));
+  packet.isosurfaces.emplace_back().grid = grid;
+  packet.isosurfaces[0].opacity = 0.5;  // its voxels have 32 bits by themselves
+  EXPECT_EQ(offered(packet), (std::set{TexelFormat::automatic, TexelFormat::r16f}));
+  packet.isosurfaces[0].opacity = 1;  // no rays see it
+  EXPECT_EQ(offered(packet), one);
+  packet.isosurfaces[0].opacity = 0.5;
+  packet.volumes[0].grid = labels;  // a label that is rounded is another one
+  EXPECT_EQ(offered(packet), one);
+  // fast rays keep words of their own
+  for (const render::RenderSettings& s : eye_settings({true, true}))
+    if (s.fast) {
+      EXPECT_EQ(s.texels, TexelFormat::automatic);
+    }
+}
+
+}  // namespace plan_test
