@@ -18,6 +18,7 @@ constexpr std::uint32_t kSliceFragmentShader[] = {
 };
 constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4;
 constexpr double kNearer = 4e-6;     ///< of the distance: what a buffer of floats tells apart
+constexpr int kOverSurfaces = 2;     ///< such parts before surfaces in the slice's plane, whose depths are rounded in their own ways
 constexpr double kClipSlack = 1e-3;  ///< of a voxel's smallest edge
 
 bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
@@ -100,7 +101,7 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   data.level_count = std::uint32_t(item.levels.size());
   data.line_color = {item.line_color.r, item.line_color.g, item.line_color.b};
   data.half_width = 0.5f * item.line_width;
-  data.nearer = float(kNearer * item.over);
+  data.nearer = float(kNearer * (kOverSurfaces + item.over));
   data.hidden = item.hidden ? float(*item.hidden) : NAN;
   CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
   CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/xr/depth_images.h"
 
@@ -57,17 +58,17 @@ RoomHead head_of(const Frame& frame) {
   return head;
 }
 
-Result<Frame> begin_frame(Session& session) {
+Result<std::optional<Frame>> begin_frame(Session& session, std::optional<std::chrono::nanoseconds> patience) {
   const Functions& xr = session.xr();
-  XrFrameWaitInfo wait{};
-  wait.type = XR_TYPE_FRAME_WAIT_INFO;
-  XrFrameState state{};
-  state.type = XR_TYPE_FRAME_STATE;
-  CATENA_XR_CHECK(session, xr.WaitFrame(session.handle(), &wait, &state), "say when the next picture is due");
+  const std::optional<FrameWait::Answer> answer = session.frame_wait().take(patience);
+  if (!answer) return std::optional<Frame>();
+  CATENA_XR_CHECK(session, answer->result, "say when the next picture is due");
+  const XrFrameState& state = answer->state;
   Frame frame;
   frame.time = state.predictedDisplayTime;
-  constexpr std::int64_t kLeast_ns = 1'000'000, kMost_ns = 1'000'000'000;  // of a period that is one
-  frame.period_ns = std::clamp<std::int64_t>(state.predictedDisplayPeriod, kLeast_ns, kMost_ns);
+  constexpr std::int64_t kLeast_ns = 1'000'000, kMost_ns = 1'000'000'000, kUnknown_ns = 11'111'111;  // of a period that is one
+  const std::int64_t period_ns = state.predictedDisplayPeriod;
+  frame.period_ns = period_ns > 0 ? std::clamp(period_ns, kLeast_ns, kMost_ns) : kUnknown_ns;
   frame.wants_picture = state.shouldRender && is_seen(session.state());
   XrFrameBeginInfo begin{};
   begin.type = XR_TYPE_FRAME_BEGIN_INFO;
@@ -79,7 +80,7 @@ Result<Frame> begin_frame(Session& session) {
     (void)end_frame(session, frame, {});
     return located.error();
   }
-  return frame;
+  return std::optional<Frame>(std::move(frame));
 }
 
 Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>& shown,

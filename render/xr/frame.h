@@ -3,7 +3,9 @@
 /// The poses that were located are those that are submitted, so that the runtime moves the picture by what the head has moved since.
 /// Every frame that was begun is ended, with nothing to show where its picture failed. Frame thread.
 #pragma once
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/stereo/room_eye.h"
@@ -13,7 +15,7 @@ namespace catena::render::xr {
 
 struct Frame {
   XrTime time = 0;             ///< when it will be seen: the runtime's clock, ns
-  std::int64_t period_ns = 0;  ///< between pictures, as predicted; a millisecond to a second
+  std::int64_t period_ns = 0;  ///< between pictures, as predicted; a millisecond to a second; a 90th where none is
   bool wants_picture = false;  ///< seen, and the head is tracked: every view is one that can be drawn
   std::vector<XrView> views;   ///< as located in the local space, and as submitted
 };
@@ -33,8 +35,9 @@ struct Shown {
   const EyeImages* depth = nullptr;  ///< null: no depth is submitted
 };
 
-/// Of a session that runs. The frame is begun when this returns it.
-Result<Frame> begin_frame(Session& session);
+/// Of a session that runs. The frame is begun when this returns it; nothing where the runtime has not said within `patience` when it is due
+/// (none: however long that takes): ask again.
+Result<std::optional<Frame>> begin_frame(Session& session, std::optional<std::chrono::nanoseconds> patience);
 /// `shown` by view; empty: nothing is shown. `extra`: layers over it.
 Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>& shown,
                   const std::vector<const XrCompositionLayerBaseHeader*>& extra = {});

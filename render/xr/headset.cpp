@@ -66,8 +66,14 @@ void Headset::stop() {
 }
 
 Result<Frame> Headset::begin() {
-  CATENA_TRY(Frame frame, begin_frame(*session_));
+  CATENA_TRY(std::optional<Frame> frame, begin_frame(*session_, std::nullopt));
   ++counts_.frames;
+  return std::move(*frame);
+}
+
+Result<std::optional<Frame>> Headset::begin_within(std::chrono::nanoseconds patience) {
+  CATENA_TRY(std::optional<Frame> frame, begin_frame(*session_, patience));
+  if (frame) ++counts_.frames;
   return frame;
 }
 

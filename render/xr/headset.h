@@ -52,6 +52,8 @@ class Headset {
 
   /// A frame begins: waits for its time. It is ended by show() or skip().
   Result<Frame> begin();
+  /// The same, with the wait no longer than that: nothing where the runtime has not answered yet; ask again.
+  Result<std::optional<Frame>> begin_within(std::chrono::nanoseconds patience);
   /// Draws every view of the packet's scene, where the frame wants a picture, and hands them over. The first view is drawn last, so that it
   /// is the renderer's last picture: for the window. `share`: of the recommended pixels, each way. `aim` changes what of the packet follows
   /// from the view. `gaze`: where the person looks, a direction in the room, for the fovea of the settings; nothing: straight ahead.

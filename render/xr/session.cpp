@@ -32,8 +32,14 @@ Result<std::unique_ptr<Session>> Session::create(Instance& instance, vk::Device&
   return self;
 }
 
+FrameWait& Session::frame_wait() {
+  if (!frame_wait_) frame_wait_ = std::make_unique<FrameWait>(xr().WaitFrame, session_);
+  return *frame_wait_;
+}
+
 Session::~Session() {
   if (!session_) return;
+  frame_wait_.reset();
   for (XrSpace space : spaces_)
     if (space) (void)xr().DestroySpace(space);
   const auto turn = device_->queue_turn();
@@ -75,6 +81,7 @@ Outcome Session::enter(XrSessionState state) {
     case Act::end:
       running_ = false;
       CATENA_XR_CHECK(*instance_, xr().EndSession(session_), "end the session");
+      frame_wait_.reset();  // what it says is of a session that is over
       return Done{};
     case Act::leave:
       running_ = false;

@@ -13,6 +13,7 @@
 
 #include "engine/base/vec.h"
 #include "render/vk/device.h"
+#include "render/xr/frame_wait.h"
 #include "render/xr/instance.h"
 #include "render/xr/session_state.h"
 
@@ -43,6 +44,9 @@ class Session {
   /// The person wants to leave: the runtime ends the session by its events.
   Outcome ask_to_leave();
 
+  /// Of a session that runs; made when it is first asked for.
+  FrameWait& frame_wait();
+
   XrSessionState state() const { return state_; }
   bool running() const { return running_; }  ///< frames are made
   bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
@@ -72,6 +76,7 @@ class Session {
   vk::Device* device_;
   XrSession session_ = XR_NULL_HANDLE;
   std::array<XrSpace, 3> spaces_{};
+  std::unique_ptr<FrameWait> frame_wait_;
   XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
   bool running_ = false, has_left_ = false;
   std::vector<XrSessionState> history_;

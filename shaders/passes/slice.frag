@@ -145,6 +145,7 @@ void main() {
     color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);
   }
-  const float t = hit.t - slice.nearer * (hit.t + layer.reference_depth);
+  // both parts of the depth are rounded, also where their sum is small
+  const float t = hit.t - slice.nearer * (abs(hit.t) + layer.reference_depth);
   write_fragment(hit.seen && alpha > 0.0, color, alpha, t, frame.grids[0].id);
 }

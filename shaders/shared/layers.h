@@ -27,7 +27,7 @@ struct SliceData {
   uint level_count;
   vec3 line_color;
   float half_width;  // of the lines, pixels
-  float nearer;      // of slices in one plane the later lies over the earlier: this share of its distance nearer to the eye
+  float nearer;      // this share of its distance nearer to the eye: over surfaces in its plane, and over earlier slices in it
   float hidden;      // within a half of this value nothing is drawn; NaN: everywhere
 };
 

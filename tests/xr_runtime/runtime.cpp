@@ -119,6 +119,7 @@ void read_environment() {
     if (key == "select")
       script.selects.emplace_back(std::strtoull(value.c_str(), nullptr, 10), std::strtoull(value.c_str() + colon + 1, nullptr, 10));
     if (key == "paced") script.paced = true;
+    if (key == "hang") script.hang = {std::strtoull(value.c_str(), nullptr, 10), std::int64_t(1e6 * std::atof(value.c_str() + colon + 1))};
     if (key == "record") {
       record_path() = value;
       std::atexit(write_record);

@@ -4,7 +4,8 @@
 ///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, menu=5:9 (the right
 ///   hand's button is down from frame 5 to 8), gaze=0.2:-0.1 (the eyes look so far to the right and up, tangents),
 ///   head=1:0:-2 (the head is moved there, metres), stage=x:y:z (in the local space), grip=40:x:y:z (the right hand, from
-///   that frame on), select=50:70 (its trigger is down in these frames), paced (xrWaitFrame sleeps)
+///   that frame on), select=50:70 (its trigger is down in these frames), paced (xrWaitFrame sleeps),
+///   hang=20:3000 (xrWaitFrame of that frame takes so many milliseconds)
 /// Everything is under one lock; the tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
@@ -61,6 +62,7 @@ struct Script {
   std::map<std::uint64_t, XrVector3f> grips;                     ///< where the right hand is from that frame on
   std::vector<std::pair<std::uint64_t, std::uint64_t>> selects;  ///< frames in which its trigger is down: from, to
   std::uint64_t menu_from = 0, menu_to = 0;                      ///< frames in which the right hand's button is down
+  std::optional<std::pair<std::uint64_t, std::int64_t>> hang;    ///< xrWaitFrame of that frame takes so long, ns
   bool keep_pictures = false;
   std::uint32_t images = 3;  ///< of a swapchain
 };

@@ -149,6 +149,7 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     Script& script = world().stage.script;
     const std::uint64_t frame = session->frame++;
     if (script.at_frame) script.at_frame(frame, script);
+    if (script.hang && script.hang->first == frame) sleep_ns = script.hang->second;
     if (script.menu_to > 0) script.hands[1].menu = frame >= script.menu_from && frame < script.menu_to;
     if (const auto grip = script.grips.find(frame); grip != script.grips.end()) script.hands[1].grip.position = grip->second;
     if (!script.selects.empty())
@@ -159,9 +160,9 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     session->waited = true;
     session->located.clear();
     const XrTime now = clock_now();
-    session->time += script.period_ns;
+    session->time += std::max<std::int64_t>(script.period_ns, 1);  // whatever the period, the next frame is later
     if (script.paced) {
-      if (session->time > now) sleep_ns = session->time - now;
+      if (session->time > now) sleep_ns = std::max(sleep_ns, session->time - now);
       if (session->time < now - script.period_ns) session->time = now;  // late: the next refresh
     }
     out->predictedDisplayTime = session->time + script.period_ns;

@@ -44,6 +44,7 @@ class ViewerHeadset : public testing::Test {
     test::write_file(folder_ / "script.sh", "export HOME=" + folder_.path() + " XR_RUNTIME_JSON=" + runtime + " CATENA_XR_SCRIPT='" +
                                                 words + " record=" + (folder_ / "record") + "'\nexec " + test::program_path() + " view " +
                                                 (folder_ / "scene.json") + " --xr --size 320x240 " + options + "\n");
+    std::filesystem::remove(std::filesystem::path(folder_ / "record"));  // of a run before
     const int status = std::system(
         ("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -143,6 +144,49 @@ TEST_F(ViewerHeadset, WhatIsLostComesBack) {
   EXPECT_NE(log().find("XR_ERROR_INSTANCE_LOST"), std::string::npos) << log();
   EXPECT_EQ(lost_lines(), 2) << log();
   EXPECT_GT(seen("pictures"), 20);
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(seen("objects"), 0);
+}
+
+/// A session that runs and is not seen: pictures are counted in the window.
+TEST_F(ViewerHeadset, ANumberOfPicturesEndsWhereNobodySeesThem) {
+  EXPECT_EQ(view("--frames 12", "size=32x32 state=4:VISIBLE state=4:SYNCHRONIZED"), 0) << log();
+  EXPECT_LE(seen("pictures"), 4);
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+}
+
+/// What a display's period and size should not be, and what belongs to a flat picture.
+TEST_F(ViewerHeadset, OddHeadsetsAndOptionsOfFlatPicturesEndInTime) {
+  for (const char* words : {"size=32x32 period_ms=0", "size=0x0", "size=0x0 period_ms=0"}) {
+    EXPECT_EQ(view("--frames 12", words), 0) << words << log();
+    EXPECT_GE(seen("pictures"), 11) << words;
+    EXPECT_EQ(seen("illegal"), 0) << words << test::read_file(folder_ / "record");
+    EXPECT_EQ(lost_lines(), 0) << words << log();
+  }
+  std::string scene = kScene;
+  scene.insert(scene.rfind('}'), R"(, "screens": [{"name": "front", "lower_left": [-2, 0, -1], "lower_right": [2, 0, -1],
+                                                "upper_left": [-2, 0, 1]}])");
+  test::write_file(folder_ / "scene.json", scene);
+  for (const char* options : {"--frames 12 --screen front", "--frames 12 --stereo side-by-side"}) {
+    EXPECT_EQ(view(options, "size=32x32"), 0) << options << log();
+    EXPECT_GE(seen("pictures"), 11) << options;
+    EXPECT_EQ(seen("illegal"), 0) << options << test::read_file(folder_ / "record");
+  }
+}
+
+/// The runtime keeps a frame for three seconds: that is said, the window goes on, and so does the headset afterwards.
+TEST_F(ViewerHeadset, ARuntimeThatHangsDoesNotHoldTheWindow) {
+  ASSERT_EQ(view("--seconds 6", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
+  EXPECT_NE(log().find("the window goes on meanwhile"), std::string::npos) << log();
+  EXPECT_EQ(lost_lines(), 0) << log();
+  EXPECT_GT(seen("pictures"), 40);
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(seen("objects"), 0);
+}
+
+/// Closed meanwhile, it ends.
+TEST_F(ViewerHeadset, ItEndsWhileTheRuntimeHangs) {
+  ASSERT_EQ(view("--seconds 1.5", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
   EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(seen("objects"), 0);
 }

@@ -56,7 +56,8 @@ TEST_F(Pick, ASphereAndASliceAreFoundWhereTheyAre) {
   const auto picked = renderer_->pick(100, 40);
   ASSERT_TRUE(picked);
   EXPECT_EQ(picked->id, 9u);
-  EXPECT_NEAR(unproject(camera, 100.5, 40.5, picked->depth).y, 12, 1e-4);
+  // 50 units away, and nearer by what puts it over surfaces in its plane
+  EXPECT_NEAR(unproject(camera, 100.5, 40.5, picked->depth).y, 12 - 8e-6 * 50, 1e-4);
 }
 
 TEST_F(Pick, WithoutAnythingSolidNothingIsFound) {

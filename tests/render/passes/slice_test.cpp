@@ -1,4 +1,6 @@
 /// Slices: colours, lines, depths and ids against closed forms and an independent evaluation on the CPU.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -97,7 +99,8 @@ TEST_F(SlicePicture, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
         field::Cursor cursor;
         const auto color = table_color(kTable, grid->sample(met.world, cursor).value);
         for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(int(std::lround(255 * color[c])) - int(p[c])));
-        worst_depth = std::max(worst_depth, std::fabs(depth->depth[at] - met.view_depth));
+        // nearer by what puts it over surfaces in its plane
+        worst_depth = std::max(worst_depth, std::fabs(depth->depth[at] - (1 - 8e-6) * met.view_depth));
       }
     EXPECT_GT(inside, 3000);
     EXPECT_LE(worst, 1);
@@ -328,6 +331,79 @@ TEST_F(SlicePicture, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
     EXPECT_GT(cross.pixel(90, 60)[2], 100);
     EXPECT_EQ(cross.pixel(90, 60)[0], 0);
     EXPECT_EQ(cross.pixel(70, 60)[0], 255);
+  }
+}
+
+/// A square of two triangles in z = 8, larger than the grids.
+MeshItem square_at_8() {
+  auto geometry = std::make_shared<MeshGeometry>();
+  geometry->vertices = {{-2.3, -2.1, 8}, {18.7, -2.2, 8}, {18.4, 18.9, 8}, {-2.6, 18.2, 8}};
+  geometry->triangles = {0, 1, 2, 0, 2, 3};
+  MeshItem item;
+  item.geometry = geometry;
+  item.color = {0, 0.4f, 1};
+  item.id = 3;
+  return item;
+}
+
+/// Where a surface lies in a slice's plane the slice is over it at every pixel, from either side, whatever is opaque: the picture is that
+/// of the slice alone over that of the surface alone.
+TEST_F(SlicePicture, ASliceLiesOverWhatLiesInItsPlane) {
+  const auto rising = make_grid({17, 17, 17}, [](const Vec3& p) { return p.z; });
+  const auto even = make_grid({17, 17, 17}, [](const Vec3&) { return 1; });
+  struct Eye {
+    const char* name;
+    Vec3 position, target;
+    double fovy_deg, height;  // height > 0: orthographic
+  };
+  const std::vector<Eye> eyes{{"below", {-9, -17, -21}, {8, 8, 8}, 40, 0},
+                              {"close", {7.7, 0.9, 8.21}, {8.1, 3, 8}, 70, 0},
+                              {"far", {2100, -2900, 1830}, {8, 8, 8}, 0.3, 0},
+                              {"orthographic", {25, -31, 22}, {8, 8, 8}, 30, 22}};
+  for (const Eye& eye : eyes) {
+    FramePacket empty = packet_of(eye.position, eye.target, eye.fovy_deg);
+    empty.width = 96;
+    empty.height = 72;
+    empty.view.up = {0, 0, 1};
+    empty.view.orthographic = eye.height > 0;
+    empty.view.height = eye.height;
+    empty.background = {0, 0, 0, 1};
+    std::vector<FramePacket> surfaces;
+    std::vector<Picture> under;
+    for (const float opacity : {1.f, 0.6f}) {
+      surfaces.push_back(empty);
+      surfaces.back().meshes = {square_at_8()};
+      surfaces.back().meshes[0].opacity = opacity;
+      surfaces.push_back(empty);
+      surfaces.back().isosurfaces = {{rising, 8.0, {0, 0.4f, 1}, opacity, 3}};
+    }
+    for (const FramePacket& packet : surfaces) under.push_back(draw(packet));
+    for (const float opacity : {1.f, 0.4f}) {
+      SliceItem slice = slice_of(even, {3, 4, 8}, {0, 0, 1});
+      slice.colors = {{0, 1, 0, 0}};
+      slice.opacity = opacity;
+      slice.id = 2;
+      FramePacket packet = empty;
+      packet.slices = {slice};
+      const Picture alone = draw(packet);
+      for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        packet = surfaces[k];
+        packet.slices = {slice};
+        const std::string name = fmt::format("{}_{}_{:.0f}", eye.name, k, 10 * opacity);
+        const Picture both = draw(packet, {}, name);
+        int covered = 0, wrong = 0;
+        for (std::size_t i = 0; i < both.rgba.size(); i += 4) {
+          if (alone.rgba[i] == 0 || under[k].rgba[i + 2] == 0) continue;
+          ++covered;
+          bool differs = false;
+          for (std::size_t c = i; c < i + 3; ++c)
+            differs = differs || std::fabs(both.rgba[c] - (alone.rgba[c] + (1 - opacity) * under[k].rgba[c])) > 2;
+          wrong += differs;
+        }
+        EXPECT_GT(covered, 250) << name;
+        EXPECT_EQ(wrong, 0) << name << ", of " << covered << " pixels";
+      }
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 #include "engine/app/viewer/shell/headset_host.h"
 
+#include <chrono>
 #include <utility>
 
 #include "engine/app/viewer/shell/headset_hands.h"
@@ -18,6 +19,8 @@ namespace catena::app {
 namespace {
 
 constexpr int kFarewellTurns = 200;                                    // of events and frames, while the runtime ends the session
+constexpr std::chrono::milliseconds kPatience{500};                    // with a frame's wait, before the window goes on; then
+constexpr std::chrono::milliseconds kTurn{10};                         // of the window's loop, and of the farewell
 constexpr double kPanelM = 0.8, kPanelAwayM = 0.9, kPanelDropM = 0.1;  // its width; from the head
 constexpr double kFovea = 0.36;       // tan 20 degrees off the gaze, or the eye's axis: beyond, lenses and eyes see less than the rays cost
 constexpr double kAboveHandM = 0.06;  // the scale's words over the hands that hold the world
@@ -41,7 +44,9 @@ struct HeadsetHost::Parts {
   std::int64_t retry_ns = 0;  ///< not before
   std::string said;           ///< what was lost last, while nothing has been seen since
   std::string broken;         ///< what went wrong in a frame; follow() acts on it
-  bool left = false;          ///< the person has ended it by the runtime's own ways
+  bool waits = false;         ///< for a frame that the runtime keeps longer than kPatience
+  bool told_waits = false, waits_news = false;
+  bool left = false;  ///< the person has ended it by the runtime's own ways
   std::optional<Placement> placement;
   HeadsetHands hands;
   render::FramePace pace;
@@ -127,6 +132,7 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
     lose(polled.error().message);
     return Done{};
   }
+  if (std::exchange(p.waits_news, false)) say("the headset's runtime lets its picture wait: the window goes on meanwhile");
   if (const std::string news = p.pace.news(); !news.empty()) say(news);
   if (p.headset->session().has_left()) {
     p.left = true;
@@ -280,8 +286,17 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
     p.broken = why;  // follow() acts on it
     return false;
   };
-  auto frame = p.headset->begin();
-  if (!frame) return broken(frame.error().message);
+  // a runtime that keeps the frame does not keep the window
+  auto begun = p.headset->begin_within(p.waits ? kTurn : kPatience);
+  if (!begun) return broken(begun.error().message);
+  std::optional<render::xr::Frame>& frame = *begun;
+  if (!frame) {
+    if (!std::exchange(p.told_waits, true)) p.waits_news = true;
+    p.waits = true;
+    p.pace.pause();
+    return false;
+  }
+  p.waits = false;
   if (const Outcome taken = p.take_hands(*frame, hand); !taken) {
     (void)p.headset->skip(*frame);
     return broken(taken.error().message);
@@ -342,8 +357,8 @@ void HeadsetHost::leave() {
   (void)p.headset->session().ask_to_leave();
   for (int i = 0; i < kFarewellTurns; ++i) {
     if (!p.headset->poll() || !p.headset->running()) break;
-    const auto frame = p.headset->begin();
-    if (!frame || !p.headset->skip(*frame)) break;
+    const auto frame = p.headset->begin_within(kTurn);
+    if (!frame || (*frame && !p.headset->skip(**frame))) break;
   }
   p.stop();
 }

@@ -178,7 +178,8 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   if (headset_ && headset_->running() && !for_file && !is_minimised()) {
     const auto drawn = draw_in_headset();
     if (!drawn) return Failure{1, drawn.error().message};
-    if (*drawn || drawing_.shown()) return std::nullopt;
+    // a number of pictures is counted in the window where nobody sees the headset's
+    if (*drawn || (drawing_.shown() && shared_.options.frames == 0)) return std::nullopt;
   }
   is_eye_ = false;
   if (is_minimised()) {
