@@ -270,7 +270,7 @@ bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
          !has_layers(packet) && !has_surfaces(packet) && item.grid->interpolation() == field::Interpolation::linear &&
-         PackedLook::can_pack(device, *packet.volumes.front().grid);
+         PackedLook::can_pack(device, *item.grid) && PackedLook::can_show(item);
 }
 
 bool draws_rays(const FramePacket& packet) { return !packet.volumes.empty() || has_layers(packet) || has_surfaces(packet); }

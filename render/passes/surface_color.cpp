@@ -37,15 +37,15 @@ class SurfaceColorPass final : public Pass {
     ColorGrid colors;
     vk::Buffer uniform, table;
   };
-  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags);
+  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags, const TransferLut& lut);
 
   vk::Sampler linear_;
-  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  std::map<std::pair<std::uint32_t, bool>, vk::Pipeline> pipelines_;
   std::vector<Surface> surfaces_;
 };
 
-Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::uint32_t flags) {
-  vk::Pipeline& pipeline = pipelines_[flags];
+Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::uint32_t flags, const TransferLut& lut) {
+  vk::Pipeline& pipeline = pipelines_[{flags, lut.uneven()}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kSurfaceColorVertexShader;
@@ -53,6 +53,7 @@ Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}, {kIds, vk::Resource::texture}};
     add_grid_slots(info.slots, 2);
     info.constants = {flags};
+    add_uneven(info.constants, lut);
     info.colors = {kOpaqueFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }
@@ -75,8 +76,8 @@ Outcome SurfaceColorPass::prepare(Frame& frame) {
     }
     CATENA_TRY(const bool fresh, surface.colors.update(frame.device, std::move(colors), *item.color_by));
     if (!fresh) continue;
-    CATENA_TRY(surface.table,
-               vk::upload_buffer(frame.device, std::as_bytes(std::span(surface.colors.lut.entries)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+    const std::vector<glm::vec4> words = surface.colors.lut.words();
+    CATENA_TRY(surface.table, vk::upload_buffer(frame.device, std::as_bytes(std::span(words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   }
   while (surfaces_.size() > count) surfaces_.pop_back();
   return Done{};
@@ -93,7 +94,7 @@ Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
     data.grids[1] = color_data(frame.rays, surface.colors, 0);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.bound()};
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags(bound)));
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags(bound), surface.colors.lut));
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
                                       {1, vk::Resource::buffer, &surface.table, nullptr, nullptr},
                                       {2, vk::Resource::texture, nullptr, &frame.targets.opaque_depth, nullptr},

@@ -84,6 +84,11 @@ BrickRange range_of(const GridMirror& mirror) {
   return all.empty() ? BrickRange{0, 0} : all;
 }
 
+void add_uneven(std::vector<std::uint32_t>& constants, const TransferLut& lut) {
+  constants.resize(11);
+  constants.push_back(lut.uneven());
+}
+
 void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t start) {
   data.table_start = start;
   data.table_last = lut.last();

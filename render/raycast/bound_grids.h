@@ -60,6 +60,8 @@ shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std
 
 /// The least and the greatest value of a mirrored grid.
 BrickRange range_of(const GridMirror& mirror);
+/// To the constants of a pipeline with one table (shaders/lib/tables.glsl): whether it is an uneven one.
+void add_uneven(std::vector<std::uint32_t>& constants, const TransferLut& lut);
 /// Tells the shader where in the buffer of tables that of a grid begins.
 void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t start);
 

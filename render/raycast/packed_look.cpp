@@ -14,11 +14,19 @@ bool same_look(const VolumeItem& a, const VolumeItem& b) {
   return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.shade == b.shade;
 }
 
+ValueInterval active_values(const VolumeItem& item) {
+  const double background = item.grid->background();
+  const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
+  return active_interval(item.transfer, values, item.shade);
+}
+
 }  // namespace
 
 bool PackedLook::can_pack(const vk::Device& device, const field::ScalarGrid& grid) {
   return can_be_packed(device, grid) || can_be_packed_as_bricks(grid);
 }
+
+bool PackedLook::can_show(const VolumeItem& item) { return is_packed_whole(item.transfer, active_values(item)); }
 
 Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
   const std::int64_t start = now_ns();
@@ -30,9 +38,7 @@ Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings
   const std::uint64_t bytes = whole ? packed_bytes(*item.grid, gradients) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
   if (bytes > settings.most_bytes) return too_many_bytes(bytes, settings.most_bytes);
   if (!other_look && (!gradients || this->gradients())) return Done{};
-  const double background = item.grid->background();
-  const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
-  const ValueInterval active = active_interval(item.transfer, values, item.shade);
+  const ValueInterval active = active_values(item);
   const bool other_range = other_grid || !(active == active_);
   active_ = active;
   version_ = item.grid->version();

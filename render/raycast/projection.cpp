@@ -55,7 +55,8 @@ Outcome ProjectionRaycast::prepare(const VolumeItem& item, std::shared_ptr<const
   lut_ = make_transfer_lut(next, range);
   const double unit = next.opacity_unit > 0 ? next.opacity_unit : item.grid->mapping().smallest_edge();
   for (glm::vec4& entry : lut_.entries) entry.a = float(-std::expm1(-double(entry.a) * unit));
-  CATENA_TRY(table_, vk::upload_buffer(*device_, std::as_bytes(std::span(lut_.entries)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  const std::vector<glm::vec4> words = lut_.words();
+  CATENA_TRY(table_, vk::upload_buffer(*device_, std::as_bytes(std::span(words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   if (same_bounds) return Done{};
   bounds_ = signed_range(range, item.projection);
   CATENA_TRY(map_, make_word_map(*device_, *mirror_, bounds_of_bricks(*mirror_, bounds_, item.projection)));
@@ -77,7 +78,7 @@ Outcome ProjectionRaycast::record(vk::Commands& commands, const CameraRays& rays
 
   const BoundGrid bound{mirror_, &map_, false, false};
   const std::uint32_t kind = item_.projection == Projection::maximum ? 1 : item_.projection == Projection::minimum ? 2 : 3;
-  vk::Pipeline& pipeline = pipelines_[{grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind}];
+  vk::Pipeline& pipeline = pipelines_[{grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind + 4 * lut_.uneven()}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kProjectionVertexShader;
@@ -85,6 +86,7 @@ Outcome ProjectionRaycast::record(vk::Commands& commands, const CameraRays& rays
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
     info.constants = {grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind};
+    add_uneven(info.constants, lut_);
     info.colors = {kVolumeFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }

@@ -13,11 +13,53 @@ namespace {
 constexpr std::uint32_t kEntries = 4096;
 /// Of labels, with extinctions (whose looks are numbered) and without.
 constexpr double kMostLooks = 7000, kMostLabelColors = 1 << 18;
+constexpr double kMissed = 0.1;  // of what samples may miss of a peak or a gap
 
 }  // namespace
 
 double table_value(const TransferTable& table, double value, int channel) {
   return channel == 3 ? piecewise(table.extinctions, value, 1) : piecewise(table.colors, value, std::size_t(channel) + 1);
+}
+
+namespace {
+
+/// The values of the function's points from lo to hi, and these two; where the function leaps, the one just before, too.
+std::vector<double> points_between(const TransferTable& table, double lo, double hi) {
+  std::vector<double> values{lo, hi};
+  const auto add = [&](const auto& points) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double value = points[i][0];
+      if (!(value > lo && value < hi)) continue;
+      values.push_back(value);
+      if (i + 1 < points.size() && points[i + 1][0] == value) values.push_back(std::nextafter(value, lo));
+    }
+  };
+  add(table.colors);
+  add(table.extinctions);
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+}  // namespace
+
+bool is_sampled(const TransferTable& table, double lo, double hi, std::size_t samples) {
+  const double width = (hi - lo) / double(samples - 1);
+  for (const double value : points_between(table, lo, hi)) {
+    const double before = std::floor((value - lo) / width) - 1;
+    for (int c = 0; c < 4; ++c) {
+      const double own = table_value(table, value, c);
+      double least = HUGE_VAL, greatest = -HUGE_VAL;
+      for (int k = 0; k < 4; ++k) {
+        const double sample = table_value(table, std::clamp(lo + (before + k) * width, lo, hi), c);
+        least = std::min(least, sample);
+        greatest = std::max(greatest, sample);
+      }
+      const double near = kMissed * std::max(own, greatest);
+      if (own < least - near || own > greatest + near) return false;
+    }
+  }
+  return true;
 }
 
 TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range) {
@@ -40,11 +82,18 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   lut.lo = float(lo);
   lut.per_value = hi > lo ? float((count - 1) / (hi - lo)) : 0;
   if (!std::isfinite(lut.per_value)) lut.per_value = 0;
-  lut.entries.resize(lut.per_value > 0 ? count : 2);
-  for (std::uint32_t i = 0; i < lut.entries.size(); ++i) {
-    const double value = lut.per_value > 0 ? lo + (hi - lo) * i / (count - 1) : lo;
-    for (int c = 0; c < 4; ++c) lut.entries[i][c] = float(table_value(table, value, c));
+  std::vector<double> points;
+  if (count == kEntries && hi > lo && !is_sampled(table, lo, hi, kEntries)) points = points_between(table, lo, hi);
+  if (!points.empty() && points.size() <= kEntries) {
+    lut.per_value = -1;
+    lut.values.assign(points.begin(), points.end());
+  } else {
+    points.resize(lut.per_value > 0 ? count : 2);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = lut.per_value > 0 ? lo + (hi - lo) * double(i) / (count - 1) : lo;
   }
+  lut.entries.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (int c = 0; c < 4; ++c) lut.entries[i][c] = float(table_value(table, points[i], c));
   lut.visible_before.resize(lut.entries.size() + 1);
   for (std::size_t i = 0; i < lut.entries.size(); ++i) lut.visible_before[i + 1] = lut.visible_before[i] + (lut.entries[i].a > 0);
   lut.run.resize(lut.entries.size());
@@ -52,7 +101,19 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   return lut;
 }
 
-float TransferLut::index(float value) const { return std::clamp((value - lo) * per_value, 0.0f, float(last())); }
+std::vector<glm::vec4> TransferLut::words() const {
+  std::vector<glm::vec4> all = entries;
+  all.resize(entries.size() + (values.size() + 3) / 4);
+  for (std::size_t i = 0; i < values.size(); ++i) all[entries.size() + i / 4][int(i % 4)] = values[i];
+  return all;
+}
+
+float TransferLut::index(float value) const {
+  if (!uneven()) return std::clamp((value - lo) * per_value, 0.0f, float(last()));
+  const auto after = std::clamp(std::ranges::upper_bound(values, value), values.begin() + 1, values.end() - 1);
+  const float a = after[-1], b = *after;
+  return float(after - values.begin() - 1) + (b > a ? std::clamp((value - a) / (b - a), 0.0f, 1.0f) : 1.0f);
+}
 
 bool TransferLut::visible(const BrickRange& range) const {
   const auto from = std::uint32_t(std::floor(index(range.least))), to = std::uint32_t(std::ceil(index(range.greatest)));
@@ -107,15 +168,19 @@ std::array<std::uint32_t, 2> entry(const Look& mean) {
 }  // namespace
 
 ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded) {
-  constexpr int last = 4096;
-  const auto value = [&](int i) { return values.least + (values.greatest - values.least) * i / last; };
-  std::vector<Look> looks(last + 1);
-  for (int i = 0; i <= last; ++i) looks[i] = look_at(table, value(i));
-  int first = 0, final = last;
+  if (!(values.least < values.greatest)) return values;
+  const std::vector<double> points = points_between(table, values.least, values.greatest);
+  std::vector<Look> looks;
+  for (const double value : points) looks.push_back(look_at(table, value));
+  std::size_t first = 0, final = points.size() - 1;
   const auto trims = [&](const Look& end) { return !shaded || !(end[0] > 0); };
-  while (trims(looks[0]) && first < last && looks[first + 1] == looks[0]) ++first;
-  while (trims(looks[last]) && final > first && looks[final - 1] == looks[last]) --final;
-  return {value(first), value(final)};
+  while (trims(looks.front()) && first < final && looks[first + 1] == looks.front()) ++first;
+  while (trims(looks.back()) && final > first && looks[final - 1] == looks.back()) --final;
+  return {points[first], points[final]};
+}
+
+bool is_packed_whole(const TransferTable& table, const ValueInterval& active) {
+  return !(active.least < active.greatest) || is_sampled(table, active.least, active.greatest, kSamples);
 }
 
 PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded) {

@@ -13,13 +13,18 @@ namespace catena::render {
 
 /// A transfer function as the shader reads it: of labels one entry for each whole number, where they are not too many; else 4096 samples
 /// (r, g, b, sigma) over the values that it and the grid share, read with linear interpolation; beyond its ends the end values hold. Points
-/// of the table are kept to a sample's width.
+/// of the table are kept to a sample's width. Where samples would miss what is narrower (is_sampled), the entries are the function's own
+/// points, and exact.
 struct TransferLut {
   std::vector<glm::vec4> entries;
-  float lo = 0, per_value = 0;                ///< index = (value - lo) * per_value, clamped to 0..last
+  std::vector<float> values;                  ///< of the entries, rising; empty: they are evenly spaced
+  float lo = 0, per_value = 0;                ///< index = (value - lo) * per_value, clamped to 0..last; per_value < 0: by `values`
   std::vector<std::uint32_t> visible_before;  ///< how many entries before i have sigma > 0
   std::vector<std::uint16_t> run;             ///< equal for neighbours that are equal throughout
 
+  /// What the shader gets: the entries, then their own values, four in a word.
+  std::vector<glm::vec4> words() const;
+  bool uneven() const { return !values.empty(); }
   std::uint32_t last() const { return std::uint32_t(entries.size()) - 1; }
   /// Whether some value of the range has sigma > 0.
   bool visible(const BrickRange& range) const;
@@ -30,6 +35,10 @@ struct TransferLut {
  private:
   float index(float value) const;
 };
+
+/// Whether even samples, so many from lo to hi and read with linear interpolation, take every peak and every gap of the function: near each
+/// of its points, a sample's width either side, they come within a tenth of it.
+bool is_sampled(const TransferTable& table, double lo, double hi, std::size_t samples);
 
 /// `range`: of the grid's values.
 TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range);
@@ -45,7 +54,7 @@ FactorLut make_factor_lut(const std::vector<std::array<double, 2>>& factors);
 double table_value(const TransferTable& table, double value, int channel);  ///< 0..2: r, g, b; 3: sigma
 
 /// Where the picture depends on the value: the transfer function is one colour and density (or nothing) below and above.
-/// Within `values`; resolved to 1 / 4096 of it. `shaded`: what is visible depends on the gradient too, so that only what is invisible
+/// Within `values`. `shaded`: what is visible depends on the gradient too, so that only what is invisible
 /// is left out, and no two codes look alike unless they are.
 ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded);
 
@@ -59,6 +68,8 @@ struct PreintegratedTable {
   double greatest_sigma = 0;
 };
 
+/// Whether that takes all that there is in the function where codes lie from one end to the other of `active`.
+bool is_packed_whole(const TransferTable& table, const ValueInterval& active);
 /// `lo`, `per_code`: of the packed volume.
 PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded);
 

@@ -74,8 +74,8 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
                     : kind.layers > 0 ? cubic ? vk::Spirv(kVolumeBlendLayersCubicShader) : vk::Spirv(kVolumeBlendLayersShader)
                     : cubic ? vk::Spirv(kVolumeBlendCubicShader)
                                       : vk::Spirv(kVolumeBlendShader);
-    info.constants = {kind.flags,       kind.opaque, kind.volumes, kind.surfaces, kind.layers,    kind.modes,
-                      kind.color_grids, kind.jitter, kind.colors,  kind.fog,      kind.half_depth};
+    info.constants = {kind.flags,       kind.opaque, kind.volumes, kind.surfaces, kind.layers,     kind.modes,
+                      kind.color_grids, kind.jitter, kind.colors,  kind.fog,      kind.half_depth, kind.uneven};
   }
   CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   return &pipeline;
@@ -124,10 +124,10 @@ Outcome VolumeRaycast::upload_tables() {
     return start;
   };
   for (Volume& volume : volumes_) {
-    volume.table_start = append(volume.lut.entries);
+    volume.table_start = append(volume.lut.words());
     volume.factor_start = append(volume.factors.entries);
   }
-  for (Colors& colors : colors_) colors.table_start = append(colors.grid.lut.entries);
+  for (Colors& colors : colors_) colors.table_start = append(colors.grid.lut.words());
   if (entries.empty()) entries.resize(2);
   CATENA_TRY(tables_, vk::upload_buffer(*device_, std::as_bytes(std::span(entries)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   return Done{};
@@ -202,6 +202,7 @@ VolumeRaycast::Ready VolumeRaycast::ready(const CameraRays& rays, const RaySetti
   for (const Volume& volume : volumes_) {
     data.grids[bound.size()] = volume_data(rays, volume);
     if (!volume.factors.entries.empty()) kind.modes |= 1u << (2 * bound.size());
+    kind.uneven |= volume.lut.uneven();
     const double own = volume.item.grid->mapping().smallest_edge();
     edge = edge > 0 ? std::min(edge, own) : own;
     const bool skips = settings.skip && double(volume.map.active) < kSkipBelow * double(volume.map.total);
@@ -215,6 +216,7 @@ VolumeRaycast::Ready VolumeRaycast::ready(const CameraRays& rays, const RaySetti
     kind.modes |= 2u << (2 * colors.owner);
     kind.color_grids |= std::uint32_t(bound.size()) << (4 * colors.owner);
     data.grids[bound.size()] = color_data(rays, colors.grid, colors.table_start);
+    kind.uneven |= colors.grid.lut.uneven();
     bound.push_back(colors.grid.bound());
   }
   data.step_world = float(settings.step_voxels * edge);

@@ -59,7 +59,8 @@ class VolumeRaycast {
   };
   /// What a pipeline is made for.
   struct Kind {
-    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0;
+    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0,
+                  uneven = 0;
     bool tiles = false;  ///< only those that have changed
     bool half_depth = false;
     auto operator<=>(const Kind&) const = default;

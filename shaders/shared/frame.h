@@ -26,7 +26,7 @@ struct GridData {
   vec3 texel;                 // 1 / size of the value image
   mat3 world_gradient;        // world = world_gradient * local gradient
   float value_offset, value_scale;
-  // volumes: the table's first entry, its last index, and the value range it spans
+  // volumes: the table's first entry, its last index, and the value range it spans; per_value < 0: entries have values of their own
   uint table_start, table_last;
   float table_lo, table_per_value;
   // volumes: the same of the factor by the length of the gradient

@@ -44,6 +44,48 @@ TEST(TransferLut, SpendsItsSamplesOnTheValuesThatAreThere) {
   for (const double v : {0.5, 1.25, 1.5, 1.75, 3.0}) EXPECT_NEAR(read(lut, v, 3), table_value(wide, v, 3), 1e-3);
 }
 
+TEST(TransferLut, WhatSamplesWouldMissIsKeptExactly) {
+  TransferTable t;
+  t.colors = {{0, 0, 0, 0}, {20, 1, 0.5, 0}, {400, 0, 1, 0.5}};
+  t.extinctions = {{0.01, 0}, {0.02, 3}, {0.03, 0}, {200, 0}, {200, 1}, {365, 1}};
+  const TransferLut lut = make_transfer_lut(t, {1e-6f, 365});
+  ASSERT_TRUE(lut.uneven());
+  EXPECT_LT(lut.per_value, 0);
+  const std::vector<glm::vec4> words = lut.words();
+  // as the shader reads it
+  const auto own = [&](std::size_t i) { return words[lut.entries.size() + i / 4][int(i % 4)]; };
+  const auto read_own = [&](float value, int channel) {
+    std::size_t before = 0, after = lut.last();
+    while (after - before > 1) (own((before + after) / 2) <= value ? before : after) = (before + after) / 2;
+    const float f = std::fmin(std::fmax((value - own(before)) / (own(after) - own(before)), 0.0f), 1.0f);
+    return words[before][channel] * (1 - f) + words[after][channel] * f;
+  };
+  for (const double v : {-1.0, 1e-6, 0.005, 0.0125, 0.02, 0.021, 0.0299, 0.1, 19.0, 21.0, 199.9, 200.1, 364.0, 365.0, 500.0})
+    for (int c = 0; c < 4; ++c)
+      EXPECT_NEAR(read_own(float(v), c), table_value(t, std::clamp(v, 1e-6, 365.0), c), 2e-6 * 3) << v << " " << c;
+  EXPECT_TRUE(lut.visible({0.011f, 0.012f}));
+  EXPECT_FALSE(lut.visible({0.04f, 150}));
+  EXPECT_EQ(lut.look({0.04f, 150}), 1);
+  EXPECT_GT(lut.look({210, 300}), -1);
+  EXPECT_EQ(lut.look({0.011f, 0.015f}), 0);
+}
+
+TEST(TransferLut, SamplesTakeStepsHoweverSharpAndNoNarrowPeaksAndGaps) {
+  const auto sampled = [](std::vector<std::array<double, 2>> extinctions) {
+    TransferTable t;
+    t.extinctions = std::move(extinctions);
+    return is_sampled(t, 0, 1, 4096);
+  };
+  EXPECT_TRUE(sampled({{0, 0}, {0.5, 0}, {0.5 + 1e-9, 1}, {1, 1}}));
+  EXPECT_TRUE(sampled({{0, 0}, {0.5, 0}, {0.5, 1}, {1, 0.2}}));
+  EXPECT_TRUE(sampled({{0, 0}, {0.48, 0}, {0.5, 1}, {0.52, 0}, {1, 0}}));
+  EXPECT_TRUE(sampled({{0.3, 2}}));
+  EXPECT_TRUE(sampled({}));
+  EXPECT_FALSE(sampled({{0, 0}, {0.5, 0}, {0.50001, 1}, {0.50002, 0}, {1, 0}})) << "a peak";
+  EXPECT_FALSE(sampled({{0, 0}, {0.5, 1}, {0.50001, 0}, {0.50002, 1}, {1, 0}})) << "a gap";
+  EXPECT_FALSE(sampled({{0, 0}, {1e-6, 1}, {2e-6, 0}, {1, 0}})) << "at the end";
+}
+
 TEST(TransferLut, AConstantFieldHasOneColour) {
   const TransferLut lut = make_transfer_lut(table(), {0.45f, 0.45f});
   EXPECT_NEAR(read(lut, 0.45, 3), 3, 1e-5);

@@ -126,6 +126,26 @@ TEST_F(Volume, LinearSigmaIsExact) {
   }
 }
 
+/// Planes of values from 1e-6 to 1e3: what is narrow at one end of them is seen as what is wide at the other.
+TEST_F(Volume, NarrowPartsOfWideTablesAreSeen) {
+  const auto grid = make_grid({12, 12, 10}, [](const Vec3& p) { return std::pow(10, std::lround(p.z) - 6); });
+  FramePacket packet = packet_of({5.5, 5.5, 40}, {5.5, 5.5, 4.5});
+  packet.view.up = {0, 1, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 8;
+  packet.width = packet.height = 32;
+  packet.volumes = {volume_item(grid, {{0, 0}, {1e-4, 0}, {5e-4, 1}, {9e-4, 0}, {10, 0}, {50, 1}, {90, 0}, {1000, 0}})};
+  RenderSettings settings;
+  settings.step_voxels = 0.02;
+  settings.texels = TexelFormat::r32f;
+  // two triangles of height 1 over eight ninths of a cell each
+  expect_alpha(draw(packet, settings), packet, 1, [](const Ray&) { return 8.0 / 9; });
+  EXPECT_FALSE(renderer_->draws_fast(packet)) << "256 codes take one of them";
+  packet.volumes[0].transfer.extinctions = {{0, 0}, {10, 0}, {50, 1}, {90, 0}, {1000, 0}};
+  EXPECT_TRUE(renderer_->draws_fast(packet));
+  expect_alpha(draw(packet, settings), packet, 1, [](const Ray&) { return 4.0 / 9; });
+}
+
 TEST_F(Volume, GaussianMatchesItsIntegral) {
   const double s = 4.5;  // 9 voxels wide
   const Vec3 c(31.5);
