@@ -18,9 +18,9 @@ constexpr double kFlickerGoal = 0.5;                            // the flicker, 
 constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
-// steps, voxels: of what is seen, the shortest that is chosen, and those of the converged picture, which is halved until the picture
-// changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
-constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3;
+// steps, voxels: of what is seen, of the fast raycast's rays that what is thin is measured by, and those of the converged picture, which
+// are halved until what is left of its error is less than a share of the goal, or what rounding to 8 bits makes of nothing
+constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3;
 
 LatticeError compare(const Picture& a, const Picture& b) {
   PixelErrors errors = covered_errors(a, b);
@@ -89,10 +89,15 @@ Outcome Lattice::begin(double goal, bool moves) {
 Outcome Lattice::find_truth(double goal) {
   RenderSettings converged = converged_rung(goal < kRoughGoal ? kTruthStep : kRoughTruthStep);
   CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
+  double before = 0;
   do {
     converged.step_voxels /= 2;
     CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing_));
-    truth_error_ = compare(truth_, finer).rmse;
+    const double change = compare(truth_, finer).rmse;
+    // changes that become r times smaller are all that is left, in r - 1 parts of the last one; at least as steps of the first order have
+    // it
+    truth_error_ = change / (std::clamp(before / std::max(change, 1e-30), 2.0, 4.0) - 1);
+    before = change;
     truth_ = std::move(finer);
   } while (truth_error_ > std::max(kLeastTold, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
   truth_step_ = converged.step_voxels;
@@ -117,16 +122,13 @@ Result<std::array<double, 2>> Lattice::refined() const {
 }
 
 Result<bool> Lattice::keeps_what_is_thin(const RenderSettings& settings, double e) {
-  if (settings.fast->spacing == 1) return true;
   CATENA_TRY(const Picture picture, renderer_.read_back());
-  const double step = std::min(1.0, settings.fast->step_voxels);
-  if (step != all_rays_step_) {
-    CATENA_CHECK(renderer_.draw(packet_, fast_rung(step, 1, 0, -1, settings.fast->smooth_gradients)));
-    CATENA_TRY(all_rays_, renderer_.read_back());
-    all_rays_step_ = step;
+  if (fine_.rgba.empty()) {
+    CATENA_CHECK(renderer_.draw(packet_, fast_rung(kFineStep, 1, 0, -1, settings.fast->smooth_gradients)));
+    CATENA_TRY(fine_, renderer_.read_back());
     ++pictures_;
   }
-  const PictureError error = measure_error(picture, all_rays_, {packet_.background[0], packet_.background[1], packet_.background[2]});
+  const PictureError error = measure_error(picture, fine_, {packet_.background[0], packet_.background[1], packet_.background[2]});
   return error.least_kept >= 1 - e / kThinGoal && error.p999 <= kFarthest * e;
 }
 

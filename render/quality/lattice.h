@@ -40,7 +40,7 @@ class Lattice {
 
   /// Of the picture that was drawn last: the rays of every 2nd pixel and of every pixel that were refined, by all such that show something.
   Result<std::array<double, 2>> refined() const;
-  /// Whether interpolation between rays leaves what is thin, and far enough up in the tail of errors, in it.
+  /// Whether what is thin is in it, and its tail of errors is short, beside every ray of a short step.
   Result<bool> keeps_what_is_thin(const RenderSettings& settings, double e);
   /// Whether the error of the rays, of the picture, that were measured last stays much the same where the camera goes on.
   Result<bool> rays_are_steady(const RenderSettings& settings);
@@ -57,9 +57,8 @@ class Lattice {
   double most_flicker_ = 0;                  ///< that is steady enough
   double covered_ = 1;                       ///< pixels
   Picture last_;                             ///< the lattice of the rays or the picture that were measured last
-  double truth_step_ = 0, truth_error_ = 0;  ///< and what it still changed by
-  Picture all_rays_;                         ///< the fast raycast's without interpolation
-  double all_rays_step_ = 0;
+  double truth_step_ = 0, truth_error_ = 0;  ///< and what is left of it
+  Picture fine_;                             ///< the fast raycast's every ray of a short step
   std::uint32_t spacing_ = 1;
   bool fast_ = false;
   int pictures_ = 0;

@@ -33,7 +33,7 @@ double cost_of(const Plan& plan, const std::array<double, 2>& refined, double st
   return (first + marks + 0.29 * refined[0] + refined[1]) * (kStepless + (1 - kStepless) / step);
 }
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
-constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
+constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
 
 struct Candidate {
   RenderSettings settings;
@@ -81,16 +81,18 @@ Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e) 
   std::array<double, 2> refined[kPlans];
   for (int plan = 0; plan < kPlans; ++plan) refined[plan] = kPlan[plan].refined;
   std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
-  bool blurs[kPlans] = {};               // what is thin
-  // every ray of the longest step: that is good enough as it was measured
+  int blurs[kPlans] = {};                // what is thin, at so many steps
   std::optional<QualityChoice> best;
   double best_cost = std::numeric_limits<double>::infinity();
   const auto cost = [&](const Candidate& c) { return cost_of(kPlan[c.plan], refined[c.plan], c.settings.fast->step_voxels); };
-  std::erase_if(candidates, [&](const Candidate& c) {
-    if (c.settings.fast->spacing > 1) return false;
-    if (cost(c) < best_cost) best = choice(lattice, c.settings, c.above, true), best_cost = cost(c);
-    return true;
-  });
+  // every ray, of the longest step that keeps what is thin
+  for (const Candidate& c : candidates) {
+    if (c.settings.fast->spacing > 1 || best || c.above > e) continue;
+    CATENA_CHECK(lattice.of_picture(c.settings));
+    CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(c.settings, e));
+    if (keeps) best = choice(lattice, c.settings, c.above, true), best_cost = cost(c);
+  }
+  std::erase_if(candidates, [](const Candidate& c) { return c.settings.fast->spacing == 1; });
   for (int drawn = 0; !candidates.empty() && drawn < kMaxPictures;) {
     const auto cheapest = std::ranges::min_element(candidates, {}, cost);
     const Candidate next = *cheapest;
@@ -98,7 +100,7 @@ Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e) 
     if (cost(next) >= best_cost) break;
     // what interpolation cost at another step says whether this one is worth a picture
     std::optional<double>& before = failed[next.plan];
-    if (blurs[next.plan] || (before && std::hypot(next.rays, *before) > e)) continue;
+    if (blurs[next.plan] > 1 || (before && std::hypot(next.rays, *before) > e)) continue;
     CATENA_TRY(const LatticeError picture, lattice.of_picture(next.settings));
     ++drawn;
     CATENA_TRY(const auto rays, lattice.refined());
@@ -110,8 +112,8 @@ Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e) 
       if (steady) best = choice(lattice, next.settings, picture.above, true), best_cost = cost(next);
       if (keeps) continue;
     }
-    // where a few pixels are far off, or what is thin is lost, a shorter step will not mend it: rays alone were good enough
-    blurs[next.plan] = picture.above <= e;
+    // where a few pixels are far off, or what is thin is lost, a shorter step may mend it once
+    blurs[next.plan] += picture.above <= e;
     before = std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
   }
   if (best) best->pictures = lattice.pictures();

@@ -340,7 +340,8 @@ class Pages(unittest.TestCase):
     """catena.serve, as a notebook uses it, without one."""
 
     def get(self, address):
-        with urllib.request.urlopen(address, timeout=20) as answer:
+        # browsers know localhost on machines without a list of names, too
+        with urllib.request.urlopen(address.replace("localhost", "127.0.0.1"), timeout=20) as answer:
             return answer.headers, answer.read().decode()
 
     def has_ended(self, address):
