@@ -55,7 +55,7 @@ inline constexpr double kLeastTold = 0.4;
 /// Several settings of one picture, measured the same way against one converged picture.
 struct MeasuredSettings {
   std::vector<double> rmse;   ///< one a setting, as it was found: not the estimate above it
-  double reference_rmse = 0;  ///< what halving the converged picture's step still changed
+  double reference_rmse = 0;  ///< what is left of the error of the converged picture itself
 };
 /// `go_on` is asked before each setting with
 /// the error of the one before (of the first with 0); false: the rest is left out.
