@@ -17,8 +17,8 @@ namespace {
 bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
 /// That rays go through.
-bool has_surfaces(const FramePacket& packet) {
-  return std::ranges::any_of(packet.isosurfaces, [](const IsosurfaceItem& item) { return is_translucent(item); });
+std::size_t surfaces_of(const FramePacket& packet) {
+  return std::size_t(std::ranges::count_if(packet.isosurfaces, [](const IsosurfaceItem& item) { return is_translucent(item); }));
 }
 
 bool is_projected(const VolumeItem& item) { return item.projection != Projection::composite; }
@@ -269,11 +269,11 @@ bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
   if (packet.volumes.size() != 1) return false;
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
-         !has_layers(packet) && !has_surfaces(packet) && item.grid->interpolation() == field::Interpolation::linear &&
+         !has_layers(packet) && surfaces_of(packet) == 0 && item.grid->interpolation() == field::Interpolation::linear &&
          PackedLook::can_pack(device, *item.grid) && PackedLook::can_show(item);
 }
 
-bool draws_rays(const FramePacket& packet) { return !packet.volumes.empty() || has_layers(packet) || has_surfaces(packet); }
+bool draws_rays(const FramePacket& packet) { return !packet.volumes.empty() || has_layers(packet) || surfaces_of(packet) > 0; }
 
 bool same_rays(const FramePacket& a, const FramePacket& b) {
   const auto same = []<class Item>(const std::vector<Item>& some, const std::vector<Item>& others) {
@@ -288,11 +288,6 @@ bool same_rays(const FramePacket& a, const FramePacket& b) {
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
 
-Outcome check_rays(const FramePacket& packet) {
-  return check(
-      packet, 0, packet.volumes.size(),
-      static_cast<std::size_t>(std::ranges::count_if(packet.isosurfaces, [](const IsosurfaceItem& item) { return is_translucent(item); })),
-      0);
-}
+Outcome check_rays(const FramePacket& packet) { return check(packet, 0, packet.volumes.size(), surfaces_of(packet), 0); }
 
 }  // namespace catena::render

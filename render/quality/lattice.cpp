@@ -94,8 +94,7 @@ Outcome Lattice::find_truth(double goal) {
     converged.step_voxels /= 2;
     CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing_));
     const double change = compare(truth_, finer).rmse;
-    // changes that become r times smaller are all that is left, in r - 1 parts of the last one; at least as steps of the first order have
-    // it
+    // what is left where changes become r times smaller each time; r is that of steps of the first order at least
     truth_error_ = change / (std::clamp(before / std::max(change, 1e-30), 2.0, 4.0) - 1);
     before = change;
     truth_ = std::move(finer);

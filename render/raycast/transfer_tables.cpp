@@ -45,21 +45,25 @@ std::vector<double> points_between(const TransferTable& table, double lo, double
 
 bool is_sampled(const TransferTable& table, double lo, double hi, std::size_t samples) {
   const double width = (hi - lo) / double(samples - 1);
-  for (const double value : points_between(table, lo, hi)) {
-    const double before = std::floor((value - lo) / width) - 1;
-    for (int c = 0; c < 4; ++c) {
-      const double own = table_value(table, value, c);
-      double least = HUGE_VAL, greatest = -HUGE_VAL;
-      for (int k = 0; k < 4; ++k) {
-        const double sample = table_value(table, std::clamp(lo + (before + k) * width, lo, hi), c);
-        least = std::min(least, sample);
-        greatest = std::max(greatest, sample);
-      }
-      const double near = kMissed * std::max(own, greatest);
-      if (own < least - near || own > greatest + near) return false;
+  const auto takes = [&](const auto& points, std::size_t i, int channel, std::size_t component) {
+    const double own = points[i][component], before = std::floor((points[i][0] - lo) / width) - 1;
+    double least = HUGE_VAL, greatest = -HUGE_VAL;
+    for (int k = 0; k < 4; ++k) {
+      const double sample = table_value(table, std::clamp(lo + (before + k) * width, lo, hi), channel);
+      least = std::min(least, sample);
+      greatest = std::max(greatest, sample);
     }
-  }
-  return true;
+    const double beside = std::max(points[i > 0 ? i - 1 : i][component], points[std::min(i + 1, points.size() - 1)][component]);
+    const double near = kMissed * std::max(own, beside);
+    return own >= least - near && own <= greatest + near;
+  };
+  const auto takes_all = [&](const auto& points, int first_channel) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t c = 1; c < points[i].size() && points[i][0] > lo && points[i][0] < hi; ++c)
+        if (!takes(points, i, first_channel + int(c) - 1, c)) return false;
+    return true;
+  };
+  return takes_all(table.colors, 0) && takes_all(table.extinctions, 3);
 }
 
 TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range) {

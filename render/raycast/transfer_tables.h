@@ -37,7 +37,7 @@ struct TransferLut {
 };
 
 /// Whether even samples, so many from lo to hi and read with linear interpolation, take every peak and every gap of the function: near each
-/// of its points, a sample's width either side, they come within a tenth of it.
+/// of its points, a sample's width either side, they come within a tenth of what it is there and at the points beside.
 bool is_sampled(const TransferTable& table, double lo, double hi, std::size_t samples);
 
 /// `range`: of the grid's values.

@@ -79,6 +79,8 @@ TEST(TransferLut, SamplesTakeStepsHoweverSharpAndNoNarrowPeaksAndGaps) {
   EXPECT_TRUE(sampled({{0, 0}, {0.5, 0}, {0.5 + 1e-9, 1}, {1, 1}}));
   EXPECT_TRUE(sampled({{0, 0}, {0.5, 0}, {0.5, 1}, {1, 0.2}}));
   EXPECT_TRUE(sampled({{0, 0}, {0.48, 0}, {0.5, 1}, {0.52, 0}, {1, 0}}));
+  EXPECT_TRUE(sampled({{0, 1}, {0.50001, 0}, {1, 1}})) << "a gap as wide as all";
+  EXPECT_TRUE(sampled({{0, 0}, {0.49, 1}, {0.50001, 0}, {0.51, 1}, {1, 0}})) << "a gap of 80 samples";
   EXPECT_TRUE(sampled({{0.3, 2}}));
   EXPECT_TRUE(sampled({}));
   EXPECT_FALSE(sampled({{0, 0}, {0.5, 0}, {0.50001, 1}, {0.50002, 0}, {1, 0}})) << "a peak";
