@@ -35,10 +35,10 @@ struct CurveSet {
   HeldMemory held{};                  ///< counts the memory as data
 
   /// How many lines there are.
-  std::size_t lines() const { return first.size() - 1; }
+  std::size_t lines() const { return first.empty() ? 0 : first.size() - 1; }
   /// Memory that it holds.
   std::size_t bytes() const;
-  const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
+  const PointValues* find(std::string_view name) const;  ///< the values of that name; nullptr: there are none
   /// The line that a point is on.
   std::uint32_t line_of(std::uint32_t point) const;
 };

@@ -29,7 +29,7 @@ struct PointSet {
   void keep(const std::vector<Vec3>& places);
   /// Memory that it holds.
   std::size_t bytes() const { return points.size() * (sizeof(glm::vec3) + values.size() * sizeof(float)); }
-  const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
+  const PointValues* find(std::string_view name) const;  ///< the values of that name; nullptr: there are none
 };
 /// Sets of points are shared and never change.
 using PointSetPtr = std::shared_ptr<const PointSet>;

@@ -1,4 +1,4 @@
-/// What the tick tells the frame of a widget (engine/widget/widget.h says what the members mean for each kind). World units.
+/// What the tick tells the frame: of the force, the links and the widgets. Plain, trivially copyable.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -39,9 +39,8 @@ struct WidgetReport {
 /// How the links make one force: the proxy chain, or one of the baselines that the paper compares it with (haptics/chain/baseline.h).
 enum class CouplingMethod { chain, pipe, balance, closest, linear };
 
-/// What the tick tells the frame: plain, trivially copyable, grouped by who writes it.
-inline constexpr int kMaxSceneLinks = 8;
-inline constexpr int kMaxLinks = kMaxSceneLinks + 4;  ///< and those that the widgets share
+inline constexpr int kMaxSceneLinks = 8;              ///< Links of a scene.
+inline constexpr int kMaxLinks = kMaxSceneLinks + 4;  ///< And those that the widgets share.
 
 /// One word a link and tick; the words of `NAME_status` in the tick CSV.
 enum class Status : std::uint8_t { ok, free, released, budget, critical, boundary, no_surface, bad_probe };
@@ -80,7 +79,7 @@ struct LinkReport {
   }
 };
 
-/// All that one tick says. Written by the haptic thread, crosses to the frame by a TripleBuffer.
+/// All that one tick says, grouped by who writes it. Written by the haptic thread, crosses to the frame by a TripleBuffer.
 struct HapticState {
   // written by the tick
   std::uint64_t tick = 0;                           ///< counts from 1

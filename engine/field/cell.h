@@ -33,7 +33,7 @@ struct ScalarCell {
 /// Eight corners of a vector grid.
 struct VectorCell {
   Index3 base;                   ///< index of corner 0
-  bool valid = false;            ///< as of ScalarCell
+  bool valid = false;            ///< as in ScalarCell
   std::array<Vec3, 8> corner{};  ///< vectors, corner[i + 2 j + 4 k], world axes
 
   /// The trilinear vector at f.

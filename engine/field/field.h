@@ -35,12 +35,12 @@ struct ScalarSample {
 /// What one fetch of a vector field gives.
 struct VectorSample {
   Vec3 value{0.0};      ///< components in world axes
-  bool inside = false;  ///< as of ScalarSample
+  bool inside = false;  ///< as in ScalarSample
 };
 
 /// A vector field read as a line field, where v and -v mean the same (line_axis.h).
 struct LineSample : LineAxis {
-  bool inside = false;  ///< as of ScalarSample
+  bool inside = false;  ///< as in ScalarSample
 };
 
 /// How a grid says what lies between its voxel centres.
@@ -62,11 +62,11 @@ class Field {
   std::uint64_t version() const { return version_; }  ///< unique in the process; the key of mirrors
   /// World from index; the identity of a formula.
   const Mapping& mapping() const { return mapping_; }
-  const Box& index_box() const { return index_box_; }                                ///< of voxel centres; analytic: the box -2..2
+  const Box& index_box() const { return index_box_; }                                ///< of voxel centres; no grid: of the domain, world
   Vec3 corner(int i) const { return world_corner(mapping_, index_box_, i); }         ///< of the domain, world: i + 2 j + 4 k by index
   Bounds world_bounds() const { return field::world_bounds(mapping_, index_box_); }  ///< of all eight
-  double length() const { return length_; }              ///< L: the longest edge of the domain box, world units; analytic: 4
-  double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units
+  double length() const { return length_; }              ///< L: the longest edge of the domain box, world units; 4 for make_analytic()
+  double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units; no grid: 1
   /// Whether it is sampled on a grid (then grid() gives it) rather than a formula or a function.
   virtual bool is_grid() const noexcept { return false; }
   /// Memory that it holds, bytes; 0 of a formula.
@@ -75,7 +75,7 @@ class Field {
   virtual Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept;
 
  protected:
-  /// For who derives from it: called once, by the constructor.
+  /// For classes that derive from it: their constructor calls it once.
   void set_domain(std::string name, const Mapping& mapping, const Box& index_box);
 
  private:

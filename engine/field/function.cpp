@@ -2,8 +2,12 @@
 
 #include <utility>
 
+#include "engine/base/result.h"
+
 namespace catena::field {
 namespace {
+
+bool is_box(const Bounds& domain) { return !domain.empty() && is_finite(domain.lo) && is_finite(domain.hi); }
 
 Reason why_not(const Bounds& domain, const Vec3& world) {
   if (!is_finite(world)) return Reason::not_finite;
@@ -59,10 +63,12 @@ class VectorByFunction final : public VectorField {
 }  // namespace
 
 ScalarFieldPtr make_function(std::string name, const Bounds& domain, ScalarFunction function, double least, double most) {
+  CATENA_ASSERT(is_box(domain));
   return std::make_shared<ScalarByFunction>(std::move(name), domain, std::move(function), least, most);
 }
 
 VectorFieldPtr make_function(std::string name, const Bounds& domain, VectorFunction function) {
+  CATENA_ASSERT(is_box(domain));
   return std::make_shared<VectorByFunction>(std::move(name), domain, std::move(function));
 }
 

@@ -18,7 +18,8 @@ using ScalarFunction = std::function<double(const Vec3& world, Vec3& gradient)>;
 /// Gives the vector in world axes; not finite: there is none at this place.
 using VectorFunction = std::function<Vec3(const Vec3& world)>;
 
-/// `least` and `most`: the values that it attains over all space. An isosurface beyond them is refused.
+/// `domain` holds a point and is finite; anything else is a bug, which asserts. `least` and `most`: the values that it attains over all
+/// space. An isosurface beyond them is refused.
 ScalarFieldPtr make_function(std::string name, const Bounds& domain, ScalarFunction function,
                              double least = -std::numeric_limits<double>::infinity(),
                              double most = std::numeric_limits<double>::infinity());

@@ -39,16 +39,16 @@ class ScalarGrid final : public ScalarField {
   const ScalarGrid* grid() const noexcept override { return this; }
   /// True.
   bool is_grid() const noexcept override { return true; }
-  /// As it was made.
+  /// How it is read between its voxel centres. It never changes: cubic(), linear() and interpolated() give another grid.
   Interpolation interpolation() const noexcept override { return interpolation_; }
   /// Of voxels, mask and ghosts.
   std::size_t bytes() const noexcept override;
-  /// The same voxels read in another way: they are shared, the version is its own. Cubic: an error (one phrase) where there is no memory
-  /// for its ghosts; the others never fail.
+  /// A grid that shares the voxels, is read by cubic cells and has a version of its own. An error (one phrase) where there is no memory for
+  /// its ghosts.
   Result<std::shared_ptr<const ScalarGrid>> cubic() const;
   /// Reads trilinearly.
   std::shared_ptr<const ScalarGrid> linear() const { return interpolated(Interpolation::linear); }
-  /// The same voxels, read trilinearly or by the nearest one.
+  /// The same voxels, read trilinearly or by the nearest one; Interpolation::cubic is a bug here.
   std::shared_ptr<const ScalarGrid> interpolated(Interpolation linear_or_nearest) const;
   /// Of a cubic grid, the samples of a legal cell that is valid; null elsewhere. Good until the cursor's next use.
   const CubicSamples<1>* samples(const Index3& base, Cursor& cursor) const noexcept;
@@ -97,24 +97,24 @@ class VectorGrid final : public VectorField {
   bool is_grid() const noexcept override { return true; }
   /// Linear, or cubic where it was made so.
   Interpolation interpolation() const noexcept { return ghosts_ ? Interpolation::cubic : Interpolation::linear; }
-  /// As of scalar grids. A line field's axes are mixed linearly either way (line_axis.h).
+  /// As in ScalarGrid. A line field's axes are mixed linearly either way (line_axis.h).
   Result<std::shared_ptr<const VectorGrid>> cubic() const;
   /// Reads trilinearly.
   std::shared_ptr<const VectorGrid> linear() const;
-  /// As of scalar grids.
+  /// As in ScalarGrid.
   const CubicSamples<3>* samples(const Index3& base, Cursor& cursor) const noexcept;
   /// Of voxels, mask and ghosts.
   std::size_t bytes() const noexcept override;
 
-  /// As of scalar grids.
+  /// As in ScalarGrid.
   VectorCell cell(const Index3& base, Cursor& cursor) const noexcept;
-  /// As of scalar grids.
+  /// As in ScalarGrid.
   Index3 base_of(const Vec3& index) const noexcept;
   /// Of all its voxels, taken when it was made.
   const GridStats& stats() const { return stats_; }
-  /// As of scalar grids.
+  /// As in ScalarGrid.
   bool has_mask() const;
-  /// As of scalar grids, three floats a voxel.
+  /// As in ScalarGrid, three floats a voxel.
   void read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const;
   const Storage& storage() const { return *storage_; }  ///< opaque outside this room
 

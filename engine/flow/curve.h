@@ -1,4 +1,5 @@
-/// The cubic between two knots, and the root finder that its feet are found with. Any thread; no allocation, lock or throw.
+/// Streamlines as arc-length curves: the cubic between two knots, the traced curve, and the place of it that is nearest to a point.
+/// Any thread; what runs in a tick is noexcept, and allocates and locks nothing.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -40,7 +41,7 @@ double illinois_root(double a, double fa, double b, double fb, F&& f) noexcept {
   return best;
 }
 
-/// The cubic Hermite of one step: place and rate at both ends. c(theta), theta in [0, 1]; exact at theta = 0.
+/// The cubic Hermite of one step: place and rate at both ends. c(theta), theta in [0, 1]; exact at theta = 0. No allocation, lock or throw.
 struct Hermite {
   Vec3 c0, c1, c2, c3;  ///< coefficients of 1, theta, theta^2, theta^3; world units
 
@@ -58,9 +59,7 @@ struct Hermite {
   }
 };
 
-/// A streamline as an arc-length curve: knots (s, position, unit tangent) with cubic Hermite dense output between them.
-/// `trace` writes these knots, the tubes draw this object and the selected streamline link moves on it: what is seen is felt.
-/// Immutable once traced. Any thread; reading allocates nothing.
+/// A knot of a Curve.
 struct Knot {
   double s = 0;  ///< arc length from the seed, signed, world units
   Vec3 p{0.0};   ///< the place, world units
@@ -90,7 +89,9 @@ struct LineEnd {
   bool operator==(End how) const { return end == how; }
 };
 
-/// A streamline, traced once. Arc lengths and places in world units. Immutable; any thread.
+/// A streamline as an arc-length curve, traced once: knots (s, position, unit tangent) with cubic Hermite dense output between them.
+/// `trace` writes these knots, the tubes draw this object and the selected streamline link moves on it: what is seen is felt.
+/// Arc lengths and places in world units. Immutable; any thread; reading allocates nothing.
 class Curve {
  public:
   /// From knots in order, at least two; `closed`: the last one repeats the first one's place.

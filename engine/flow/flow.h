@@ -11,10 +11,13 @@
 
 namespace catena::flow {
 
-/// linear (Eqs. 1-2 as printed), euler (Eq. 1), rk2 (midpoint), rk3 (Kutta), rk4, rkf34 (Fehlberg 3(4), FSAL, the paper's), dp54
-/// (Dormand-Prince). Their coefficients: runge_kutta.h.
+/// How a step along the field is integrated.
+///   linear  the paper's Eqs. 1-2 as printed: in each tick one step p + v dt, dt = v . (x - p) / |v|^2, with x the probe, p the proxy and v
+///           the field at p. It is never corrected, so that p drifts off curved lines
+///   euler   order 1, Eq. 1;  rk2  order 2, midpoint;  rk3  order 3, Kutta;  rk4  order 4
+///   rkf34   order 3, Fehlberg 3(4), the paper's own;  dp54  order 5, Dormand and Prince. Coefficients: engine/flow/runge_kutta.h
 enum class Method { linear, euler, rk2, rk3, rk4, rkf34, dp54 };
-/// The method of that name, "rkf34" for instance.
+/// The method of that name, "rkf34" for instance; none for any other word.
 std::optional<Method> method_from_word(std::string_view word);
 /// The name of a method, as scenes have it.
 const char* method_word(Method method);
@@ -29,8 +32,9 @@ struct Flow {
 /// Why a rate could not be given: outside the domain (or not finite), too slow, no single axis, or turned too far from the step's start.
 enum class Stop { none, outside, still, incoherent, turned };
 
-/// Measured on a synthetic heart with noise of 10 degrees and seams of 90: noise alone leaves 0.8 to 1. At 0.2 to 0.3 the axis is off
-/// the fibre by 11 degrees in the median and by 29 at the 90th percentile, below that by 16 to 22 and by 40, so that it says nothing.
+/// The least coherence (line_axis.h) at which a line field has a direction. Measured on a synthetic heart with noise of 10 degrees and
+/// seams of 90: noise alone leaves 0.8 to 1. At 0.2 to 0.3 the axis is off the fibre by 11 degrees in the median and by 29 at the 90th
+/// percentile, below that by 16 to 22 and by 40, so that it says nothing.
 inline constexpr double kCoherent = 0.2;
 
 /// The unit direction of a velocity, or why there is none: not finite counts as outside, zero or <= min_speed as still.

@@ -76,7 +76,7 @@ class TriangleMesh {
   const Face& face(std::uint32_t f) const { return faces_[f]; }
   /// Corner k (0, 1, 2) of a face, in its own frame.
   const Vec3& corner(std::uint32_t f, int k) const { return own_vertices_[triangles_[f][static_cast<std::size_t>(k)]]; }
-  /// The hierarchy over its faces.
+  /// The hierarchy of boxes over its faces, in the mesh's own frame; it numbers faces as triangles() does.
   const Bvh& bvh() const { return bvh_; }
   /// The next face around edge k (from corner k to k + 1), in a ring; f itself at an open edge.
   std::uint32_t across(std::uint32_t f, int k) const { return across_[f][static_cast<std::size_t>(k)]; }

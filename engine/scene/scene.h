@@ -50,7 +50,7 @@ struct Scene {
   struct CurveKey {
     std::uint64_t field_version;  ///< Field::version()
     bool line;                    ///< followed as a line field
-    double min_speed, length;     ///< as of flow::Flow; world units, 0: 10 L
+    double min_speed, length;     ///< as in flow::Flow; world units, 0: 10 L
     std::array<double, 3> seed;   ///< world
     auto operator<=>(const CurveKey&) const = default;
   };

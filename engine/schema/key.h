@@ -47,7 +47,7 @@ struct Limits {
   std::string words() const;
 };
 
-/// One key. Plain data, made by the functions below and changed by its own, which give a changed copy.
+/// One key. Plain data: the functions below make it, and its own functions return a changed copy.
 struct Key {
   std::string name;           ///< as the file has it
   Form form = Form::number;   ///< the shape of its value

@@ -1,5 +1,5 @@
-/// Says when a trial starts and ends, and measures it: fed with the device's position, tick by tick, by simulate and run alike. It is the
-/// drawn cursor, never a proxy: of that, a guided path would be exact by construction.
+/// Says when a trial starts and ends, and measures it. In `study simulate` and `study run` alike it is given the place of the hand in every
+/// tick, which is the drawn cursor. It is never given a proxy: one that a link holds on the path would have no error by construction.
 ///   start    the clock starts where the cursor leaves the ball of radius `start` about the start, in which it must have been
 ///   end      circle or plane: where it is crossed, found between two ticks on the straight line; end: within `reach` of it; or the limit
 ///   error    advection: from the path's end to the place of the crossing (at the limit: to the cursor); tracing: the mean over all ticks
@@ -17,7 +17,7 @@ namespace catena::study {
 struct Measured {
   bool by_target = false;   ///< else by the limit
   double time_s = 0;        ///< of the clock
-  double error_mm = 0;      ///< as of the task's kind, see above
+  double error_mm = 0;      ///< as the task's kind has it, see above
   double travelled_mm = 0;  ///< by the cursor
   double peak_force_n = 0;  ///< while the clock ran
   Vec3 end_mm{0.0};         ///< the crossing, or the last cursor; world axes
@@ -40,7 +40,8 @@ class Judge {
   double running_s() const { return phase_ == Phase::running ? last_s_ - start_s_ : 0; }
   /// Once it has ended.
   const Measured& measured() const { return measured_; }
-  /// Of a trial that is given up though its clock has not come to the limit: as at the limit, with the cursor as it is.
+  /// Of a trial that is given up before its clock has come to the limit: the limit's time, and the error of the cursor as it is now, from
+  /// the path's end (advection) or from the path (tracing).
   Measured given_up() const noexcept;
   /// From the cursor to the path, world units.
   double off_path(const Vec3& cursor) const noexcept;

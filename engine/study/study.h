@@ -37,11 +37,11 @@ struct StimulusRules {
   double region = 0.5;       ///< share of the field's box, about its middle, in which starts lie
 };
 
-/// Times and errors of a task.
+/// How long a trial of a task may take, and which trials the analysis leaves out.
 struct Limits {
-  double told_s = 10;                               ///< what the subject is told; not enforced
-  double ends_s = 30;                               ///< here a trial ends
-  double reject_error_mm = 30, reject_time_s = 10;  ///< analyse: trials beyond are left out
+  double told_s = 10;                               ///< what the subject is told that a trial may take; not enforced
+  double ends_s = 30;                               ///< a trial ends so long after its clock has started (judge.h)
+  double reject_error_mm = 30, reject_time_s = 10;  ///< analyse leaves out trials with a greater error or time
 };
 
 /// One task of the experiment.
@@ -51,7 +51,7 @@ struct Task {
   int dimensions = 2;                 ///< 2: all is measured in the picture plane; 3
   Target target = Target::end;        ///< what ends a trial
   StimulusRules rules;                ///< how its places are found
-  Limits limits;                      ///< times and errors
+  Limits limits;                      ///< how long a trial may take
   double start_mm = 4;                ///< the clock starts when the cursor leaves this ball (2D: circle) about the start
   double reach_mm = 4;                ///< tracing: so near, the end is reached
   double indicator_mm = 20;           ///< advection: length of the local indicator, as the operator model sees it

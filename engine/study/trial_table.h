@@ -19,19 +19,19 @@ namespace catena::study {
 
 /// One finished trial, as a row of the table.
 struct Row {
-  int subject = 1, index = 0, block = 0;                                ///< as of Trial
+  int subject = 1, index = 0, block = 0;                                ///< as in Trial
   std::string task, kind;                                               ///< "advection", "tracing"
   int dimensions = 2;                                                   ///< 2 or 3
   std::string condition;                                                ///< its name
-  int stimulus = 0, seed = 0;                                           ///< as of Trial
+  int stimulus = 0, seed = 0;                                           ///< as in Trial
   bool training = false;                                                ///< not analysed
   bool by_target = true;                                                ///< ended by its target; else by the limit
-  double time_s = 0, error_mm = 0, travelled_mm = 0, peak_force_n = 0;  ///< as of Measured; of the cursor, not of a proxy
+  double time_s = 0, error_mm = 0, travelled_mm = 0, peak_force_n = 0;  ///< as in Measured; of the cursor, not of a proxy
   Vec3 end_mm{0.0};                                                     ///< where it ended, world axes, millimetres of the hand
   bool operator==(const Row&) const = default;
 };
 
-/// The row of a trial that has been measured.
+/// The row of a measured trial of this study's design (session_of()), which gives the names of its task and condition. Any thread.
 Row row_of(const Study& study, const Trial& trial, const Measured& measured);
 
 /// "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
@@ -54,7 +54,8 @@ std::string recording_file(const std::string& folder, const Trial& trial);
 
 /// The numbers of the subjects that have a file in a data folder, rising; other files are told in `notes`.
 Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes = nullptr);
-/// The finished trials of a subject, as they are on the disk; none where it has no file; a torn end is told in `notes`. Nothing is written.
+/// The finished trials of a subject as they are on the disk, in the order of the session; none where the subject has no file. A torn last
+/// line is left out and told in `notes`, where that is not null. Nothing is written. An error names file and line.
 Result<std::vector<Row>> rows_in(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
 
 /// Who does the trials of a data folder: people and models never share one.

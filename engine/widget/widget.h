@@ -1,5 +1,7 @@
-/// Small geometry of the widgets. Lengths in world units. + - * / and square roots only, so that bits repeat. Any thread; allocates
-/// nothing.
+/// What the widgets are and remember (paper, section 6.2 and Figure 6): things in the scene that the hand takes hold of. Plain components;
+/// the machine that steps them (machine.h) is a function over these, run by the tick, so that the mouse, a haptic device and a replayed
+/// path all drive the same one. Lengths in world units. The functions use + - * / and square roots only, so that bits repeat; any thread,
+/// no allocation.
 #pragma once
 #include <array>
 #include <memory>
@@ -33,16 +35,6 @@ inline Quat turn_about(const Vec3& e, const Vec3& a, const Vec3& b) noexcept {
   return {c / length, e.x * (s / length), e.y * (s / length), e.z * (s / length)};
 }
 
-/// What the widgets are (paper, section 6.2 and Figure 6): things in the scene that the hand takes hold of. Plain components; the machine
-/// that steps them is a function over these, run by the tick, so that the mouse, a haptic device and a replayed path drive one and the
-/// same. World units.
-///   cutting_plane  a sphere and three orthogonal planes, in the chain by mode; points[0] is the centre, the orientation's z the normal
-///   seed           one handle, points[0]
-///   rake           a line of seeds from points[0] to points[1]
-///   isolevel       a handle on an isosurface, points[0]; its level is the field's value there
-///   box            from points[0], the least corner, to points[1]
-///   ruler          from points[0] to points[1]
-
 using exchange::kMaxWidgets;
 /// What a widget does.
 using Mode = exchange::WidgetMode;
@@ -51,7 +43,13 @@ using Pose = exchange::WidgetPose;
 /// What a tick says of a widget.
 using Report = exchange::WidgetReport;
 
-/// What a widget is.
+/// What a widget is. `points` and the orientation are those of its Pose.
+///   cutting_plane  a sphere and three orthogonal planes, in the chain by mode; points[0] is the centre, the orientation's z the normal
+///   seed           one handle, points[0]
+///   rake           a line of seeds from points[0] to points[1]
+///   isolevel       a handle on an isosurface, points[0]; its level is the field's value there
+///   box            from points[0], the least corner, to points[1]
+///   ruler          from points[0] to points[1]
 enum class Kind : std::uint8_t { cutting_plane, seed, rake, isolevel, box, ruler };
 
 /// The turns of a cutting plane that the hand may make: about an axis where it takes the sphere near one of the three great circles and
@@ -124,7 +122,7 @@ struct State {
   bool gripped = false;        ///< by the button
   bool rebase = false;         ///< a turn: the next arm is where it goes on from
   Mode mode = Mode::away;      ///< what it does
-  std::int8_t handle = -1;     ///< as of Report
+  std::int8_t handle = -1;     ///< as in Report
   std::int8_t axis = -1;       ///< of a turn; -1: free
   std::uint8_t held = 0;       ///< planes that are active
   std::uint32_t revision = 0;  ///< of the pose that the hand began with

@@ -32,7 +32,7 @@ struct AlignmentState {
 struct AlignmentStep {
   bool first_tick = false;  ///< there was no tick before
   double dt_s = 0;          ///< since the last tick, seconds
-  double ramp_step = 1;     ///< as of step_fade()
+  double ramp_step = 1;     ///< as in step_fade()
 };
 
 /// After the chain of this tick. Returns the torque that the links ask for; fills every link's orientation and torque in `out`.

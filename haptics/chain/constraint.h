@@ -1,4 +1,4 @@
-/// What a device, not a scene, allows. All off by default: `replay` without a device has none. Metres of hand, newtons.
+/// The interface of every constraint, what a link remembers from tick to tick, and what a device allows.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace catena::haptics {
 
-/// Limits of the device; infinity: none.
+/// What a device, not a scene, allows; infinity: no limit. All off by default: `replay` without a device has none. Metres of hand, newtons.
 struct Limits {
   static constexpr double kNone = std::numeric_limits<double>::infinity();  ///< no limit
 
@@ -33,10 +33,6 @@ struct Limits {
   double delay_s = 0;                                  ///< from the pose to the force: the observer counts the force that acted
   double max_added_damping_ns_per_m = kNone;           ///< most that the passivity controller may add; more shakes a light device
 };
-
-/// The interface of every constraint (paper, section 3). A Constraint object is the immutable specification, made off the
-/// tick; what changes from tick to tick is in LinkState (plain data), and caches that never change a result in LinkScratch.
-/// `start` and `advance` run on the haptic thread: no allocation, lock, throw, or unbounded loop; same bits for same input.
 
 using exchange::kMaxLinks;
 using exchange::Status;
@@ -142,7 +138,10 @@ struct Primitive {
   Vec3 axis{0.0};           ///< unit: the line's direction, the plane's normal
 };
 
-/// A rule that keeps a proxy. Derive from it, describe it by a ConstraintType (haptics/constraints/registry.h), and scenes can name it.
+/// The interface of every constraint (paper, section 3): a rule that keeps a proxy. Derive from it, describe it by a ConstraintType
+/// (haptics/constraints/registry.h), and scenes can name it. A Constraint object is the immutable specification, made off the tick; what
+/// changes from tick to tick is in LinkState (plain data), and caches that never change a result are in LinkScratch.
+/// `start` and `advance` run on the haptic thread: no allocation, lock, throw, or unbounded loop; same bits for same input.
 class Constraint {
  public:
   virtual ~Constraint() = default;

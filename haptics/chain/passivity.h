@@ -15,9 +15,10 @@
 ///   granted   to the hand by the program, not to be taken back by the controller: the jumps of V at switches, snaps and
 ///             programs, weights and ramps that rise, what fades (switching.h) as far as the springs that were taken away had it, cues, and
 ///             links that are sources of energy by what they are (Constraint::is_source: gradient_force), which have no storage
-///   controller  a damping: where B and its last step together are below 0, as much as takes that within the next tick if the hand
-///             goes on as it does, at most max_added_damping; then it goes within 30 ms, so that it does not buzz. Against a hand that
-///             reverses every tick with more force than a hand has no damping helps: no bound is claimed there
+///   controller  a damping of the hand. Where B and its last step together are below 0 it is large enough to take that energy out within
+///             the next tick if the hand keeps its velocity, but at most max_added_damping. Then it shrinks by the factor 1 - dt / 30 ms
+///             in each tick, so that it is not felt as a buzz. Against something that reverses in every tick with more force than a
+///             person's hand has, no damping helps: no bound is claimed there
 /// A device's delay: the observer's work is that of the forces that acted since the last tick; a link's own ledger is that of its
 /// last share. Against a probe that is not there for a while (a lost device) nothing is booked; links are then taken hold of anew. Torques
 /// are not counted. Always booked; controlled only where limits.passivity is set. Haptic thread: no allocation, lock or throw.

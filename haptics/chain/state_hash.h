@@ -40,8 +40,7 @@ bool is_one_of(const Enum& word, Enum last) noexcept {
 }
 
 /// `state_hash`: FNV-1a-64 over the bytes of proxies, force, active, status of every tick (no timings), and where there are widgets of
-/// their points, orientation, value, mode, handle and held. Equal hashes mean
-/// equal behaviour to the bit.
+/// their points, orientation, value, mode, handle and held. Equal hashes mean equal behaviour to the bit.
 class StateHash {
  public:
   /// Adds one tick.

@@ -42,7 +42,7 @@ struct Mechanics {
   /// Viscous, of the device alone. 0: not known. Then no spring is safe, limits_for() allows a stiffness of 0, and nothing is felt until
   /// it is stated, or a stiffness_cap.
   double damping_ns_per_m = 0;
-  double friction_n = 0;                      ///< Coulomb; beside an encoder step the same holds for it
+  double friction_n = 0;                      ///< Coulomb; where there is an encoder step, 0 means not known here too
   double encoder_step_m = 0;                  ///< 0: continuous
   double delay_s = 0;                         ///< from the pose to the force, beside the tick's own period
   double rotational_damping_nms_per_rad = 0;  ///< viscous, about any axis; where the device has torque

@@ -49,7 +49,7 @@ struct DeviceSettings {
   std::function<void(const std::string&)> tell;  ///< not a key: hears what an opening that takes long is doing, a line each; may be empty
 };
 
-/// The keys of the object.
+/// The scene's "device" object described: its keys with their units, ranges and defaults.
 schema::Component device_component();
 /// Reads and checks the object; every error names the place. Paths resolve relative to `scene_path`.
 Result<DeviceSettings> read_device_settings(const json::Node& node, const std::string& scene_path);

@@ -4,8 +4,8 @@
 ///   A tick's time is its deadline, or the moment at which it began if that is more than T/4 later: the velocity's dt is honest
 ///   after a miss too. It is late if its time is more than 2 T after the last tick's.
 ///   The next deadline is after the end of the tick and at least T/2 after its begin, so that dt never gets small.
-///   A tick has stalled before it if more than `stall` has passed between the end of the last one and its begin: the thread did not
-///   run, and nor perhaps did the whole program (SIGSTOP), its watchdog among it.
+///   There was a stall before a tick if more than `stall` passed from the end of the last tick to its beginning: the thread did not run.
+///   Perhaps the whole program did not, with its watchdog (SIGSTOP).
 /// Haptic thread.
 #pragma once
 #include <algorithm>

@@ -1,5 +1,4 @@
-/// Who wants every tick: the recording (haptics/servo/log/). Called on the haptic thread after each tick, before it is
-/// published: no allocation, lock or throw, and it returns at once. `begin` comes before the first `put` of a sink that is taken up.
+/// The servo, which is the haptic thread around the tick, and the sink that gets every tick.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -16,7 +15,8 @@
 
 namespace catena::haptics {
 
-/// A sink of ticks.
+/// What gets every tick, such as a recording (haptics/servo/log/). Called on the haptic thread after each tick, before it is published: no
+/// allocation, lock or throw, and it returns at once. `begin` comes before the first `put` of a sink that is taken up.
 class TickSink {
  public:
   virtual ~TickSink() = default;
@@ -26,16 +26,6 @@ class TickSink {
   virtual void put(const ProbeSample& input, const exchange::HapticState& output) noexcept = 0;
 };
 
-/// The haptic thread: a thin shell around the tick. Wakes at absolute deadlines (pace.h), reads the device, takes the newest program
-/// (never waits), runs the tick, writes the force, publishes one HapticState.
-/// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop; a third one, the watchdog,
-/// looks at a time stamp. They share two triple buffers, flags, counters and two pointers, all lock-free. The haptic thread never frees:
-/// programs are kept by the frame side until a published epoch shows that a newer one has run.
-///
-/// The tick's condition: WATCHDOG no tick had ended for watchdog_s (the device has been stopped; the tick after resumes it), whether
-/// the watchdog has seen it or, after the whole program stood still (SIGSTOP), the haptic thread itself. A tick that stood still within
-/// itself stops the device before it writes.
-/// NO_DEVICE the device is not ready; LATE its time is more than two periods after the last tick's; else NORMAL.
 class Watchdog;
 
 /// How a servo runs.
@@ -51,7 +41,19 @@ struct ServoOptions {
   RealtimeOptions realtime = {};  ///< of a paced servo
 };
 
-/// A servo: one device, one thread, one program at a time.
+/// A servo: one device, one haptic thread, one program at a time. It is a thin shell around the tick: it wakes at absolute deadlines
+/// (pace.h), reads the device, takes the newest program (never waits), runs the tick, writes the force and publishes one HapticState.
+/// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop; a third one, the watchdog,
+/// looks at a time stamp. They share two triple buffers, flags, counters and two pointers, all lock-free. The haptic thread never frees:
+/// programs are kept by the frame side until a published epoch shows that a newer one has run.
+///
+/// The condition of a tick:
+///   WATCHDOG   no tick had ended for watchdog_s. The watchdog saw it or, where the whole program stood still (SIGSTOP), the haptic thread
+///              itself. The device has been stopped; the next tick resumes it. A tick that itself takes longer than watchdog_s stops the
+///              device before it writes, and the next one has this condition.
+///   NO_DEVICE  the device is not ready
+///   LATE       the tick's time is more than two periods after the last tick's
+///   NORMAL     else
 class Servo {
  public:
   /// The device must outlive the servo. Nothing runs before start().
@@ -79,9 +81,10 @@ class Servo {
   // any thread
   /// From the start until max_ticks, stop(), or an end of its own.
   bool running() const { return running_.load(std::memory_order_acquire); }
-  /// The person's switch: with it off, or the device's own, the hand gets no force.
+  /// The person's switch, from the next tick on. While it or the device's own switch is off the hand gets no force; the force goes to zero
+  /// over Limits::ramp_out_s (guard.h).
   void set_forces(bool on) { forces_.store(on, std::memory_order_relaxed); }
-  /// The person's switch.
+  /// Whether the person's switch is on; it does not tell whether the device's own is.
   bool forces() const { return forces_.load(std::memory_order_relaxed); }
   ServoReport report() const;  ///< after start(), also while it runs
 

@@ -48,7 +48,8 @@ Mat4 view_from_world(const Camera& camera);
 Mat4 clip_from_view(const Camera& camera);
 /// Vulkan's clip axes from the world.
 Mat4 clip_from_world(const Camera& camera);
-/// Its inverse, from the closed form (not by elimination).
+/// The world from Vulkan's clip axes: the inverse of clip_from_world(), from the closed form (not by elimination). A place (x, y, depth) in
+/// clip axes lies in the world at the product with (x, y, depth, 1), divided by its last component.
 Mat4 world_from_clip(const Camera& camera);
 
 /// Through a place in the picture, in pixels. From the eye (perspective) or the plane of the eye (orthographic).

@@ -95,19 +95,19 @@ class SharedList {
     static const std::vector<T> none;
     return items_ ? *items_ : none;
   }
-  /// As of a vector.
+  /// As std::vector has it.
   auto begin() const { return list().begin(); }
-  /// As of a vector.
+  /// As std::vector has it.
   auto end() const { return list().end(); }
-  /// As of a vector.
+  /// As std::vector has it.
   std::size_t size() const { return list().size(); }
-  /// As of a vector.
+  /// As std::vector has it.
   bool empty() const { return list().empty(); }
-  /// As of a vector; `i` below size().
+  /// As std::vector has it; `i` below size().
   const T& operator[](std::size_t i) const { return list()[i]; }
-  /// As of a vector that is not empty.
+  /// As std::vector has it; the list is not empty.
   const T& front() const { return list().front(); }
-  /// As of a vector that is not empty.
+  /// As std::vector has it; the list is not empty.
   const T& back() const { return list().back(); }
   /// Appends; a list that is shared is copied first.
   void push_back(const T& item) { own().push_back(item); }

@@ -52,7 +52,7 @@ struct RenderStats {
 /// Whether anything of the packet is drawn by rays, so that it matters how finely they are marched.
 bool draws_rays(const FramePacket& packet);
 
-/// What of the packet rays cannot draw together: the sentence that draw() would fail with, for who asks before there is a device.
+/// An error where the packet holds what rays cannot draw together: the sentence that draw() would fail with. It needs no device.
 Outcome check_rays(const FramePacket& packet);
 
 /// Whether rays meet the same in both, and what they have met can be kept: what is opaque may differ (RenderSettings::keep).
@@ -77,8 +77,8 @@ struct MarchedTiles {
 
 /// What one pixel shows, of the first eye: the id of the nearest opaque object (0: none) and its view depth (infinite: none).
 struct Picked {
-  std::uint32_t id = 0;  ///< as of IdPicture
-  double depth = 0;      ///< as of DepthPicture
+  std::uint32_t id = 0;  ///< as in IdPicture
+  double depth = 0;      ///< as in DepthPicture
 };
 
 /// The last picture where it lies on the device: straight alpha, display values. Good until the next call of the renderer.
@@ -94,7 +94,9 @@ struct DrawnImage {
   std::uint64_t value = 0;                           ///< that the semaphore has to reach
 };
 
-/// Draws frame packets on one device.
+/// Draws frame packets on one device. A draw() that succeeds makes the last picture; it is there until the next draw(), probe(),
+/// replace_shader() or restore_shaders(), or until reading something back fails. To read, show or paint it while there is none is a bug
+/// and aborts.
 class Renderer {
  public:
   /// Makes the device and what all pictures need. An error where there is no device, or it lacks something: one sentence.
@@ -107,9 +109,9 @@ class Renderer {
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
   /// The last picture on the device, for a program that draws with the same device (vk::VulkanMaker).
   DrawnImage image() const;
-  /// The last picture, straight alpha.
+  /// The last picture, 8 bits a channel, straight alpha. A bug where it was drawn with `float_picture`.
   Result<Picture> read_back();
-  /// Its image, on the device, for who copies it on: in the layout TRANSFER_SRC, until the next draw.
+  /// The image of the last picture, to copy it on the device: in the layout TRANSFER_SRC_OPTIMAL, there as long as the picture is.
   vk::Image& picture();
   /// The opaque depth of the last picture in world units along the axis, less `reference`; NO_DEPTH (shaders/shared/frame.h) where nothing
   /// is. Nothing at all where there is nothing opaque.
@@ -131,11 +133,11 @@ class Renderer {
   std::optional<RayDepth> ray_depth();
   /// A texel that is bound where there is no image.
   vk::Image& no_image();
-  /// The same in floats, for settings with `float_picture`.
+  /// The last picture in floats. A bug where it was drawn without `float_picture`.
   Result<FloatPicture> read_back_float();
   /// Pixels that a picture can have, each way, on this device.
   std::uint32_t longest_side() const;
-  /// Whether `RenderSettings::fast` holds for what the packet draws. What it turns out to have no memory for, it holds no longer for.
+  /// Whether the packet holds what RenderSettings::fast can draw. False also for a volume that the last try had no memory to draw so.
   bool draws_fast(const FramePacket& packet) const;
   /// The rays of every `spacing`-th pixel each way alone, as a small picture: what `settings` make of them before anything is interpolated.
   /// What quality.h measures errors with. Red, green and blue over the packet's background (its alpha does not count), alpha that of
@@ -160,9 +162,11 @@ class Renderer {
   Result<bool> present(vk::Swapchain& swapchain, const UiItems* ui = nullptr);
   /// The same without a window: what present() with this `ui` would show in a window of this size.
   Outcome paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui);
-  /// That image, for who copies it on: in the layout TRANSFER_SRC, until it is painted again or something fails. Null before.
+  /// The image that was painted, to copy it on the device: in the layout TRANSFER_SRC_OPTIMAL, until it is painted again or a call fails.
+  /// Null where there is none.
   vk::Image* window_image();
-  /// The window's image that paint_window() or present() with a user interface painted last, opaque.
+  /// What paint_window(), or present() with a user interface, painted last: the window's pixels, alpha 255. A bug where window_image() is
+  /// null.
   Result<Picture> read_back_window();
 
   /// Pictures from now on are drawn with `words` in the place of the embedded shader "compose.frag" (or another of pass.h).

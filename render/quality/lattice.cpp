@@ -18,6 +18,8 @@ constexpr double kFlickerGoal = 0.5;                            // the flicker, 
 constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
+constexpr std::uint32_t kSparser = 3;                           // the lattice that shows at which step rays have converged,
+constexpr double kSparseSamples = 500;                          // if it has so many covered pixels
 // steps, voxels: of what is seen, of the fast raycast's rays that what is thin is measured by, and those of the converged picture, which
 // are halved until what is left of its error is less than a share of the goal, or what rounding to 8 bits makes of nothing
 constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3;
@@ -87,12 +89,14 @@ Outcome Lattice::begin(double goal, bool moves) {
 
 /// Opaque things of steep transfer functions want far shorter steps than haze does.
 Outcome Lattice::find_truth(double goal) {
+  const bool sparser = covered_ / std::pow(kSparser * spacing_, 2) >= kSparseSamples;
+  const std::uint32_t spacing = sparser ? kSparser * spacing_ : spacing_;
   RenderSettings converged = converged_rung(goal < kRoughGoal ? kTruthStep : kRoughTruthStep);
-  CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
+  CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing));
   double before = 0;
   do {
     converged.step_voxels /= 2;
-    CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing_));
+    CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing));
     const double change = compare(truth_, finer).rmse;
     // what is left where changes become r times smaller each time; r is that of steps of the first order at least
     truth_error_ = change / (std::clamp(before / std::max(change, 1e-30), 2.0, 4.0) - 1);
@@ -100,6 +104,8 @@ Outcome Lattice::find_truth(double goal) {
     truth_ = std::move(finer);
   } while (truth_error_ > std::max(kLeastTold, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
   truth_step_ = converged.step_voxels;
+  if (!sparser) return Done{};
+  CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
   return Done{};
 }
 

@@ -31,6 +31,7 @@ RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half,
   RenderSettings s;
   s.fast = FastSettings{step_voxels, spacing, half, full};
   s.fast->smooth_gradients = smooth;
+  if (spacing > 1) s.fast->termination = spacing / 256.0;
   return s;
 }
 

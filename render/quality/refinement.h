@@ -19,7 +19,7 @@ struct LadderKind {
 };
 
 /// Every `spacing`-th pixel at that step by the fast raycast, refined where interpolation errs by more than `half` and `full` (1/255; < 0:
-/// nowhere); `smooth`: shaded by central differences.
+/// nowhere); `smooth`: shaded by central differences. The farther the rays are apart, the sooner they end.
 RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false);
 /// By the exact raycast.
 RenderSettings exact_rung(double step_voxels);

@@ -8,6 +8,7 @@ RenderSettings draft_settings() {
   s.jitter = true;
   s.fast = FastSettings{2, 4, -1, -1};
   s.fast->smooth_gradients = true;
+  s.fast->termination = 1.0 / 64;
   return s;
 }
 

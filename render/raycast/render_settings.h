@@ -18,7 +18,7 @@ struct FastSettings {
   double refine_half_255 = 0;      ///< spacing 4: marches every 2nd pixel where interpolation is expected to err by more; < 0: nowhere
   double refine_full_255 = -1;     ///< the same for every pixel
   bool smooth_gradients = false;   ///< shading by central differences, as the exact raycast has it, for 4 bytes a voxel more
-  double termination = 1.0 / 512;  ///< a ray ends when less than this gets through
+  double termination = 1.0 / 512;  ///< a ray ends when less than this gets through; the rest is told from what it has met
   bool skip = true;                ///< leap over bricks that the transfer function leaves empty
   /// On the device, for packed words and gradients; the budget's rest, where that is less. What needs more is drawn exactly.
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();

@@ -34,9 +34,9 @@ struct SurfaceFactory {
   explicit operator bool() const { return static_cast<bool>(create); }
 };
 
-/// Who makes the Vulkan objects in our place, and whose queue it is: a headset's runtime, or a program that draws with a device of its own
-/// beside ours. What a function is not given for, Catena does itself. What they are told of extensions, layers and features is needed:
-/// they may add to it. Frame thread.
+/// Makes Vulkan objects in Catena's place, and says which queue is used: for a headset's runtime, or for a program that draws with a device
+/// of its own. Catena makes what no function is set for. The extensions, layers and features that a function is asked for are needed; it
+/// may add others. What it returns instead of VK_SUCCESS becomes the error. Frame thread.
 struct VulkanMaker {
   /// As vkCreateInstance.
   std::function<VkResult(const VkInstanceCreateInfo& wanted, VkInstance* made)> instance;

@@ -154,7 +154,8 @@ vec4 march_packed(vec2 q, float end) {
     across2 = dot(normal, normal) - along * along;
   }
   // what is opaque is seen within the first steps: they are short, and grow
-  const float longest = m.h, voxels = length(m.ray.direction);
+  vec3 last = vec3(0.0);
+  const float begin = s.t, longest = m.h, voxels = length(m.ray.direction);
   if (SHADED != 0u) m.h *= FIRST_STEP;
   while (s.t < m.end && through > frame.termination) {
     float curved;
@@ -199,11 +200,20 @@ vec4 march_packed(vec2 q, float end) {
       along = along_end;
       across2 = across2_end;
       sum += (through - half_way) * (first.yzw * l0.x + l0.y) + (half_way - after) * (second.yzw * l1.x + l1.y);
+      last = second.yzw * l1.x + l1.y;
     } else {
       sum += (through - half_way) * first.yzw + (half_way - after) * second.yzw;
+      last = second.yzw;
     }
     through = after;
     s = e;
   }
-  return HALF_DEPTH != 0u ? vec4(NO_DEPTH, 0.0, 0.0, 0.0) : vec4(sum, 1.0 - through);
+  if (HALF_DEPTH != 0u) return vec4(NO_DEPTH, 0.0, 0.0, 0.0);
+  // what a ray that has ended early leaves out is taken for as dense as what it has met, and of a colour between the mean and the last
+  if (s.t < m.end) {
+    const float after = through * exp2(log2(max(through, 1e-30)) * (m.end - s.t) / (s.t - begin));
+    sum += 0.5 * (through - after) * (last + sum / (1.0 - through));
+    through = after;
+  }
+  return vec4(sum, 1.0 - through);
 }

@@ -113,7 +113,8 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
   };
   CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, go_on));
   curve.reference = "converged rays through a lattice of pixels";
-  curve.reference_error = errors.reference_rmse;
+  // nor is what rounding to 8 bits hides
+  curve.reference_error = std::max(errors.reference_rmse, render::kLeastTold);
   std::vector<tradeoff::Repeat> repeats;
   for (std::size_t i = 0; i < errors.rmse.size(); ++i) {
     tradeoff::Point point;

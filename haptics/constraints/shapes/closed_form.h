@@ -31,6 +31,8 @@ struct Straight {
   }
 };
 
+inline constexpr double kSceneLength = 4;  ///< L where no field says otherwise: the box -2..2
+
 /// A constraint whose closest point is a formula: the rules of surface_side.h around a shape that is plain data. No field fetch.
 ///   `ClosedForm<S>`  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
 ///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start); static
@@ -38,9 +40,6 @@ struct Straight {
 ///   `Feature<S>`     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
 /// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
 /// Haptic thread: no allocation, lock, or throw.
-inline constexpr double kSceneLength = 4;  ///< L where no field says otherwise: the box -2..2
-
-/// A Constraint made of a shape S.
 template <class S>
 class ClosedForm final : public Constraint {
  public:

@@ -26,22 +26,22 @@ struct LogProgram {
   /// A link of the program.
   struct Link {
     std::string name;          ///< its name
-    std::uint64_t recipe = 0;  ///< as of Link::recipe
+    std::uint64_t recipe = 0;  ///< as in Link::recipe
   };
-  std::uint64_t epoch = 0;                ///< as of Program
+  std::uint64_t epoch = 0;                ///< as in Program
   std::uint64_t first_tick = 0;           ///< the tick that it runs from
   bool known = true;                      ///< false: the log does not say what ran here; the links are named link_1 ..
   std::optional<std::string> scene_text;  ///< none: the header's
   Limits limits;                          ///< of the device
   Coupling coupling;                      ///< how the links made a force
-  double metres_per_unit = 1;             ///< as of Program
-  Vec3 workspace_origin{0.0};             ///< as of Program
-  Mat3 workspace_rotation{1.0};           ///< as of Program
+  double metres_per_unit = 1;             ///< as in Program
+  Vec3 workspace_origin{0.0};             ///< as in Program
+  Mat3 workspace_rotation{1.0};           ///< as in Program
   std::vector<Link> links;                ///< in the order of the chain
   /// A widget of the program.
   struct Widget {
     std::string name;            ///< its name
-    std::uint32_t revision = 0;  ///< as of widget::Spec
+    std::uint32_t revision = 0;  ///< as in widget::Spec
     widget::Pose pose;           ///< when the program was made
     double value = 0;            ///< isolevel
   };
@@ -65,7 +65,7 @@ struct LogGap {
 
 /// What the writer wrote at the end.
 struct LogEnd {
-  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;  ///< of ticks: in the log, lost, the last, hash of the former
+  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;  ///< ticks in the log, ticks lost, number of the last, hash (StateHash)
 };
 
 /// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`. Its bytes are the file's: they are to be

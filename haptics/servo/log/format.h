@@ -89,7 +89,7 @@ class ByteReader {
 ///            (fields replaced on the command line), string device, string version of Catena, f64 nominal rate in Hz,
 ///            i64 start in ns since 1970 (UTC), and where somebody said what it was recorded for: string about
 /// 2 PROGRAM  runs from `first tick` on; of two with the same first tick the second took over before that tick.  u64 epoch, u64 first tick,
-/// u8 known (0: nobody told the writer what follows; the rest is empty),
+///            u8 known (0: nobody told the writer what follows; the rest is empty),
 ///            u8 text (0: the header's scene text, 1: its own), string scene text,
 ///            limits: f64 stiffness N/m, rotational stiffness N m/rad, force N, torque N m, slew N/s, ramp in s, ramp out s,
 ///                    damping N s/m, delay s, most added damping N s/m; i32 late ticks; u8 passivity   (haptics/chain/constraint.h;

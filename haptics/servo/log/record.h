@@ -44,8 +44,8 @@ inline Shape shape_of(const exchange::HapticState& state) { return {state.link_c
 
 /// One tick of a log.
 struct LogTick {
-  ProbeSample input;             ///< what it got
-  exchange::HapticState output;  ///< what came out
+  ProbeSample input;             ///< what the tick was given: time, pose, buttons, condition
+  exchange::HapticState output;  ///< what the tick answered, and what the servo measured
 };
 
 /// The number of words written; `words` has room for kMaxWords.

@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "engine/scene/prepare.h"
+#include "render/extract/extract.h"
 #include "render/quality/quality.h"
 #include "tests/engine/app/plans.h"
 
@@ -96,6 +98,35 @@ TEST(PlanOfTheEye, OffersFormatsOfVoxelsWhereRaysReadThem) {
     if (s.fast) {
       EXPECT_EQ(s.texels, TexelFormat::automatic);
     }
+}
+
+TEST(PlanOfTheEye, TimeBuysNothingThatRoundingHides) {
+  auto scene = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
+    "volumes": [{"field": "ball", "color": "viridis", "range": [0.2, 2], "opacity": [[0.2, 0.3], [2, 0]]}]})",
+                                  "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_TRUE(scene::prepare(*scene));
+  const auto packet = render::make_frame(*scene, 64, 48);
+  ASSERT_TRUE(packet) << packet.error().message;
+  auto renderer = render::Renderer::create({});
+  ASSERT_TRUE(renderer) << renderer.error().message;
+  const auto kind = kind_of(**renderer, *packet);
+  ASSERT_TRUE(kind);
+  auto measured = measure_eye(**renderer, *packet, *kind, [](double) {});
+  ASSERT_TRUE(measured) << measured.error().message;
+  // of settings of which no picture shows which one is better, the cheapest, whatever time there is
+  measured->curve.floor = app::tradeoff::kNotMeasured;
+  int cheapest = -1, hidden = 0;
+  for (std::size_t i = 0; i < measured->curve.points.size(); ++i) {
+    auto& point = measured->curve.points[i];
+    point.time = {1.0 + double(i), 1.0 + double(i), 1.0 + double(i), 5};
+    if (point.error > render::kLeastTold) continue;
+    if (cheapest < 0) cheapest = int(i);
+    ++hidden;
+  }
+  ASSERT_GT(hidden, 1);
+  EXPECT_EQ(EyePlan(*measured, wants("time=1000")).now(), cheapest);
+  EXPECT_EQ(EyePlan(*measured, wants("error=0.01")).now(), cheapest);
 }
 
 }  // namespace plan_test

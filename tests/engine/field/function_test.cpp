@@ -14,6 +14,12 @@ using namespace catena::field;
 
 const Bounds kBox{Vec3(-1.0, -2.0, -3.0), Vec3(1.0, 2.0, 3.0)};
 
+TEST(FunctionDeathTest, ABoxThatHoldsNothingOrHasNoEndIsABug) {
+  const VectorFunction f = [](const Vec3& p) { return p; };
+  EXPECT_DEATH(make_function("f", Bounds{}, f), "is_box");
+  EXPECT_DEATH(make_function("f", Bounds{Vec3(0.0), Vec3(std::numeric_limits<double>::infinity())}, f), "is_box");
+}
+
 TEST(Function, IsSampledExactlyWithinItsBox) {
   const ScalarFieldPtr f = make_function(
       "f", kBox,

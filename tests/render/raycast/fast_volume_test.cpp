@@ -75,6 +75,33 @@ TEST_F(FastVolume, HomogeneousBoxWhateverTheStep) {
   }
 }
 
+/// A ray that ends early says of the rest what it has met: it shows no less of an even body, and no edge where rays begin to end early.
+TEST_F(FastVolume, WhatAnEndedRayLeavesOutIsTold) {
+  const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({52, -41, 37}, {9.5, 16, 5.5}, 40);
+  for (const bool shade : {false, true})
+    for (const double sigma : {0.2, 0.4, 1.0}) {
+      packet.volumes = {volume_item(grid, {{0, sigma}, {1, sigma}}, {0.2f, 0.5f, 0.9f})};
+      packet.volumes[0].shade = shade;
+      RenderSettings settings = fast(0.5, 1);
+      settings.fast->termination = 1.0 / 16;
+      const Picture picture = draw(packet, settings);
+      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord(*grid, ray.origin, ray.direction); }), 1) << sigma;
+      const Picture whole = draw(packet, fast(0.5, 1));
+      int most = 0;
+      for (std::size_t i = 0; i < whole.rgba.size(); ++i) most = std::max(most, std::abs(int(whole.rgba[i]) - int(picture.rgba[i])));
+      EXPECT_LE(most, 2) << sigma;
+    }
+  // and of what is not even it says no more than a part of what is left
+  packet = packet_of({120, -90, 80}, {23.5, 19.5, 21.5}, 30);
+  packet.volumes = {coloured(waves())};
+  packet.volumes[0].transfer.extinctions = {{0, 0}, {0.3, 0}, {1, 0.6}};
+  RenderSettings settings = fast(1, 1);
+  const Picture whole = draw(packet, settings);
+  settings.fast->termination = 1.0 / 32;
+  EXPECT_LT(measure_error(draw(packet, settings), whole).rmse, 255.0 / 32 / 4);
+}
+
 TEST_F(FastVolume, BoxFromCoarseRaysRefinedAtItsEdges) {
   const auto grid = make_grid({40, 33, 32}, [](const Vec3&) { return 0.5; });
   FramePacket packet = packet_of({92, -71, 67}, {19.5, 16, 15.5}, 35);

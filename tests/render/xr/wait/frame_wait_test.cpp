@@ -1,0 +1,80 @@
+/// The headset's wait has a thread of its own: answers come in order and once each, patience ends, a late answer is not lost, and the end
+/// waits for a call that is under way.
+#include "render/xr/frame_wait.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+namespace catena::test {
+namespace frame_wait_test {
+
+using namespace std::chrono_literals;
+using render::xr::FrameWait;
+
+std::atomic<int> calls = 0, under_way = 0;
+std::atomic<bool> held = false;
+
+/// A runtime that answers with the number of the call, when it is let go.
+XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
+  ++under_way;
+  while (held) std::this_thread::sleep_for(1ms);
+  state->predictedDisplayTime = ++calls;
+  --under_way;
+  return XR_SUCCESS;
+}
+
+class FrameWaits : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    calls = 0;
+    held = false;
+  }
+};
+
+TEST_F(FrameWaits, AnswersComeInOrderAndOnceEach) {
+  FrameWait wait(wait_frame, XR_NULL_HANDLE);
+  for (int k = 1; k <= 200; ++k) {
+    const auto answer = wait.take(std::nullopt);
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->result, XR_SUCCESS);
+    EXPECT_EQ(answer->state.predictedDisplayTime, k);
+  }
+}
+
+TEST_F(FrameWaits, ALateAnswerIsNotLostAndNotAskedForTwice) {
+  FrameWait wait(wait_frame, XR_NULL_HANDLE);
+  held = true;
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(wait.take(1ms));
+  held = false;
+  const auto answer = wait.take(std::nullopt);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->state.predictedDisplayTime, 1);
+  EXPECT_EQ(calls, 1);
+}
+
+TEST_F(FrameWaits, TheEndWaitsForACallUnderWay) {
+  held = true;
+  std::thread release;
+  {
+    FrameWait wait(wait_frame, XR_NULL_HANDLE);
+    EXPECT_FALSE(wait.take(0ms));
+    while (under_way == 0) std::this_thread::yield();
+    release = std::thread([] {
+      std::this_thread::sleep_for(20ms);
+      held = false;
+    });
+  }
+  EXPECT_EQ(under_way, 0);
+  EXPECT_EQ(calls, 1);
+  release.join();
+}
+
+TEST_F(FrameWaits, NobodyAskedNobodyIsCalled) {
+  { FrameWait wait(wait_frame, XR_NULL_HANDLE); }
+  EXPECT_EQ(calls, 0);
+}
+
+}  // namespace frame_wait_test
+}  // namespace catena::test
