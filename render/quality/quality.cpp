@@ -34,13 +34,13 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const DrawTimer& timer) {
   if (!packet.eyes.empty()) {
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
-    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share, goal.pictures}, timer);
+    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, timer);
   }
   if (!draws_rays(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
   Lattice lattice(renderer, packet);
   const bool has_error = goal.kind == QualityGoal::Kind::error;
   CATENA_CHECK(lattice.begin(has_error ? goal.value : 0, has_error));
-  return has_error ? settings_for_error(lattice, goal.value, goal.pictures) : settings_for_time(lattice, goal.value, timer);
+  return has_error ? settings_for_error(lattice, goal.value) : settings_for_time(lattice, goal.value, timer);
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {

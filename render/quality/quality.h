@@ -21,9 +21,6 @@ namespace catena::render {
 struct QualityGoal {
   enum class Kind { error, time } kind = Kind::error;
   double value = 0;  ///< 1/255, or ms
-  /// error: so many pictures will be drawn with what is chosen. What cheaper settings are expected to save on all of them bounds what
-  /// trying them may cost, by counts and not by clocks: a single picture takes the first good one.
-  int pictures = 1000;
 };
 
 struct QualityChoice {

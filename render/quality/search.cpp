@@ -13,9 +13,9 @@ namespace {
 constexpr double kStepShare = 0.93;   // of the error that ray steps may take
 constexpr double kFinestStep = 0.05;  // voxels
 constexpr int kMaxPictures = 16;
-constexpr std::size_t kGoodSteps = 5;                    // of those that are good enough, the longest
-constexpr double kTrialShare = 0.25;                     // of what the pictures take, that trying cheaper settings may take
-constexpr double kEndShare = 2, kSoonestEnd = 1.0 / 32;  // of the error, that rays may leave out: most of that is told from what they met
+constexpr std::size_t kGoodSteps = 5;  // of those that are good enough, the longest
+// of the error, that a ray may leave out at its end: most of that is told from what it has met
+constexpr double kEndShare = 2, kSoonestEnd = 1.0 / 32;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; then the rays of every 2nd pixel and of every pixel that are
 /// refined, by all such that show something: guesses, until one was drawn.
@@ -26,7 +26,7 @@ struct Plan {
 };
 constexpr Plan kPlan[] = {{4, -1, -1, {0, 0}},  {4, 1.3, -1, {0.4, 0}}, {2, 0, -1, {0, 0}},     {4, 1, 3, {0.45, 0.1}},
                           {2, 0, 2, {0, 0.15}}, {2, 0, 1.5, {0, 0.22}}, {2, 0, 0.8, {0, 0.37}}, {1, 0, -1, {0, 0}}};
-constexpr int kPlans = int(std::size(kPlan)), kEveryRay = kPlans - 1;
+constexpr int kPlans = int(std::size(kPlan));
 /// Of every pixel's rays by those of the first lattice, and of a refined share: a ray costs the more the farther its neighbours are. As a
 /// CPU driver has it: it only decides between settings that are good enough.
 double cost_of(const Plan& plan, const std::array<double, 2>& refined, double step) {
@@ -54,10 +54,6 @@ void learn(int plan, const std::array<double, 2>& found, std::array<double, 2> (
   }
 }
 
-QualityChoice choice(const Lattice& lattice, const RenderSettings& settings, double error, bool reached) {
-  return {settings, error, 0, reached, lattice.pictures()};
-}
-
 /// Rays of a step with a plan, which end when they may leave out no more than the error says.
 RenderSettings planned(const Plan& plan, double step, double e, bool smooth) {
   RenderSettings s = fast_rung(step, plan.spacing, plan.refine_half * e, plan.refine_full * e, smooth);
@@ -65,54 +61,51 @@ RenderSettings planned(const Plan& plan, double step, double e, bool smooth) {
   return s;
 }
 
-struct Candidates {
-  std::vector<Candidate> all;              ///< without every ray's
-  std::optional<QualityChoice> every_ray;  ///< of the longest step that keeps what is thin
-  double every_ray_cost = std::numeric_limits<double>::infinity();
-};
 /// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation.
-Result<Candidates> fast_candidates(Lattice& lattice, double e, int pictures) {
-  Candidates found;
+Result<std::vector<Candidate>> fast_candidates(Lattice& lattice, double e) {
+  std::vector<Candidate> all;
   const bool smooth = lattice.packet().volumes.front().shade;
-  std::size_t good_steps = 0;
   for (const double step : kFastSteps) {
-    if (good_steps == kGoodSteps || (found.every_ray && kTrialShare * pictures < 1)) break;
-    const RenderSettings every_ray = planned(kPlan[kEveryRay], step, e, smooth);
+    if (all.size() == kGoodSteps * std::size(kPlan)) break;
+    const RenderSettings every_ray = planned(kPlan[kPlans - 1], step, e, smooth);
     CATENA_TRY(const LatticeError error, lattice.of_rays(every_ray));
     if (error.rmse > kStepShare * e || error.p999 > kFarthest * e) continue;
     CATENA_TRY(const bool steady, lattice.rays_are_steady(every_ray));
     if (!steady) continue;
-    ++good_steps;
     for (int plan = 0; plan < kPlans; ++plan) {
-      if (plan != kEveryRay) found.all.push_back({planned(kPlan[plan], step, e, smooth), error.rmse, error.above, plan});
+      all.push_back({planned(kPlan[plan], step, e, smooth), error.rmse, error.above, plan});
     }
-    if (found.every_ray || error.above > e) continue;
-    CATENA_CHECK(lattice.of_picture(every_ray));
-    CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(every_ray, e));
-    if (!keeps) continue;
-    found.every_ray = choice(lattice, every_ray, error.above, true);
-    found.every_ray_cost = cost_of(kPlan[kEveryRay], kPlan[kEveryRay].refined, step);
   }
-  return found;
+  return all;
+}
+
+QualityChoice choice(const Lattice& lattice, const RenderSettings& settings, double error, bool reached) {
+  return {settings, error, 0, reached, lattice.pictures()};
 }
 
 /// The cheapest of the fast settings that are good enough; nothing where none is.
-Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e, int pictures) {
-  CATENA_TRY(Candidates found, fast_candidates(lattice, e, pictures));
-  std::vector<Candidate>& candidates = found.all;
+Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e) {
+  CATENA_TRY(std::vector<Candidate> candidates, fast_candidates(lattice, e));
   std::array<double, 2> refined[kPlans];
   for (int plan = 0; plan < kPlans; ++plan) refined[plan] = kPlan[plan].refined;
   std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
   int blurs[kPlans] = {};                // what is thin, at so many steps
-  std::optional<QualityChoice>& best = found.every_ray;
-  double best_cost = found.every_ray_cost;
+  std::optional<QualityChoice> best;
+  double best_cost = std::numeric_limits<double>::infinity();
   const auto cost = [&](const Candidate& c) { return cost_of(kPlan[c.plan], refined[c.plan], c.settings.fast->step_voxels); };
-  double spent = 0;
+  // every ray, of the longest step that keeps what is thin
+  for (const Candidate& c : candidates) {
+    if (c.settings.fast->spacing > 1 || best || c.above > e) continue;
+    CATENA_CHECK(lattice.of_picture(c.settings));
+    CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(c.settings, e));
+    if (keeps) best = choice(lattice, c.settings, c.above, true), best_cost = cost(c);
+  }
+  std::erase_if(candidates, [](const Candidate& c) { return c.settings.fast->spacing == 1; });
   for (int drawn = 0; !candidates.empty() && drawn < kMaxPictures;) {
     const auto cheapest = std::ranges::min_element(candidates, {}, cost);
     const Candidate next = *cheapest;
     candidates.erase(cheapest);
-    if (cost(next) >= best_cost || (best && spent + cost(next) > kTrialShare * pictures * best_cost)) break;
+    if (cost(next) >= best_cost) break;
     // what interpolation cost at another step says whether this one is worth a picture
     std::optional<double>& before = failed[next.plan];
     if (blurs[next.plan] > 1 || (before && std::hypot(next.rays, *before) > e)) continue;
@@ -120,7 +113,6 @@ Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e, 
     ++drawn;
     CATENA_TRY(const auto rays, lattice.refined());
     learn(next.plan, rays, refined);
-    spent += cost(next);
     if (picture.good_for(e)) {
       if (cost(next) >= best_cost) continue;
       CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(next.settings, e));
@@ -144,9 +136,9 @@ Result<double> quicker_of_two(const Lattice& lattice, const RenderSettings& sett
 
 }  // namespace
 
-Result<QualityChoice> settings_for_error(Lattice& lattice, double e, int pictures) {
+Result<QualityChoice> settings_for_error(Lattice& lattice, double e) {
   if (lattice.fast()) {
-    CATENA_TRY(const std::optional<QualityChoice> chosen, fast_for_error(lattice, e, pictures));
+    CATENA_TRY(const std::optional<QualityChoice> chosen, fast_for_error(lattice, e));
     if (chosen) return *chosen;
   }
   for (const double step : kExactSteps) {

@@ -6,7 +6,7 @@
 
 namespace catena::render {
 
-Result<QualityChoice> settings_for_error(Lattice& lattice, double e, int pictures);
+Result<QualityChoice> settings_for_error(Lattice& lattice, double e);
 Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const DrawTimer& timer);
 
 }  // namespace catena::render

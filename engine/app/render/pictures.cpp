@@ -232,8 +232,6 @@ Outcome render_pictures(const RenderOptions& given) {
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
   if (quality == "balanced" && render::draws_rays(packet)) wanted.goal = {render::QualityGoal::Kind::error, kBalancedError};
-  // what is measured is the setting that a long sequence would have
-  if (wanted.goal && o.stats.empty()) wanted.goal->pictures = motion.frames();
   FrameStats stats;
   stats.load_ms = ms_since(load_start);
   stats.cpu_bytes = field_bytes(scene);

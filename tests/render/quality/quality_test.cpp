@@ -79,22 +79,6 @@ TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
   EXPECT_GT(last_step, 1);
 }
 
-/// Who draws one picture does not wait for many that find the cheapest way of drawing a thousand.
-TEST_F(Quality, ASinglePictureIsChosenWithFewOthers) {
-  for (const bool shade : {false, true}) {
-    const FramePacket packet = scene(shade);
-    const auto one = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2, 1});
-    const auto many = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
-    ASSERT_TRUE(one && many);
-    EXPECT_TRUE(one->reached && many->reached);
-    EXPECT_LE(one->pictures, 2);  // itself, and what shows that nothing thin is lost
-    EXPECT_GT(many->pictures, one->pictures);
-    EXPECT_LE(one->estimated_rmse, 2);
-    EXPECT_LT(true_rmse(packet, one->settings), 2.1) << describe(one->settings);
-    EXPECT_LE(relative_cost(many->settings, shade), relative_cost(one->settings, shade));
-  }
-}
-
 /// The device's own clock sees the work of a picture and nothing else: not the processor's, not other programs'.
 TEST_F(Quality, TheDevicesClockTimesItsWorkAlone) {
   if (!renderer_->device().stopwatch().measures()) GTEST_SKIP() << "this device has no timestamps";
