@@ -121,7 +121,7 @@ void NearestOnCurve::look(std::size_t k, const Vec3& x, NearestPlace& best) cons
   offer(theta >= 1 ? b.s : a.s + theta * h, theta >= 1 ? b.p : piece.at(theta));
 }
 
-NearestPlace NearestOnCurve::at(const Vec3& x) const noexcept {
+NearestPlace NearestOnCurve::search(const Vec3& x, int most) const noexcept {
   NearestPlace best;
   best.distance2 = std::numeric_limits<double>::infinity();
   best.s = curve_->knots().front().s;
@@ -132,7 +132,7 @@ NearestPlace NearestOnCurve::at(const Vec3& x) const noexcept {
   std::array<Waiting, kDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, 0};
-  while (count > 0 && best.work < kNearestWork) {
+  while (count > 0 && best.work < most) {
     const Waiting next = waiting[--count];
     if (!(next.distance2 < best.distance2)) continue;
     const Node& node = nodes_[next.node];

@@ -3,6 +3,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -156,9 +157,13 @@ class NearestOnCurve {
   /// Builds the tree; off the tick.
   explicit NearestOnCurve(CurvePtr curve);
   /// |x| <= 1e150, or squares overflow.
-  NearestPlace at(const Vec3& x) const noexcept;
+  NearestPlace at(const Vec3& x) const noexcept { return search(x, kNearestWork); }
+  /// The same with as much work as it takes, for measurements: of a long line that winds through itself, the bounded search may give a
+  /// place that is not the nearest. Off the tick.
+  NearestPlace exact(const Vec3& x) const noexcept { return search(x, std::numeric_limits<int>::max()); }
 
  private:
+  NearestPlace search(const Vec3& x, int most) const noexcept;
   struct Node {
     Vec3 lo{0.0}, hi{0.0};
     std::uint32_t first = 0, count = 0;  ///< intervals

@@ -208,7 +208,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
     programs.push_back(tradeoff::without_widgets(program));
     double far2 = 0;
     tradeoff::run_ticks(programs.back(), path,
-                        [&](const exchange::HapticState& out) { far2 = std::max(far2, nearest.at(out.links[0].proxy).distance2); });
+                        [&](const exchange::HapticState& out) { far2 = std::max(far2, nearest.exact(out.links[0].proxy).distance2); });
     tradeoff::Point p;
     p.setting = words;
     p.error = std::sqrt(far2);

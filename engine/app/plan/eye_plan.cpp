@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/measure/eye/eye.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr double kErrorsS = 60, kTimesS = 6;  // at most for errors, and about for times
 constexpr std::uint32_t kFloorWidth = 256;    // of the picture that the data's own error is looked up in
 constexpr int kRounds = 5;                    // of times
+constexpr double kOwn = std::numbers::sqrt2;  // measured by the reference's own error: the least that tells
 constexpr double kHolds = 1.15;               // of a time: a setting that is there stays within it
 constexpr double kAsQuick = 1.1;              // of a time: what takes fewer bytes may take so much longer
 
@@ -97,7 +99,7 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
   curve.floor_from = floor.from;
   at(0.1);
   const std::vector<render::RenderSettings> all = eye_settings(kind, packet);
-  const double enough = std::max(render::kLeastTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
+  const double enough = std::max(kOwn * render::kLeastTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
   const std::int64_t start = now_ns();
   const auto share = [&](std::size_t done) { return double(done) / double(all.size()); };
   std::size_t count = 0;
@@ -113,8 +115,8 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
   };
   CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, go_on));
   curve.reference = "converged rays through a lattice of pixels";
-  // nor is what rounding to 8 bits hides
-  curve.reference_error = std::max(errors.reference_rmse, render::kLeastTold);
+  // nor is what rounding to 8 bits hides. Of a measured error that is less than the root of two of that, most is the reference's own
+  curve.reference_error = kOwn * std::max(errors.reference_rmse, render::kLeastTold);
   std::vector<tradeoff::Repeat> repeats;
   for (std::size_t i = 0; i < errors.rmse.size(); ++i) {
     tradeoff::Point point;

@@ -55,7 +55,7 @@ std::optional<double> HandObserver::error(scene::Scene& scene) const {
       if (!line) continue;
       const flow::NearestOnCurve nearest(*line);
       double far2 = 0;
-      for (const Vec3& place : track.places) far2 = std::max(far2, nearest.at(place).distance2);
+      for (const Vec3& place : track.places) far2 = std::max(far2, nearest.exact(place).distance2);
       most = std::max(most.value_or(0), std::sqrt(far2));
     }
   }

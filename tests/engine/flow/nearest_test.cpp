@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "engine/field/function.h"
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {
@@ -62,6 +63,27 @@ TEST(NearestOnCurve, AgreesWithAScanOfAllKnots) {
     most = std::max(most, found.work);
   }
   EXPECT_LT(most, kNearestWork);
+}
+
+/// A line that winds 4,000 times around a torus: everywhere hundreds of its passes are near.
+TEST(NearestOnCurve, ExactFindsTheNearestOfHundredsOfPasses) {
+  const field::VectorFieldPtr winding =
+      field::make_function("winding", {Vec3(-2.0), Vec3(2.0)}, field::VectorFunction([](const Vec3& p) {
+                             const double r = std::hypot(p.x, p.y), out = r - 1;
+                             return Vec3(-p.y / r - 7.3 * p.z * p.x / r, p.x / r - 7.3 * p.z * p.y / r, 7.3 * out);
+                           }));
+  const CurvePtr curve = traced(winding, {1.4, 0, 0}, 5000);
+  const NearestOnCurve nearest(curve);
+  double bounded = 0;
+  int most = 0;
+  for (std::size_t k = 0; k < curve->knots().size(); k += 1501) {
+    const NearestPlace found = nearest.exact(curve->knots()[k].p);
+    EXPECT_EQ(found.distance2, 0);
+    most = std::max(most, found.work);
+    bounded = std::max(bounded, nearest.at(curve->knots()[k].p).distance2);
+  }
+  EXPECT_GT(bounded, 0);  // or it would prove nothing
+  EXPECT_GT(most, kNearestWork);
 }
 
 TEST(NearestOnCurve, IsBoundedWhereAllPlacesAreEquallyNear) {
