@@ -45,6 +45,14 @@ void add_options(const CLI::App& command, std::string& page) {
   }
 }
 
+/// What a command is for, without its own name and a full stop: the program's begins with "Catena: ".
+std::string purpose(const CLI::App& command) {
+  std::string text = command.get_description();
+  if (text.starts_with("Catena: ")) text.erase(0, 8);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
 struct ManualPage {
   std::string name;  ///< "catena-study-run"
   std::string text;
@@ -57,11 +65,12 @@ void add_pages(const CLI::App& command, const std::string& name, std::vector<Man
   std::string capitals = name;
   std::transform(name.begin(), name.end(), capitals.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   std::string page = ".TH " + roff(capitals) + " 1 \"\" \"catena " + kVersion + "\" \"Catena\"\n.SH NAME\n" + roff(name) + " \\- " +
-                     roff(command.get_description()) + "\n.SH SYNOPSIS\n\\fB" + words + "\\fR";
+                     roff(purpose(command)) + "\n.SH SYNOPSIS\n\\fB" + words + "\\fR";
   std::string parts, see;
   for (const CLI::Option* option : command.get_options())
     if (option->get_positional())
       page += (option->get_required() ? " " : " [") + roff(option->get_name(true)) + (option->get_required() ? "" : "]");
+  if (!command.get_subcommands(kAll).empty()) page += command.get_require_subcommand_min() > 0 ? " \\fICOMMAND\\fR" : " [\\fICOMMAND\\fR]";
   page += " [\\fIOPTIONS\\fR]\n";
   for (const CLI::App* part : command.get_subcommands(kAll)) {
     if (part->get_group().empty()) continue;

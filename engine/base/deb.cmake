@@ -14,11 +14,27 @@ add_custom_command(OUTPUT ${manual}/catena.1 ${manual}/catena.bash
   COMMAND catena documents completion ${manual}/catena.bash
   DEPENDS catena COMMENT "Manual pages and completion")
 add_custom_target(catena_manual ALL DEPENDS ${manual}/catena.1)
-install(DIRECTORY ${manual}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT catena FILES_MATCHING PATTERN *.1)
+set(pages ${manual}/)
+find_program(CATENA_GZIP gzip)
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND CATENA_GZIP)  # as packages have them
+  set(pages ${PROJECT_BINARY_DIR}/manual-packed/)
+  add_custom_command(OUTPUT ${pages}catena.1.gz
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages} COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
+    COMMAND cp ${manual}/*.1 ${pages} COMMAND ${CATENA_GZIP} -9n ${pages}*.1
+    DEPENDS ${manual}/catena.1 COMMENT "Manual pages, packed")
+  add_custom_target(catena_manual_packed ALL DEPENDS ${pages}catena.1.gz)
+endif()
+install(DIRECTORY ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT catena FILES_MATCHING PATTERN *.1 PATTERN *.1.gz)
 install(FILES ${manual}/catena.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME catena COMPONENT catena)
 
-# ---- rules of the machine: only where packages go ----
+# ---- rules of the machine, and each package's licence: only where packages go ----
+set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(so libcatena${abi})
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  foreach(pair catena:catena library:${so} development:libcatena-dev python:python3-catena)
+    string(REGEX MATCH "(.*):(.*)" pair ${pair})
+    install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_2} RENAME copyright COMPONENT ${CMAKE_MATCH_1})
+  endforeach()
   install(FILES assets/system/60-catena.rules DESTINATION lib/udev/rules.d COMPONENT catena)
   install(FILES assets/system/catena.conf DESTINATION /etc/security/limits.d COMPONENT catena)
 endif()
@@ -27,6 +43,8 @@ if [ \"$1\" = configure ]; then\n  getent group catena >/dev/null || groupadd --
   if command -v udevadm >/dev/null; then udevadm control --reload 2>/dev/null || true; fi\nfi\n"
   FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/deb/conffiles CONTENT "/etc/security/limits.d/catena.conf\n")
+# what a package depends on that is linked to the library (the module for Python has no SONAME: CPack would warn of it)
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/deb/shlibs CONTENT "libcatena ${abi} ${so} (>= ${PROJECT_VERSION})\n")
 
 # ---- the packages ----
 set(CPACK_GENERATOR DEB)
@@ -57,10 +75,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(same "(= ${PROJECT_VERSION})")
-set(so libcatena${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_COMPONENT_CATENA_DESCRIPTION "See a scientific field and feel it with a hand
- Vulkan draws volumes, surfaces and streamlines; a chain of proxies gives, a thousand times a second, the force with which a hand follows
- them.")
+Vulkan draws volumes, surfaces and streamlines; a chain of proxies gives, a thousand times a second, the force with which a hand follows
+them.")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "See and feel scientific fields: the shared library")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "See and feel scientific fields: headers, CMake package, examples")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "See and feel scientific fields: the Python module")
@@ -71,6 +88,7 @@ set(CPACK_DEBIAN_CATENA_PACKAGE_RECOMMENDS "gnuplot-nox, ffmpeg, mricron-data")
 set(CPACK_DEBIAN_CATENA_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/deb/postinst;${PROJECT_BINARY_DIR}/deb/conffiles")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${so})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/deb/shlibs")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "catena ${same}")  # the helpers
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcatena-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)

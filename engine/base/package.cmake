@@ -11,9 +11,14 @@ get_property(helpers GLOBAL PROPERTY CATENA_HELPERS)
 if(CATENA_INSTALL)
   install(TARGETS catena RUNTIME COMPONENT catena)
   install(TARGETS ${helpers} RUNTIME DESTINATION ${CATENA_HELPERS_FOLDER} COMPONENT catena)
-  install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catena COMPONENT catena PATTERN pictures EXCLUDE PATTERN system EXCLUDE)
-  install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena PATTERN examples EXCLUDE PATTERN site EXCLUDE)
-  install(FILES README.md LICENSE SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena)
+  # scenes/data names files beside this tree, which nobody has where Catena is installed
+  install(DIRECTORY assets/ DESTINATION ${CMAKE_INSTALL_DATADIR}/catena COMPONENT catena
+    REGEX "/assets/(pictures|system|scenes/data)$" EXCLUDE)
+  # documents lie as in this tree, so that their links hold
+  install(FILES README.md LICENSE SECURITY.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena)
+  install(FILES engine/app/viewer/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/engine/app/viewer COMPONENT catena)
+  install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT catena REGEX "/docs/(examples|site)$" EXCLUDE)
+  install(DIRECTORY assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets COMPONENT catena)
 endif()
 
 if(NOT CATENA_LIBRARY OR CATENA_SANITIZE)
@@ -110,6 +115,6 @@ file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/catena-config.cmake CONTENT
   "include(CMakeFindDependencyMacro)\nfind_dependency(glm)\nfind_dependency(Vulkan)\ninclude(\${CMAKE_CURRENT_LIST_DIR}/catena.cmake)\n")
 install(FILES ${PROJECT_BINARY_DIR}/catena-config.cmake ${PROJECT_BINARY_DIR}/catena-config-version.cmake DESTINATION ${package}
   COMPONENT development)
-install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT development)
 
 include(engine/base/deb.cmake)

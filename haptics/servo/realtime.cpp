@@ -27,6 +27,12 @@ constexpr std::size_t kStackBytes = 256 * 1024;  // more than a tick ever uses
 
 std::string reason() { return std::strerror(errno); }
 
+/// How a person gets what was refused: `limit` is its name in limits.d.
+std::string remedy(const char* limit) {
+  return std::string("join the group catena and log in again (`adduser YOU catena`, where the Debian package is installed), or raise ") +
+         limit + " in /etc/security/limits.d";
+}
+
 /// A process that locks future memory under a limit would see allocations fail.
 bool may_lock_everything() {
   rlimit limit{};
@@ -59,7 +65,7 @@ bool take_fifo(int priority, std::vector<std::string>& notes) {
   sched_param parameter{};
   parameter.sched_priority = std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
   if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0) return true;
-  notes.push_back("real-time scheduling was not permitted (" + reason() + "): run as root or raise rtprio in /etc/security/limits.conf");
+  notes.push_back("real-time scheduling was not permitted (" + reason() + "): " + remedy("rtprio"));
   return false;
 }
 
@@ -126,8 +132,8 @@ void RealtimeThread::lock(const void* own, std::size_t own_bytes) {
   const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // it grows downwards
   for (const Locked& part : {Locked{stack, kStackBytes}, Locked{own, own_bytes}})
     if (mlock(part.at, part.bytes) == 0) parts_.push_back(part);
-  report_.notes.push_back(std::string("not all memory could be locked: run as root or raise memlock in /etc/security/limits.conf (") +
-                          (parts_.size() == 2 ? "the thread's own is)" : "not even the thread's own)"));
+  report_.notes.push_back(std::string("not all memory could be locked (") +
+                          (parts_.size() == 2 ? "the thread's own is): " : "not even the thread's own): ") + remedy("memlock"));
 }
 
 }  // namespace catena::haptics

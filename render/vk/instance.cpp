@@ -143,8 +143,11 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   self->owned_ = !maker.keeps_them;
-  CATENA_VK(maker.instance ? maker.instance(info, &self->instance_) : vkCreateInstance(&info, nullptr, &self->instance_),
-            "create an instance");
+  const VkResult made = maker.instance ? maker.instance(info, &self->instance_) : vkCreateInstance(&info, nullptr, &self->instance_);
+  if (made == VK_ERROR_INCOMPATIBLE_DRIVER)  // there is none
+    return Error{vulkan_error(made, "create an instance").message +
+                 ", expected the driver of a GPU or Mesa's lavapipe (package mesa-vulkan-drivers)"};
+  CATENA_VK(made, "create an instance");
 
   if (validation) {
     const auto create =

@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "tests/support/program.h"
@@ -13,6 +14,7 @@ namespace catena::test {
 inline const std::string& installed() {
   static const std::string prefix = [] {
     const std::string at = binary_dir() + "/installed";
+    std::filesystem::remove_all(at);  // of an earlier build
     const ProgramResult result = run_program(CATENA_CMAKE, {"--install", binary_dir(), "--prefix", at});
     EXPECT_EQ(result.exit_code, 0) << result.out.substr(0, 8000) << result.err.substr(0, 4000);
     return at;

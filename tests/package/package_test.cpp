@@ -36,7 +36,7 @@ void cmake(const std::vector<std::string>& arguments) {
 void build_outside(const std::string& source, const std::string& name) {
   const std::string folder = test::binary_dir() + "/outside/" + name;
   std::vector<std::string> configure{
-      "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + prefix(), "-DCMAKE_BUILD_TYPE=None"};
+      "--fresh", "-S", source, "-B", folder, "-G", "Ninja", "-DCMAKE_PREFIX_PATH=" + prefix(), "-DCMAKE_BUILD_TYPE=None"};
   if (std::string(CATENA_LAUNCHER).size() > 0) configure.push_back(std::string("-DCMAKE_CXX_COMPILER_LAUNCHER=") + CATENA_LAUNCHER);
   ASSERT_NO_FATAL_FAILURE(cmake(configure));
   cmake({"--build", folder, "--parallel", "2"});
@@ -139,7 +139,7 @@ TEST_F(Package, TheLibraryIsFoundByItsSoname) {
 }
 
 TEST_F(Package, ExamplesRunOutsideOfTheTree) {
-  ASSERT_NO_FATAL_FAILURE(build_outside(prefix() + "/" + CATENA_DOCDIR + "/examples", "examples"));
+  ASSERT_NO_FATAL_FAILURE(build_outside(prefix() + "/" + CATENA_DOCDIR + "/docs/examples", "examples"));
   // 500 N/m times 0.05 m a unit times 0.3 of a unit; the proxy on its ball of 0.5
   EXPECT_EQ(example("constraint").out, "probe at 0.200, proxy at 0.500, force 7.500 N\n");
   const test::ProgramResult loop = example("own_loop");
@@ -169,6 +169,33 @@ TEST_F(Package, ExamplesRunOutsideOfTheTree) {
   EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
 }
 
+TEST_F(Package, LinksBetweenInstalledDocumentsHold) {
+  const fs::path root = prefix() + "/" + CATENA_DOCDIR;
+  const std::regex link(R"re((\]\(|src=")([^)#" \n]+))re"), code(R"re(```[^`]*```|`[^`\n]*`)re");
+  int links = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string text = std::regex_replace(test::read_file(entry.path().string()), code, "");
+    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
+      const std::string to = (*it)[2];
+      if (to.starts_with("http")) continue;
+      EXPECT_TRUE(fs::exists(entry.path().parent_path() / to)) << entry.path() << " links to " << to;
+      ++links;
+    }
+  }
+  EXPECT_GT(links, 100);
+  for (const char* name : {"README.md", "CONTRIBUTING.md", "SECURITY.md", "LICENSE", "docs/scene.md"})
+    EXPECT_TRUE(fs::exists(root / name)) << name;
+}
+
+TEST_F(Package, ScenesAreInstalledButForThoseOfDataThatNobodyHas) {
+  const std::string scenes = prefix() + "/" + CATENA_DATADIR + "/catena/scenes";
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/assets/scenes")) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(test::exists(scenes + "/" + name), name != "data") << name;
+  }
+}
+
 TEST_F(Package, EveryCommandHasAManualPageWithItsOptions) {
   const std::string manual = prefix() + "/" + CATENA_MANDIR + "/man1/";
   const test::ProgramResult help = test::run_catena({"--help"});
@@ -186,6 +213,10 @@ TEST_F(Package, EveryCommandHasAManualPageWithItsOptions) {
     ++commands;
   }
   EXPECT_GE(commands, 10);
+  const std::string first = test::read_file(manual + "catena.1");
+  EXPECT_NE(first.find(".SH NAME\ncatena \\- see a scientific field and feel it with a hand\n"), std::string::npos) << first;
+  EXPECT_NE(first.find("\\fBcatena\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n"), std::string::npos) << first;
+  EXPECT_NE(test::read_file(manual + "catena-devices.1").find("\\fBcatena devices\\fR [\\fICOMMAND\\fR]"), std::string::npos);
   const std::string page = test::read_file(manual + "catena-render.1");
   for (const char* words : {".SH NAME\ncatena\\-render \\- ", "\\fB\\-\\-size\\fR", ".SH EXIT STATUS"})
     EXPECT_NE(page.find(words), std::string::npos) << words;

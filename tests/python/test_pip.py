@@ -63,6 +63,9 @@ class Pip(unittest.TestCase):
             self.assertIn(f"\nName: catena\nVersion: {version}\n", metadata)
             self.assertIn("Requires-Dist: numpy", metadata)
             self.assertEqual([p.name for p in installed.iterdir() if not p.name.endswith(".dist-info")], ["catena"])
+            scenes = installed / "catena/share/catena/scenes"
+            self.assertTrue((scenes / "hand.json").exists())
+            self.assertFalse((scenes / "data").exists())
 
             # it runs from there, by nothing of this build: its library, its program, the helpers that read and write files
             code = ("import catena, numpy as np, os, re, subprocess\n"

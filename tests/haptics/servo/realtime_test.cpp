@@ -51,8 +51,9 @@ TEST(Realtime, WithoutPrivilegesItSaysWhatItDidWithoutAndHowToHaveIt) {
   EXPECT_EQ(report.cpu, -1) << "a normal thread stays free to move";
   ASSERT_EQ(report.notes.size(), 2u);
   EXPECT_EQ(report.notes[0].find("real-time scheduling was not permitted"), 0u) << report.notes[0];
-  EXPECT_NE(report.notes[0].find("run as root or raise rtprio in /etc/security/limits.conf"), std::string::npos) << report.notes[0];
-  EXPECT_NE(report.notes[1].find("raise memlock in /etc/security/limits.conf"), std::string::npos) << report.notes[1];
+  for (const std::string& note : report.notes) EXPECT_NE(note.find(": join the group catena and log in again"), std::string::npos) << note;
+  EXPECT_NE(report.notes[0].find("or raise rtprio in /etc/security/limits.d"), std::string::npos) << report.notes[0];
+  EXPECT_NE(report.notes[1].find("or raise memlock in /etc/security/limits.d"), std::string::npos) << report.notes[1];
 }
 
 TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
@@ -76,7 +77,7 @@ TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
   servo.stop();
   const std::size_t refused = (r.fifo ? 0u : 1u) + (r.locked ? 0u : 1u);
   EXPECT_EQ(r.notes.size(), refused);
-  for (const std::string& note : r.notes) EXPECT_NE(note.find("run as root or raise"), std::string::npos) << note;
+  for (const std::string& note : r.notes) EXPECT_NE(note.find("join the group catena"), std::string::npos) << note;
   if (!r.fifo) {
     EXPECT_EQ(r.cpu, -1) << "bound to a core only with a fixed priority";
   }
