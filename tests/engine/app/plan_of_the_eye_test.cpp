@@ -116,15 +116,15 @@ TEST(PlanOfTheEye, TimeBuysNothingThatRoundingHides) {
   ASSERT_TRUE(measured) << measured.error().message;
   // of settings of which no picture shows which one is better, the cheapest, whatever time there is
   measured->curve.floor = app::tradeoff::kNotMeasured;
-  int cheapest = -1, hidden = 0;
-  for (std::size_t i = 0; i < measured->curve.points.size(); ++i) {
-    auto& point = measured->curve.points[i];
-    point.time = {1.0 + double(i), 1.0 + double(i), 1.0 + double(i), 5};
-    if (point.error > std::sqrt(2) * render::kLeastTold) continue;
-    if (cheapest < 0) cheapest = int(i);
-    ++hidden;
+  auto& points = measured->curve.points;
+  ASSERT_GE(points.size(), 3u);
+  const int cheapest = int(points.size()) - 2;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].error = 9;
+    points[i].time = {1.0 + double(i), 1.0 + double(i), 1.0 + double(i), 5};
   }
-  ASSERT_GT(hidden, 1);
+  points[points.size() - 2].error = 1.4 * render::kLeastTold;
+  points[points.size() - 1].error = 0.05;
   EXPECT_EQ(EyePlan(*measured, wants("time=1000")).now(), cheapest);
   EXPECT_EQ(EyePlan(*measured, wants("error=0.01")).now(), cheapest);
 }

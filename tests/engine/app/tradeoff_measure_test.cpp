@@ -6,12 +6,16 @@
 #include <filesystem>
 
 #include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/eye/eye.h"
 #include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/hand/streamline.h"
 #include "engine/app/tradeoff/measure/subject.h"
 #include "engine/app/tradeoff/measure/timing.h"
 #include "engine/app/tradeoff/report/report.h"
+#include "engine/base/json.h"
 #include "engine/field/analytic.h"
 #include "engine/flow/curve.h"
+#include "render/quality/refinement.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
@@ -92,12 +96,26 @@ TEST(TradeoffFloor, OfAStreamlineIsWithinTwiceTheTruth) {
   EXPECT_TRUE(e.settled);
 }
 
+Point made(double error, double time, double spread = 0.01) {
+  Point p;
+  p.error = error;
+  p.time = {time, time - spread, time + spread, 9};
+  return p;
+}
+
 TEST(TradeoffFloor, SaysWhereDifferencesDoNotSettle) {
   const Extrapolated e = from_differences(3, 3.5);
   EXPECT_FALSE(e.settled);
   EXPECT_DOUBLE_EQ(e.error, 1);  // at order 2: the least
   EXPECT_DOUBLE_EQ(from_differences(3, 15).error, 1);
   EXPECT_DOUBLE_EQ(from_errors(4, 16).error, 1);
+  EXPECT_EQ(order_words(e).rfind("at least 1: a third of the difference made by every 2nd voxel", 0), 0u) << order_words(e);
+  Curve curve;
+  curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
+  curve.floor = 1;
+  curve.floor_name += ", at least";
+  choose(curve);
+  EXPECT_NE(curve.why.find("is not above the data's own error, at least 1:"), std::string::npos) << curve.why;
 }
 
 TEST(TradeoffFloor, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels) {
@@ -113,13 +131,6 @@ TEST(TradeoffFloor, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels) {
   }
   EXPECT_EQ(levels->at[2]->index_box().hi.x, 4);
   EXPECT_FALSE(make_levels(*field::sample_on_grid(*formula->scalar, 8, -2, 2)));
-}
-
-Point made(double error, double time, double spread = 0.01) {
-  Point p;
-  p.error = error;
-  p.time = {time, time - spread, time + spread, 9};
-  return p;
 }
 
 TEST(TradeoffChoice, FrontHoldsWhatNothingBeats) {
@@ -141,6 +152,66 @@ TEST(TradeoffChoice, TakesTheCheapestThatReachesTheFloor) {
   curve.floor = 0.01, curve.reference_error = kNotMeasured;
   choose(curve);
   EXPECT_NE(curve.why.find("None reaches"), std::string::npos) << curve.why;
+}
+
+TEST(TradeoffChoice, ErrorsBelowTheReferencesAreOne) {
+  Curve curve;
+  curve.points = {made(100, 1), made(0.5, 1.5), made(0.2, 100)};
+  curve.reference_error = 1;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 1);
+  EXPECT_EQ(curve.front, (std::vector<int>{0, 1})) << "what costs more shows nothing";
+  EXPECT_NE(curve.why.find("not above what the reference can tell, 1:"), std::string::npos) << curve.why;
+  // of a knee beside them no ratio is said that cannot be told
+  curve.points = {made(100, 1), made(2, 1.5), made(0.01, 100)};
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 1);
+  EXPECT_NE(curve.why.find("has 2 times less error. Errors below 1 cannot be told."), std::string::npos) << curve.why;
+  // all below: none is better than what the scene has
+  curve.points = {made(0.1, 2), made(0.9, 2), made(0.4, 2)};
+  curve.current = 1;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 1);
+  EXPECT_TRUE(curve.even);
+  EXPECT_NE(curve.why.find("No setting errs by more than what the reference can tell, 1"), std::string::npos) << curve.why;
+}
+
+TEST(TradeoffChoice, OfBytesTheFewestAreNotCalledCheap) {
+  Curve curve;
+  curve.cost = Cost::bytes;
+  curve.points = {made(8, 1), made(0.9, 1), made(0.1, 1)};
+  for (std::size_t i = 0; i < 3; ++i) curve.points[i].bytes = 100.0 * double(i + 1);
+  curve.floor = 1;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 1);
+  EXPECT_NE(curve.why.find("fewest bytes"), std::string::npos) << curve.why;
+  EXPECT_EQ(curve.why.find("cheap"), std::string::npos) << curve.why;
+}
+
+TEST(TradeoffChoice, NumbersAreAsKeysHaveThem) {
+  Curve curve;
+  curve.points = {made(1.5e-6, 1)};
+  choose(curve);
+  EXPECT_NE(curve.why.find(" 1.5e-6."), std::string::npos) << curve.why;
+}
+
+/// What the reader of scenes refuses beside a setting is to be taken out.
+TEST(TradeoffAdvice, NamesTheKeysThatItReplaces) {
+  const auto advice = [](const std::string& text, const std::string& words) -> std::string {
+    auto node = json::parse(text, "s.json");
+    EXPECT_TRUE(node);
+    const LinkOf link{"curve", *node};
+    for (const StreamlineSetting& s : streamline_settings(link.node))
+      if (s.words == words) return s.write(link);
+    return "none";
+  };
+  EXPECT_EQ(advice("{}", "selected"), "\"follow\": \"selected\"");
+  EXPECT_EQ(advice(R"({"method": "rkf34", "tolerance": 2e-6})", "selected"),
+            "`\"follow\": \"selected\"` in place of `\"method\"` and `\"tolerance\"` in the link \"curve\"");
+  EXPECT_EQ(advice(R"({"method": "rk4"})", "selected"), "`\"follow\": \"selected\"` in place of `\"method\"` in the link \"curve\"");
+  EXPECT_EQ(advice(R"({"follow": "selected"})", "rk4"), "`\"method\": \"rk4\"` in place of `\"follow\"` in the link \"curve\"");
+  EXPECT_EQ(advice(R"({"method": "rk4"})", "rk3"), "\"method\": \"rk3\"");
+  EXPECT_EQ(advice(R"({"tolerance": 2e-6})", "rkf34, tolerance 2e-6"), "\"method\": \"rkf34\", \"tolerance\": 2e-6");
 }
 
 TEST(TradeoffChoice, NoiseDoesNotDecide) {
@@ -196,6 +267,27 @@ TEST(TradeoffTiming, RunsSettingsInTurns) {
   EXPECT_FALSE(interleave({[]() -> Result<double> { return Error{"no"}; }}, 0, 3));
 }
 
+TEST(TradeoffTiming, WhatAPictureNeedsAnewDoesNotCount) {
+  render::FramePacket packet;
+  packet.width = 64, packet.height = 48;
+  const auto after = [&](const render::RenderSettings& before, const render::RenderSettings& now) {
+    return needs_others({before, 64, 48}, packet, now);
+  };
+  const render::RenderSettings exact = render::exact_rung(1), fast = render::fast_rung(1, 1, 0, -1);
+  EXPECT_TRUE(needs_others({}, packet, exact));
+  EXPECT_FALSE(after(exact, exact));
+  EXPECT_FALSE(after(exact, render::exact_rung(0.25)));
+  EXPECT_FALSE(after(fast, render::fast_rung(2, 1, 0, -1)));
+  EXPECT_TRUE(after(exact, fast));
+  EXPECT_TRUE(after(fast, exact));
+  EXPECT_TRUE(after(fast, render::fast_rung(1, 1, 0, -1, true)));
+  render::RenderSettings wide = exact;
+  wide.texels = render::TexelFormat::r32f;
+  EXPECT_TRUE(after(exact, wide));
+  packet.width = 128;
+  EXPECT_TRUE(after(exact, exact));
+}
+
 TEST(TradeoffReport, ReadsBackWhatItWrote) {
   Report report;
   report.source = "a \"scene\".json";
@@ -211,6 +303,7 @@ TEST(TradeoffReport, ReadsBackWhatItWrote) {
   curve.floor = 0.125;
   curve.points = {made(0.1, 3), made(1e-300, 4)};
   curve.points[0].setting = "one, \"1\"";
+  curve.points[0].write = "`a<b` in place of `c`";
   for (Point& p : curve.points) p.more = {7};
   choose(curve);
   report.curves = {curve};
@@ -222,6 +315,7 @@ TEST(TradeoffReport, ReadsBackWhatItWrote) {
   EXPECT_EQ(to_json(*back), to_json(report));
   const std::string page = to_html(*back, &*back, {{}});
   EXPECT_NE(page.find("Q &amp; A"), std::string::npos);
+  EXPECT_NE(page.find("<td><code>a&lt;b</code> in place of <code>c</code></td>"), std::string::npos);
   EXPECT_NE(page.find("the other's time"), std::string::npos);
   EXPECT_NE(page.find("gnuplot is not installed"), std::string::npos);
   EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
@@ -284,11 +378,48 @@ TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
   }
   EXPECT_NE(chosen[0], "");
   EXPECT_EQ(chosen[0], chosen[1]);
+  // where one sentence says that no rate stands out, the other asks for none
+  const bool even = run.out.find("no setting stands out") != std::string::npos;
+  EXPECT_FALSE(even && run.out.find("the force needs") != std::string::npos) << run.out;
+  const std::string page = test::read_file(folder / "out/report.html");
+  EXPECT_NE(page.find("The reference is a servo at 10 kHz; it differs from one at 20 kHz by "), std::string::npos);
   test::write_file(folder / "eye.json", R"({"fields": {"ball": {"analytic": "sphere"}}, "volumes": [{"field": "ball"}]})");
   const auto none = test::run_catena({"tradeoff", folder / "eye.json", "-o", folder / "none", "--quick", "--only", "servo rate"});
   EXPECT_EQ(none.exit_code, 2) << none.out;
   EXPECT_NE(none.err.find("there is nothing to measure"), std::string::npos) << none.err;
   EXPECT_FALSE(test::exists(folder / "none"));
+}
+
+TEST(TradeoffScene, QualityIsLeftOutWhereNothingIsSampledAlongRays) {
+  const test::TemporaryFolder folder;
+  for (const char* opacity : {"1", "0.5"}) {
+    test::write_file(folder / "s.json", std::string(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
+      "isosurfaces": [{"field": "ball", "level": 1, "opacity": )") +
+                                            opacity + "}]}");
+    const auto run =
+        test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "interpolation,quality,step"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    if (run.out.find("left out: The eye:") != std::string::npos) GTEST_SKIP() << run.out;
+    for (const char* name : {"Quality", "Step"})
+      EXPECT_NE(run.out.find(std::string(name) + ": nothing in the picture is sampled along rays: --quality makes no difference."),
+                std::string::npos)
+          << opacity << run.out;
+  }
+}
+
+/// A finer cell is no reason where the picture would lose its fast rays.
+TEST(TradeoffScene, CubicCellsSayWhatTheyDoToAVolume) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
+  for (const bool volume : {false, true}) {
+    test::write_file(folder / "s.json",
+                     std::string(R"({"fields": {"g": {"file": "g.vdb"}}, )") +
+                         (volume ? R"("volumes": [{"field": "g"}]})" : R"("isosurfaces": [{"field": "g", "level": 0.5}]})"));
+    const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "cells"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out.find("a cubic volume has no fast rays") != std::string::npos, volume) << run.out;
+    EXPECT_NE(run.out.find(volume ? ": linear. " : ": cubic. "), std::string::npos) << run.out;
+  }
 }
 
 TEST(TradeoffScene, PicturesAreMeasuredOfABareFile) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/app/tradeoff/measure/number.h"
+
 namespace catena::app::tradeoff {
 namespace {
 
@@ -106,69 +108,101 @@ Picked pick(const Curve& curve, const Target& target) {
   return picked;
 }
 
+std::string floor_words(const Curve& curve) {
+  const bool bound = curve.floor_name.ends_with(", at least");
+  return curve.floor_name + (bound ? " " : ", ") + number_text(curve.floor);
+}
+
 void choose(Curve& curve) {
-  curve.front = pareto_front(curve.points, curve.cost);
-  curve.chosen = -1;
-  if (curve.front.empty()) return;
+  // errors that the reference cannot tell apart are one
+  const double told = std::isfinite(curve.reference_error) ? curve.reference_error : 0;
   const std::vector<Point>& points = curve.points;
+  std::vector<Point> seen = points;
+  for (Point& p : seen)
+    if (std::isfinite(p.error)) p.error = std::max(p.error, told);
+  const bool bytes = curve.cost == Cost::bytes;
+  curve.front = pareto_front(seen, curve.cost);
+  curve.chosen = -1;
+  curve.even = false;
+  if (curve.front.empty()) return;
   const double reached = std::isfinite(curve.floor) ? least_told(curve) : 0;
-  std::vector<int> good;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (counts(points[i], curve.cost) && points[i].error <= reached) good.push_back(static_cast<int>(i));
-  std::vector<int> all;
+  std::vector<int> all, good, untold;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!counts(points[i], curve.cost)) continue;
     all.push_back(static_cast<int>(i));
-    least = std::min(least, points[i].error), most = std::max(most, points[i].error);
+    if (points[i].error <= reached) good.push_back(static_cast<int>(i));
+    if (told > 0 && points[i].error <= told) untold.push_back(static_cast<int>(i));
+    least = std::min(least, seen[i].error), most = std::max(most, seen[i].error);
   }
+  const auto cheap_enough = [&](int i, const std::string& level) {
+    const std::string error = number_text(points[i].error);
+    if (bytes)
+      return fmt::format(
+          "Of those whose error is not above {}, it has the fewest bytes, with an error of {}: to go below takes more and gains nothing "
+          "that "
+          "can be told.",
+          level, error);
+    return fmt::format("It is the cheapest whose error, {}, is not above {}: to go below costs more and gains nothing that can be told.",
+                       error, level);
+  };
+  const std::string told_words = curve.told_name + ", " + number_text(told);
   if (points.size() == 1) {
     curve.chosen = curve.front.front();
-    curve.why = fmt::format("There is one setting; its error is {:.2g}.", points[0].error);
+    curve.why = fmt::format("There is one setting; its error is {}.", number_text(points[0].error));
   } else if (most <= least) {
-    const int now = curve.current, least_cost = cheapest(points, all, curve.cost);
+    const int now = curve.current, least_cost = cheapest(seen, all, curve.cost);
     // the first as listed of those that noise cannot tell apart
     const int best = *std::find_if(all.begin(), all.end(), [&](int i) { return alike(points[i], points[least_cost], curve.cost); });
     curve.chosen = now >= 0 && alike(points[now], points[best], curve.cost) ? now : best;
-    curve.why = fmt::format("No setting changes the error here, {:.2g}{}.", least,
-                            now == curve.chosen ? ", so that what the scene has may stay" : ", so that the cheapest will do");
+    curve.even = curve.chosen == now;
+    curve.why = fmt::format(
+        "{}{}.", untold.empty() ? "No setting changes the error here, " + number_text(least) : "No setting errs by more than " + told_words,
+        curve.even ? ", so that what the scene has may stay"
+        : bytes    ? ", so that the one of the fewest bytes will do"
+                   : ", so that the cheapest will do");
   } else if (curve.front.size() == 1) {
     curve.chosen = curve.front.front();
-    curve.why = "It is the cheapest and the most exact at once.";
+    curve.why = fmt::format("It {} the most exact at once{}.", bytes ? "has the fewest bytes and is" : "is the cheapest and",
+                            untold.empty() ? "" : ", as far as can be told");
   } else if (reached > 0 && !good.empty()) {
     curve.chosen = cheapest(points, good, curve.cost);
-    const Point& p = points[curve.chosen];
-    curve.why = fmt::format(
-        "It is the cheapest whose error, {:.2g}, is not above {}, {:.2g}: to go below costs more and gains nothing that can be told.",
-        p.error, curve.floor >= reached ? curve.floor_name : "what the reference can tell", reached);
+    curve.why = cheap_enough(curve.chosen, curve.floor >= reached ? floor_words(curve) : told_words);
   } else {
-    const int bend = knee(points, curve.front, curve.cost);
+    const int bend = knee(seen, curve.front, curve.cost);
     const bool keeps = bend < 0 && std::find(curve.front.begin(), curve.front.end(), curve.current) != curve.front.end();
     curve.chosen = bend >= 0 ? bend : keeps ? curve.current : curve.front.back();
+    curve.even = keeps;
     const Point& p = points[curve.chosen];
-    const std::string none = reached > 0 ? fmt::format("None reaches {}, {:.2g}; t", curve.floor_name, reached) : "T";
+    const auto seen_error = [&](int i) { return seen[static_cast<std::size_t>(i)].error; };
+    const std::string none = reached > 0 ? fmt::format("None reaches {}; t", floor_words(curve)) : "T";
     if (keeps) {
       curve.why = fmt::format(
-          "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {:.2g}. Which "
-          "one is "
+          "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {}. Which one is "
           "needed is for you to say.",
-          p.error);
+          number_text(p.error));
+    } else if (curve.chosen == curve.front.back() && !untold.empty()) {
+      curve.chosen = cheapest(points, untold, curve.cost);
+      curve.why = cheap_enough(curve.chosen, told_words);
     } else if (curve.chosen == curve.front.back()) {
-      curve.why = fmt::format("{}his is the most exact, with an error of {:.2g}.", none, p.error);
+      curve.why = fmt::format("{}his is the most exact, with an error of {}.", none, number_text(p.error));
     } else {
       const auto at = static_cast<std::size_t>(std::find(curve.front.begin(), curve.front.end(), curve.chosen) - curve.front.begin());
       const Point& next = points[curve.front[at + 1]];
+      const double error = seen_error(curve.chosen), next_error = seen_error(curve.front[at + 1]);
       curve.why = fmt::format("{}his is the knee of the front", none);
       if (at > 0) {
         const Point& last = points[curve.front[at - 1]];
-        curve.why += fmt::format(": {} costs {:.2g} times less and has {:.2g} times the error", last.setting,
-                                 cost_of(p, curve.cost) / cost_of(last, curve.cost), last.error / p.error);
+        curve.why += fmt::format(": {} {} {:.2g} times {} and has {:.2g} times the error", last.setting, bytes ? "takes" : "costs",
+                                 cost_of(p, curve.cost) / cost_of(last, curve.cost), bytes ? "fewer bytes" : "less",
+                                 seen_error(curve.front[at - 1]) / error);
       }
-      curve.why += fmt::format("{} {} costs {:.2g} times as much and has {} error.", at > 0 ? ";" : ":", next.setting,
-                               cost_of(next, curve.cost) / cost_of(p, curve.cost),
-                               next.error > 0 ? fmt::format("{:.2g} times less", p.error / next.error) : "no");
-      if (p.error <= curve.reference_error)
-        curve.why += fmt::format(" What is below {:.2g}, the error of the reference, cannot be told.", curve.reference_error);
+      curve.why += fmt::format("{} {} {} {:.2g} times as {} and has {} error.", at > 0 ? ";" : ":", next.setting, bytes ? "takes" : "costs",
+                               cost_of(next, curve.cost) / cost_of(p, curve.cost), bytes ? "many bytes" : "much",
+                               next_error <= 0             ? "no"
+                               : error < 1.05 * next_error ? "hardly less"
+                                                           : fmt::format("{:.2g} times less", error / next_error));
+      if (next_error <= told && told > 0) curve.why += fmt::format(" Errors below {} cannot be told.", number_text(told));
     }
   }
 }

@@ -4,6 +4,7 @@
 ///   knee    where none reaches it, or none is known: the point of the front farthest below the chord from its cheapest to its most
 ///           exact point, both axes logarithmic and scaled to the chord; of a front of two the more exact one. Where no point is a
 ///           tenth of the chord below it, what the scene has stays, if it is on the front
+///   told    errors below the reference's own are one: for the front, the knee, and what a sentence says of them
 ///   even    where no setting changes the error, what the scene has stays, or else the cheapest
 /// Times whose quartiles overlap are one: then less counted work decides, then less error, so that noise does not.
 #pragma once
@@ -18,7 +19,7 @@ namespace catena::app::tradeoff {
 /// Points without an error or a cost are left out.
 std::vector<int> pareto_front(std::span<const Point> points, Cost cost);
 
-/// Fills front, chosen and why.
+/// Fills front, chosen, why and even.
 void choose(Curve& curve);
 
 /// What a plan wants of a curve: an error, or a cost; one of the two.
@@ -34,6 +35,9 @@ struct Picked {
   bool floored = false;  ///< the target lies below what the data, or the reference, hold
 };
 Picked pick(const Curve& curve, const Target& target);
+
+/// "the data's own error, 0.3"; of a lower bound "the data's own error, at least 0.3".
+std::string floor_words(const Curve& curve);
 
 /// The greater of the floor and the reference's own error, as far as they are known; else 0.
 double least_told(const Curve& curve);

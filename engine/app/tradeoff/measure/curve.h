@@ -19,8 +19,10 @@ struct Timing {
 
 struct Point {
   std::string setting;  ///< for a person: "rkf34, tolerance 1e-6"
-  std::string write;    ///< what to write to get it: keys of the scene, an option; empty: it cannot be asked for
-  std::string series;   ///< points of one series are joined in the plot: "rkf34"
+  /// What to write to get it: keys of the scene, an option; where words stand beside these, they stand between backquotes. Empty: it
+  /// cannot be asked for.
+  std::string write;
+  std::string series;  ///< points of one series are joined in the plot: "rkf34"
   double error = kNotMeasured;
   double work = kNotMeasured;  ///< counted, the same on every machine
   Timing time{};
@@ -40,16 +42,18 @@ struct Curve {
   std::string error_name, work_name, time_name, bytes_name;  ///< with their units; empty: there is none
   std::vector<std::string> more;                             ///< further columns
   std::vector<Point> points;
-  double floor = kNotMeasured;  ///< the data's own error, in the unit of `error`
-  std::string floor_name = "the data's own error";
-  std::string floor_from;                 ///< how it was found
-  double reference_error = kNotMeasured;  ///< of what the errors are measured against
-  std::string reference;                  ///< what that is, and how its convergence was seen
+  double floor = kNotMeasured;                            ///< the data's own error, in the unit of `error`
+  std::string floor_name = "the data's own error";        ///< ends in ", at least" where `floor` is a lower bound
+  std::string floor_from;                                 ///< how it was found
+  double reference_error = kNotMeasured;                  ///< of what the errors are measured against: less cannot be told
+  std::string reference;                                  ///< what that is, and how its convergence was seen
+  std::string told_name = "what the reference can tell";  ///< of reference_error, in `why`; not written to files
   Cost cost = Cost::time;
   int current = -1;        ///< the point that the scene has now; -1: none of them
   std::vector<int> front;  ///< the Pareto front, cheapest first (choice.h)
   int chosen = -1;         ///< -1: there is nothing to choose
   std::string why;         ///< one sentence
+  bool even = false;       ///< no setting stands out, and what the scene has stays: it is no demand; not written to files
 };
 
 inline bool on_front(const Curve& c, int i) { return std::find(c.front.begin(), c.front.end(), i) != c.front.end(); }

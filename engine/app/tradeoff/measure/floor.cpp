@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/app/tradeoff/measure/number.h"
 #include "engine/field/level.h"
 
 namespace catena::app::tradeoff {
@@ -121,7 +122,10 @@ Extrapolated from_differences(double at_2h, double at_4h) {
 
 std::string order_words(const Extrapolated& e) {
   return e.settled ? fmt::format("observed order {:.1f}", e.order)
-                   : "they fall more slowly than the spacing, as edges and noise make them: this is the least that it can be";
+                   : fmt::format(
+                         "at least {}: a third of the difference made by every 2nd voxel; the differences shrink too slowly for a "
+                         "better estimate",
+                         number_text(e.error));
 }
 
 std::optional<Levels<field::ScalarGrid>> make_levels(const field::ScalarGrid& grid, double most) { return levels_of(grid, most); }

@@ -23,7 +23,7 @@ Extrapolated from_errors(double at_2h, double at_4h);
 /// chooses too fine a setting, one that is too high too coarse a one.
 Extrapolated from_differences(double at_2h, double at_4h);
 
-/// "observed order 1.9", or that the differences fall too slowly for one.
+/// "observed order 1.9"; of differences that fall too slowly for one: what is taken instead.
 std::string order_words(const Extrapolated& e);
 
 /// A grid at spacings h, 2 h and 4 h over one domain.
@@ -35,7 +35,8 @@ struct Levels {
 std::optional<Levels<field::ScalarGrid>> make_levels(const field::ScalarGrid& grid, double most = 1.5e8);
 std::optional<Levels<field::VectorGrid>> make_levels(const field::VectorGrid& grid, double most = 5e7);
 
-/// Root mean square of the field's own interpolation's error (linear or cubic), in its own unit: seen at 2 h and 4 h at the voxels between, extrapolated to h.
+/// Root mean square of the field's own interpolation's error (linear or cubic), in its own unit: seen at 2 h and 4 h at the voxels between,
+/// extrapolated to h.
 struct InterpolationFloor {
   Extrapolated at_h;
   double at_2h = 0, at_4h = 0;

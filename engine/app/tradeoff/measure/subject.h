@@ -61,11 +61,12 @@ struct Eye {
   std::unique_ptr<render::Renderer> renderer;
   render::FramePacket packet;         ///< without a background, texts and cursor
   bool fast = false;                  ///< the fast raycast can draw it
-  bool rays = false;                  ///< anything is drawn by rays
+  bool rays = false;                  ///< anything is sampled along rays: their step changes the picture
   render::Picture truth;              ///< converged; of `packet`
   double truth_step = 0;              ///< voxels
   double truth_error = kNotMeasured;  ///< what halving the step still changed, RMSE
   double floor = kNotMeasured;        ///< the data's own error in the picture, RMSE
+  bool floor_settled = true;          ///< false: at least
   std::string floor_from;
 };
 

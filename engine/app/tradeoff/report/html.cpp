@@ -6,11 +6,14 @@
 #include "engine/app/command.h"
 #include "engine/app/report/page.h"
 #include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/number.h"
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/app/tradeoff/report/words.h"
 
 namespace catena::app::tradeoff {
 namespace {
+
+std::string number(double value) { return with_short_exponent(short_number(value)); }
 
 std::string time_text(const Timing& t) {
   return std::isfinite(t.median) ? fmt::format("{:.4g} <small>({:.4g} .. {:.4g})</small>", t.median, t.low, t.high) : "-";
@@ -23,13 +26,24 @@ const Point* same(const Curve* other, const Point& p) {
   return nullptr;
 }
 
-std::string ask(const Point& p) { return p.write.empty() ? "" : "<code>" + escaped(p.write) + "</code>"; }
+/// What is written: all of it code, or what stands between backquotes.
+std::string ask(const Point& p) {
+  if (p.write.find('`') == std::string::npos) return p.write.empty() ? "" : "<code>" + escaped(p.write) + "</code>";
+  std::string text;
+  bool code = false;
+  for (std::size_t at = 0; at <= p.write.size(); code = !code) {
+    const std::size_t end = std::min(p.write.find('`', at), p.write.size());
+    const std::string part = escaped(p.write.substr(at, end - at));
+    text += code ? "<code>" + part + "</code>" : part;
+    at = end + 1;
+  }
+  return text;
+}
 
 /// "481.4 us of processor a second".
 std::string cost_text(const Curve& c, const Point& p) {
   const std::string& unit = c.cost == Cost::time ? c.time_name : c.cost == Cost::work ? c.work_name : c.bytes_name;
-  return fmt::format("{} <small>{}</small>", c.cost == Cost::bytes ? human_bytes(p.bytes) : short_number(cost_of(p, c.cost)),
-                     escaped(unit));
+  return fmt::format("{} <small>{}</small>", c.cost == Cost::bytes ? human_bytes(p.bytes) : number(cost_of(p, c.cost)), escaped(unit));
 }
 
 std::string points_table(const Curve& c, const Curve* other) {
@@ -58,16 +72,16 @@ std::string points_table(const Curve& c, const Curve* other) {
     if (asked) text += "<td>" + ask(p) + "</td>";
     if (!c.front.empty()) text += fmt::format("<td>{}</td>", on_front(c, index) ? "&#9679;" : "");
     const auto cell = [&](const std::string& value) { text += "<td class=\"n\">" + value + "</td>"; };
-    if (!c.error_name.empty()) cell(short_number(p.error));
+    if (!c.error_name.empty()) cell(number(p.error));
     if (!c.time_name.empty()) cell(time_text(p.time));
     if (other != nullptr && !c.time_name.empty()) {
       cell(theirs != nullptr ? time_text(theirs->time) : "-");
-      cell(theirs != nullptr ? short_number(theirs->time.median / p.time.median) : "-");
+      cell(theirs != nullptr ? number(theirs->time.median / p.time.median) : "-");
     }
-    if (other != nullptr && !c.error_name.empty()) cell(theirs != nullptr ? short_number(theirs->error) : "-");
-    if (!c.work_name.empty()) cell(short_number(p.work));
+    if (other != nullptr && !c.error_name.empty()) cell(theirs != nullptr ? number(theirs->error) : "-");
+    if (!c.work_name.empty()) cell(number(p.work));
     if (!c.bytes_name.empty()) cell(std::isfinite(p.bytes) ? human_bytes(p.bytes) : "-");
-    for (const double value : p.more) cell(short_number(value));
+    for (const double value : p.more) cell(number(value));
     text += "</tr>\n";
   }
   return text + "</table></div>\n";
@@ -95,12 +109,10 @@ std::string section(const Curve& c, const Curve* other, const std::vector<std::s
     text += "<p class=\"why\">" + escaped(c.why) + "</p>\n";
   text += plots_row(plots) + points_table(c, other) + "<p class=\"note\">";
   if (std::isfinite(c.floor))
-    text += fmt::format("The dashed line, {}: {}, {}. ", escaped(c.floor_name), short_number(c.floor), escaped(c.floor_from));
+    text += fmt::format("The dashed line, {}: {}. ", escaped(floor_words(c)), escaped(c.floor_from));
   else if (!c.floor_from.empty())
     text += escaped(c.floor_from) + " ";
-  if (!c.reference.empty())
-    text += fmt::format("Errors are against {}{}. ", escaped(c.reference),
-                        std::isfinite(c.reference_error) ? ", whose own error is " + short_number(c.reference_error) : "");
+  if (!c.reference.empty()) text += fmt::format("The reference is {}. ", escaped(c.reference));
   return text + fmt::format("As a table: <code>{}.csv</code></p>\n", escaped(c.id));
 }
 
@@ -115,7 +127,7 @@ std::string summary(const Report& report) {
         "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td><td class=\"n\">{} <small>{}</small></td><td "
         "class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
         escaped(c.id), escaped(c.title), c.current >= 0 ? escaped(c.points[c.current].setting) : "-", escaped(p.setting),
-        c.chosen == c.current ? "as it is" : ask(p), short_number(p.error), escaped(c.error_name), short_number(c.floor), cost_text(c, p));
+        c.chosen == c.current ? "as it is" : ask(p), number(p.error), escaped(c.error_name), number(c.floor), cost_text(c, p));
   }
   return text + "</table></div>\n";
 }

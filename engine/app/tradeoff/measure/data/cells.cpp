@@ -46,8 +46,9 @@ Outcome add_cells(Subject& subject, const Grid& grid, Curve& curve) {
   return time_points(curve, {fetches(linear, places), fetches(cubic, places)}, 0.3 * subject.effort.hand_s);
 }
 
-/// Cubic cells take longer everywhere: they are chosen where they are nearer by a quarter at least.
-void decide(Curve& curve) {
+/// Cubic cells take longer everywhere: they are chosen where they are nearer by a quarter at least. Where rays go through the field as a
+/// volume, the fetch is not all that they cost: what the scene has stays.
+void decide(Curve& curve, bool as_volume) {
   const double gain = curve.points[0].error / curve.points[1].error, cost = curve.points[1].time.median / curve.points[0].time.median;
   curve.front = pareto_front(curve.points, curve.cost);
   curve.chosen = gain >= 1.25 ? 1 : 0;
@@ -56,6 +57,19 @@ void decide(Curve& curve) {
               : gain >= 1 ? fmt::format("Cubic cells are nearer to these data by {:.0f} % only: they are not smooth at their own spacing.",
                                         100 * (1 - 1 / gain))
                           : "Cubic cells are farther from these data than linear ones: they overshoot where noise and edges are.";
+  if (curve.chosen != 1 || !as_volume) return;
+  curve.why += curve.current == 1
+                   ? " The field is drawn as a volume, and a cubic volume has no fast rays: the picture takes longer, see --quality."
+                   : " But the field is drawn as a volume, and a cubic volume has no fast rays: the picture takes longer, see "
+                     "--quality, so that the cost of a fetch alone is no reason to choose them.";
+  curve.chosen = curve.current;
+}
+
+/// Whether a volume of the scene shows the field.
+bool is_volume(scene::Scene& scene, scene::Entity field) {
+  bool found = false;
+  scene.world.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) { found = found || volume.field == field; });
+  return found;
 }
 
 }  // namespace
@@ -84,7 +98,7 @@ Result<std::vector<Curve>> measure_cells(Subject& subject) {
       subject.left_out.push_back("How field \"" + name + "\" is read: " + made.error().message + ".");
       return;
     }
-    decide(curve);
+    decide(curve, is_volume(subject.scene, e));
     curves.push_back(std::move(curve));
   });
   return curves;

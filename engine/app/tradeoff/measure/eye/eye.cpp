@@ -7,8 +7,10 @@
 #include <set>
 
 #include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/number.h"
 #include "engine/base/clock.h"
 #include "render/extract/extract.h"
+#include "render/quality/quality.h"
 #include "render/quality/refinement.h"
 
 namespace catena::app::tradeoff {
@@ -36,6 +38,13 @@ Outcome find_truth(Eye& eye, double seconds) {
     if (eye.truth_error < kSettled || step < 0.04 || 1e-3 * (ms_since(start) + 2 * ms_since(begin)) > seconds) break;
   }
   eye.truth_step = step;
+  if (!eye.rays) return Done{};
+  // surfaces and layers are met where they are, however far apart samples would be
+  render::RenderSettings coarse = render::exact_rung(4);
+  coarse.jitter = true;
+  CATENA_TRY(const render::Picture picture, picture_of(*eye.renderer, eye.packet, coarse));
+  eye.rays = !eye.packet.volumes.empty() || eye.truth_error > 0 || render::measure_error(picture, eye.truth).rmse > 0;
+  if (!eye.rays) eye.truth_error = kNotMeasured;
   return Done{};
 }
 
@@ -76,8 +85,10 @@ Result<PictureFloor> picture_floor(render::Renderer& renderer, const render::Fra
   }
   const double at_2h = render::measure_error(pictures[1], pictures[0]).rmse, at_4h = render::measure_error(pictures[2], pictures[0]).rmse;
   const Extrapolated e = from_differences(at_2h, at_4h);
-  return PictureFloor{e.error, fmt::format("from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}); {}", at_2h, at_4h,
-                                           order_words(e))};
+  return PictureFloor{e.error,
+                      fmt::format("from the pictures of every 2nd voxel (off by {}) and every 4th ({}); {}", number_text(at_2h, 3),
+                                  number_text(at_4h, 3), order_words(e)),
+                      e.settled};
 }
 
 bool draws_grids(const render::FramePacket& packet) {
@@ -109,6 +120,24 @@ Repeat drawing_of(render::Renderer& renderer, const render::FramePacket& packet,
   };
 }
 
+bool needs_others(const LastDrawn& last, const render::FramePacket& packet, const render::RenderSettings& settings) {
+  if (!last.settings || last.width != packet.width || last.height != packet.height) return true;
+  const render::RenderSettings& before = *last.settings;
+  if (settings.texels != before.texels || settings.layout != before.layout || settings.fast.has_value() != before.fast.has_value())
+    return true;
+  return settings.fast && (settings.fast->smooth_gradients != before.fast->smooth_gradients ||
+                           settings.fast->spacing != before.fast->spacing || settings.fast->most_bytes != before.fast->most_bytes);
+}
+
+Repeat drawing_in_turns(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings,
+                        std::shared_ptr<LastDrawn> last) {
+  return [draw = drawing_of(renderer, packet, settings), &packet, settings, last = std::move(last)]() -> Result<double> {
+    if (needs_others(*last, packet, settings)) CATENA_CHECK(draw());
+    *last = {settings, packet.width, packet.height};
+    return draw();
+  };
+}
+
 Outcome open_eye(Subject& subject) {
   const Effort& effort = subject.effort;
   CATENA_TRY(render::FramePacket packet, render::make_frame(subject.scene, effort.width, effort.height));
@@ -130,12 +159,13 @@ Outcome open_eye(Subject& subject) {
   }
   eye->renderer = std::move(*renderer);
   eye->packet = std::move(packet);
-  eye->rays = render::draws_rays(eye->packet) || !eye->packet.isosurfaces.empty();
+  eye->rays = render::draws_rays(eye->packet);
   const auto work = [&]() -> Outcome {
     CATENA_CHECK(find_truth(*eye, effort.eye_s));
     CATENA_TRY(const PictureFloor floor, picture_floor(*eye->renderer, eye->packet));
     eye->floor = floor.error;
     eye->floor_from = floor.from;
+    eye->floor_settled = floor.settled;
     CATENA_CHECK(eye->renderer->draw(eye->packet, render::balanced_settings()));
     return Done{};
   };
@@ -152,7 +182,7 @@ Outcome measure_settings(Subject& subject, const std::vector<Tried>& tried, Curv
   Eye& eye = *subject.eye;
   std::vector<Repeat> repeats;
   std::set<std::string> too_long;
-  std::vector<render::RenderSettings> drawn;
+  const auto last = std::make_shared<LastDrawn>();
   for (const Tried& t : tried) {
     if (too_long.contains(t.series)) continue;
     const Repeat draw = drawing_of(*eye.renderer, eye.packet, t.settings);
@@ -162,19 +192,8 @@ Outcome measure_settings(Subject& subject, const std::vector<Tried>& tried, Curv
     CATENA_TRY(const render::Picture picture, eye.renderer->read_back());
     const render::PictureError error = render::measure_error(picture, eye.truth);
     curve.points.push_back(point_of(t, error, eye.renderer->stats()));
-    drawn.push_back(t.settings);
-    repeats.push_back(draw);
+    repeats.push_back(drawing_in_turns(*eye.renderer, eye.packet, t.settings, last));
     if (seconds > 0.2 * subject.effort.eye_s) too_long.insert(t.series);
-  }
-  // voxels of another format than the picture's before are put on the device first, which does not count
-  const std::vector<Repeat> bare = repeats;
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const render::RenderSettings& before = drawn[(i + drawn.size() - 1) % drawn.size()];
-    if (drawn[i].texels == before.texels && drawn[i].layout == before.layout) continue;
-    repeats[i] = [draw = bare[i]]() -> Result<double> {
-      CATENA_CHECK(draw());
-      return draw();
-    };
   }
   return time_points(curve, repeats, subject.effort.eye_s, 15);
 }
@@ -188,11 +207,19 @@ Curve eye_curve(const Subject& subject, const std::string& id, const std::string
   curve.error_name = "error of the picture (RMSE, 1/255)";
   curve.time_name = eye.renderer->device().info().is_cpu() ? "ms of processor a picture" : "ms a picture";
   curve.more = {"99.9 %, 1/255", "thin parts kept, %", "of the worst thin part, %"};
-  curve.reference =
-      eye.rays ? fmt::format("the exact rays with steps of {:g} voxel, 32-bit texels (twice the step: so much away)", eye.truth_step)
-               : "the picture as it is: nothing in it is drawn by rays";
-  curve.reference_error = eye.truth_error;
+  const bool by_rounding = !(eye.truth_error > render::kLeastTold);
+  curve.reference_error = by_rounding ? render::kLeastTold : eye.truth_error;
+  if (by_rounding) curve.told_name = "what rounding to 8 bits hides";
+  const std::string least = fmt::format("smaller errors than {}/255{} cannot be told", number_text(curve.reference_error),
+                                        by_rounding ? ", which rounding to 8 bits hides," : "");
+  curve.reference = eye.rays
+                        ? fmt::format(
+                              "the picture of exact rays with steps of {:g} voxel and 32-bit texels; it differs from one with steps of "
+                              "{:g} voxel by {}/255; {}",
+                              eye.truth_step, 2 * eye.truth_step, number_text(eye.truth_error), least)
+                        : "the picture as it is: nothing in it is sampled along rays; " + least;
   curve.floor = eye.floor;
+  if (!eye.floor_settled) curve.floor_name += ", at least";
   curve.floor_from = eye.floor_from;
   return curve;
 }

@@ -2,6 +2,8 @@
 /// picture. Frame thread.
 #pragma once
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,11 +23,25 @@ Result<render::Picture> picture_of(render::Renderer& renderer, const render::Fra
 /// Milliseconds of drawing: of a processor's time where the driver draws with it, else of wall time.
 Repeat drawing_of(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings);
 
+/// What a renderer drew last, of pictures that it draws in turns.
+struct LastDrawn {
+  std::optional<render::RenderSettings> settings;  ///< none: nothing yet
+  std::uint32_t width = 0, height = 0;
+};
+/// Whether a picture needs other voxels, targets or another way of marching on the device than the last.
+bool needs_others(const LastDrawn& last, const render::FramePacket& packet, const render::RenderSettings& settings);
+
+/// The same in turns with others on one renderer, which share `last`: a picture that needs others than the last is drawn once before,
+/// which does not count.
+Repeat drawing_in_turns(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings,
+                        std::shared_ptr<LastDrawn> last);
+
 /// The data's own error in a picture: that of the same data with every 2nd and every 4th voxel, extrapolated. Steps of one length in the
 /// world.
 struct PictureFloor {
   double error = kNotMeasured;  ///< RMSE, 1/255
   std::string from;
+  bool settled = true;  ///< false: it is the least that it can be
 };
 Result<PictureFloor> picture_floor(render::Renderer& renderer, const render::FramePacket& packet);
 

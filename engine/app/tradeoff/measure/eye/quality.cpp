@@ -39,7 +39,7 @@ Result<std::vector<render::Picture>> pictures_of(Eye& eye, const std::vector<ren
 Result<std::vector<Curve>> measure_quality(Subject& subject) {
   Eye& eye = *subject.eye;
   if (!eye.rays) {
-    subject.left_out.emplace_back("Quality: nothing in the picture is drawn by rays, so that --quality changes nothing but the texels.");
+    subject.left_out.emplace_back("Quality: nothing in the picture is sampled along rays: --quality makes no difference.");
     return std::vector<Curve>{};
   }
   Curve curve = eye_curve(

@@ -1,10 +1,13 @@
 /// How many samples the picture has: fewer pixels, scaled up, and several samples a pixel, against 4 x 4 samples a pixel.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/number.h"
 #include "engine/app/tradeoff/measure/registry.h"
+#include "render/quality/quality.h"
 #include "render/quality/refinement.h"
 
 namespace catena::app::tradeoff {
@@ -65,9 +68,16 @@ Result<std::vector<Curve>> measure_resolution(Subject& subject) {
   CATENA_TRY(const render::Picture four, picture_of(*eye.renderer, sized(eye.packet, 4), settings));
   CATENA_TRY(const render::Picture three, picture_of(*eye.renderer, sized(eye.packet, 3), settings));
   const render::Picture truth = resized(four, width, height);
-  curve.reference = "4 x 4 samples a pixel (3 x 3: so much away), the same rays";
-  curve.reference_error = render::measure_error(resized(three, width, height), truth).rmse;
+  const double apart = render::measure_error(resized(three, width, height), truth).rmse;
+  curve.reference_error = std::max(apart, render::kLeastTold);
+  curve.told_name = apart > render::kLeastTold ? "what the reference can tell" : "what rounding to 8 bits hides";
+  curve.reference = fmt::format(
+      "the picture of 4 x 4 samples a pixel, by the same rays; it differs from that of 3 x 3 by {}/255; smaller errors than {}/255{} "
+      "cannot "
+      "be told",
+      number_text(apart), number_text(curve.reference_error), apart > render::kLeastTold ? "" : ", which rounding to 8 bits hides,");
   curve.floor = kNotMeasured;
+  curve.floor_name = Curve().floor_name;
   curve.floor_from = "The data's own error is in all of them alike.";
   std::vector<render::FramePacket> packets;
   struct Try {
@@ -95,7 +105,8 @@ Result<std::vector<Curve>> measure_resolution(Subject& subject) {
   }
   curve.current = 2;
   std::vector<Repeat> repeats;
-  for (const render::FramePacket& packet : packets) repeats.push_back(drawing_of(*eye.renderer, packet, settings));
+  const auto last = std::make_shared<LastDrawn>();
+  for (const render::FramePacket& packet : packets) repeats.push_back(drawing_in_turns(*eye.renderer, packet, settings, last));
   CATENA_CHECK(time_points(curve, repeats, 0.5 * subject.effort.eye_s, 9));
   return std::vector<Curve>{curve};
 }

@@ -9,7 +9,7 @@ namespace catena::app::tradeoff {
 
 Result<std::vector<Curve>> measure_step(Subject& subject) {
   if (!subject.eye->rays) {
-    subject.left_out.emplace_back("Step: nothing in the picture is drawn by rays.");
+    subject.left_out.emplace_back("Step: nothing in the picture is sampled along rays: --quality makes no difference.");
     return std::vector<Curve>{};
   }
   Curve curve =
@@ -30,8 +30,9 @@ Result<std::vector<Curve>> measure_step(Subject& subject) {
     render::RenderSettings jittered = render::exact_rung(step);
     jittered.jitter = true;
     if (step >= 1)
-      tried.push_back({fmt::format("exact, jittered, step {:g}", step), fmt::format("--quality step={:g}, \"jitter\": true", step),
-                       "exact, jittered", jittered});
+      tried.push_back({fmt::format("exact, jittered, step {:g}", step),
+                       fmt::format("`--quality step={:g}` and `\"jitter\": true` at the top level of the scene", step), "exact, jittered",
+                       jittered});
   }
   CATENA_CHECK(measure_settings(subject, tried, curve));
   return std::vector<Curve>{curve};

@@ -85,6 +85,7 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   if (curve.points.size() == 3) {
     const Extrapolated e = from_differences(curve.points[1].error, curve.points[2].error);
     curve.floor = e.error;
+    if (!e.settled) curve.floor_name += ", at least";
     curve.floor_from = fmt::format("from the surfaces that every 2nd and 4th voxel hold; {}", order_words(e));
   }
   std::vector<Repeat> repeats;

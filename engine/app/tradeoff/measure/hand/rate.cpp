@@ -6,6 +6,7 @@
 
 #include "engine/app/tradeoff/measure/choice.h"
 #include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/number.h"
 #include "engine/app/tradeoff/measure/registry.h"
 #include "engine/app/tradeoff/stiffness.h"
 #include "haptics/device/registry.h"
@@ -40,7 +41,7 @@ void mark_current(Curve& curve, double rate_hz) {
     if (curve.points[i].work == rate_hz) curve.current = static_cast<int>(i);
 }
 
-std::string rate_key(double rate_hz) { return fmt::format("\"device\": {{\"rate\": {:g}}}, or --rate {:g}", rate_hz, rate_hz); }
+std::string rate_key(double rate_hz) { return fmt::format("`\"device\": {{\"rate\": {:g}}}` or `--rate {:g}`", rate_hz, rate_hz); }
 
 Result<Curve> force_curve(Subject& subject) {
   Curve curve;
@@ -59,7 +60,8 @@ Result<Curve> force_curve(Subject& subject) {
   const std::vector<Vec3> truth = forces_of(*subject.program, paths.back());
   const double finer = 2 * kFinest_hz;
   curve.reference_error = difference(truth, kFinest_hz, forces_of(*subject.program, subject.motion.samples(finer)), finer);
-  curve.reference = "a servo of 10 kHz (20 kHz: so much away)";
+  curve.reference = fmt::format("a servo at 10 kHz; it differs from one at 20 kHz by {} N, so that smaller errors cannot be told",
+                                number_text(curve.reference_error));
   curve.floor_from = "There is no error of the data here: it is in all rates alike.";
   std::vector<Repeat> repeats;
   for (std::size_t i = 0; i < std::size(kRates_hz); ++i) {
@@ -142,9 +144,17 @@ void choose_one_rate(Curve& force, Curve& stability) {
   }
   Curve &slower = force.chosen < stability.chosen ? force : stability, &faster = &slower == &force ? stability : force;
   if (slower.chosen == faster.chosen) return;
-  slower.why = fmt::format(
-      "Here {} would do; {} needs {}, and a servo has one rate.", slower.points[static_cast<std::size_t>(slower.chosen)].setting,
-      &slower == &force ? "the spring's stability" : "the force", faster.points[static_cast<std::size_t>(faster.chosen)].setting);
+  const auto setting = [](const Curve& curve) { return curve.points[static_cast<std::size_t>(curve.chosen)].setting; };
+  if (faster.even)  // it asks for nothing: what the scene has stays
+    slower.why =
+        fmt::format("Here {} would do, but by the force no rate stands out, so that the scene's {} may stay: a servo has one rate.",
+                    setting(slower), setting(faster));
+  else if (slower.even)
+    slower.why =
+        fmt::format("By the force no rate stands out; the spring's stability asks for {}, and a servo has one rate.", setting(faster));
+  else
+    slower.why = fmt::format("Here {} would do; {} needs {}, and a servo has one rate.", setting(slower),
+                             &slower == &force ? "the spring's stability" : "the force", setting(faster));
   slower.chosen = faster.chosen;
 }
 

@@ -10,6 +10,7 @@
 
 #include "engine/app/tradeoff/measure/floor.h"
 #include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/number.h"
 #include "engine/app/tradeoff/measure/registry.h"
 #include "engine/base/clock.h"
 #include "engine/base/numbers.h"
@@ -25,7 +26,7 @@ constexpr double kReferenceTolerance = 1e-13;  // L
 double apart(const flow::Curve& line, const flow::NearestOnCurve& other, double lo, double hi, double length) {
   double most = 0;
   constexpr int kPlaces = 400;
-  for (int k = 0; k <= kPlaces; ++k) most = std::max(most, other.at(line.position(lo + (hi - lo) * k / kPlaces)).distance2);
+  for (int k = 0; k <= kPlaces; ++k) most = std::max(most, other.exact(line.position(lo + (hi - lo) * k / kPlaces)).distance2);
   return std::sqrt(most) / length;
 }
 
@@ -71,8 +72,9 @@ void add_floor(const Line& line, Curve& curve) {
   }
   const Extrapolated e = from_differences(off[0], off[1]);
   curve.floor = e.error;
-  curve.floor_from = fmt::format("from the lines through the same seed on every 2nd voxel (off by {:.2g}) and every 4th ({:.2g}); {}",
-                                 off[0], off[1], order_words(e));
+  if (!e.settled) curve.floor_name += ", at least";
+  curve.floor_from = fmt::format("from the lines through the same seed on every 2nd voxel (off by {}) and every 4th ({}); {}",
+                                 number_text(off[0]), number_text(off[1]), order_words(e));
 }
 
 Result<Line> make_line(Subject& subject, const LinkOf& link) {
@@ -109,10 +111,19 @@ flow::TraceOptions converged(double length) {
   return {.length = length, .tolerance = kReferenceTolerance, .hermite_tolerance = kReferenceTolerance};
 }
 
-std::string StreamlineSetting::write() const {
-  std::string text;
+std::string StreamlineSetting::write(const LinkOf& link) const {
+  std::string text, replaced;
   for (const auto& [key, value] : keys) text += (text.empty() ? "\"" : ", \"") + key + "\": " + value;
-  return text;
+  const auto replaces = [&](const char* key) {
+    if (link.node.find(key) != nullptr) replaced += fmt::format("{}`\"{}\"`", replaced.empty() ? "" : " and ", key);
+  };
+  if (selected) {
+    replaces("method");
+    replaces("tolerance");
+  } else if (const json::Node* follow = link.node.find("follow"); follow != nullptr && follow->string == "selected") {
+    replaces("follow");
+  }
+  return replaced.empty() ? text : fmt::format("`{}` in place of {} in the link \"{}\"", text, replaced, link.name);
 }
 
 std::vector<StreamlineSetting> streamline_settings(const json::Node& link) {
@@ -129,7 +140,8 @@ std::vector<StreamlineSetting> streamline_settings(const json::Node& link) {
   if (const json::Node* own = link.find("tolerance");
       own != nullptr && own->kind == json::Kind::number && own->number > 0 && own->number < 1) {
     const auto near = [&](const auto& t) { return std::fabs(t.first - own->number) <= 1e-9 * own->number; };
-    if (std::none_of(tolerances.begin(), tolerances.end(), near)) tolerances.emplace_back(own->number, to_text(own->number));
+    if (std::none_of(tolerances.begin(), tolerances.end(), near))
+      tolerances.emplace_back(own->number, with_short_exponent(to_text(own->number)));
   }
   for (const Method method : {Method::rkf34, Method::dp54})
     for (const auto& [tolerance, text] : tolerances) {
@@ -163,7 +175,9 @@ Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
   coarser.hermite_tolerance *= 100;
   CATENA_TRY(const flow::CurvePtr check, flow::trace(line.flow, line.seed, coarser));
   curve.reference_error = apart(*check, nearest, line.lo, line.hi, length);
-  curve.reference = "the line traced with a tolerance of 1e-13 L (1e-11 L: that much away)";
+  curve.reference = fmt::format(
+      "the line traced with a tolerance of 1e-13 L; it differs from one of 1e-11 L by {} L, so that smaller errors cannot be told",
+      number_text(curve.reference_error));
   add_floor(line, curve);
 
   std::vector<haptics::Program> programs;
@@ -181,7 +195,7 @@ Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
   usual.length = line.options.length;
   CATENA_TRY(flow::CurvePtr selected, flow::trace(line.flow, line.seed, usual));
   const std::vector<StreamlineSetting> settings = streamline_settings(link.node);
-  Point cached{settings[0].words, settings[0].write(), settings[0].series};
+  Point cached{settings[0].words, settings[0].write(link), settings[0].series};
   cached.more = {ms_since(start)};
   add(std::move(cached), haptics::make_selected_streamline(std::move(selected)), subject.rate_hz);
   const auto online = [&](flow::Method method, double tolerance) {
@@ -193,7 +207,7 @@ Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
     const bool fixed = !setting.tolerance;
     for (const double times : fixed ? std::vector{0.25, 1.0, 4.0} : std::vector{1.0}) {
       const std::string rate = fmt::format("{:g}", times * subject.rate_hz);
-      add({times == 1 ? setting.words : setting.words + ", " + rate + " Hz", setting.write() + (times == 1 ? "" : "; --rate " + rate),
+      add({times == 1 ? setting.words : setting.words + ", " + rate + " Hz", setting.write(link) + (times == 1 ? "" : "; --rate " + rate),
            setting.series},
           online(*setting.method, setting.tolerance.value_or(1e-9)), times * subject.rate_hz);
     }
@@ -219,7 +233,7 @@ Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
     double far2 = 0, fetches = 0, bad = 0;
     run_ticks(programs[i], paths[i], [&](const exchange::HapticState& out) {
       const exchange::LinkReport& report = out.links[0];
-      far2 = std::max(far2, nearest.at(report.proxy).distance2);
+      far2 = std::max(far2, nearest.exact(report.proxy).distance2);
       fetches += report.evaluations;
       bad += report.status != exchange::Status::ok;
     });

@@ -16,7 +16,8 @@ struct StreamlineSetting {
   bool selected = false;                                  ///< traced once
   std::optional<flow::Method> method{};                   ///< of online following
   std::optional<double> tolerance{};                      ///< of an embedded one, L
-  std::string write() const;                              ///< the keys as a scene has them
+  /// The keys as a scene has them; where the link states keys that contradict them, also what they replace (Point::write).
+  std::string write(const LinkOf& link) const;
 };
 
 /// All of them, the traced line first; embedded methods with tolerances 1e-3 .. 1e-13 and the link's own.
