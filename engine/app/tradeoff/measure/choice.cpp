@@ -140,8 +140,7 @@ void choose(Curve& curve) {
     if (bytes)
       return fmt::format(
           "Of those whose error is not above {}, it has the fewest bytes, with an error of {}: to go below takes more and gains nothing "
-          "that "
-          "can be told.",
+          "that can be told.",
           level, error);
     return fmt::format("It is the cheapest whose error, {}, is not above {}: to go below costs more and gains nothing that can be told.",
                        error, level);
