@@ -126,10 +126,10 @@ Result<std::array<double, 2>> Lattice::refined() const {
   return std::array{4 * double(rays[0]) / covered_, double(rays[1]) / covered_};
 }
 
-Result<bool> Lattice::keeps_what_is_thin(const RenderSettings& settings, double e) {
+Result<bool> Lattice::keeps_what_is_thin(double e) {
   CATENA_TRY(const Picture picture, renderer_.read_back());
   if (fine_.rgba.empty()) {
-    CATENA_CHECK(renderer_.draw(packet_, fast_rung(kFineStep, 1, 0, -1, settings.fast->smooth_gradients)));
+    CATENA_CHECK(renderer_.draw(packet_, fast_rung(kFineStep, 1, 0, -1, packet_.volumes.front().shade)));
     CATENA_TRY(fine_, renderer_.read_back());
     ++pictures_;
   }

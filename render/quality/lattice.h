@@ -40,8 +40,8 @@ class Lattice {
 
   /// Of the picture that was drawn last: the rays of every 2nd pixel and of every pixel that were refined, by all such that show something.
   Result<std::array<double, 2>> refined() const;
-  /// Whether what is thin is in it, and its tail of errors is short, beside every ray of a short step.
-  Result<bool> keeps_what_is_thin(const RenderSettings& settings, double e);
+  /// Whether what is thin is in the picture that was drawn last, and its tail of errors is short, beside every ray of a short step.
+  Result<bool> keeps_what_is_thin(double e);
   /// Whether the error of the rays, of the picture, that were measured last stays much the same where the camera goes on.
   Result<bool> rays_are_steady(const RenderSettings& settings);
   Result<bool> picture_is_steady(const RenderSettings& settings);

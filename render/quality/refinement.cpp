@@ -52,7 +52,7 @@ double relative_cost(const RenderSettings& settings, bool shaded) {
   if (!settings.fast) return (shaded ? 3.5 : 1.1) / settings.step_voxels + 0.05;
   const FastSettings& f = *settings.fast;
   const Share share = share_of(f);
-  const double a_ray = shaded ? (f.smooth_gradients ? 1.3 : 1.1) : 1.0;
+  const double a_ray = shaded ? 1.1 * (f.smooth_gradients ? kSmoothCost : 1) : 1.0;
   return share.overhead + share.rays * a_ray * (kStepless + (1 - kStepless) / f.step_voxels);
 }
 
@@ -64,16 +64,20 @@ struct FastRung {
   double step;
   std::uint32_t spacing;
   double half, full;
+  bool smooth = true;  // where it is lit
 };
 constexpr FastRung kPlain[] = {{8, 4, -1, -1},   {6, 4, -1, -1},  {4, 4, -1, -1},  {3, 4, -1, -1},   {2, 4, -1, -1},
                                {1.5, 4, -1, -1}, {1, 4, -1, -1},  {1, 4, 24, -1},  {1, 4, 6, -1},    {1, 2, 0, -1},
                                {1, 2, 0, 24},    {1, 2, 0, 12},   {1, 2, 0, 4},    {1, 2, 0, 1.5},   {1, 2, 0, 0.6},
                                {1, 1, 0, -1},    {0.7, 1, 0, -1}, {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}};
-// light wants short steps more than it wants every pixel
-constexpr FastRung kShaded[] = {{8, 4, -1, -1},  {6, 4, -1, -1},   {4, 4, -1, -1},   {3, 4, -1, -1},   {2, 4, -1, -1},   {1.5, 4, -1, -1},
-                                {1, 4, -1, -1},  {1, 4, 24, -1},   {2, 2, 0, -1},    {1.5, 2, 0, -1},  {1, 2, 0, -1},    {0.7, 2, 0, -1},
-                                {0.5, 2, 0, -1}, {0.5, 2, 0, 24},  {0.5, 2, 0, 12},  {0.5, 2, 0, 4},   {0.5, 2, 0, 1.5}, {0.7, 1, 0, -1},
-                                {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}, {0.18, 1, 0, -1}, {0.125, 1, 0, -1}};
+// Light wants short steps more than it wants every pixel. With long ones the gradient of the cell is as good as central differences are,
+// at half the time.
+constexpr FastRung kShaded[] = {
+    {8, 4, -1, -1, false}, {6, 4, -1, -1, false}, {4, 4, -1, -1, false}, {3, 4, -1, -1, false}, {2, 4, -1, -1, false}, {4, 4, -1, -1},
+    {3, 4, -1, -1},        {2, 4, -1, -1},        {1.5, 4, -1, -1},      {1, 4, -1, -1},        {1, 4, 24, -1},        {2, 2, 0, -1},
+    {1.5, 2, 0, -1},       {1, 2, 0, -1},         {0.7, 2, 0, -1},       {0.5, 2, 0, -1},       {0.5, 2, 0, 24},       {0.5, 2, 0, 12},
+    {0.5, 2, 0, 4},        {0.5, 2, 0, 1.5},      {0.7, 1, 0, -1},       {0.5, 1, 0, -1},       {0.35, 1, 0, -1},      {0.25, 1, 0, -1},
+    {0.18, 1, 0, -1},      {0.125, 1, 0, -1}};
 constexpr double kExactLadder[] = {4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
 // of exact rays that end the fast ones: lit ones have to be a fourth of the fast raycast's to be as good
 constexpr double kLastStep = 0.25, kLastShadedStep = 0.0625;
@@ -84,7 +88,7 @@ std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
   std::vector<RenderSettings> all;
   if (kind.fast) {
     for (const FastRung& r : kind.shaded ? std::span<const FastRung>(kShaded) : kPlain)
-      all.push_back(fast_rung(r.step, r.spacing, r.half, r.full, kind.shaded));
+      all.push_back(fast_rung(r.step, r.spacing, r.half, r.full, kind.shaded && r.smooth));
     all.push_back(exact_rung(kind.shaded ? kLastShadedStep : kLastStep));
   } else {
     for (const double step : kExactLadder) all.push_back(exact_rung(step));

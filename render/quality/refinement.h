@@ -28,6 +28,8 @@ RenderSettings converged_rung(double step_voxels);
 
 /// Of what a ray costs at step 1: its way to what is seen, whatever the step.
 inline constexpr double kStepless = 0.3;
+/// Of a ray whose light goes by central differences, by one whose light goes by the gradient of the cell.
+inline constexpr double kSmoothCost = 1.65;
 
 /// Of drawing, in units of marching every pixel at step 1 unshaded by the fast raycast, as a CPU driver has it: good for an order and for
 /// first guesses.

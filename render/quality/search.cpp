@@ -14,6 +14,7 @@ constexpr double kStepShare = 0.93;   // of the error that ray steps may take
 constexpr double kFinestStep = 0.05;  // voxels
 constexpr int kMaxPictures = 16;
 constexpr std::size_t kGoodSteps = 5;  // of those that are good enough, the longest
+constexpr double kStill = 0.95;        // of the error of a longer step: hardly less
 // of the error, that a ray may leave out at its end: most of that is told from what it has met
 constexpr double kEndShare = 2, kSoonestEnd = 1.0 / 32;
 
@@ -29,10 +30,11 @@ constexpr Plan kPlan[] = {{4, -1, -1, {0, 0}},  {4, 1.3, -1, {0.4, 0}}, {2, 0, -
 constexpr int kPlans = int(std::size(kPlan));
 /// Of every pixel's rays by those of the first lattice, and of a refined share: a ray costs the more the farther its neighbours are. As a
 /// CPU driver has it: it only decides between settings that are good enough.
-double cost_of(const Plan& plan, const std::array<double, 2>& refined, double step) {
+double cost_of(const Plan& plan, const std::array<double, 2>& refined, const FastSettings& f) {
   const double first = plan.spacing == 1 ? 1 : plan.spacing == 2 ? 0.325 : 0.137;
   const double marks = plan.refine_full >= 0 ? 0.02 : 0;
-  return (first + marks + 0.29 * refined[0] + refined[1]) * (kStepless + (1 - kStepless) / step);
+  const double a_ray = (f.smooth_gradients ? kSmoothCost : 1) * (kStepless + (1 - kStepless) / f.step_voxels);
+  return (first + marks + 0.29 * refined[0] + refined[1]) * a_ray;
 }
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
 constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
@@ -61,14 +63,17 @@ RenderSettings planned(const Plan& plan, double step, double e, bool smooth) {
   return s;
 }
 
-/// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation.
-Result<std::vector<Candidate>> fast_candidates(Lattice& lattice, double e) {
-  std::vector<Candidate> all;
-  const bool smooth = lattice.packet().volumes.front().shade;
+/// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation. `floor`: there is an error that no
+/// step mends, as of light by the gradient of the cell; steps that make it hardly less are the last.
+Outcome add_candidates(Lattice& lattice, double e, bool smooth, bool floor, std::vector<Candidate>& all) {
+  const std::size_t most = all.size() + kGoodSteps * std::size(kPlan);
+  double before = std::numeric_limits<double>::infinity();
   for (const double step : kFastSteps) {
-    if (all.size() == kGoodSteps * std::size(kPlan)) break;
+    if (all.size() == most) break;
     const RenderSettings every_ray = planned(kPlan[kPlans - 1], step, e, smooth);
     CATENA_TRY(const LatticeError error, lattice.of_rays(every_ray));
+    if (floor && error.rmse > kStill * before) break;
+    before = error.rmse;
     if (error.rmse > kStepShare * e || error.p999 > kFarthest * e) continue;
     CATENA_TRY(const bool steady, lattice.rays_are_steady(every_ray));
     if (!steady) continue;
@@ -76,6 +81,14 @@ Result<std::vector<Candidate>> fast_candidates(Lattice& lattice, double e) {
       all.push_back({planned(kPlan[plan], step, e, smooth), error.rmse, error.above, plan});
     }
   }
+  return Done{};
+}
+
+Result<std::vector<Candidate>> fast_candidates(Lattice& lattice, double e) {
+  std::vector<Candidate> all;
+  const bool lit = lattice.packet().volumes.front().shade;
+  CATENA_CHECK(add_candidates(lattice, e, false, lit, all));
+  if (lit) CATENA_CHECK(add_candidates(lattice, e, true, false, all));
   return all;
 }
 
@@ -88,16 +101,17 @@ Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e) 
   CATENA_TRY(std::vector<Candidate> candidates, fast_candidates(lattice, e));
   std::array<double, 2> refined[kPlans];
   for (int plan = 0; plan < kPlans; ++plan) refined[plan] = kPlan[plan].refined;
-  std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
-  int blurs[kPlans] = {};                // what is thin, at so many steps
+  // of a plan, by the gradient of the cell and by central differences
+  std::optional<double> failed[2][kPlans];  // what interpolation cost the latest
+  int blurs[2][kPlans] = {};                // what is thin, at so many steps
   std::optional<QualityChoice> best;
   double best_cost = std::numeric_limits<double>::infinity();
-  const auto cost = [&](const Candidate& c) { return cost_of(kPlan[c.plan], refined[c.plan], c.settings.fast->step_voxels); };
+  const auto cost = [&](const Candidate& c) { return cost_of(kPlan[c.plan], refined[c.plan], *c.settings.fast); };
   // every ray, of the longest step that keeps what is thin
   for (const Candidate& c : candidates) {
     if (c.settings.fast->spacing > 1 || best || c.above > e) continue;
     CATENA_CHECK(lattice.of_picture(c.settings));
-    CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(c.settings, e));
+    CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(e));
     if (keeps) best = choice(lattice, c.settings, c.above, true), best_cost = cost(c);
   }
   std::erase_if(candidates, [](const Candidate& c) { return c.settings.fast->spacing == 1; });
@@ -107,21 +121,22 @@ Result<std::optional<QualityChoice>> fast_for_error(Lattice& lattice, double e) 
     candidates.erase(cheapest);
     if (cost(next) >= best_cost) break;
     // what interpolation cost at another step says whether this one is worth a picture
-    std::optional<double>& before = failed[next.plan];
-    if (blurs[next.plan] > 1 || (before && std::hypot(next.rays, *before) > e)) continue;
+    const bool smooth = next.settings.fast->smooth_gradients;
+    std::optional<double>& before = failed[smooth][next.plan];
+    if (blurs[smooth][next.plan] > 1 || (before && std::hypot(next.rays, *before) > e)) continue;
     CATENA_TRY(const LatticeError picture, lattice.of_picture(next.settings));
     ++drawn;
     CATENA_TRY(const auto rays, lattice.refined());
     learn(next.plan, rays, refined);
     if (picture.good_for(e)) {
       if (cost(next) >= best_cost) continue;
-      CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(next.settings, e));
+      CATENA_TRY(const bool keeps, lattice.keeps_what_is_thin(e));
       CATENA_TRY(const bool steady, keeps ? lattice.picture_is_steady(next.settings) : false);
       if (steady) best = choice(lattice, next.settings, picture.above, true), best_cost = cost(next);
       if (keeps) continue;
     }
     // where a few pixels are far off, or what is thin is lost, a shorter step may mend it once
-    blurs[next.plan] += picture.above <= e;
+    blurs[smooth][next.plan] += picture.above <= e;
     before = std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
   }
   if (best) best->pictures = lattice.pictures();

@@ -159,6 +159,23 @@ TEST_F(Quality, SteepTransferFunctionsAreJudgedByRaysThatHaveConverged) {
   EXPECT_LE(measure_error(draw(packet, choice->settings), truth).rmse, 2.2) << describe(choice->settings);
 }
 
+/// The gradient of the cell costs half of what central differences do, and is as good where the field is smooth.
+TEST_F(Quality, LightIsByTheGradientOfTheCellWhereThatIsGoodEnough) {
+  const FramePacket smooth = scene(true);
+  FramePacket rough = smooth;
+  std::mt19937 random(3);
+  rough.volumes[0].grid = make_grid(
+      {64, 60, 56}, [&](const Vec3& p) { return 1 - length(p - Vec3(31.5, 29.5, 27.5)) / 40 + 0.03 * double(random()) / 4294967296.0; });
+  rough.volumes[0].transfer.extinctions = {{0, 0}, {0.5, 0}, {0.6, 0.5}, {1, 0.5}};
+  for (const FramePacket& packet : {smooth, rough}) {
+    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 3});
+    ASSERT_TRUE(choice);
+    ASSERT_TRUE(choice->settings.fast);
+    EXPECT_EQ(choice->settings.fast->smooth_gradients, packet.volumes[0].grid == rough.volumes[0].grid) << describe(choice->settings);
+    EXPECT_LT(true_rmse(packet, choice->settings), 1.05 * 3) << describe(choice->settings);
+  }
+}
+
 TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
   const auto choice = choose_quality(*renderer_, scene(true), {QualityGoal::Kind::error, 0.02});
   ASSERT_TRUE(choice);

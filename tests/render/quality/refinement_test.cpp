@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 namespace catena::test {
@@ -46,6 +47,15 @@ TEST(Ladder, CostsFollowRaysStepsAndShading) {
   smooth.fast->smooth_gradients = true;
   EXPECT_GT(relative_cost(smooth, true), relative_cost(fine, true));
   EXPECT_GT(relative_cost({}, true), relative_cost(fine, true));
+}
+
+/// Long steps are lit by the gradient of the cell, which is as good there; no rung after the first smooth one is.
+TEST(Ladder, TheCheapestLitRungsGoByTheGradientOfTheCell) {
+  const auto ladder = quality_ladder({true, true});
+  const auto smooth = [](const RenderSettings& s) { return !s.fast || s.fast->smooth_gradients; };
+  EXPECT_FALSE(smooth(ladder.front()));
+  EXPECT_TRUE(std::ranges::is_partitioned(ladder, [&](const RenderSettings& s) { return !smooth(s); }));
+  for (const RenderSettings& plain : quality_ladder({true, false})) EXPECT_FALSE(plain.fast && plain.fast->smooth_gradients);
 }
 
 TEST(TimeModel, FollowsTheMachineAndForgetsPipelines) {
