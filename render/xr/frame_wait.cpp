@@ -4,45 +4,67 @@
 
 namespace catena::render::xr {
 
-FrameWait::FrameWait(PFN_xrWaitFrame wait, XrSession session) : wait_(wait), session_(session), thread_([this] { run(); }) {}
+FrameWait::FrameWait(PFN_xrWaitFrame wait, XrSession session) : shared_(std::make_shared<Shared>()) {
+  shared_->wait = wait;
+  shared_->session = session;
+  thread_ = std::thread([shared = shared_] { run(*shared); });
+}
 
 FrameWait::~FrameWait() {
+  if (!thread_.joinable()) return;
   {
-    const std::lock_guard guard(lock_);
-    ends_ = true;
+    const std::lock_guard guard(shared_->lock);
+    shared_->ends = true;
   }
-  changed_.notify_all();
+  shared_->changed.notify_all();
   thread_.join();
 }
 
-std::optional<FrameWait::Answer> FrameWait::take(std::optional<std::chrono::nanoseconds> patience) {
-  std::unique_lock guard(lock_);
-  if (!std::exchange(asked_, true)) changed_.notify_all();
-  const auto answered = [this] { return answer_.has_value(); };
-  if (!patience) {
-    changed_.wait(guard, answered);
-  } else if (!changed_.wait_for(guard, *patience, answered)) {
-    return std::nullopt;
+bool FrameWait::end(std::chrono::nanoseconds patience) {
+  std::unique_lock guard(shared_->lock);
+  shared_->ends = true;
+  shared_->changed.notify_all();
+  const bool ended = shared_->changed.wait_for(guard, patience, [this] { return shared_->ended; });
+  guard.unlock();
+  if (ended) {
+    thread_.join();
+  } else {
+    thread_.detach();
   }
-  asked_ = false;
-  return std::exchange(answer_, std::nullopt);
+  return ended;
 }
 
-void FrameWait::run() {
-  std::unique_lock guard(lock_);
+std::optional<FrameWait::Answer> FrameWait::take(std::optional<std::chrono::nanoseconds> patience) {
+  Shared& s = *shared_;
+  std::unique_lock guard(s.lock);
+  if (!std::exchange(s.asked, true)) s.changed.notify_all();
+  const auto answered = [&s] { return s.answer.has_value(); };
+  if (!patience) {
+    s.changed.wait(guard, answered);
+  } else if (!s.changed.wait_for(guard, *patience, answered)) {
+    return std::nullopt;
+  }
+  s.asked = false;
+  return std::exchange(s.answer, std::nullopt);
+}
+
+void FrameWait::run(Shared& s) {
+  std::unique_lock guard(s.lock);
   for (;;) {
-    changed_.wait(guard, [this] { return ends_ || (asked_ && !answer_); });
-    if (ends_) return;
+    s.changed.wait(guard, [&s] { return s.ends || (s.asked && !s.answer); });
+    if (s.ends) break;
     guard.unlock();
     Answer answer;
     answer.state.type = XR_TYPE_FRAME_STATE;
     XrFrameWaitInfo info{};
     info.type = XR_TYPE_FRAME_WAIT_INFO;
-    answer.result = wait_(session_, &info, &answer.state);
+    answer.result = s.wait(s.session, &info, &answer.state);
     guard.lock();
-    answer_ = answer;
-    changed_.notify_all();
+    s.answer = answer;
+    s.changed.notify_all();
   }
+  s.ended = true;
+  s.changed.notify_all();
 }
 
 }  // namespace catena::render::xr

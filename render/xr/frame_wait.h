@@ -2,6 +2,7 @@
 #pragma once
 #include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -18,7 +19,7 @@ class FrameWait {
   };
 
   FrameWait(PFN_xrWaitFrame wait, XrSession session);
-  /// After the runtime's answer: a session is not destroyed while it is used.
+  /// After the runtime's answer, unless end() was told that there is none: a session is not destroyed while it is used.
   ~FrameWait();
   FrameWait(const FrameWait&) = delete;
   FrameWait& operator=(const FrameWait&) = delete;
@@ -26,15 +27,23 @@ class FrameWait {
   /// Asks the runtime, unless it was asked and has not answered. Nothing where there is no answer within `patience`; none: however long.
   std::optional<Answer> take(std::optional<std::chrono::nanoseconds> patience);
 
- private:
-  void run();
+  /// The last call. False where the runtime does not answer within `patience`: its call and the thread are left behind, and the session is
+  /// in use for good.
+  bool end(std::chrono::nanoseconds patience);
 
-  PFN_xrWaitFrame wait_;
-  XrSession session_;
-  std::mutex lock_;
-  std::condition_variable changed_;
-  bool asked_ = false, ends_ = false;  // under the lock, with the answer
-  std::optional<Answer> answer_;
+ private:
+  /// What the thread needs, even where it is left behind.
+  struct Shared {
+    PFN_xrWaitFrame wait;
+    XrSession session;
+    std::mutex lock;
+    std::condition_variable changed;
+    bool asked = false, ends = false, ended = false;  // under the lock, with the answer
+    std::optional<Answer> answer;
+  };
+  static void run(Shared& shared);
+
+  std::shared_ptr<Shared> shared_;
   std::thread thread_;
 };
 

@@ -41,6 +41,14 @@ Outcome Functions::load(XrInstance instance) {
   return Done{};
 }
 
+void Functions::destroy_nothing() {
+  DestroyInstance = [](XrInstance) { return XR_SUCCESS; };
+  DestroySession = [](XrSession) { return XR_SUCCESS; };
+  DestroySpace = [](XrSpace) { return XR_SUCCESS; };
+  DestroySwapchain = [](XrSwapchain) { return XR_SUCCESS; };
+  DestroyActionSet = [](XrActionSet) { return XR_SUCCESS; };
+}
+
 Result<std::unique_ptr<Loader>> Loader::open(const char* library) {
   // what goes wrong is said once, by us
   ::setenv("XR_LOADER_DEBUG", "none", 0);

@@ -17,18 +17,19 @@
 
 /// Without an instance; of every instance; of instances whose extension was asked for.
 #define CATENA_XR_GLOBAL(X) X(EnumerateInstanceExtensionProperties) X(CreateInstance)
-#define CATENA_XR_CORE(X)                                                                                                                 \
-  X(DestroyInstance)                                                                                                                      \
-  X(GetInstanceProperties)                                                                                                                \
-  X(PollEvent)                                                                                                                            \
-  X(GetSystem)                                                                                                                            \
-  X(GetSystemProperties) X(EnumerateViewConfigurations) X(EnumerateViewConfigurationViews) X(EnumerateEnvironmentBlendModes)              \
-      X(CreateSession) X(DestroySession) X(BeginSession) X(EndSession) X(RequestExitSession) X(EnumerateReferenceSpaces)                  \
-          X(CreateReferenceSpace) X(DestroySpace) X(LocateSpace) X(EnumerateSwapchainFormats) X(CreateSwapchain) X(DestroySwapchain)      \
-              X(EnumerateSwapchainImages) X(AcquireSwapchainImage) X(WaitSwapchainImage) X(ReleaseSwapchainImage) X(WaitFrame)            \
-                  X(BeginFrame) X(EndFrame) X(LocateViews) X(StringToPath) X(PathToString) X(CreateActionSet) X(DestroyActionSet)         \
-                      X(CreateAction) X(SuggestInteractionProfileBindings) X(AttachSessionActionSets) X(CreateActionSpace) X(SyncActions) \
-                          X(GetActionStateBoolean) X(GetActionStateFloat) X(GetActionStateVector2f) X(GetActionStatePose)                 \
+#define CATENA_XR_CORE(X)                                                                                                                \
+  X(DestroyInstance)                                                                                                                     \
+  X(GetInstanceProperties)                                                                                                               \
+  X(PollEvent)                                                                                                                           \
+  X(GetSystem)                                                                                                                           \
+  X(GetSystemProperties)                                                                                                                 \
+  X(EnumerateViewConfigurations) X(EnumerateViewConfigurationViews) X(EnumerateEnvironmentBlendModes) X(CreateSession) X(DestroySession) \
+      X(BeginSession) X(EndSession) X(RequestExitSession) X(EnumerateReferenceSpaces) X(CreateReferenceSpace) X(DestroySpace)            \
+          X(LocateSpace) X(EnumerateSwapchainFormats) X(CreateSwapchain) X(DestroySwapchain) X(EnumerateSwapchainImages)                 \
+              X(AcquireSwapchainImage) X(WaitSwapchainImage) X(ReleaseSwapchainImage) X(WaitFrame) X(BeginFrame) X(EndFrame)             \
+                  X(LocateViews) X(StringToPath) X(PathToString) X(CreateActionSet) X(DestroyActionSet) X(CreateAction)                  \
+                      X(SuggestInteractionProfileBindings) X(AttachSessionActionSets) X(CreateActionSpace) X(SyncActions)                \
+                          X(GetActionStateBoolean) X(GetActionStateFloat) X(GetActionStateVector2f) X(GetActionStatePose)                \
                               X(GetCurrentInteractionProfile) X(ApplyHapticFeedback) X(StopHapticFeedback)
 #define CATENA_XR_VULKAN(X) \
   X(GetVulkanGraphicsRequirements2KHR) X(CreateVulkanInstanceKHR) X(GetVulkanGraphicsDevice2KHR) X(CreateVulkanDeviceKHR)
@@ -51,6 +52,8 @@ struct Functions {
 
   /// Of an instance with XR_KHR_vulkan_enable2; an optional function stays empty where its extension was not asked for.
   Outcome load(XrInstance instance);
+  /// From now on nothing is destroyed, and all that would be counts as destroyed: the runtime does not come back from a call.
+  void destroy_nothing();
 };
 
 /// The loader's library, kept open as long as this lives.
@@ -62,6 +65,8 @@ class Loader {
   Loader& operator=(const Loader&) = delete;
   /// With the global functions.
   const Functions& functions() const { return functions_; }
+  /// It stays open for good.
+  void leave_open() { library_ = nullptr; }
 
  private:
   Loader() = default;

@@ -59,6 +59,7 @@ Outcome Headset::take_masks() {
 }
 
 void Headset::stop() {
+  if (session_) session_->end_wait();  // before anything that it uses goes
   panel_ = nullptr;
   views_.clear();
   actions_.reset();

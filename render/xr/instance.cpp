@@ -24,6 +24,12 @@ Error Instance::failed(XrResult result, const std::string& what) {
   return xr_error(result, what);
 }
 
+void Instance::leave_behind() {
+  loss_ = Loss::instance;
+  functions_.destroy_nothing();
+  loader_->leave_open();
+}
+
 Result<std::unique_ptr<Instance>> Instance::open(const char* library) {
   std::unique_ptr<Instance> self(new Instance);
   CATENA_TRY(self->loader_, Loader::open(library));

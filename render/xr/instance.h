@@ -50,6 +50,8 @@ class Instance {
   /// The error of a call, which is remembered where it means a loss.
   Error failed(XrResult result, const std::string& what);
   Loss loss() const { return loss_; }
+  /// The runtime does not come back from a call: it is lost, and nothing of it is ever destroyed.
+  void leave_behind();
   /// The session has been made again.
   void session_is_new() { loss_ = loss_ == Loss::session ? Loss::none : loss_; }
 

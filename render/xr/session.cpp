@@ -7,6 +7,7 @@ namespace catena::render::xr {
 namespace {
 
 constexpr std::size_t kHistory = 256;
+constexpr std::chrono::seconds kLastPatience{5};
 
 }  // namespace
 
@@ -37,9 +38,14 @@ FrameWait& Session::frame_wait() {
   return *frame_wait_;
 }
 
+void Session::end_wait() {
+  if (frame_wait_ && !frame_wait_->end(kLastPatience)) instance_->leave_behind();
+  frame_wait_.reset();
+}
+
 Session::~Session() {
   if (!session_) return;
-  frame_wait_.reset();
+  end_wait();
   for (XrSpace space : spaces_)
     if (space) (void)xr().DestroySpace(space);
   const auto turn = device_->queue_turn();
@@ -81,7 +87,7 @@ Outcome Session::enter(XrSessionState state) {
     case Act::end:
       running_ = false;
       CATENA_XR_CHECK(*instance_, xr().EndSession(session_), "end the session");
-      frame_wait_.reset();  // what it says is of a session that is over
+      end_wait();  // what it says is of a session that is over
       return Done{};
     case Act::leave:
       running_ = false;

@@ -46,6 +46,8 @@ class Session {
 
   /// Of a session that runs; made when it is first asked for.
   FrameWait& frame_wait();
+  /// The wait that is under way is given some seconds; a runtime that does not come back from it is left behind, with all that is its own.
+  void end_wait();
 
   XrSessionState state() const { return state_; }
   bool running() const { return running_; }  ///< frames are made

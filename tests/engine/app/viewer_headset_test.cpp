@@ -191,6 +191,12 @@ TEST_F(ViewerHeadset, ItEndsWhileTheRuntimeHangs) {
   EXPECT_EQ(seen("objects"), 0);
 }
 
+/// One that never comes back is left behind.
+TEST_F(ViewerHeadset, ItEndsWhereTheRuntimeNeverAnswers) {
+  ASSERT_EQ(view("--seconds 1", "size=16x16 period_ms=20 paced hang=10:3600000"), 0) << log();
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+}
+
 /// What is not registered is asked for, on the terminal and on the panel in the room; the menu button puts it off.
 TEST_F(ViewerHeadset, ADeviceOnTheDeskIsAskedForItsPlaces) {
   ASSERT_EQ(view("--device simulated --frames 24", "size=48x40"), 0) << log();

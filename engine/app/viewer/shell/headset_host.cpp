@@ -65,6 +65,7 @@ struct HeadsetHost::Parts {
   bool pressed_since = false;  ///< since it was asked for
   std::unique_ptr<render::xr::QuadLayer> quad;
 
+  ~Parts() { stop(); }
   void lose(const std::string& why, std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
   void show_scale(render::FramePacket& packet) const;
@@ -75,6 +76,7 @@ struct HeadsetHost::Parts {
 
 /// What hangs on the session goes with it.
 void HeadsetHost::Parts::stop() {
+  if (headset && headset->started()) headset->session().end_wait();  // before anything that it uses goes
   quad.reset();
   if (headset) headset->stop();
 }

@@ -71,6 +71,27 @@ TEST_F(FrameWaits, TheEndWaitsForACallUnderWay) {
   release.join();
 }
 
+TEST_F(FrameWaits, WhatNeverAnswersIsLeftBehind) {
+  held = true;
+  {
+    FrameWait wait(wait_frame, XR_NULL_HANDLE);
+    EXPECT_FALSE(wait.take(0ms));
+    while (under_way == 0) std::this_thread::yield();
+    EXPECT_FALSE(wait.end(5ms));
+  }
+  EXPECT_EQ(under_way, 1);
+  // and may come back when nothing else is there any more
+  held = false;
+  while (under_way != 0) std::this_thread::yield();
+}
+
+TEST_F(FrameWaits, WhatAnswersInTimeEndsThere) {
+  FrameWait wait(wait_frame, XR_NULL_HANDLE);
+  ASSERT_TRUE(wait.take(std::nullopt));
+  EXPECT_TRUE(wait.end(10s));
+  EXPECT_EQ(calls, 1);
+}
+
 TEST_F(FrameWaits, NobodyAskedNobodyIsCalled) {
   { FrameWait wait(wait_frame, XR_NULL_HANDLE); }
   EXPECT_EQ(calls, 0);
