@@ -9,13 +9,7 @@
 namespace catena::render::vk {
 
 Result<Commands> Commands::begin(Device& device) {
-  VkCommandBufferAllocateInfo allocate{};
-  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-  allocate.commandPool = device.command_pool();
-  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  allocate.commandBufferCount = 1;
-  VkCommandBuffer buffer = VK_NULL_HANDLE;
-  CATENA_VK(vkAllocateCommandBuffers(device.handle(), &allocate, &buffer), "allocate a command buffer");
+  CATENA_TRY(const VkCommandBuffer buffer, device.lend_commands());
   Commands self(device, buffer);
   VkCommandBufferBeginInfo begin{};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
@@ -27,8 +21,7 @@ Result<Commands> Commands::begin(Device& device) {
 
 Commands::~Commands() {
   device_->stopwatch().drop(lap_);
-  if (buffer_)
-    device_->retire([device = device_, buffer = buffer_] { vkFreeCommandBuffers(device->handle(), device->command_pool(), 1, &buffer); });
+  if (buffer_) device_->retire([device = device_, buffer = buffer_] { device->take_back_commands(buffer); });
 }
 
 void Commands::use(Image& image, const Use& next) {

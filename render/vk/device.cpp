@@ -255,7 +255,7 @@ Outcome Device::create_device() {
 
   VkCommandPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-  pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT | VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool.queueFamilyIndex = queue_family_;
   CATENA_VK(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "create a command pool");
   stopwatch_ = std::make_unique<Stopwatch>(physical_, device_, queue_family_);
@@ -283,6 +283,30 @@ Device::~Device() {
     if (timeline_) vkDestroySemaphore(device_, timeline_, nullptr);
     if (pool_) vkDestroyCommandPool(device_, pool_, nullptr);
     if (!maker_.keeps_them) vkDestroyDevice(device_, nullptr);
+  }
+}
+
+Result<VkCommandBuffer> Device::lend_commands() {
+  VkCommandBuffer buffer = VK_NULL_HANDLE;
+  if (!idle_commands_.empty()) {
+    buffer = idle_commands_.back();
+    idle_commands_.pop_back();
+    return buffer;
+  }
+  VkCommandBufferAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  allocate.commandPool = pool_;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  CATENA_VK(vkAllocateCommandBuffers(device_, &allocate, &buffer), "allocate a command buffer");
+  return buffer;
+}
+
+void Device::take_back_commands(VkCommandBuffer buffer) {
+  if (vkResetCommandBuffer(buffer, VK_COMMAND_BUFFER_RESET_RELEASE_RESOURCES_BIT) == VK_SUCCESS) {
+    idle_commands_.push_back(buffer);
+  } else {
+    vkFreeCommandBuffers(device_, pool_, 1, &buffer);
   }
 }
 

@@ -106,8 +106,10 @@ class Device {
   [[nodiscard]] std::unique_lock<std::mutex> queue_turn() const {
     return maker_.queue_lock != nullptr ? std::unique_lock(*maker_.queue_lock) : std::unique_lock<std::mutex>();
   }
-  /// The pool of its command buffers.
-  VkCommandPool command_pool() const { return pool_; }
+  /// A command buffer to record, and back with it when its work is done: they are used again and again.
+  Result<VkCommandBuffer> lend_commands();
+  /// Of lend_commands(): empty afterwards.
+  void take_back_commands(VkCommandBuffer buffer);
   /// The window's surface; null without a window.
   VkSurfaceKHR surface() const { return instance_->surface(); }
   /// What the device is.
@@ -168,6 +170,7 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queue_family_ = 0;
   VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::vector<VkCommandBuffer> idle_commands_;  // of the pool
   VkSemaphore timeline_ = VK_NULL_HANDLE;
   std::uint64_t submitted_ = 0, passed_ = 0;
   std::unique_ptr<Stopwatch> stopwatch_;

@@ -194,7 +194,7 @@ TEST_F(HeadsetSession, ManyFramesTakeNoMoreMemory) {
   const int frames = asked ? std::atoi(asked) : 300;
   runtime_.script().width = runtime_.script().height = 8;
   runtime_.script().period_ns = 1'000'000;
-  validation_ = false;
+  validation_ = asked != nullptr;  // which takes most of the time
   ASSERT_TRUE(open());
   ASSERT_TRUE(turn(packet_, {}, frames / 3));
   const std::uint64_t device = renderer_->stats().gpu_bytes, before = resident_bytes();
