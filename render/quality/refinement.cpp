@@ -72,12 +72,11 @@ constexpr FastRung kPlain[] = {{8, 4, -1, -1},   {6, 4, -1, -1},  {4, 4, -1, -1}
                                {1, 1, 0, -1},    {0.7, 1, 0, -1}, {0.5, 1, 0, -1}, {0.35, 1, 0, -1}, {0.25, 1, 0, -1}};
 // Light wants short steps more than it wants every pixel. With long ones the gradient of the cell is as good as central differences are,
 // at half the time.
-constexpr FastRung kShaded[] = {
-    {8, 4, -1, -1, false}, {6, 4, -1, -1, false}, {4, 4, -1, -1, false}, {3, 4, -1, -1, false}, {2, 4, -1, -1, false}, {4, 4, -1, -1},
-    {3, 4, -1, -1},        {2, 4, -1, -1},        {1.5, 4, -1, -1},      {1, 4, -1, -1},        {1, 4, 24, -1},        {2, 2, 0, -1},
-    {1.5, 2, 0, -1},       {1, 2, 0, -1},         {0.7, 2, 0, -1},       {0.5, 2, 0, -1},       {0.5, 2, 0, 24},       {0.5, 2, 0, 12},
-    {0.5, 2, 0, 4},        {0.5, 2, 0, 1.5},      {0.7, 1, 0, -1},       {0.5, 1, 0, -1},       {0.35, 1, 0, -1},      {0.25, 1, 0, -1},
-    {0.18, 1, 0, -1},      {0.125, 1, 0, -1}};
+constexpr FastRung kShaded[] = {{8, 4, -1, -1, false}, {4, 4, -1, -1, false}, {2, 4, -1, -1, false}, {4, 4, -1, -1},   {3, 4, -1, -1},
+                                {2, 4, -1, -1},        {1.5, 4, -1, -1},      {1, 4, -1, -1},        {1, 4, 24, -1},   {2, 2, 0, -1},
+                                {1.5, 2, 0, -1},       {1, 2, 0, -1},         {0.7, 2, 0, -1},       {0.5, 2, 0, -1},  {0.5, 2, 0, 24},
+                                {0.5, 2, 0, 12},       {0.5, 2, 0, 4},        {0.5, 2, 0, 1.5},      {0.7, 1, 0, -1},  {0.5, 1, 0, -1},
+                                {0.35, 1, 0, -1},      {0.25, 1, 0, -1},      {0.18, 1, 0, -1},      {0.125, 1, 0, -1}};
 constexpr double kExactLadder[] = {4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
 // of exact rays that end the fast ones: lit ones have to be a fourth of the fast raycast's to be as good
 constexpr double kLastStep = 0.25, kLastShadedStep = 0.0625;

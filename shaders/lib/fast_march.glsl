@@ -11,8 +11,11 @@ layout(binding = 8) uniform sampler3D gradients;       // render/mirror/gradient
 #include "shaders/lib/packed.glsl"
 
 #define SMALL_BRICK 4.0
-#define FIRST_STEP 0.25  // of the step, where it begins to be seen
-#define STEP_GROWTH 1.5
+#define SEARCH_VOXELS 1.5  // the longest step to what is seen first
+// Where it begins to be seen, segments are a part of a step, and grow; light wants shorter ones than colour. Where nothing is lit and
+// nothing is empty they begin with the volume, and are whole.
+const bool FROM_SEEN = SHADED != 0u || SKIPS != 0u;
+const float FIRST_STEP = SHADED != 0u ? 0.125 : FROM_SEEN ? 0.25 : 1.0, STEP_GROWTH = SHADED != 0u ? 1.1 : 1.3;
 
 // x: sigma, yzw: colour
 vec4 between(float a, float b) {
@@ -104,6 +107,33 @@ float middle_code(Station a, Station b, float curved) {
   return clamp(0.5 * (a.s.code + b.s.code) + curved * 0.125 * (b.t - a.t) * (a.slope - b.slope), 0.0, 255.0);
 }
 
+// From s to where the ray begins to see, wherever the volume does: no rings, and none that move with the camera. Without light, and by steps
+// that leap over no wall.
+Station first_seen(March m, Station s) {
+  m.h = min(m.h, SEARCH_VOXELS / length(m.ray.direction));
+  float behind = 0.0, code_behind = 0.0, middle = 0.0;  // the end of the segment in which it is, and the codes there and half way
+  for (bool seen = false; s.t < m.end && !seen;) {
+    float curved;
+    const Station e = next_station(m, s, curved);
+    middle = middle_code(s, e, curved);
+    const bvec2 halves = seen_halves(s, e, curved);
+    seen = (halves.x && between(s.s.code, middle).x > 0.0) || (halves.y && between(middle, e.s.code).x > 0.0);
+    behind = e.t;
+    code_behind = e.s.code;
+    if (!seen) s = e;
+  }
+  float dark = 0.0, lit = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    const float f = 0.5 * (dark + lit);
+    const float code = mix(mix(s.s.code, middle, f), mix(middle, code_behind, f), f);
+    bool in_front = between(s.s.code, code).x > 0.0;
+    if (MASKED != 0u && !s.s.valid) in_front = station_at(m, mix(s.t, behind, f)).s.valid;
+    if (in_front) lit = f; else dark = f;
+  }
+  if (behind > s.t) s = station_at(m, mix(s.t, behind, dark));
+  return s;
+}
+
 // Where in a piece of one sigma half of the light is gone, as a share of its length; before > 0.5 >= after.
 float half_gone(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
 
@@ -123,40 +153,18 @@ vec4 march_packed(vec2 q, float end) {
   float through = 1.0;
   vec3 sum = vec3(0.0);
   Station s = station_at(m, interval.x);
+  if (FROM_SEEN) s = first_seen(m, s);
   // shading: the gradient, its share along the ray and the square of the rest
   vec3 normal = vec3(0.0);
   float along = 0.0, across2 = 0.0;
   if (SHADED != 0u) {
-    // to what is seen first, without light
-    float behind = 0.0, code_behind = 0.0, middle = 0.0;  // the end of the segment in which it is, and the codes there and half way
-    for (bool seen = false; s.t < m.end && !seen;) {
-      float curved;
-      const Station e = next_station(m, s, curved);
-      middle = middle_code(s, e, curved);
-      const bvec2 halves = seen_halves(s, e, curved);
-      seen = (halves.x && between(s.s.code, middle).x > 0.0) || (halves.y && between(middle, e.s.code).x > 0.0);
-      behind = e.t;
-      code_behind = e.s.code;
-      if (!seen) s = e;
-    }
-    // segments begin where it begins to be seen, wherever the volume does: no rings, and none that move with the camera
-    float dark = 0.0, lit = 1.0;
-    for (int k = 0; k < 3; ++k) {
-      const float f = 0.5 * (dark + lit);
-      const float code = mix(mix(s.s.code, middle, f), mix(middle, code_behind, f), f);
-      bool in_front = between(s.s.code, code).x > 0.0;
-      if (MASKED != 0u && !s.s.valid) in_front = station_at(m, mix(s.t, behind, f)).s.valid;
-      if (in_front) lit = f; else dark = f;
-    }
-    if (behind > s.t) s = station_at(m, mix(s.t, behind, dark));
     normal = normal_at(s);
     along = dot(normal, along_ray);
     across2 = dot(normal, normal) - along * along;
   }
-  // what is opaque is seen within the first steps: they are short, and grow
   vec3 last = vec3(0.0);
   const float begin = s.t, longest = m.h, voxels = length(m.ray.direction);
-  if (SHADED != 0u) m.h *= FIRST_STEP;
+  m.h *= FIRST_STEP;
   while (s.t < m.end && through > frame.termination) {
     float curved;
     const Station e = next_station(m, s, curved);
