@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "engine/app/tradeoff/measure/number.h"
 
@@ -113,97 +113,137 @@ std::string floor_words(const Curve& curve) {
   return curve.floor_name + (bound ? " " : ", ") + number_text(curve.floor);
 }
 
-void choose(Curve& curve) {
-  // errors that the reference cannot tell apart are one
-  const double told = std::isfinite(curve.reference_error) ? curve.reference_error : 0;
-  const std::vector<Point>& points = curve.points;
-  std::vector<Point> seen = points;
-  for (Point& p : seen)
-    if (std::isfinite(p.error)) p.error = std::max(p.error, told);
-  const bool bytes = curve.cost == Cost::bytes;
-  curve.front = pareto_front(seen, curve.cost);
-  curve.chosen = -1;
-  curve.even = false;
-  if (curve.front.empty()) return;
-  const double reached = std::isfinite(curve.floor) ? least_told(curve) : 0;
-  std::vector<int> all, good, untold;
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!counts(points[i], curve.cost)) continue;
-    all.push_back(static_cast<int>(i));
-    if (points[i].error <= reached) good.push_back(static_cast<int>(i));
-    if (told > 0 && points[i].error <= told) untold.push_back(static_cast<int>(i));
-    least = std::min(least, seen[i].error), most = std::max(most, seen[i].error);
-  }
-  const auto cheap_enough = [&](int i, const std::string& level) {
-    const std::string error = number_text(points[i].error);
-    if (bytes)
-      return fmt::format(
-          "Of those whose error is not above {}, it has the fewest bytes, with an error of {}: to go below takes more and gains nothing "
-          "that can be told.",
-          level, error);
-    return fmt::format("It is the cheapest whose error, {}, is not above {}: to go below costs more and gains nothing that can be told.",
-                       error, level);
-  };
-  const std::string told_words = curve.told_name + ", " + number_text(told);
-  if (points.size() == 1) {
-    curve.chosen = curve.front.front();
-    curve.why = fmt::format("There is one setting; its error is {}.", number_text(points[0].error));
-  } else if (most <= least) {
-    const int now = curve.current, least_cost = cheapest(seen, all, curve.cost);
-    // the first as listed of those that noise cannot tell apart
-    const int best = *std::find_if(all.begin(), all.end(), [&](int i) { return alike(points[i], points[least_cost], curve.cost); });
-    curve.chosen = now >= 0 && alike(points[now], points[best], curve.cost) ? now : best;
-    curve.even = curve.chosen == now;
-    curve.why = fmt::format(
-        "{}{}.", untold.empty() ? "No setting changes the error here, " + number_text(least) : "No setting errs by more than " + told_words,
-        curve.even ? ", so that what the scene has may stay"
-        : bytes    ? ", so that the one of the fewest bytes will do"
-                   : ", so that the cheapest will do");
-  } else if (curve.front.size() == 1) {
-    curve.chosen = curve.front.front();
-    curve.why = fmt::format("It {} the most exact at once{}.", bytes ? "has the fewest bytes and is" : "is the cheapest and",
-                            untold.empty() ? "" : ", as far as can be told");
-  } else if (reached > 0 && !good.empty()) {
-    curve.chosen = cheapest(points, good, curve.cost);
-    curve.why = cheap_enough(curve.chosen, curve.floor >= reached ? floor_words(curve) : told_words);
-  } else {
-    const int bend = knee(seen, curve.front, curve.cost);
-    const bool keeps = bend < 0 && std::find(curve.front.begin(), curve.front.end(), curve.current) != curve.front.end();
-    curve.chosen = bend >= 0 ? bend : keeps ? curve.current : curve.front.back();
-    curve.even = keeps;
-    const Point& p = points[curve.chosen];
-    const auto seen_error = [&](int i) { return seen[static_cast<std::size_t>(i)].error; };
-    const std::string none = reached > 0 ? fmt::format("None reaches {}; t", floor_words(curve)) : "T";
-    if (keeps) {
-      curve.why = fmt::format(
-          "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {}. Which one is "
-          "needed is for you to say.",
-          number_text(p.error));
-    } else if (curve.chosen == curve.front.back() && !untold.empty()) {
-      curve.chosen = cheapest(points, untold, curve.cost);
-      curve.why = cheap_enough(curve.chosen, told_words);
-    } else if (curve.chosen == curve.front.back()) {
-      curve.why = fmt::format("{}his is the most exact, with an error of {}.", none, number_text(p.error));
-    } else {
-      const auto at = static_cast<std::size_t>(std::find(curve.front.begin(), curve.front.end(), curve.chosen) - curve.front.begin());
-      const Point& next = points[curve.front[at + 1]];
-      const double error = seen_error(curve.chosen), next_error = seen_error(curve.front[at + 1]);
-      curve.why = fmt::format("{}his is the knee of the front", none);
-      if (at > 0) {
-        const Point& last = points[curve.front[at - 1]];
-        curve.why += fmt::format(": {} {} {:.2g} times {} and has {:.2g} times the error", last.setting, bytes ? "takes" : "costs",
-                                 cost_of(p, curve.cost) / cost_of(last, curve.cost), bytes ? "fewer bytes" : "less",
-                                 seen_error(curve.front[at - 1]) / error);
-      }
-      curve.why += fmt::format("{} {} {} {:.2g} times as {} and has {} error.", at > 0 ? ";" : ":", next.setting, bytes ? "takes" : "costs",
-                               cost_of(next, curve.cost) / cost_of(p, curve.cost), bytes ? "many bytes" : "much",
-                               next_error <= 0             ? "no"
-                               : error < 1.05 * next_error ? "hardly less"
-                                                           : fmt::format("{:.2g} times less", error / next_error));
-      if (next_error <= told && told > 0) curve.why += fmt::format(" Errors below {} cannot be told.", number_text(told));
-    }
+namespace {
+
+/// The choice on one curve, and the sentence that says why. Errors that the reference cannot tell apart are one.
+class Chooser {
+ public:
+  explicit Chooser(Curve& curve);
+  void choose();
+
+ private:
+  void take(int point, std::string why) { curve_.chosen = point, curve_.why = std::move(why); }
+  void take_of_equals();
+  void take_knee();
+  std::string cheap_enough(int i, const std::string& level) const;
+  std::string knee_words(const std::string& begin) const;
+  std::string told_words() const { return curve_.told_name + ", " + number_text(told_); }
+  double error(int i) const { return seen_[static_cast<std::size_t>(i)].error; }
+
+  Curve& curve_;
+  const std::vector<Point>& points_;
+  const bool bytes_;
+  double told_ = 0, reached_ = 0;         // what the reference can tell; the floor
+  std::vector<Point> seen_;               // with errors as far as they can be told
+  std::vector<int> all_, good_, untold_;  // that count; not above the floor; not above what can be told
+};
+
+Chooser::Chooser(Curve& curve) : curve_(curve), points_(curve.points), bytes_(curve.cost == Cost::bytes), seen_(curve.points) {
+  told_ = std::isfinite(curve.reference_error) ? curve.reference_error : 0;
+  reached_ = std::isfinite(curve.floor) ? least_told(curve) : 0;
+  for (Point& p : seen_)
+    if (std::isfinite(p.error)) p.error = std::max(p.error, told_);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!counts(points_[i], curve.cost)) continue;
+    all_.push_back(static_cast<int>(i));
+    if (points_[i].error <= reached_) good_.push_back(static_cast<int>(i));
+    if (told_ > 0 && points_[i].error <= told_) untold_.push_back(static_cast<int>(i));
   }
 }
+
+void Chooser::choose() {
+  curve_.front = pareto_front(seen_, curve_.cost);
+  curve_.chosen = -1;
+  curve_.even = false;
+  if (curve_.front.empty()) return;
+  const auto [least, most] = std::ranges::minmax(all_, {}, [&](int i) { return error(i); });
+  if (points_.size() == 1) {
+    take(curve_.front.front(), fmt::format("There is one setting; its error is {}.", number_text(points_[0].error)));
+  } else if (error(most) <= error(least)) {
+    take_of_equals();
+  } else if (curve_.front.size() == 1) {
+    take(curve_.front.front(),
+         fmt::format("It {} the most exact at once{}.", bytes_ ? "has the fewest bytes and is" : "is the cheapest and",
+                     untold_.empty() ? "" : ", as far as can be told"));
+  } else if (reached_ > 0 && !good_.empty()) {
+    const int best = cheapest(points_, good_, curve_.cost);
+    take(best, cheap_enough(best, curve_.floor >= reached_ ? floor_words(curve_) : told_words()));
+  } else {
+    take_knee();
+  }
+}
+
+std::string Chooser::cheap_enough(int i, const std::string& level) const {
+  const std::string error = number_text(points_[static_cast<std::size_t>(i)].error);
+  if (bytes_)
+    return fmt::format(
+        "Of those whose error is not above {}, it has the fewest bytes, with an error of {}: to go below takes more and gains nothing "
+        "that can be told.",
+        level, error);
+  return fmt::format("It is the cheapest whose error, {}, is not above {}: to go below costs more and gains nothing that can be told.",
+                     error, level);
+}
+
+/// No setting changes the error: what the scene has stays, unless another one is clearly cheaper.
+void Chooser::take_of_equals() {
+  const int now = curve_.current, least_cost = cheapest(seen_, all_, curve_.cost);
+  // the first as listed of those that noise cannot tell apart
+  const int best = *std::find_if(all_.begin(), all_.end(), [&](int i) { return alike(points_[i], points_[least_cost], curve_.cost); });
+  curve_.even = now >= 0 && alike(points_[now], points_[best], curve_.cost);
+  take(curve_.even ? now : best, fmt::format("{}{}.",
+                                             untold_.empty() ? "No setting changes the error here, " + number_text(error(all_.front()))
+                                                             : "No setting errs by more than " + told_words(),
+                                             curve_.even ? ", so that what the scene has may stay"
+                                             : bytes_    ? ", so that the one of the fewest bytes will do"
+                                                         : ", so that the cheapest will do"));
+}
+
+/// Every setting has its price: the knee of the front, where it has one.
+void Chooser::take_knee() {
+  const std::vector<int>& front = curve_.front;
+  const int bend = knee(seen_, front, curve_.cost);
+  curve_.even = bend < 0 && std::ranges::find(front, curve_.current) != front.end();
+  curve_.chosen = bend >= 0 ? bend : curve_.even ? curve_.current : front.back();
+  const std::string chosen_error = number_text(points_[curve_.chosen].error);
+  const std::string begin = reached_ > 0 ? fmt::format("None reaches {}; this is ", floor_words(curve_)) : "This is ";
+  if (curve_.even) {
+    curve_.why = fmt::format(
+        "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {}. Which one is "
+        "needed is for you to say.",
+        chosen_error);
+  } else if (curve_.chosen == front.back() && !untold_.empty()) {
+    const int best = cheapest(points_, untold_, curve_.cost);
+    take(best, cheap_enough(best, told_words()));
+  } else if (curve_.chosen == front.back()) {
+    curve_.why = fmt::format("{}the most exact, with an error of {}.", begin, chosen_error);
+  } else {
+    curve_.why = knee_words(begin);
+  }
+}
+
+/// What the neighbours on the front would give and take.
+std::string Chooser::knee_words(const std::string& begin) const {
+  const std::vector<int>& front = curve_.front;
+  const auto at = static_cast<std::size_t>(std::ranges::find(front, curve_.chosen) - front.begin());
+  const Point &p = points_[curve_.chosen], &next = points_[front[at + 1]];
+  const double here = error(curve_.chosen), next_error = error(front[at + 1]);
+  std::string why = begin + "the knee of the front";
+  if (at > 0) {
+    const Point& last = points_[front[at - 1]];
+    why += fmt::format(": {} {} {:.2g} times {} and has {:.2g} times the error", last.setting, bytes_ ? "takes" : "costs",
+                       cost_of(p, curve_.cost) / cost_of(last, curve_.cost), bytes_ ? "fewer bytes" : "less", error(front[at - 1]) / here);
+  }
+  why += fmt::format("{} {} {} {:.2g} times as {} and has {} error.", at > 0 ? ";" : ":", next.setting, bytes_ ? "takes" : "costs",
+                     cost_of(next, curve_.cost) / cost_of(p, curve_.cost), bytes_ ? "many bytes" : "much",
+                     next_error <= 0            ? "no"
+                     : here < 1.05 * next_error ? "hardly less"
+                                                : fmt::format("{:.2g} times less", here / next_error));
+  if (next_error <= told_ && told_ > 0) why += fmt::format(" Errors below {} cannot be told.", number_text(told_));
+  return why;
+}
+
+}  // namespace
+
+void choose(Curve& curve) { Chooser(curve).choose(); }
 
 }  // namespace catena::app::tradeoff
