@@ -167,7 +167,7 @@ void hold_all(const Program& program, double t_s, ChainState& state, exchange::H
     out.links[i].gap = out.links[i].leaving = 0;
     out.links[i].left = state.indications[i].left;
   }
-  state.force_n = Vec3(0.0);
+  state.force_n = state.told_n = Vec3(0.0);
   // no pose, no force: whatever the clock says
   guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
   suspend(state.passivity);
@@ -225,6 +225,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     state.fade.shares = felt;
   }
   force += cues;
+  state.told_n = {bounded(force.x), bounded(force.y), bounded(force.z)};
 
   // the coupling's damping, then the limit with the direction kept
   if (state.has_probe && dt > 0) force -= (probe.position - state.last_probe) * (program.coupling.damping_ns_per_m * s / dt);

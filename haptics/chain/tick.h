@@ -42,6 +42,7 @@ struct ChainState {
   double last_t_s = 0;                                   ///< of the last tick with a probe
   double clock_t_s = 0;      ///< of the last tick: what a ramp of the guard counts, however long there was no probe
   Vec3 force_n{0.0};         ///< that the chain asks for
+  Vec3 told_n{0.0};          ///< of links and their cues, before the hand's damping and any limit (DeviceOutput::told_n)
   GuardState guard;          ///< what the hand gets
   PassivityState passivity;  ///< the energy account
   std::uint64_t ticks = 0;   ///< so far

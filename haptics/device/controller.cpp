@@ -98,7 +98,7 @@ DeviceInput Controller::read() noexcept {
 }
 
 void Controller::write(const DeviceOutput& output) noexcept {
-  peaks_.add({output.force_n, eased_.position_m(), output.booked_j, output.live && there_});
+  peaks_.add({output.told_n, eased_.position_m(), output.booked_j, output.live && there_});
 }
 
 }  // namespace catena::haptics

@@ -34,6 +34,7 @@ struct DeviceOutput {
   Vec3 torque_nm{0.0};  ///< N m, the device's axes
   bool live = true;     ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
   double booked_j = 0;  ///< of all links: given to the hand and ready for it (haptics/chain/passivity.h); falls by what friction takes
+  Vec3 told_n{0.0};     ///< what the links push with, before damping of the hand, limits and ramps: for what tells of force in other ways
 };
 
 /// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.

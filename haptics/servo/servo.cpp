@@ -172,7 +172,7 @@ void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) n
   stalled_within_ = watchdog_ && computed - began > watchdog_->limit_ns();
   if (stalled_within_) watchdog_->stalled();
 
-  device_.write(output_of(*program_, out));
+  device_.write(output_of(*program_, out, state_));
   const std::int64_t ended = now_ns();
   hash_.add(out);
 

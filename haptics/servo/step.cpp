@@ -21,14 +21,15 @@ ProbeSample probe_of(const Program& program, const DeviceInput& input, double t_
   return probe;
 }
 
-DeviceOutput output_of(const Program& program, const exchange::HapticState& state) noexcept {
+DeviceOutput output_of(const Program& program, const exchange::HapticState& state, const ChainState& chain) noexcept {
   const bool live = state.force_state != exchange::ForceState::off && state.force_state != exchange::ForceState::stopped;
   double booked_j = 0;
   for (std::size_t i = 0; i < program.links.size(); ++i) booked_j += state.links[i].booked_j;
   return {.force_n = state.force_n * program.workspace_rotation,
           .torque_nm = state.torque_nm * program.workspace_rotation,
           .live = live,
-          .booked_j = booked_j};
+          .booked_j = booked_j,
+          .told_n = chain.told_n * program.workspace_rotation};
 }
 
 Stepper::Stepper(Device& device, const Program& program, double rate_hz, TickSink* sink)
@@ -41,7 +42,7 @@ const exchange::HapticState& Stepper::step() noexcept {
   ProbeSample probe = probe_of(program_, input, t_s());
   probe.condition = input.status == DeviceStatus::ready ? Condition::normal : Condition::no_device;
   tick(program_, probe, *state_, *scratch_, out_);
-  device_.write(output_of(program_, out_));
+  device_.write(output_of(program_, out_, *state_));
   ++ticks_;
   if (sink_ != nullptr) sink_->put(probe, out_);
   return out_;

@@ -18,7 +18,7 @@ Vec3 device_from_world(const Program& program, const Vec3& world) noexcept;
 /// What the device says, in the program's world. The condition is the caller's.
 ProbeSample probe_of(const Program& program, const DeviceInput& input, double t_s) noexcept;
 /// What the tick answers, in the device's axes.
-DeviceOutput output_of(const Program& program, const exchange::HapticState& state) noexcept;
+DeviceOutput output_of(const Program& program, const exchange::HapticState& state, const ChainState& chain) noexcept;
 
 /// Ticks one after the other, as fast as they are asked for, at even times from 0: the same device and program give the same bits.
 class Stepper {

@@ -25,7 +25,7 @@ struct FeltPeaks {
 
 /// A tick as the hand has it.
 struct FeltTick {
-  Vec3 force_n{0.0};
+  Vec3 force_n{0.0};  ///< DeviceOutput::told_n: a hand that waves in the air, or waits while forces rise, is told nothing
   Vec3 position_m{0.0};
   double booked_j = 0;  ///< of all links: what they have given to the hand and have ready for it
   bool live = true;     ///< false: forces are off, or the hand is not there

@@ -1,8 +1,12 @@
 #include "haptics/vibration/vibration.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace catena::haptics {
 namespace {
 
+constexpr double kShortestCallS = 1e-3, kLongestCallS = 0.1;
 constexpr double kFrictionCalls = 1.5;  // a call that is a little late leaves no gap
 
 std::int64_t nanoseconds(double s) noexcept { return static_cast<std::int64_t>(1e9 * s); }
@@ -27,7 +31,9 @@ VibrationSender::Call VibrationSender::next(Peaks& peaks, std::int64_t now_ns, b
   }
   const bool began = !was_allowed_;
   was_allowed_ = true;
+  const double since_s = 1e-9 * static_cast<double>(now_ns - std::exchange(last_ns_, now_ns));
   if (began) return {};  // what was felt before it was allowed
+  call_s_ = std::clamp(since_s, kShortestCallS, kLongestCallS);
   const Vibration wish = vibration_of(felt, call_s_, map_);
   const bool pulse_lasts = running_.is_pulse && now_ns < ends_ns_;
   if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < running_.amplitude)) return {};

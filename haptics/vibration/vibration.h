@@ -45,6 +45,7 @@ class VibrationSender {
     Vibration vibration{};  ///< of `vibrate`
   };
 
+  /// `call_s`: the time between two calls, until it is known; then the time since the last one, of 1 ms to 0.1 s.
   explicit VibrationSender(double call_s = 1.0 / 90, const VibrationMap& map = {}) : call_s_(call_s), map_(map) {}
   /// `now_ns`: monotonic, not going back.
   Call next(Peaks& peaks, std::int64_t now_ns, bool allowed) noexcept;
@@ -53,7 +54,7 @@ class VibrationSender {
   double call_s_;
   VibrationMap map_;
   Vibration running_;
-  std::int64_t ends_ns_ = 0;
+  std::int64_t ends_ns_ = 0, last_ns_ = 0;
   bool was_allowed_ = false;
 };
 

@@ -98,8 +98,9 @@ Outcome Lattice::find_truth(double goal) {
     converged.step_voxels /= 2;
     CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing));
     const double change = compare(truth_, finer).rmse;
-    // what is left where changes become r times smaller each time; r is that of steps of the first order at least
-    truth_error_ = change / (std::clamp(before / std::max(change, 1e-30), 2.0, 4.0) - 1);
+    // what is left where changes become r times smaller each time: by the root of two where edges leap from pixel to pixel, which opacities
+    // that rise at once make, at least
+    truth_error_ = change / (std::clamp(before > 0 ? before / std::max(change, 1e-30) : 2.0, std::numbers::sqrt2, 4.0) - 1);
     before = change;
     truth_ = std::move(finer);
   } while (truth_error_ > std::max(kLeastTold, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
@@ -111,14 +112,21 @@ Outcome Lattice::find_truth(double goal) {
 
 Result<LatticeError> Lattice::of_rays(const RenderSettings& settings) {
   CATENA_TRY(last_, renderer_.probe(packet_, settings, spacing_));
-  return compare(last_, truth_);
+  return off_the_truth();
 }
 
 Result<LatticeError> Lattice::of_picture(const RenderSettings& settings) {
   CATENA_CHECK(renderer_.draw(packet_, settings));
   ++pictures_;
   CATENA_TRY(last_, drawn_lattice());
-  return compare(last_, truth_);
+  return off_the_truth();
+}
+
+/// With what is left of the converged rays' own error, as far as it is more than rounding makes of nothing.
+LatticeError Lattice::off_the_truth() const {
+  LatticeError error = compare(last_, truth_);
+  error.above = std::hypot(error.above, std::sqrt(std::max(0.0, truth_error_ * truth_error_ - kLeastTold * kLeastTold)));
+  return error;
 }
 
 Result<std::array<double, 2>> Lattice::refined() const {

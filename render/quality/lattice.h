@@ -49,6 +49,7 @@ class Lattice {
  private:
   Outcome find_truth(double goal);
   Result<Picture> drawn_lattice();
+  LatticeError off_the_truth() const;
   bool is_steady(const Picture& after) const;
 
   Renderer& renderer_;

@@ -79,7 +79,7 @@ constexpr FastRung kShaded[] = {{8, 4, -1, -1, false}, {4, 4, -1, -1, false}, {2
                                 {0.35, 1, 0, -1},      {0.25, 1, 0, -1},      {0.18, 1, 0, -1},      {0.125, 1, 0, -1}};
 constexpr double kExactLadder[] = {4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
 // of exact rays that end the fast ones: lit ones have to be a fourth of the fast raycast's to be as good
-constexpr double kLastStep = 0.25, kLastShadedStep = 0.0625;
+constexpr double kLastSteps[] = {0.25, 0.1, 0.05}, kLastShadedSteps[] = {0.0625, 0.03};
 
 }  // namespace
 
@@ -88,7 +88,7 @@ std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
   if (kind.fast) {
     for (const FastRung& r : kind.shaded ? std::span<const FastRung>(kShaded) : kPlain)
       all.push_back(fast_rung(r.step, r.spacing, r.half, r.full, kind.shaded && r.smooth));
-    all.push_back(exact_rung(kind.shaded ? kLastShadedStep : kLastStep));
+    for (const double step : kind.shaded ? std::span<const double>(kLastShadedSteps) : kLastSteps) all.push_back(exact_rung(step));
   } else {
     for (const double step : kExactLadder) all.push_back(exact_rung(step));
   }

@@ -10,8 +10,7 @@
 namespace catena::render {
 namespace {
 
-constexpr double kStepShare = 0.93;   // of the error that ray steps may take
-constexpr double kFinestStep = 0.05;  // voxels
+constexpr double kStepShare = 0.93;  // of the error that ray steps may take
 constexpr int kMaxPictures = 16;
 constexpr std::size_t kGoodSteps = 5;  // of those that are good enough, the longest
 constexpr double kStill = 0.95;        // of the error of a longer step: hardly less
@@ -163,7 +162,7 @@ Result<QualityChoice> settings_for_error(Lattice& lattice, double e) {
     if (rays.good_for(e)) return choice(lattice, exact_rung(step), rays.above, true);
   }
   RenderSettings finest = reference_settings();
-  finest.step_voxels = std::clamp(lattice.truth_step(), kFinestStep, finest.step_voxels);
+  finest.step_voxels = std::min(lattice.truth_step(), finest.step_voxels);
   return choice(lattice, finest, lattice.truth_error(), lattice.truth_error() <= e);
 }
 

@@ -286,6 +286,11 @@ Device::~Device() {
   }
 }
 
+void Device::leave_behind() {
+  maker_.keeps_them = true;
+  instance_->leave_behind();
+}
+
 Result<VkCommandBuffer> Device::lend_commands() {
   VkCommandBuffer buffer = VK_NULL_HANDLE;
   if (!idle_commands_.empty()) {

@@ -126,6 +126,8 @@ class Device {
   Stopwatch& stopwatch() { return *stopwatch_; }
   /// Bytes that the budget still holds.
   std::uint64_t memory_left() const { return counters_.bytes < info_.memory_budget ? info_.memory_budget - counters_.bytes : 0; }
+  /// It and its instance are not destroyed: another one's call that uses them never ends.
+  void leave_behind();
   /// The driver gave the device up: nothing can be drawn with it any more. A new one can be made from the same packets.
   bool lost() const { return lost_; }
   /// What a test pretends that the driver says.

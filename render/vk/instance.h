@@ -83,6 +83,8 @@ class Instance {
   VkSurfaceKHR surface() const { return surface_; }
   /// Warnings and errors so far.
   const Messages& messages() const { return messages_; }
+  /// It is not destroyed.
+  void leave_behind() { owned_ = false; }
 
  private:
   Instance() = default;

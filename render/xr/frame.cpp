@@ -28,8 +28,8 @@ Outcome locate(Session& session, Frame& frame) {
                   session.xr().LocateViews(session.handle(), &info, &state, std::uint32_t(frame.views.size()), &count, frame.views.data()),
                   "locate the eyes");
   // an eye that no picture can be made for, whatever the flags say, is not tracked
-  const bool sound = std::ranges::all_of(frame.views, [](const XrView& one) { return static_cast<bool>(eye_view({}, room_eye(one))); });
-  frame.wants_picture = frame.wants_picture && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked && sound;
+  frame.sound = std::ranges::all_of(frame.views, [](const XrView& one) { return static_cast<bool>(eye_view({}, room_eye(one))); });
+  frame.wants_picture = frame.wants_picture && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked && frame.sound;
   return Done{};
 }
 
@@ -50,7 +50,7 @@ RoomHead head_of(const Frame& frame) {
   Quat sum(0.0, 0.0, 0.0, 0.0);
   for (const XrView& view : frame.views) {
     const auto& [x, y, z, w] = view.pose.orientation;
-    const Quat turn(w, x, y, z);
+    const Quat turn = normalised(Quat(w, x, y, z));
     sum += dot(sum, turn) < 0 ? -turn : turn;  // q and -q are one rotation
     head.position += room_eye(view).position / double(frame.views.size());
   }

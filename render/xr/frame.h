@@ -16,6 +16,7 @@ namespace catena::render::xr {
 struct Frame {
   XrTime time = 0;             ///< when it will be seen: the runtime's clock, ns
   std::int64_t period_ns = 0;  ///< between pictures, as predicted; a millisecond to a second; a 90th where none is
+  bool sound = true;           ///< a picture can be made for all views
   bool wants_picture = false;  ///< seen, and the head is tracked: every view is one that can be drawn
   std::vector<XrView> views;   ///< as located in the local space, and as submitted
 };

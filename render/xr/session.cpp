@@ -39,7 +39,10 @@ FrameWait& Session::frame_wait() {
 }
 
 void Session::end_wait() {
-  if (frame_wait_ && !frame_wait_->end(kLastPatience)) instance_->leave_behind();
+  if (frame_wait_ && !frame_wait_->end(kLastPatience)) {
+    instance_->leave_behind();
+    device_->leave_behind();
+  }
   frame_wait_.reset();
 }
 

@@ -191,6 +191,32 @@ TEST_F(ViewerHeadset, ItEndsWhileTheRuntimeHangs) {
   EXPECT_EQ(seen("objects"), 0);
 }
 
+/// The headset is taken off, its session ends, it never begins: the program ends like any other.
+TEST_F(ViewerHeadset, ASessionThatDoesNotRunEndsWithTheProgram) {
+  for (const char* script :
+       {"size=16x16 period_ms=20 paced state=10:STOPPING", "size=16x16 period_ms=20 paced state=10:STOPPING state=11:EXITING",
+        "size=16x16 period_ms=20 paced state=10:STOPPING fail=xrEndSession:1:-17"}) {
+    EXPECT_EQ(view("--seconds 1.5", script), 0) << script << log();
+    EXPECT_EQ(seen("illegal"), 0) << script << test::read_file(folder_ / "record");
+  }
+}
+
+/// A runtime that is back but makes no device: the window goes on with its own, and the runtime is tried again.
+TEST_F(ViewerHeadset, ARuntimeThatComesBackWithoutADeviceLeavesTheWindow) {
+  for (const char* call : {"xrCreateVulkanDeviceKHR", "xrCreateVulkanInstanceKHR"}) {
+    EXPECT_EQ(view("--seconds 4", std::string("size=16x16 fail=xrEndFrame:6:-13 fail=") + call + ":2:-2"), 0) << call << log();
+    EXPECT_NE(log().find("is back without a device"), std::string::npos) << log();
+    EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+    EXPECT_GT(seen("pictures"), 10) << call;
+  }
+}
+
+/// What is lost again and again is tried every second, and said once.
+TEST_F(ViewerHeadset, ALossThatRepeatsIsSaidOnce) {
+  ASSERT_EQ(view("--seconds 3.5", "size=16x16 paced period_ms=11 state=5:LOSS_PENDING"), 0) << log();
+  EXPECT_EQ(lost_lines(), 1) << log();
+}
+
 /// One that never comes back is left behind.
 TEST_F(ViewerHeadset, ItEndsWhereTheRuntimeNeverAnswers) {
   ASSERT_EQ(view("--seconds 1", "size=16x16 period_ms=20 paced hang=10:3600000"), 0) << log();

@@ -23,8 +23,8 @@ struct Way {
   }
   void to(const Vec3& hand_m) {
     tick(program, {1e-3 * static_cast<double>(ticks++), world_from_device(program, hand_m)}, *state, *scratch, out);
-    const DeviceOutput sent = output_of(program, out);
-    peaks.add({sent.force_n, hand_m, sent.booked_j, sent.live});
+    const DeviceOutput sent = output_of(program, out, *state);
+    peaks.add({sent.told_n, hand_m, sent.booked_j, sent.live});
   }
   Program program;
   std::unique_ptr<ChainState> state = std::make_unique<ChainState>();
@@ -40,6 +40,22 @@ Link drag(double threshold) {
   link.constraint = tests::build(R"({"name": "drag", "type": "drag", "threshold": )" + std::to_string(threshold) + "}");
   link.stiffness_n_per_m = 500;
   return link;
+}
+
+/// The damping of the hand's own coupling is for hands that can be pushed.
+TEST(Peaks, AHandThatWavesInTheAirIsToldNothing) {
+  Way way(drag(0.01));
+  way.program.coupling.damping_ns_per_m = 1;
+  way.program.links[0].on.never = true;
+  double pushed = 0;
+  for (int k = 0; k < 1000; ++k) {
+    way.to({0.1 * std::sin(6.28e-3 * k), 0.0, 0.0});
+    pushed = std::max(pushed, norm(way.out.force_n));
+  }
+  EXPECT_GT(pushed, 0.5);  // or it would prove nothing
+  const FeltPeaks felt = way.peaks.take();
+  EXPECT_LT(felt.change_n, 1e-9);
+  EXPECT_LT(felt.friction_n, 1e-9);
 }
 
 TEST(Peaks, ADetentOfTwoMillisecondsIsSeenWheneverTheSenderLooks) {

@@ -29,6 +29,24 @@ void rub(Peaks& peaks, double newtons) {
   for (int k = 0; k < 60; ++k) peaks.add({Vec3(newtons, 0, 0), Vec3(1e-4 * k, 0, 0), -newtons * 1e-4 * k});
 }
 
+/// Friction lasts until the next call, whatever the time between calls is.
+TEST(VibrationSender, FrictionLastsUntilTheNextCall) {
+  for (const double call_s : {0.008, 1.0 / 60, 0.025}) {
+    Peaks peaks;
+    VibrationSender sender;
+    std::int64_t now = 1'000'000'000;
+    double duration_s = 0;
+    double booked_j = 10;
+    for (int turn = 0; turn < 8; ++turn) {
+      for (int k = 0; k < int(1000 * call_s); ++k) peaks.add({{1.0, 0.0, 0.0}, {1e-4 * (k + 40 * turn), 0.0, 0.0}, booked_j -= 1e-4, true});
+      const auto call = sender.next(peaks, now, true);
+      if (call.what == VibrationSender::What::vibrate && !call.vibration.is_pulse) duration_s = 1e-9 * double(call.vibration.duration_ns);
+      now += std::int64_t(1e9 * call_s);
+    }
+    EXPECT_NEAR(duration_s, 1.5 * call_s, 1e-6);
+  }
+}
+
 TEST(Vibration, TheMapIsLinearUpToItsEnds) {
   const VibrationMap map;
   EXPECT_EQ(vibration_of({}, 0.01), Vibration{});

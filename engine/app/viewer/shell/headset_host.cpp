@@ -24,8 +24,11 @@ constexpr std::chrono::milliseconds kTurn{10};                         // of the
 constexpr double kPanelM = 0.8, kPanelAwayM = 0.9, kPanelDropM = 0.1;  // its width; from the head
 constexpr double kFovea = 0.36;       // tan 20 degrees off the gaze, or the eye's axis: beyond, lenses and eyes see less than the rays cost
 constexpr double kAboveHandM = 0.06;  // the scale's words over the hands that hold the world
-constexpr double kWordsAt_px = 1.0 / 50;  // their height, of the view's
-constexpr double kMostStepS = 0.1;        // of the world's motion: after a pause it does not race
+constexpr double kWordsAt_px = 1.0 / 50;              // their height, of the view's
+constexpr double kMostStepS = 0.1;                    // of the world's motion: after a pause it does not race
+constexpr std::int64_t kSayAgainNs = 30'000'000'000;  // the same loss is said again after so long
+constexpr std::int64_t kSettlesNs = 300'000'000;      // the hand leaps to where the world was put: nothing to feel so long
+constexpr int kUnseen = 60;                           // frames without a view, before that is said
 
 /// As the scene's camera says, but straight ahead of where the head is now: the local space of some runtimes begins elsewhere.
 Placement before(const render::xr::RoomHead& head, const render::View& view) {
@@ -41,13 +44,17 @@ RoomHand room_hand(const render::xr::HandState& state) {
 struct HeadsetHost::Parts {
   std::mutex queue_lock;  // outlives the device
   std::unique_ptr<render::xr::Headset> headset;
-  std::int64_t retry_ns = 0;  ///< not before
-  std::string said;           ///< what was lost last, while nothing has been seen since
-  std::string broken;         ///< what went wrong in a frame; follow() acts on it
-  bool waits = false;         ///< for a frame that the runtime keeps longer than kPatience
+  std::int64_t retry_ns = 0;    ///< not before
+  std::int64_t started_ns = 0;  ///< the session
+  std::string said;             ///< what was lost last
+  std::int64_t said_ns = 0;
+  std::string broken;  ///< what went wrong in a frame; follow() acts on it
+  bool waits = false;  ///< for a frame that the runtime keeps longer than kPatience
   bool told_waits = false, waits_news = false;
+  int unseen = 0;     ///< frames in a row whose views no picture can be made for
   bool left = false;  ///< the person has ended it by the runtime's own ways
   std::optional<Placement> placement;
+  std::int64_t placed_ns = 0;  ///< since then the hand is where the picture has it
   HeadsetHands hands;
   render::FramePace pace;
   XrTime last_time = 0;        ///< of the last frame; 0: none before
@@ -66,7 +73,7 @@ struct HeadsetHost::Parts {
   std::unique_ptr<render::xr::QuadLayer> quad;
 
   ~Parts() { stop(); }
-  void lose(const std::string& why, std::int64_t now_ns);
+  void lose(std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
   void show_scale(render::FramePacket& packet) const;
   Outcome take_desk(const render::xr::Frame& frame, HandHost& hand, const std::array<RoomHand, 2>& now);
@@ -95,22 +102,26 @@ void HeadsetHost::join(Screen::Options& options) {
   options.before_making = [this] { parts_->stop(); };
 }
 
-/// It is tried again, at once where something was seen before; the runtime's own instance goes with it where that was lost.
-void HeadsetHost::Parts::lose(const std::string& why, std::int64_t now_ns) {
-  const bool again = !std::exchange(said, why).empty();
+/// It is tried again, at once where it had been there for some time; the runtime's own instance goes with it where that was lost.
+void HeadsetHost::Parts::lose(std::int64_t now_ns) {
+  const auto wait_ns = std::int64_t(1e9 * kRetryS);
   last_time = 0;
   pace.pause();
-  retry_ns = again ? now_ns + std::int64_t(1e9 * kRetryS) : now_ns;
+  retry_ns = now_ns - started_ns < wait_ns ? now_ns + wait_ns : now_ns;
   stop();
-  if (headset->loss() == render::xr::Loss::instance) headset.reset();
+  if (headset && headset->loss() == render::xr::Loss::instance) headset.reset();
 }
 
 Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& say) {
   Parts& p = *parts_;
   if (p.left) return Done{};
   const auto lose = [&](const std::string& why) {
-    if (p.said != why) say(why);
-    p.lose(why, now_ns);
+    if (p.said != why || now_ns - p.said_ns > kSayAgainNs) {
+      say(why);
+      p.said = why;
+      p.said_ns = now_ns;
+    }
+    p.lose(now_ns);
   };
   if (!p.broken.empty()) lose(std::exchange(p.broken, {}));
   if (!p.headset) {
@@ -119,11 +130,17 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
     auto opened = render::xr::Headset::open();
     if (!opened) return Done{};
     p.headset = std::move(*opened);
-    // the new runtime's own device
-    CATENA_CHECK(screen.make_again());
+    // the new runtime's own device; where it makes none, the window has one of its own
+    if (const Outcome made = screen.make_again(); !made) {
+      p.headset.reset();
+      CATENA_CHECK(screen.make_again());
+      lose("the headset's runtime is back without a device: " + made.error().message);
+      return Done{};
+    }
   }
   if (!p.headset->started()) {
     if (now_ns < p.retry_ns) return Done{};
+    p.started_ns = now_ns;
     if (const Outcome started = p.headset->start(screen.renderer().device()); !started) {
       lose(started.error().message);
       return Done{};
@@ -135,6 +152,10 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
     return Done{};
   }
   if (std::exchange(p.waits_news, false)) say("the headset's runtime lets its picture wait: the window goes on meanwhile");
+  if (p.unseen == kUnseen) {
+    ++p.unseen;
+    say("the headset says of its eyes no place or field of view that a picture can be made for");
+  }
   if (const std::string news = p.pace.news(); !news.empty()) say(news);
   if (p.headset->session().has_left()) {
     p.left = true;
@@ -263,7 +284,8 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
   }
   if (mouse.here) probe.select = 0;  // it means the panel
   controller->say(hands.probe(probe, now));
-  const auto call = hands.vibration(controller->peaks(), now, headset->session().focused(), probe);
+  const bool settled = placement && now - placed_ns > kSettlesNs;
+  const auto call = hands.vibration(controller->peaks(), now, settled && headset->session().focused(), probe);
   using What = haptics::VibrationSender::What;
   if (call.what == What::stop) return actions.stop_vibration(HeadsetHands::kProbe);
   if (call.what == What::nothing) return Done{};
@@ -303,6 +325,7 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
     (void)p.headset->skip(*frame);
     return broken(taken.error().message);
   }
+  p.unseen = frame->sound ? 0 : p.unseen + 1;
   if (!frame->wants_picture) {
     p.pace.pause();
     const Outcome ended = p.headset->skip(*frame);
@@ -313,7 +336,10 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
     (void)p.headset->skip(*frame);
     return packet.error();
   }
-  if (!p.placement) p.placement = before(render::xr::head_of(*frame), packet->view);
+  if (!p.placement) {
+    p.placement = before(render::xr::head_of(*frame), packet->view);
+    p.placed_ns = now_ns();
+  }
   packet->vignette = p.hands.vignette();
   p.show_scale(*packet);
   render::FramePlan plan = p.pace.next(1e-6 * double(frame->period_ns), frame->time);
@@ -325,7 +351,6 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
   if (shown) {
     p.pace.drawn(ms_since(start));
     p.pace.follow(content.kind(*packet));
-    p.said.clear();
     screen.has_drawn();
     return true;
   }
@@ -355,14 +380,13 @@ std::string HeadsetHost::figures() const {
 
 void HeadsetHost::leave() {
   Parts& p = *parts_;
-  if (!p.headset || !p.headset->running()) return;
-  (void)p.headset->session().ask_to_leave();
-  for (int i = 0; i < kFarewellTurns; ++i) {
-    if (!p.headset->poll() || !p.headset->running()) break;
+  if (running()) (void)p.headset->session().ask_to_leave();
+  for (int i = 0; i < kFarewellTurns && running(); ++i) {
+    if (!p.headset->poll() || !running()) break;
     const auto frame = p.headset->begin_within(kTurn);
     if (!frame || (*frame && !p.headset->skip(**frame))) break;
   }
-  p.stop();
+  p.stop();  // whether it ran or not: the device goes next
 }
 
 std::string HeadsetHost::words() const {

@@ -41,7 +41,7 @@ Outcome Screen::recover() {
   return Done{};
 }
 
-Outcome Screen::make_again() { return renderer_->device().lost() ? recover() : make(); }
+Outcome Screen::make_again() { return renderer_ && renderer_->device().lost() ? recover() : make(); }
 
 Outcome Screen::draw(const render::FramePacket& packet, const render::RenderSettings& settings) {
   auto drawn = renderer_->draw(packet, settings);
