@@ -1,12 +1,14 @@
 /// Settings for a stated error or time, from measured residuals. The error of a setting is measured on this very picture: the pixels
 /// of a sparse lattice (every 13th each way, or more, until about 6000 of them are covered) against converged rays through them.
 ///   RMSE: 8-bit RGB over the background, in 1/255, of the covered pixels: where the picture's or the converged one's alpha, without a
-///   background, is at least 1/255 (measure.h). The estimate is two standard deviations of the lattice's mean above it.
-/// error=E: every ray step whose rays alone stay below E and steady (tried on the lattice: cheap) with every plan of interpolation, in the
-/// order of their expected cost; the cheapest, by the rays that it marches, whose finished picture stays below E, keeps what is thin, and
-/// whose error changes by at most half of E, or of what the picture itself changes by, while the camera turns by 0.2 degrees. time=MS: the
-/// ladder of refinement.h from the cheapest on, until a picture takes longer than MS; the least error among those that did not. More time
-/// therefore never makes the error worse. What the fast raycast cannot draw or cannot reach is left to the exact one. Frame thread.
+///   background, is at least 1/255 (measure.h). The estimate is two standard deviations of the lattice's mean above it, and counts what is
+///   left of the converged rays' own error.
+/// error=E: every ray step, lit by either gradient, whose rays alone stay below E and steady (tried on the lattice: cheap) with every plan
+/// of interpolation, in the order of their expected cost; the cheapest, by the rays that it marches, whose finished picture stays below E,
+/// keeps what is thin, and whose error changes by at most half of E, or of what the picture itself changes by, while the camera turns by
+/// 0.2 degrees. time=MS: the ladder of refinement.h from the cheapest on, until a picture takes longer than MS; the least error among those
+/// that did not. More time therefore never makes the error worse. What the fast raycast cannot draw or cannot reach is left to the exact
+/// one. Frame thread.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -36,7 +36,7 @@ double cost_of(const Plan& plan, const std::array<double, 2>& refined, const Fas
   return (first + marks + 0.29 * refined[0] + refined[1]) * a_ray;
 }
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
-constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
+constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.06, 0.04, 0.03};
 
 struct Candidate {
   RenderSettings settings;

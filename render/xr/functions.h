@@ -17,21 +17,19 @@
 
 /// Without an instance; of every instance; of instances whose extension was asked for.
 #define CATENA_XR_GLOBAL(X) X(EnumerateInstanceExtensionProperties) X(CreateInstance)
-#define CATENA_XR_CORE(X)                                                                                                               \
-  X(DestroyInstance)                                                                                                                    \
-  X(GetInstanceProperties)                                                                                                              \
-  X(PollEvent)                                                                                                                          \
-  X(GetSystem)                                                                                                                          \
-  X(GetSystemProperties)                                                                                                                \
-  X(EnumerateViewConfigurations)                                                                                                        \
-  X(EnumerateViewConfigurationViews) X(EnumerateEnvironmentBlendModes) X(CreateSession) X(DestroySession) X(BeginSession) X(EndSession) \
-      X(RequestExitSession) X(EnumerateReferenceSpaces) X(CreateReferenceSpace) X(DestroySpace) X(LocateSpace)                          \
-          X(EnumerateSwapchainFormats) X(CreateSwapchain) X(DestroySwapchain) X(EnumerateSwapchainImages) X(AcquireSwapchainImage)      \
-              X(WaitSwapchainImage) X(ReleaseSwapchainImage) X(WaitFrame) X(BeginFrame) X(EndFrame) X(LocateViews) X(StringToPath)      \
-                  X(PathToString) X(CreateActionSet) X(DestroyActionSet) X(CreateAction) X(SuggestInteractionProfileBindings)           \
-                      X(AttachSessionActionSets) X(CreateActionSpace) X(SyncActions) X(GetActionStateBoolean) X(GetActionStateFloat)    \
-                          X(GetActionStateVector2f) X(GetActionStatePose) X(GetCurrentInteractionProfile) X(ApplyHapticFeedback)        \
-                              X(StopHapticFeedback)
+// clang-format off
+#define CATENA_XR_CORE(X) \
+  X(DestroyInstance) X(GetInstanceProperties) X(PollEvent) X(GetSystem) X(GetSystemProperties) \
+  X(EnumerateViewConfigurations) X(EnumerateViewConfigurationViews) X(EnumerateEnvironmentBlendModes) \
+  X(CreateSession) X(DestroySession) X(BeginSession) X(EndSession) X(RequestExitSession) \
+  X(EnumerateReferenceSpaces) X(CreateReferenceSpace) X(DestroySpace) X(LocateSpace) \
+  X(EnumerateSwapchainFormats) X(CreateSwapchain) X(DestroySwapchain) X(EnumerateSwapchainImages) \
+  X(AcquireSwapchainImage) X(WaitSwapchainImage) X(ReleaseSwapchainImage) X(WaitFrame) X(BeginFrame) \
+  X(EndFrame) X(LocateViews) X(StringToPath) X(PathToString) X(CreateActionSet) X(DestroyActionSet) \
+  X(CreateAction) X(SuggestInteractionProfileBindings) X(AttachSessionActionSets) X(CreateActionSpace) \
+  X(SyncActions) X(GetActionStateBoolean) X(GetActionStateFloat) X(GetActionStateVector2f) \
+  X(GetActionStatePose) X(GetCurrentInteractionProfile) X(ApplyHapticFeedback) X(StopHapticFeedback)
+// clang-format on
 #define CATENA_XR_VULKAN(X) \
   X(GetVulkanGraphicsRequirements2KHR) X(CreateVulkanInstanceKHR) X(GetVulkanGraphicsDevice2KHR) X(CreateVulkanDeviceKHR)
 #define CATENA_XR_OPTIONAL(X) X(GetVisibilityMaskKHR) X(ConvertTimespecTimeToTimeKHR)

@@ -1,8 +1,6 @@
 // catena view --xr against the scripted runtime (tests/xr_runtime), on a virtual display; what its hands do, without one.
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,9 +16,7 @@
 #include "haptics/device/settings.h"
 #include "render/image/picture.h"
 #include "tests/engine/app/open_scene.h"
-#include "tests/support/child_test.h"
-#include "tests/support/support.h"
-#include "tests/support/windows.h"
+#include "tests/engine/app/viewer_headset_rig.h"
 #if __has_include(<openxr/openxr.h>)
 #include "tests/render/xr/rig.h"
 #endif
@@ -28,46 +24,8 @@
 namespace catena::app {
 namespace viewer_headset_test {
 
-constexpr const char* kScene = R"({
-  "fields": {"s": {"analytic": "sphere"}},
-  "chain": [{"name": "ball", "type": "isosurface", "field": "s", "level": 1}],
-  "isosurfaces": [{"field": "s", "level": 1, "color": [1, 0.5, 0.2]}],
-  "camera": {"position": [0, -6, 3], "target": [0, 0, 0]} })";
-
-class ViewerHeadset : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!test::exists(test::binary_dir() + "/libcatena_xr_runtime.so")) GTEST_SKIP() << "the scripted runtime was not built";
-    test::write_file(folder_ / "scene.json", kScene);
-  }
-  int view(const std::string& options, const std::string& words, const std::string& runtime) {
-    test::write_file(folder_ / "script.sh", "export HOME=" + folder_.path() + " XR_RUNTIME_JSON=" + runtime + " CATENA_XR_SCRIPT='" +
-                                                words + " record=" + (folder_ / "record") + "'\nexec " + test::program_path() + " view " +
-                                                (folder_ / "scene.json") + " --xr --size 320x240 " + options + "\n");
-    std::filesystem::remove(std::filesystem::path(folder_ / "record"));  // of a run before
-    const int status = std::system(
-        ("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  int view(const std::string& options, const std::string& words) { return view(options, words, test::binary_dir() + "/xr_runtime.json"); }
-  std::string log() const { return test::read_file(folder_ / "log"); }
-  /// A number of what the runtime has seen.
-  double seen(const std::string& word) const {
-    std::istringstream in(test::read_file(folder_ / "record"));
-    std::string name;
-    for (double value = 0; in >> name >> value;)
-      if (name == word) return value;
-    return -1;
-  }
-  /// Beside what a slow machine is told of its frame rate.
-  int lost_lines() const {
-    std::istringstream in(log());
-    int count = 0;
-    for (std::string line; std::getline(in, line);) count += line.starts_with("catena: the headset could not");
-    return count;
-  }
-  test::TemporaryFolder folder_;
-};
+using viewer_headset_rig::kScene;
+using viewer_headset_rig::ViewerHeadset;
 
 TEST_F(ViewerHeadset, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
   ASSERT_EQ(view("--frames 8 --screenshot " + (folder_ / "eye.png"), "size=96x80"), 0) << log();
@@ -137,17 +95,6 @@ TEST_F(ViewerHeadset, TheWindowComesIntoTheRoom) {
   EXPECT_EQ(seen("objects"), 0);
 }
 
-/// The session is lost, then the whole runtime: said once each, the window goes on, and the headset comes back with a new device.
-TEST_F(ViewerHeadset, WhatIsLostComesBack) {
-  ASSERT_EQ(view("--seconds 5", "size=32x32 fail=xrEndFrame:6:-17 fail=xrWaitFrame:20:-13"), 0) << log();
-  EXPECT_NE(log().find("XR_ERROR_SESSION_LOST"), std::string::npos) << log();
-  EXPECT_NE(log().find("XR_ERROR_INSTANCE_LOST"), std::string::npos) << log();
-  EXPECT_EQ(lost_lines(), 2) << log();
-  EXPECT_GT(seen("pictures"), 20);
-  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
-  EXPECT_EQ(seen("objects"), 0);
-}
-
 /// A session that runs and is not seen: pictures are counted in the window.
 TEST_F(ViewerHeadset, ANumberOfPicturesEndsWhereNobodySeesThem) {
   EXPECT_EQ(view("--frames 12", "size=32x32 state=4:VISIBLE state=4:SYNCHRONIZED"), 0) << log();
@@ -172,55 +119,6 @@ TEST_F(ViewerHeadset, OddHeadsetsAndOptionsOfFlatPicturesEndInTime) {
     EXPECT_GE(seen("pictures"), 11) << options;
     EXPECT_EQ(seen("illegal"), 0) << options << test::read_file(folder_ / "record");
   }
-}
-
-/// The runtime keeps a frame for three seconds: that is said, the window goes on, and so does the headset afterwards.
-TEST_F(ViewerHeadset, ARuntimeThatHangsDoesNotHoldTheWindow) {
-  ASSERT_EQ(view("--seconds 6", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
-  EXPECT_NE(log().find("the window goes on meanwhile"), std::string::npos) << log();
-  EXPECT_EQ(lost_lines(), 0) << log();
-  EXPECT_GT(seen("pictures"), 40);
-  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
-  EXPECT_EQ(seen("objects"), 0);
-}
-
-/// Closed meanwhile, it ends.
-TEST_F(ViewerHeadset, ItEndsWhileTheRuntimeHangs) {
-  ASSERT_EQ(view("--seconds 1.5", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
-  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
-  EXPECT_EQ(seen("objects"), 0);
-}
-
-/// The headset is taken off, its session ends, it never begins: the program ends like any other.
-TEST_F(ViewerHeadset, ASessionThatDoesNotRunEndsWithTheProgram) {
-  for (const char* script :
-       {"size=16x16 period_ms=20 paced state=10:STOPPING", "size=16x16 period_ms=20 paced state=10:STOPPING state=11:EXITING",
-        "size=16x16 period_ms=20 paced state=10:STOPPING fail=xrEndSession:1:-17"}) {
-    EXPECT_EQ(view("--seconds 1.5", script), 0) << script << log();
-    EXPECT_EQ(seen("illegal"), 0) << script << test::read_file(folder_ / "record");
-  }
-}
-
-/// A runtime that is back but makes no device: the window goes on with its own, and the runtime is tried again.
-TEST_F(ViewerHeadset, ARuntimeThatComesBackWithoutADeviceLeavesTheWindow) {
-  for (const char* call : {"xrCreateVulkanDeviceKHR", "xrCreateVulkanInstanceKHR"}) {
-    EXPECT_EQ(view("--seconds 4", std::string("size=16x16 fail=xrEndFrame:6:-13 fail=") + call + ":2:-2"), 0) << call << log();
-    EXPECT_NE(log().find("is back without a device"), std::string::npos) << log();
-    EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
-    EXPECT_GT(seen("pictures"), 10) << call;
-  }
-}
-
-/// What is lost again and again is tried every second, and said once.
-TEST_F(ViewerHeadset, ALossThatRepeatsIsSaidOnce) {
-  ASSERT_EQ(view("--seconds 3.5", "size=16x16 paced period_ms=11 state=5:LOSS_PENDING"), 0) << log();
-  EXPECT_EQ(lost_lines(), 1) << log();
-}
-
-/// One that never comes back is left behind.
-TEST_F(ViewerHeadset, ItEndsWhereTheRuntimeNeverAnswers) {
-  ASSERT_EQ(view("--seconds 1", "size=16x16 period_ms=20 paced hang=10:3600000"), 0) << log();
-  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
 }
 
 /// What is not registered is asked for, on the terminal and on the panel in the room; the menu button puts it off.

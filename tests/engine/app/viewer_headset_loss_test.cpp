@@ -1,0 +1,70 @@
+/// What happens to `catena view --xr` where the session or the runtime goes, does not come, or does not answer.
+#include "tests/engine/app/viewer_headset_rig.h"
+
+namespace catena::app {
+namespace viewer_headset_loss_test {
+
+class ViewerHeadsetLoss : public viewer_headset_rig::ViewerHeadset {};
+
+/// The session is lost, then the whole runtime: said once each, the window goes on, and the headset comes back with a new device.
+TEST_F(ViewerHeadsetLoss, WhatIsLostComesBack) {
+  ASSERT_EQ(view("--seconds 5", "size=32x32 fail=xrEndFrame:6:-17 fail=xrWaitFrame:20:-13"), 0) << log();
+  EXPECT_NE(log().find("XR_ERROR_SESSION_LOST"), std::string::npos) << log();
+  EXPECT_NE(log().find("XR_ERROR_INSTANCE_LOST"), std::string::npos) << log();
+  EXPECT_EQ(lost_lines(), 2) << log();
+  EXPECT_GT(seen("pictures"), 20);
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(seen("objects"), 0);
+}
+
+/// The runtime keeps a frame for three seconds: that is said, the window goes on, and so does the headset afterwards.
+TEST_F(ViewerHeadsetLoss, ARuntimeThatHangsDoesNotHoldTheWindow) {
+  ASSERT_EQ(view("--seconds 6", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
+  EXPECT_NE(log().find("the window goes on meanwhile"), std::string::npos) << log();
+  EXPECT_EQ(lost_lines(), 0) << log();
+  EXPECT_GT(seen("pictures"), 40);
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(seen("objects"), 0);
+}
+
+/// Closed meanwhile, it ends.
+TEST_F(ViewerHeadsetLoss, ItEndsWhileTheRuntimeHangs) {
+  ASSERT_EQ(view("--seconds 1.5", "size=16x16 period_ms=20 paced hang=10:3000"), 0) << log();
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(seen("objects"), 0);
+}
+
+/// The headset is taken off, its session ends, it never begins: the program ends like any other.
+TEST_F(ViewerHeadsetLoss, ASessionThatDoesNotRunEndsWithTheProgram) {
+  for (const char* script :
+       {"size=16x16 period_ms=20 paced state=10:STOPPING", "size=16x16 period_ms=20 paced state=10:STOPPING state=11:EXITING",
+        "size=16x16 period_ms=20 paced state=10:STOPPING fail=xrEndSession:1:-17"}) {
+    EXPECT_EQ(view("--seconds 1.5", script), 0) << script << log();
+    EXPECT_EQ(seen("illegal"), 0) << script << test::read_file(folder_ / "record");
+  }
+}
+
+/// A runtime that is back but makes no device: the window goes on with its own, and the runtime is tried again.
+TEST_F(ViewerHeadsetLoss, ARuntimeThatComesBackWithoutADeviceLeavesTheWindow) {
+  for (const char* call : {"xrCreateVulkanDeviceKHR", "xrCreateVulkanInstanceKHR"}) {
+    EXPECT_EQ(view("--seconds 4", std::string("size=16x16 fail=xrEndFrame:6:-13 fail=") + call + ":2:-2"), 0) << call << log();
+    EXPECT_NE(log().find("is back without a device"), std::string::npos) << log();
+    EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+    EXPECT_GT(seen("pictures"), 10) << call;
+  }
+}
+
+/// What is lost again and again is tried every second, and said once.
+TEST_F(ViewerHeadsetLoss, ALossThatRepeatsIsSaidOnce) {
+  ASSERT_EQ(view("--seconds 3.5", "size=16x16 paced period_ms=11 state=5:LOSS_PENDING"), 0) << log();
+  EXPECT_EQ(lost_lines(), 1) << log();
+}
+
+/// One that never comes back is left behind.
+TEST_F(ViewerHeadsetLoss, ItEndsWhereTheRuntimeNeverAnswers) {
+  ASSERT_EQ(view("--seconds 1", "size=16x16 period_ms=20 paced hang=10:3600000"), 0) << log();
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+}
+
+}  // namespace viewer_headset_loss_test
+}  // namespace catena::app
