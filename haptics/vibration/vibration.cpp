@@ -33,8 +33,7 @@ VibrationSender::Call VibrationSender::next(Peaks& peaks, std::int64_t now_ns, b
   was_allowed_ = true;
   const double since_s = 1e-9 * static_cast<double>(now_ns - std::exchange(last_ns_, now_ns));
   if (began) return {};  // what was felt before it was allowed
-  call_s_ = std::clamp(since_s, kShortestCallS, kLongestCallS);
-  const Vibration wish = vibration_of(felt, call_s_, map_);
+  const Vibration wish = vibration_of(felt, std::clamp(since_s, kShortestCallS, kLongestCallS), map_);
   const bool pulse_lasts = running_.is_pulse && now_ns < ends_ns_;
   if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < running_.amplitude)) return {};
   running_ = wish;

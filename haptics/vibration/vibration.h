@@ -45,13 +45,11 @@ class VibrationSender {
     Vibration vibration{};  ///< of `vibrate`
   };
 
-  /// `call_s`: the time between two calls, until it is known; then the time since the last one, of 1 ms to 0.1 s.
-  explicit VibrationSender(double call_s = 1.0 / 90, const VibrationMap& map = {}) : call_s_(call_s), map_(map) {}
-  /// `now_ns`: monotonic, not going back.
+  explicit VibrationSender(const VibrationMap& map = {}) : map_(map) {}
+  /// `now_ns`: monotonic, not going back. The time since the last call counts as that to the next, of 1 ms to 0.1 s.
   Call next(Peaks& peaks, std::int64_t now_ns, bool allowed) noexcept;
 
  private:
-  double call_s_;
   VibrationMap map_;
   Vibration running_;
   std::int64_t ends_ns_ = 0, last_ns_ = 0;

@@ -62,9 +62,10 @@ RenderSettings planned(const Plan& plan, double step, double e, bool smooth) {
   return s;
 }
 
-/// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation. `floor`: there is an error that no
-/// step mends, as of light by the gradient of the cell; steps that make it hardly less are the last.
-Outcome add_candidates(Lattice& lattice, double e, bool smooth, bool floor, std::vector<Candidate>& all) {
+/// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation. Light by the gradient of the cell
+/// has an error that no step mends: steps that make it hardly less are the last.
+Outcome add_candidates(Lattice& lattice, double e, bool smooth, std::vector<Candidate>& all) {
+  const bool floor = !smooth && lattice.packet().volumes.front().shade;
   const std::size_t most = all.size() + kGoodSteps * std::size(kPlan);
   double before = std::numeric_limits<double>::infinity();
   for (const double step : kFastSteps) {
@@ -85,9 +86,8 @@ Outcome add_candidates(Lattice& lattice, double e, bool smooth, bool floor, std:
 
 Result<std::vector<Candidate>> fast_candidates(Lattice& lattice, double e) {
   std::vector<Candidate> all;
-  const bool lit = lattice.packet().volumes.front().shade;
-  CATENA_CHECK(add_candidates(lattice, e, false, lit, all));
-  if (lit) CATENA_CHECK(add_candidates(lattice, e, true, false, all));
+  CATENA_CHECK(add_candidates(lattice, e, false, all));
+  if (lattice.packet().volumes.front().shade) CATENA_CHECK(add_candidates(lattice, e, true, all));
   return all;
 }
 

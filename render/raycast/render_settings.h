@@ -17,7 +17,7 @@ struct FastSettings {
   std::uint32_t spacing = 1;       ///< pixels between the first rays: 1, 2 or 4
   double refine_half_255 = 0;      ///< spacing 4: marches every 2nd pixel where interpolation is expected to err by more; < 0: nowhere
   double refine_full_255 = -1;     ///< the same for every pixel
-  bool smooth_gradients = false;   ///< shading by central differences, as the exact raycast has it, for 4 bytes a voxel more
+  bool smooth_gradients = false;   ///< shading by central differences, as the exact raycast has it, for 8 bytes a voxel more
   double termination = 1.0 / 512;  ///< a ray ends when less than this gets through; the rest is told from what it has met
   bool skip = true;                ///< leap over bricks that the transfer function leaves empty
   /// On the device, for packed words and gradients; the budget's rest, where that is less. What needs more is drawn exactly.

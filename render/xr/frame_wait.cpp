@@ -11,20 +11,14 @@ FrameWait::FrameWait(PFN_xrWaitFrame wait, XrSession session) : shared_(std::mak
 }
 
 FrameWait::~FrameWait() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard guard(shared_->lock);
-    shared_->ends = true;
-  }
-  shared_->changed.notify_all();
-  thread_.join();
+  if (thread_.joinable()) (void)end(std::nullopt);
 }
 
-bool FrameWait::end(std::chrono::nanoseconds patience) {
+bool FrameWait::end(std::optional<std::chrono::nanoseconds> patience) {
   std::unique_lock guard(shared_->lock);
   shared_->ends = true;
   shared_->changed.notify_all();
-  const bool ended = shared_->changed.wait_for(guard, patience, [this] { return shared_->ended; });
+  const bool ended = !patience || shared_->changed.wait_for(guard, *patience, [this] { return shared_->ended; });
   guard.unlock();
   if (ended) {
     thread_.join();

@@ -27,9 +27,9 @@ class FrameWait {
   /// Asks the runtime, unless it was asked and has not answered. Nothing where there is no answer within `patience`; none: however long.
   std::optional<Answer> take(std::optional<std::chrono::nanoseconds> patience);
 
-  /// The last call. False where the runtime does not answer within `patience`: its call and the thread are left behind, and the session is
-  /// in use for good.
-  bool end(std::chrono::nanoseconds patience);
+  /// The last call. False where the runtime does not answer within `patience` (none: however long): its call and the thread are left
+  /// behind, and the session is in use for good.
+  bool end(std::optional<std::chrono::nanoseconds> patience);
 
  private:
   /// What the thread needs, even where it is left behind.

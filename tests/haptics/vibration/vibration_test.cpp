@@ -78,7 +78,7 @@ TEST(Vibration, AWeakerOneDoesNotCutAPulseShortButAStrongerOneReplacesIt) {
 
 TEST(Vibration, FrictionGoesOnWithoutAGapAndFollowsTheForceDown) {
   Peaks peaks;
-  VibrationSender sender(1e-9 * kCall_ns);
+  VibrationSender sender;
   std::int64_t now = 0, ends = 0;
   sender.next(peaks, now, true);
   double last = 1;

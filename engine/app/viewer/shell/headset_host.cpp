@@ -72,7 +72,6 @@ struct HeadsetHost::Parts {
   bool pressed_since = false;  ///< since it was asked for
   std::unique_ptr<render::xr::QuadLayer> quad;
 
-  ~Parts() { stop(); }
   void lose(std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
   void show_scale(render::FramePacket& packet) const;
