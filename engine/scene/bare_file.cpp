@@ -295,11 +295,23 @@ void forget_all_lines(Scene& scene) {
   forget_lines<DrawnPoints>(scene);
 }
 
+/// A scene states its numbers, and these have a least and a most.
+Outcome check_size_of_values(const field::AnyField& field, const std::string& path) {
+  const field::ScalarGrid* grid = field.scalar ? field.scalar->grid() : nullptr;
+  if (grid == nullptr) return Done{};
+  const field::GridStats& stats = grid->stats();
+  const double most = std::max(std::fabs(stats.min), std::fabs(stats.max));
+  if (most == 0 || (most >= kLeastSize && most <= kMostSize)) return Done{};
+  return Error{fmt::format("{}: its values go from {:g} to {:g}; sizes from 1e-30 to 1e30 were expected: scale the data", path, stats.min,
+                           stats.max)};
+}
+
 }  // namespace
 
 Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors) {
   if (grid.get() == nullptr || !grid.get()->is_grid())
     return Error{"a formula does not say what of it is worth seeing; a grid was expected (sample_on_grid), or a scene"};
+  CATENA_CHECK(check_size_of_values(grid, "field"));
   FieldOverride with{"field", {}, {}, grid};
   const std::string name = "\"field\"";
   const FirstLook look = grid.scalar ? first_look(name, *grid.scalar->grid(), {}, colors) : first_look(name, *grid.vector->grid(), colors);
@@ -315,6 +327,7 @@ Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& co
 
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
   CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors));
+  CATENA_CHECK(check_size_of_values(bare.field, path));
   CATENA_TRY(Scene scene, parse_scene(bare.text, path));
   adopt_loaded(bare, scene);
   if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);

@@ -37,7 +37,7 @@ const Table<Camera>& camera_table() {
     Table<Camera> t;
     t.bind(schema::vec3("position", "world", "Of the eye.").ranged("to 1e15").required(), &Camera::position);
     t.bind(schema::vec3("target", "world", "Where it looks.").ranged("to 1e15").required(), &Camera::target);
-    t.bind(schema::direction("up", "What is up in the picture; not along the view."), &Camera::up);
+    t.bind(schema::direction("up", "What is up in the picture; where it is stated, not along the view."), &Camera::up);
     t.bind(schema::number("fovy_deg", "degrees", "Vertical angle of view.").positive().ranged("0.001 to 179.9"), &Camera::fovy_deg);
     t.bind(schema::word("projection", {"perspective", "orthographic"}, "How depth becomes size."), &Camera::orthographic);
     t.hand(

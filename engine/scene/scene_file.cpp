@@ -54,12 +54,10 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
 
 }  // namespace
 
-/// Numbers whose squares and quotients are numbers, too, of a double and (lengths of the picture) of a float.
 static Outcome check_sizes(const json::Node& node) {
-  constexpr double least = 1e-30, most = 1e30;
   const double size = std::abs(node.number);
-  if (node.kind == json::Kind::number && size != 0 && !(size >= least && size <= most))
-    return json::error_at(node, to_text(node.number) + " is too " + (size < least ? "small" : "large") +
+  if (node.kind == json::Kind::number && size != 0 && !(size >= kLeastSize && size <= kMostSize))
+    return json::error_at(node, to_text(node.number) + " is too " + (size < kLeastSize ? "small" : "large") +
                                     "; 0 or a number from 1e-30 to 1e30 in size was expected");
   for (const json::Node& item : node.items) CATENA_CHECK(check_sizes(item));
   for (const auto& [key, value] : node.members) CATENA_CHECK(check_sizes(value));

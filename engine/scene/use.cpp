@@ -70,6 +70,17 @@ void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource&
       grid->interpolation() == field::Interpolation::cubic ? "cubic" : "linear"));
 }
 
+/// Pictures and forces are of numbers that a scene can state.
+void note_tiny_values(Scene& scene, const std::string& name, const FieldSource& source) {
+  const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
+  if (grid == nullptr) return;
+  const double most = std::max(std::fabs(grid->stats().min), std::fabs(grid->stats().max));
+  if (most == 0 || most >= kLeastSize) return;
+  scene.notes.push_back(fmt::format(
+      "field {}: its values are at most {:g} in size, too little for pictures and forces; from {:g} on were expected: scale the data",
+      in_quotes(name), most, kLeastSize));
+}
+
 }  // namespace
 
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where) {
@@ -92,6 +103,7 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
     scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
   find_labels(source);
   note_mixed_labels(scene, scene.world.get<Name>(field).value, source);
+  note_tiny_values(scene, scene.world.get<Name>(field).value, source);
   return source.loaded;
 }
 

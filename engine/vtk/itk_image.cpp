@@ -70,13 +70,20 @@ Mapping turned_round(const Mapping& m) {
   return Mapping::from_linear(linear, origin);
 }
 
+std::string words_of(const itk::ExceptionObject& error) {
+  const std::string words = error.GetDescription();
+  const auto object = words.find("): ");
+  return words.starts_with("ITK ERROR: ") && object != std::string::npos ? words.substr(object + 3) : words;
+}
+
 Result<Shape> shape_of(const itk::ImageIOBase& io) {
   Shape shape;
   double all = 1;
   for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) {
     const auto n = io.GetDimensions(a);
     all *= static_cast<double>(n);
-    if (n < 1 || n > 1'000'000 || all > 1e12) return Error{fmt::format("the size along axis {} is {}, expected 1 to 1000000", a, n)};
+    if (n < 1 || n > 1'000'000) return Error{fmt::format("the size along axis {} is {}, expected 1 to 1000000", a, n)};
+    if (all > 1e12) return Error{fmt::format("the sizes of the first {} axes make {:.3g} voxels, expected at most 1e12", a + 1, all)};
     if (a < 3)
       shape.size[a] = static_cast<int>(n);
     else

@@ -12,6 +12,9 @@
 
 namespace catena::vtk {
 
+/// What ITK says went wrong, without the name and the address of its object.
+std::string words_of(const itk::ExceptionObject& error);
+
 /// A text of the header by its key, without blanks at its end; empty: there is none.
 std::string text_at(const itk::MetaDataDictionary& words, const std::string& key);
 

@@ -189,7 +189,7 @@ Result<Opened> open_dicom_folder(const Source& source) {
     opened.unit_length = "mm";
     return opened;
   } catch (const itk::ExceptionObject& e) {
-    return Error{one_line(fmt::format("{}: cannot be read ({})", source.shown, e.GetDescription()))};
+    return Error{one_line(fmt::format("{}: cannot be read ({})", source.shown, words_of(e)))};
   }
 }
 

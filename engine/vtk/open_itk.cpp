@@ -142,7 +142,7 @@ Result<Opened> open_with_itk(const Source& source) {
     if (text_at(words, "0008|0060") == "CT") opened.units[stem(source.shown)] = "HU";
     return opened;
   } catch (const itk::ExceptionObject& e) {
-    return failed(fmt::format("cannot be read ({})", e.GetDescription()));
+    return failed(fmt::format("cannot be read ({})", words_of(e)));
   }
 }
 

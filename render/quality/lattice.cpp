@@ -24,7 +24,7 @@ constexpr double kSparseSamples = 500;                          // if it has so 
 // are halved until what is left of its error is less than a share of the goal, or what rounding to 8 bits makes of nothing
 constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3;
 
-LatticeError compare(const Picture& a, const Picture& b) {
+LatticeError compare_over_ground(const Picture& a, const Picture& b) {
   PixelErrors errors = covered_errors(a, b);
   const auto count = double(errors.squares.size());
   if (count == 0) return {};
@@ -35,6 +35,13 @@ LatticeError compare(const Picture& a, const Picture& b) {
   }
   const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean);
   return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 0.999)};
+}
+
+/// What lies over black, over white.
+Picture on_white(Picture picture) {
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+    for (std::size_t c = i; c < i + 3; ++c) picture.rgba[c] = std::uint8_t(std::min(255, picture.rgba[c] + 255 - picture.rgba[i + 3]));
+  return picture;
 }
 
 /// The same seen by a camera that has gone a little around its target.
@@ -59,6 +66,9 @@ Picture on_lattice(const Picture& picture, std::uint32_t spacing) {
 }  // namespace
 
 Lattice::Lattice(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) {
+  if (packet_.background[3] < 1) packet_.background = {};
+  grounds_.push_back({packet_.background[0], packet_.background[1], packet_.background[2]});
+  if (packet_.background[3] < 1) grounds_.push_back({1, 1, 1});
   packet_.background[3] = 0;
   packet_.overlay = {};
 }
@@ -78,7 +88,7 @@ Outcome Lattice::begin(double goal, bool moves) {
   if (moves && renderer_.draws_fast(packet_)) {
     CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
     const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
-    most_flicker_ = kFlickerGoal * std::max(goal, flicker_between(none, truth_, none, next_truth_));
+    most_flicker_ = kFlickerGoal * std::max(goal, flicker(none, truth_, none, next_truth_));
   }
   if (!renderer_.draws_fast(packet_)) return Done{};
   // it may have no memory for the grid
@@ -110,6 +120,12 @@ Outcome Lattice::find_truth(double goal) {
   return Done{};
 }
 
+bool Lattice::empty() const {
+  for (std::size_t i = 3; i < truth_.rgba.size(); i += 4)
+    if (truth_.rgba[i] > 0) return false;
+  return spacing_ == 1;
+}
+
 Result<LatticeError> Lattice::of_rays(const RenderSettings& settings) {
   CATENA_TRY(last_, renderer_.probe(packet_, settings, spacing_));
   return off_the_truth();
@@ -120,6 +136,19 @@ Result<LatticeError> Lattice::of_picture(const RenderSettings& settings) {
   ++pictures_;
   CATENA_TRY(last_, drawn_lattice());
   return off_the_truth();
+}
+
+LatticeError Lattice::compare(const Picture& a, const Picture& b) const {
+  LatticeError error = compare_over_ground(a, b);
+  if (grounds_.size() == 1) return error;
+  const LatticeError white = compare_over_ground(on_white(a), on_white(b));
+  return {std::max(error.rmse, white.rmse), std::max(error.above, white.above), std::max(error.p999, white.p999)};
+}
+
+double Lattice::flicker(const Picture& last, const Picture& last_truth, const Picture& now, const Picture& truth) const {
+  const double here = flicker_between(last, last_truth, now, truth);
+  if (grounds_.size() == 1) return here;
+  return std::max(here, flicker_between(on_white(last), on_white(last_truth), on_white(now), on_white(truth)));
 }
 
 /// With what is left of the converged rays' own error, as far as it is more than rounding makes of nothing.
@@ -141,18 +170,20 @@ Result<bool> Lattice::keeps_what_is_thin(double e) {
     CATENA_TRY(fine_, renderer_.read_back());
     ++pictures_;
   }
-  const PictureError error = measure_error(picture, fine_, {packet_.background[0], packet_.background[1], packet_.background[2]});
-  return error.least_kept >= 1 - e / kThinGoal && error.p999 <= kFarthest * e;
+  for (const std::array<float, 3>& ground : grounds_) {
+    const PictureError error = measure_error(picture, fine_, ground);
+    if (error.least_kept < 1 - e / kThinGoal || error.p999 > kFarthest * e) return false;
+  }
+  return true;
 }
 
 /// Of the picture that was drawn last.
 Result<Picture> Lattice::drawn_lattice() {
   CATENA_TRY(const Picture picture, renderer_.read_back());
-  const std::array<float, 4>& b = packet_.background;
-  return over(on_lattice(picture, spacing_), {b[0], b[1], b[2]});
+  return over(on_lattice(picture, spacing_), grounds_.front());
 }
 
-bool Lattice::is_steady(const Picture& after) const { return flicker_between(last_, truth_, after, next_truth_) <= most_flicker_; }
+bool Lattice::is_steady(const Picture& after) const { return flicker(last_, truth_, after, next_truth_) <= most_flicker_; }
 
 Result<bool> Lattice::rays_are_steady(const RenderSettings& settings) {
   CATENA_TRY(const Picture after, renderer_.probe(turned(packet_), settings, spacing_));

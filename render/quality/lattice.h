@@ -2,6 +2,7 @@
 /// the numbers). Frame thread.
 #pragma once
 #include <array>
+#include <vector>
 
 #include "render/image/picture.h"
 #include "render/passes/renderer.h"
@@ -21,7 +22,9 @@ struct LatticeError {
 
 class Lattice {
  public:
-  /// The picture is drawn without a background, so that it says what it covers, and without what is written over it, which rays lack.
+  /// The picture is drawn without a background, so that it says what it covers, and without what is written over it, which rays lack. What
+  /// is to have none may come to lie over anything: then errors are the larger ones of over black and over white, between which all others
+  /// are.
   Lattice(Renderer& renderer, const FramePacket& packet);
 
   /// Before all that follows. `goal`: the least error that matters, 1/255. `moves`: the error is wanted to be steady, too.
@@ -32,6 +35,7 @@ class Lattice {
   bool fast() const { return fast_; }                ///< the fast raycast draws the picture
   double truth_step() const { return truth_step_; }  ///< of the converged rays, voxels
   double truth_error() const { return truth_error_; }
+  bool empty() const;                         ///< every pixel was looked at, and nothing is in any
   int pictures() const { return pictures_; }  ///< drawn so far
 
   /// Of the rays alone; of the finished picture.
@@ -49,17 +53,20 @@ class Lattice {
  private:
   Outcome find_truth(double goal);
   Result<Picture> drawn_lattice();
+  LatticeError compare(const Picture& a, const Picture& b) const;
+  double flicker(const Picture& last, const Picture& last_truth, const Picture& now, const Picture& truth) const;
   LatticeError off_the_truth() const;
   bool is_steady(const Picture& after) const;
 
   Renderer& renderer_;
   FramePacket packet_;
-  Picture truth_, next_truth_;               ///< the rays of the lattice; and from where the camera goes
-  double most_flicker_ = 0;                  ///< that is steady enough
-  double covered_ = 1;                       ///< pixels
-  Picture last_;                             ///< the lattice of the rays or the picture that were measured last
-  double truth_step_ = 0, truth_error_ = 0;  ///< and what is left of it
-  Picture fine_;                             ///< the fast raycast's every ray of a short step
+  std::vector<std::array<float, 3>> grounds_;  ///< that the picture may lie over; pictures here lie over the first
+  Picture truth_, next_truth_;                 ///< the rays of the lattice; and from where the camera goes
+  double most_flicker_ = 0;                    ///< that is steady enough
+  double covered_ = 1;                         ///< pixels
+  Picture last_;                               ///< the lattice of the rays or the picture that were measured last
+  double truth_step_ = 0, truth_error_ = 0;    ///< and what is left of it
+  Picture fine_;                               ///< the fast raycast's every ray of a short step
   std::uint32_t spacing_ = 1;
   bool fast_ = false;
   int pictures_ = 0;

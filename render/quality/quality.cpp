@@ -8,6 +8,8 @@
 namespace catena::render {
 namespace {
 
+constexpr double kBegun = 0.25;  // of a search, what makes its converged rays
+
 /// The packet as its first eye sees it.
 FramePacket first_eye(const FramePacket& packet) {
   FramePacket one = packet;
@@ -31,16 +33,24 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
   return best;
 }
 
-Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const DrawTimer& timer) {
+Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const SearchProgress& progress,
+                                     const DrawTimer& timer) {
   if (!packet.eyes.empty()) {
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
-    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, timer);
+    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, progress, timer);
   }
   if (!draws_rays(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
   Lattice lattice(renderer, packet);
   const bool has_error = goal.kind == QualityGoal::Kind::error;
   CATENA_CHECK(lattice.begin(has_error ? goal.value : 0, has_error));
-  return has_error ? settings_for_error(lattice, goal.value) : settings_for_time(lattice, goal.value, timer);
+  const SearchProgress told = [&progress](double done) {
+    if (progress) progress(kBegun + (1 - kBegun) * done);
+  };
+  told(0);
+  CATENA_TRY(QualityChoice chosen,
+             has_error ? settings_for_error(lattice, goal.value, told) : settings_for_time(lattice, goal.value, told, timer));
+  chosen.empty = lattice.empty();
+  return chosen;
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {

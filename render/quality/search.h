@@ -6,7 +6,7 @@
 
 namespace catena::render {
 
-Result<QualityChoice> settings_for_error(Lattice& lattice, double e);
-Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const DrawTimer& timer);
+Result<QualityChoice> settings_for_error(Lattice& lattice, double e, const SearchProgress& progress);
+Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const SearchProgress& progress, const DrawTimer& timer);
 
 }  // namespace catena::render

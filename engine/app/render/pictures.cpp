@@ -127,8 +127,9 @@ struct Sample {
   render::FramePacket packet;
   double share = 1;  ///< of the picture's samples
 };
-Sample sample_of(const render::FramePacket& packet, const render::TilePlan& plan) {
-  const bool whole = std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kOnePiece;
+Sample sample_of(const render::FramePacket& packet, const render::TilePlan& plan, std::uint32_t longest) {
+  const bool whole =
+      std::max(plan.samples_x(), plan.samples_y()) <= longest && std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kOnePiece;
   if (plan.antialias == 1 && (plan.count() == 1 || whole)) return {packet};
   const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
   return {render::tile_packet(packet, plan, middle),
@@ -137,16 +138,17 @@ Sample sample_of(const render::FramePacket& packet, const render::TilePlan& plan
 
 /// Settings for the goal.
 render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
-  const Sample sample = sample_of(packet, frames.plan);
+  const Sample sample = sample_of(packet, frames.plan, frames.renderer->longest_side());
   if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
-  return machine(render::choose_quality(*frames.renderer, sample.packet, goal));
+  Progress progress("choosing how to draw", 1);
+  return machine(render::choose_quality(*frames.renderer, sample.packet, goal, [&progress](double done) { progress.at(done); }));
 }
 
 /// What `quality` leaves to the plan: its settings, said before the first picture.
 Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const scene::Plan& wanted, const RenderOptions& o,
                       const scene::Scene& scene, std::FILE* words) {
   CATENA_TRY(const std::string text, plan::text_of(scene));
-  const Sample sample = sample_of(packet, frames.plan);
+  const Sample sample = sample_of(packet, frames.plan, frames.renderer->longest_side());
   std::vector<std::string> options = o.fields;
   options.insert(options.end(), {o.grid, o.colors.map, fmt::format("{}", fmt::join(o.colors.range, " ")), o.annotate.title});
   frames.goal = machine(plan::make_eye_plan(*frames.renderer, sample.packet, wanted, {scene, text, options, sample.share},
@@ -158,7 +160,7 @@ Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const s
 
 /// "observed: error 1.7/255 in 95 ms": the error of the last picture, the median of the times.
 std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
-  const auto error = render::rmse_of(*frames.renderer, sample_of(packet, frames.plan).packet, settings);
+  const auto error = render::rmse_of(*frames.renderer, sample_of(packet, frames.plan, frames.renderer->longest_side()).packet, settings);
   return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", *error) : "not known", quantile(times, 0.5));
 }
 
@@ -256,6 +258,9 @@ Outcome render_pictures(const RenderOptions& given) {
     stats.estimated_rmse = frames.goal->expected_error();
   } else if (wanted.goal) {
     const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
+    if (choice.empty)
+      tell_from_catena(
+          "note: nothing of the scene is in the picture: it is transparent where the camera looks, or the camera looks elsewhere");
     frames.settings = choice.settings;
     stats.estimated_rmse = choice.estimated_rmse;
     say(words, fmt::format("quality {}: {}, error about {:.2f}/255{}", quality, describe(frames.settings), choice.estimated_rmse,

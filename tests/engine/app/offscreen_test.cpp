@@ -191,6 +191,17 @@ TEST_F(Offscreen, TilesMakeTheSamePicture) {
   }
 }
 
+/// Few pixels, but longer than an image of many devices may be: the settings are chosen on a tile, too.
+TEST_F(Offscreen, StripsLongerThanImages) {
+  scene(kLobes);
+  rendered({"-o", folder_ / "o.png", "--size", "16400x6"});
+  const auto strip = picture("o.png");
+  EXPECT_EQ(strip.width, 16400U);
+  const auto red = [&](std::size_t x) { return int(strip.rgba[4 * (3 * 16400 + x)]); };
+  EXPECT_EQ(red(100), red(16300));
+  EXPECT_GT(std::abs(red(8200) - red(100)), 20);
+}
+
 TEST_F(Offscreen, TextAndBarsLieInTheWholePictureNotInEachTile) {
   std::string text = kBalls;
   text.insert(text.rfind('}'),

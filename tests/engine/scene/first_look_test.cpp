@@ -37,6 +37,34 @@ std::vector<double> levels(const Scene& scene) {
   return all;
 }
 
+field::AnyField ramp_up_to(double most) {
+  std::vector<float> values(8);
+  values.back() = float(most);
+  return {field::make_scalar_grid("g", field::Mapping::from_linear(Mat3(1.0), Vec3(0.0)), {2, 2, 2}, values), nullptr};
+}
+
+TEST(FirstLook, ValuesThatNoSceneCanStateAreSaid) {
+  for (const double most : {1e-35, 1e35}) {
+    const auto look = scene_for_field(ramp_up_to(most));
+    ASSERT_FALSE(look);
+    EXPECT_NE(look.error().message.find("its values go from 0 to 1e"), std::string::npos) << look.error().message;
+  }
+  EXPECT_TRUE(scene_for_field(ramp_up_to(1e-29)));
+}
+
+TEST(FirstLook, ValuesTooSmallForPicturesAreSaidOfScenesToo) {
+  const test::TemporaryFolder folder;
+  for (const double most : {1e-35, 1e-29}) {
+    ASSERT_TRUE(field::write_vdb(folder / "f.vdb", {{ramp_up_to(most), "g"}}));
+    auto scene = parse_scene("{\"fields\": {\"f\": {\"file\": \"f.vdb\"}}}", folder / "s.json");
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_TRUE(use_field(*scene, "f", {}));
+    ASSERT_EQ(scene->notes.size(), most < 1e-30 ? 1U : 0U);
+    for (const std::string& note : scene->notes)
+      EXPECT_NE(note.find("field \"f\": its values are at most 1e-35"), std::string::npos) << note;
+  }
+}
+
 TEST(FirstLook, BoneUnderSkin) {
   const test::TemporaryFolder folder;
   const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : norm(p) > 0.7 ? 900 : 40; });

@@ -4,6 +4,7 @@
 #include "render/image/measure.h"
 #include "render/quality/refinement.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -28,6 +29,19 @@ class Quality : public PictureTest {
     item.transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
     item.shade = shade;
     packet.volumes = {item};
+    return packet;
+  }
+  /// A few threads of a voxel.
+  static FramePacket threads() {
+    FramePacket packet = scene();
+    packet.width = 320;
+    packet.height = 240;
+    const auto grid = make_grid({96, 96, 96}, [](const Vec3& p) {
+      const double a = std::hypot(p.x - 40 - 0.2 * p.z, p.y - 30 - 0.1 * p.z), b = std::hypot(p.y - 70 + 0.3 * p.x, p.z - 60 + 0.1 * p.x);
+      return 0.2 + 0.8 * std::max(std::exp(-0.5 * a * a), std::exp(-0.5 * b * b));
+    });
+    packet.volumes = {volume_item(grid, {{0, 0}, {0.3, 0}, {1, 0.8}})};
+    packet.view = View{{250, -170, 140}, {47.5, 47.5, 47.5}, {0, 0, 1}, 32};
     return packet;
   }
   /// Over what is covered: both are drawn without a background.
@@ -117,15 +131,7 @@ TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
 
 /// Threads of a voxel's width, bright over haze: interpolation between rays of every 4th pixel loses most of them.
 TEST_F(Quality, WhatIsThinIsKept) {
-  FramePacket packet = scene();
-  packet.width = 320;
-  packet.height = 240;
-  const auto threads = make_grid({96, 96, 96}, [](const Vec3& p) {
-    const double a = std::hypot(p.x - 40 - 0.2 * p.z, p.y - 30 - 0.1 * p.z), b = std::hypot(p.y - 70 + 0.3 * p.x, p.z - 60 + 0.1 * p.x);
-    return 0.2 + 0.8 * std::max(std::exp(-0.5 * a * a), std::exp(-0.5 * b * b));
-  });
-  packet.volumes = {volume_item(threads, {{0, 0}, {0.3, 0}, {1, 0.8}})};
-  packet.view = View{{250, -170, 140}, {47.5, 47.5, 47.5}, {0, 0, 1}, 32};
+  const FramePacket packet = threads();
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
   ASSERT_TRUE(choice);
   FramePacket alone = packet;
@@ -143,6 +149,45 @@ TEST_F(Quality, WhatIsThinIsKept) {
   ASSERT_TRUE(stricter);
   EXPECT_LE(relative_cost(choice->settings, false), 1.01 * relative_cost(stricter->settings, false))
       << describe(choice->settings) << "; " << describe(stricter->settings);
+}
+
+/// Soot is black over black, however wrong its opacity.
+TEST_F(Quality, TransparentPicturesAreJudgedOverAnyBackground) {
+  FramePacket packet = scene();
+  packet.background = {0, 0, 0, 0};
+  packet.volumes[0].transfer.colors = {{0, 0, 0, 0}, {1, 0, 0, 0}};
+  packet.volumes[0].transfer.extinctions = {{0, 0}, {0.60, 0}, {0.65, 0.4}, {0.70, 0}};
+  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
+  ASSERT_TRUE(choice);
+  const Picture converged = draw(packet, reference_settings());
+  const auto over_white = [&](const RenderSettings& settings) { return measure_error(draw(packet, settings), converged, {1, 1, 1}).rmse; };
+  EXPECT_GT(over_white(fast_rung(8, 4, -1, -1)), 4);  // or it would prove nothing
+  EXPECT_LT(over_white(choice->settings), 2.1) << describe(choice->settings);
+  EXPECT_GE(1.05 * choice->estimated_rmse, over_white(choice->settings)) << describe(choice->settings);
+}
+
+TEST_F(Quality, EmptyPicturesAreSaid) {
+  const QualityGoal goal{QualityGoal::Kind::error, 2};
+  FramePacket packet = scene();
+  EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().empty);
+  packet.view.position = {5e3, -5e3, 0};  // a few pixels
+  EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().empty);
+  packet.view.target = {2e5, 0, 0};
+  EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().empty);
+  packet = scene();
+  packet.volumes[0].transfer.extinctions = {{0, 0}, {1, 0}};
+  EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().empty);
+}
+
+TEST_F(Quality, SearchesSayHowFarTheyAre) {
+  for (const QualityGoal& goal : {QualityGoal{QualityGoal::Kind::error, 2}, QualityGoal{QualityGoal::Kind::time, 1e6}}) {
+    std::vector<double> told;
+    ASSERT_TRUE(choose_quality(*renderer_, scene(), goal, [&](double done) { told.push_back(done); }));
+    EXPECT_GT(told.size(), 3U);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_GT(told.front(), 0);
+    EXPECT_LE(told.back(), 1);
+  }
 }
 
 /// Opacity that rises within a tenth of a voxel: exact rays of the usual steps have not converged, and must not judge.
@@ -202,7 +247,7 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
     const DrawTimer timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
     double last = 1e9;
     for (const double ms : {8.0, 14.0, 30.0, 400.0}) {
-      const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, timer);
+      const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, nullptr, timer);
       ASSERT_TRUE(choice);
       EXPECT_TRUE(choice->reached) << ms;
       EXPECT_LE(choice->expected_ms, ms);
@@ -212,6 +257,23 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
     }
     EXPECT_LT(last, 0.8);
   }
+}
+
+/// Refinement marches nearly all of what is thin, and more: where it takes too long, every pixel's rays may not.
+TEST_F(Quality, WhatTheLadderLeavesUnusedGoesToEveryPixel) {
+  const DrawTimer timer = [](const RenderSettings& s) -> Result<double> {
+    if (!s.fast) return 500.0;
+    if (s.fast->spacing == 1) return 30 + 20 / s.fast->step_voxels;
+    return s.fast->refine_full_255 >= 0 ? 200.0 : 20.0;
+  };
+  const auto choice = choose_quality(*renderer_, threads(), {QualityGoal::Kind::time, 55}, nullptr, timer);
+  ASSERT_TRUE(choice);
+  ASSERT_TRUE(choice->settings.fast);
+  EXPECT_EQ(choice->settings.fast->spacing, 1U) << describe(choice->settings);
+  EXPECT_EQ(choice->settings.fast->step_voxels, 1) << describe(choice->settings);
+  const auto coarse = estimate_rmse(*renderer_, threads(), fast_rung(1, 2, 0, -1));
+  ASSERT_TRUE(coarse);
+  EXPECT_LT(choice->estimated_rmse, 0.5 * *coarse);
 }
 
 TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {

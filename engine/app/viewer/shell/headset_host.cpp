@@ -8,6 +8,7 @@
 #ifdef CATENA_XR
 #include <fmt/format.h>
 
+#include "engine/app/viewer/shell/headset_panel.h"
 #include "engine/base/clock.h"
 #include "render/xr/headset.h"
 #endif
@@ -18,10 +19,9 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kFarewellTurns = 200;                                    // of events and frames, while the runtime ends the session
-constexpr std::chrono::milliseconds kPatience{500};                    // with a frame's wait, before the window goes on; then
-constexpr std::chrono::milliseconds kTurn{10};                         // of the window's loop, and of the farewell
-constexpr double kPanelM = 0.8, kPanelAwayM = 0.9, kPanelDropM = 0.1;  // its width; from the head
+constexpr int kFarewellTurns = 200;                  // of events and frames, while the runtime ends the session
+constexpr std::chrono::milliseconds kPatience{500};  // with a frame's wait, before the window goes on; then
+constexpr std::chrono::milliseconds kTurn{10};       // of the window's loop, and of the farewell
 constexpr double kFovea = 0.36;       // tan 20 degrees off the gaze, or the eye's axis: beyond, lenses and eyes see less than the rays cost
 constexpr double kAboveHandM = 0.06;  // the scale's words over the hands that hold the world
 constexpr double kWordsAt_px = 1.0 / 50;              // their height, of the view's
@@ -57,33 +57,25 @@ struct HeadsetHost::Parts {
   std::int64_t placed_ns = 0;  ///< since then the hand is where the picture has it
   HeadsetHands hands;
   render::FramePace pace;
+  int pictures = 0;            ///< that were shown
   XrTime last_time = 0;        ///< of the last frame; 0: none before
   std::optional<Vec3> gaze;    ///< where the eyes look when the picture is seen, a direction in the room; none: not known
   std::optional<Vec3> held_m;  ///< the middle of the hands that hold the world; none: they do not
   DeskDevice desk;
-  bool asks = false;         ///< the desk's three places, in the last picture
+  HeadsetPanel panel;
   std::uint64_t starts = 0;  ///< of sessions: each has a local space of its own
-
-  // the panel
-  bool panel_open = false, menu_down = false;
-  immersive::Panel panel{.width_m = kPanelM};
-  immersive::PanelPointer pointer;
-  immersive::PanelPointer::Mouse mouse;
-  bool pressed_since = false;  ///< since it was asked for
-  std::unique_ptr<render::xr::QuadLayer> quad;
 
   void lose(std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
   void show_scale(render::FramePacket& packet) const;
   Outcome take_desk(const render::xr::Frame& frame, HandHost& hand, const std::array<RoomHand, 2>& now);
-  void take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head);
   void stop();
 };
 
 /// What hangs on the session goes with it.
 void HeadsetHost::Parts::stop() {
   if (headset && headset->started()) headset->session().end_wait();  // before anything that it uses goes
-  quad.reset();
+  panel.drop();
   if (headset) headset->stop();
 }
 
@@ -166,64 +158,13 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
 
 bool HeadsetHost::running() const { return parts_->headset && parts_->headset->running(); }
 
-void HeadsetHost::Parts::take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head) {
-  const bool menu = states[0].menu || states[1].menu, pressed = menu && !menu_down;
-  // what is asked of the person stands before them; the button puts it off, and the trigger means the touch
-  const bool began = desk.touching() && !asks;
-  if (pressed && asks) desk.cancel();
-  asks = desk.touching();
-  if (pressed || began) {
-    panel_open = began || !panel_open;
-    panel = immersive::in_front_of(head.position, head.turn, kPanelAwayM, kPanelDropM, panel);
-    pointer = {};
-  }
-  menu_down = menu;
-  mouse = {};
-  const render::xr::HandState& hand = states[HeadsetHands::kProbe];
-  if (!panel_open || !quad || !hand.points || asks) return;
-  mouse = pointer.step(panel, immersive::aim_ray(hand.aim.position, hand.aim.turn), hand.select > HeadsetHands::kDown);
-  pressed_since = pressed_since || mouse.pressed;
-}
-
 void HeadsetHost::show_panel(Screen& screen) {
   Parts& p = *parts_;
   if (!p.headset || !p.headset->started()) return;
-  render::vk::Image* const window = p.panel_open ? screen.renderer().window_image() : nullptr;
-  if (!window) {
-    p.headset->show_panel(nullptr);
-    p.quad.reset();
-    return;
-  }
-  const VkExtent3D size = window->info().extent;
-  if (!p.quad || p.panel.width_px != size.width || p.panel.height_px != size.height) {
-    p.headset->show_panel(nullptr);
-    p.quad.reset();
-    p.panel.width_px = size.width;
-    p.panel.height_px = size.height;
-    p.panel.height_m = kPanelM * size.height / size.width;
-    auto made = render::xr::QuadLayer::create(p.headset->session(), {size.width, size.height});
-    if (!made) {
-      p.broken = made.error().message;
-      return;
-    }
-    p.quad = std::move(*made);
-  }
-  if (const Outcome taken = p.quad->take(*window); !taken) {
-    p.broken = taken.error().message;
-    return;
-  }
-  p.quad->place({{p.panel.middle_m, p.panel.orientation}, p.panel.width_m, p.panel.height_m, true});
-  p.headset->show_panel(p.quad.get());
+  if (const Outcome shown = p.panel.show(*p.headset, screen); !shown) p.broken = shown.error().message;
 }
 
-std::optional<immersive::PanelPointer::Mouse> HeadsetHost::panel_mouse() {
-  Parts& p = *parts_;
-  const bool pressed = std::exchange(p.pressed_since, false);
-  if (!p.mouse.here) return std::nullopt;
-  immersive::PanelPointer::Mouse mouse = p.mouse;
-  mouse.pressed = mouse.pressed || pressed;
-  return mouse;
-}
+std::optional<immersive::PanelPointer::Mouse> HeadsetHost::panel_mouse() { return parts_->panel.mouse(); }
 
 /// A device on the desk, where one holds the probe.
 Outcome HeadsetHost::Parts::take_desk(const render::xr::Frame& frame, HandHost& hand, const std::array<RoomHand, 2>& now) {
@@ -256,7 +197,7 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
     hands_then[k] = room_hand(states[k]);
     if (states[k].there) poses[k == 0 ? TrackedPart::left_hand : TrackedPart::right_hand] = {states[k].grip.position, states[k].grip.turn};
   }
-  take_panel(states, head);
+  panel.take(states, head, desk);
   CATENA_TRY(const auto eyes, actions.gaze(frame.time));
   gaze.reset();
   if (eyes) {
@@ -281,7 +222,7 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
     CATENA_TRY(const render::xr::HandState state, actions.hand(HeadsetHands::kProbe, *at));
     probe = room_hand(state);
   }
-  if (mouse.here) probe.select = 0;  // it means the panel
+  if (panel.has_controller()) probe.select = 0;  // it means the panel
   controller->say(hands.probe(probe, now));
   const bool settled = placement && now - placed_ns > kSettlesNs;
   const auto call = hands.vibration(controller->peaks(), now, settled && headset->session().focused(), probe);
@@ -351,6 +292,7 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
     p.pace.drawn(ms_since(start));
     p.pace.follow(content.kind(*packet));
     screen.has_drawn();
+    ++p.pictures;
     return true;
   }
   if (screen.renderer().device().lost()) {
@@ -373,7 +315,7 @@ std::optional<scene::Workspace> HeadsetHost::hand_workspace(const HandHost& hand
 
 std::string HeadsetHost::figures() const {
   const Parts& p = *parts_;
-  return fmt::format("headset: {} pictures, {} late after the first {}, {} at half rate", p.pace.frames(), p.pace.late_after_learning(),
+  return fmt::format("headset: {} pictures, {} late after the first {}, {} at half rate", p.pictures, p.pace.late_after_learning(),
                      render::FramePace::kLearning, p.pace.at_half_rate());
 }
 

@@ -55,7 +55,7 @@ class HeadsetHost {
 
   /// "headset focused, 1 unit = 23 cm", for the title.
   std::string words() const;
-  /// "headset: 900 frames, 880 pictures, 3 late, 0 at half rate", for the last words.
+  /// "headset: 880 pictures, 3 late after the first 30, 0 at half rate", for the last words.
   std::string figures() const;
   /// A hand has hold of the world, which moves with it.
   bool holds_world() const;
