@@ -60,6 +60,8 @@ std::string human_bytes(double bytes) {
   return unit == 0 ? fmt::format("{:.0f} B", bytes) : fmt::format("{:.2f} {}", bytes, units[unit]);
 }
 
+constexpr std::int64_t kQuietNs = 1'000'000'000, kQuietElsewhereNs = 10 * kQuietNs;
+
 Progress::Progress(std::string what, double total)
     : what_(std::move(what)), total_(total), start_(now_ns()), terminal_(isatty(STDERR_FILENO) != 0) {}
 
@@ -69,7 +71,7 @@ Progress::~Progress() {
 
 void Progress::at(double done, std::string_view doing) {
   const std::int64_t now = now_ns();
-  if (total_ <= 0 || now - start_ < 1'000'000'000) return;
+  if (total_ <= 0 || now - start_ < (terminal_ ? kQuietNs : kQuietElsewhereNs)) return;
   const double part = done / total_ < 1 ? done / total_ : 1;
   if (terminal_) {
     if (now - last_ < 200'000'000 && part < 1) return;

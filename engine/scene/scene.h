@@ -15,9 +15,11 @@
 
 namespace catena::scene {
 
-/// Of the numbers of a scene, but 0: those whose squares and quotients are numbers, too, of a double and (lengths of the picture) of a
+/// The least size of a number of a scene, but 0: its squares and quotients are numbers, too, of a double and (lengths of the picture) of a
 /// float.
-inline constexpr double kLeastSize = 1e-30, kMostSize = 1e30;
+inline constexpr double kLeastSize = 1e-30;
+/// The largest.
+inline constexpr double kMostSize = 1e30;
 
 /// All of a scene. One thread, the frame's; a copy is a scene of its own that shares fields, meshes and curves.
 struct Scene {

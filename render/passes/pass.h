@@ -111,6 +111,8 @@ class RayProbe {
   /// NO_DEPTH where it never does. After the picture.
   virtual Outcome record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
   virtual bool has_half_depth() const = 0;
+  /// The fast raycast was prepared last, and its rays leap over what is empty.
+  virtual bool leaps() const = 0;
   /// The fast raycast was tried with this packet's volume and had no memory for it.
   virtual bool has_refused(const FramePacket& packet) const = 0;
   /// Of the last picture only the tiles were marched that something opaque had come to or left.

@@ -67,6 +67,7 @@ class RaycastPass final : public Pass, public RayProbe {
   Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
   Outcome record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
   bool has_half_depth() const override { return fast_ || (any_ && !projected_ && exact_pass_->has_half_depth()); }
+  bool leaps() const override { return fast_ && fast_pass_->leaps(); }
   bool has_kept() const override { return fast_ ? fast_pass_->has_kept() : any_ && !projected_ && exact_pass_->has_kept(); }
   vk::Image* changed_tiles() override {
     if (!has_kept()) return nullptr;

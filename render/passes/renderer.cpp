@@ -254,6 +254,12 @@ bool Renderer::draws_fast(const FramePacket& packet) const {
   return can_be_drawn_fast(*parts_->device, packet);
 }
 
+bool Renderer::leaps() const {
+  for (Pass* pass : parts_->active())
+    if (const RayProbe* rays = pass->probe(); rays && rays->leaps()) return true;
+  return false;
+}
+
 std::array<std::uint32_t, 2> Renderer::view_size() const { return {parts_->view_width, parts_->view_height}; }
 
 /// Where mirrors hold what the window needs, they go: the next picture makes them anew in what is left. The picture stays.

@@ -139,6 +139,8 @@ class Renderer {
   std::uint32_t longest_side() const;
   /// Whether the packet holds what RenderSettings::fast can draw. False also for a volume that the last try had no memory to draw so.
   bool draws_fast(const FramePacket& packet) const;
+  /// Whether the last picture's or probe's rays were the fast raycast's and leapt over what is empty.
+  bool leaps() const;
   /// The rays of every `spacing`-th pixel each way alone, as a small picture: what `settings` make of them before anything is interpolated.
   /// What quality.h measures errors with. Red, green and blue over the packet's background (its alpha does not count), alpha that of
   /// what is drawn.

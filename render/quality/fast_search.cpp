@@ -11,6 +11,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kStepShare = 0.93;  // of the error that ray steps may take
+constexpr double kFacetShare = 0.5;  // the same where the gradient of the cell draws facets, which are seen sooner than grain is
 constexpr int kMaxPictures = 16;
 constexpr double kStepsDone = 0.3;     // of the search, when the steps are known
 constexpr std::size_t kGoodSteps = 5;  // of those that are good enough, the longest
@@ -18,6 +19,9 @@ constexpr double kStill = 0.95;        // of the error of a longer step: hardly 
 // of the error, that a ray may leave out at its end: most of that is told from what it has met
 constexpr double kEndShare = 2, kSoonestEnd = 1.0 / 32;
 constexpr double kSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
+
+// Rays that leap go to what is seen by short steps, and begin there with shorter ones: unlit, longer ones than this gain nothing.
+constexpr double kLongestLeaping = 3, kSameCost = 1e-6;
 
 }  // namespace
 
@@ -29,6 +33,7 @@ FastSearch::FastSearch(Lattice& lattice, double error, const SearchProgress& pro
 Result<std::optional<QualityChoice>> FastSearch::find() {
   CATENA_CHECK(add_candidates(false));
   if (lattice_.packet().volumes.front().shade) CATENA_CHECK(add_candidates(true));
+  leaps_ = lattice_.renderer().leaps() && !lattice_.packet().volumes.front().shade;
   progress_(kStepsDone);
   CATENA_CHECK(try_every_ray());
   for (int drawn = 0; !candidates_.empty() && drawn < kMaxPictures;) {
@@ -54,16 +59,16 @@ RenderSettings FastSearch::planned(const Plan& plan, double step, bool smooth) c
 /// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation. Light by the gradient of the cell
 /// has an error that no step mends: steps that make it hardly less are the last.
 Outcome FastSearch::add_candidates(bool smooth) {
-  const bool floor = !smooth && lattice_.packet().volumes.front().shade;
+  const bool facets = !smooth && lattice_.packet().volumes.front().shade;
   const std::size_t most = candidates_.size() + kGoodSteps * std::size(kPlans);
   double before = std::numeric_limits<double>::infinity();
   for (const double step : kSteps) {
     if (candidates_.size() == most) break;
     const RenderSettings every_ray = planned(kPlans[std::size(kPlans) - 1], step, smooth);
     CATENA_TRY(const LatticeError error, lattice_.of_rays(every_ray));
-    if (floor && error.rmse > kStill * before) break;
+    if (facets && error.rmse > kStill * before) break;
     before = error.rmse;
-    if (error.rmse > kStepShare * error_ || error.p999 > kFarthest * error_) continue;
+    if (error.rmse > (facets ? kFacetShare : kStepShare) * error_ || error.p999 > kFarthest * error_) continue;
     CATENA_TRY(const bool steady, lattice_.rays_are_steady(every_ray));
     if (!steady) continue;
     for (std::size_t plan = 0; plan < std::size(kPlans); ++plan)
@@ -78,8 +83,10 @@ double FastSearch::cost(const Candidate& candidate) const {
   const FastSettings& f = *candidate.settings.fast;
   const double first = f.spacing == 1 ? 1 : f.spacing == 2 ? 0.325 : 0.137;
   const double marks = kPlans[candidate.plan].refine_full >= 0 ? 0.02 : 0;
-  const double a_ray = (f.smooth_gradients ? kSmoothCost : 1) * (kStepless + (1 - kStepless) / f.step_voxels);
-  return (first + marks + 0.29 * refined_[candidate.plan][0] + refined_[candidate.plan][1]) * a_ray;
+  const double step = leaps_ ? std::min(f.step_voxels, kLongestLeaping) : f.step_voxels;
+  const double a_ray = (f.smooth_gradients ? kSmoothCost : 1) * (kStepless + (1 - kStepless) / step);
+  const double same = kSameCost * f.step_voxels;  // of those that cost the same the shortest step
+  return (first + marks + 0.29 * refined_[candidate.plan][0] + refined_[candidate.plan][1]) * a_ray + same;
 }
 
 /// What a plan's picture refined; stricter plans refine no less.

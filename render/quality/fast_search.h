@@ -53,6 +53,7 @@ class FastSearch {
   const double error_;
   const SearchProgress& progress_;
   std::vector<Candidate> candidates_;
+  bool leaps_ = false;  ///< unlit rays that leap over what is empty
   std::array<std::array<double, 2>, std::size(kPlans)> refined_;
   Tried tried_[2][std::size(kPlans)];
   std::optional<QualityChoice> best_;

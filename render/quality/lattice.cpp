@@ -88,7 +88,11 @@ Outcome Lattice::begin(double goal, bool moves) {
   if (moves && renderer_.draws_fast(packet_)) {
     CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
     const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
-    most_flicker_ = kFlickerGoal * std::max(goal, flicker(none, truth_, none, next_truth_));
+    most_flicker_ = {kFlickerGoal * std::max(goal, flicker_between(none, truth_, none, next_truth_))};
+    if (grounds_.size() > 1) {
+      const double white = flicker_between(on_white(none), on_white(truth_), on_white(none), on_white(next_truth_));
+      most_flicker_.push_back(kFlickerGoal * std::max(goal, white));
+    }
   }
   if (!renderer_.draws_fast(packet_)) return Done{};
   // it may have no memory for the grid
@@ -145,12 +149,6 @@ LatticeError Lattice::compare(const Picture& a, const Picture& b) const {
   return {std::max(error.rmse, white.rmse), std::max(error.above, white.above), std::max(error.p999, white.p999)};
 }
 
-double Lattice::flicker(const Picture& last, const Picture& last_truth, const Picture& now, const Picture& truth) const {
-  const double here = flicker_between(last, last_truth, now, truth);
-  if (grounds_.size() == 1) return here;
-  return std::max(here, flicker_between(on_white(last), on_white(last_truth), on_white(now), on_white(truth)));
-}
-
 /// With what is left of the converged rays' own error, as far as it is more than rounding makes of nothing.
 LatticeError Lattice::off_the_truth() const {
   LatticeError error = compare(last_, truth_);
@@ -183,7 +181,11 @@ Result<Picture> Lattice::drawn_lattice() {
   return over(on_lattice(picture, spacing_), grounds_.front());
 }
 
-bool Lattice::is_steady(const Picture& after) const { return flicker(last_, truth_, after, next_truth_) <= most_flicker_; }
+bool Lattice::is_steady(const Picture& after) const {
+  return flicker_between(last_, truth_, after, next_truth_) <= most_flicker_.front() &&
+         (grounds_.size() == 1 ||
+          flicker_between(on_white(last_), on_white(truth_), on_white(after), on_white(next_truth_)) <= most_flicker_.back());
+}
 
 Result<bool> Lattice::rays_are_steady(const RenderSettings& settings) {
   CATENA_TRY(const Picture after, renderer_.probe(turned(packet_), settings, spacing_));

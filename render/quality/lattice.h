@@ -54,7 +54,6 @@ class Lattice {
   Outcome find_truth(double goal);
   Result<Picture> drawn_lattice();
   LatticeError compare(const Picture& a, const Picture& b) const;
-  double flicker(const Picture& last, const Picture& last_truth, const Picture& now, const Picture& truth) const;
   LatticeError off_the_truth() const;
   bool is_steady(const Picture& after) const;
 
@@ -62,7 +61,7 @@ class Lattice {
   FramePacket packet_;
   std::vector<std::array<float, 3>> grounds_;  ///< that the picture may lie over; pictures here lie over the first
   Picture truth_, next_truth_;                 ///< the rays of the lattice; and from where the camera goes
-  double most_flicker_ = 0;                    ///< that is steady enough
+  std::vector<double> most_flicker_;           ///< that is steady enough, over each ground
   double covered_ = 1;                         ///< pixels
   Picture last_;                               ///< the lattice of the rays or the picture that were measured last
   double truth_step_ = 0, truth_error_ = 0;    ///< and what is left of it

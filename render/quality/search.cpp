@@ -15,6 +15,14 @@ constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18,
 constexpr double kUnused = 0.6;
 constexpr double kEveryPixel[] = {2, 1.4, 1, 0.7, 0.5};
 
+/// Of the error: exact rays of long steps draw rings on what is lit, which are seen sooner than grain is, and shorter steps cost them
+/// little.
+constexpr double kRingShare = 0.5;
+
+bool is_shaded(const Lattice& lattice) {
+  return std::ranges::any_of(lattice.packet().volumes, [](const VolumeItem& item) { return item.shade; });
+}
+
 QualityChoice choice(const Lattice& lattice, const RenderSettings& settings, double error, bool reached) {
   return {settings, error, 0, reached, lattice.pictures()};
 }
@@ -32,20 +40,22 @@ Result<QualityChoice> settings_for_error(Lattice& lattice, double e, const Searc
     CATENA_TRY(const std::optional<QualityChoice> chosen, FastSearch(lattice, e, progress).find());
     if (chosen) return *chosen;
   }
+  std::optional<QualityChoice> good;
   for (const double step : kExactSteps) {
     // they are judged by what is finer than they are
     if (step < 2 * lattice.truth_step()) break;
     CATENA_TRY(const LatticeError rays, lattice.of_rays(exact_rung(step)));
-    if (rays.good_for(e)) return choice(lattice, exact_rung(step), rays.above, true);
+    if (rays.good_for(e)) good = choice(lattice, exact_rung(step), rays.above, true);
+    if (good && rays.above <= (is_shaded(lattice) ? kRingShare : 1) * e) break;
   }
+  if (good) return *good;
   RenderSettings finest = reference_settings();
   finest.step_voxels = std::min(lattice.truth_step(), finest.step_voxels);
   return choice(lattice, finest, lattice.truth_error(), lattice.truth_error() <= e);
 }
 
 Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const SearchProgress& progress, const DrawTimer& timer) {
-  const std::vector<VolumeItem>& volumes = lattice.packet().volumes;
-  const bool shaded = std::any_of(volumes.begin(), volumes.end(), [](const VolumeItem& item) { return item.shade; });
+  const bool shaded = is_shaded(lattice);
   std::vector<RenderSettings> settings;
   std::vector<TimedPicture> tried;
   const auto fits = [&](const RenderSettings& next) -> Result<bool> {

@@ -200,8 +200,10 @@ Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays,
   return frame;
 }
 
+bool FastVolumeRaycast::leaps() const { return look_.leaping() > kLeapAbove; }
+
 Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw& draw) {
-  const bool leaps = draw.skips && look_.leaping() > kLeapAbove;
+  const bool leaps = draw.skips && this->leaps();
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
                                                  look_.as_bricks(), look_.masked(), draw.half_depth},

@@ -55,6 +55,8 @@ class FastVolumeRaycast {
                             vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
   /// Every 2nd pixel, for Upsampler.
   vk::Image& half() { return eye().half.color; }
+  /// Rays leap over what is empty.
+  bool leaps() const;
   std::uint64_t grid_bytes() const { return look_.words().bytes() + look_.gradients().bytes(); }
   double build_ms() const { return look_.build_ms(); }
 

@@ -1,6 +1,6 @@
 /// Catena as a peer of volume_peers.py (tests/bench/peers/protocol.h):   volume_peer CASE.json
-///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth][,end=T]
-///   (1/255; < 0: nowhere)
+///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP |
+///   fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth][,end=T] (1/255; < 0: nowhere)
 /// The settings of error=E and time=MS are chosen once, at the azimuth of the picture that is kept. The note of an answer says which,
 /// what they were expected to take and to err, and the memory held on the device.
 #include <cstdio>
@@ -79,7 +79,8 @@ class Ours : public peers::Peer {
   std::string note() override {
     const auto counted = renderer_->refined_rays();
     const auto refined = counted ? *counted : std::array<std::uint64_t, 2>{};
-    return fmt::format("{}{}, {} and {} rays refined, {:.0f} MiB", note_, render::describe(settings_), refined[0], refined[1], double(renderer_->stats().gpu_bytes) / (1 << 20));
+    return fmt::format("{}{}, {} and {} rays refined, {:.0f} MiB", note_, render::describe(settings_), refined[0], refined[1],
+                       double(renderer_->stats().gpu_bytes) / (1 << 20));
   }
 
  private:
@@ -87,9 +88,11 @@ class Ours : public peers::Peer {
     using Kind = render::QualityGoal::Kind;
     const Kind kind = mode.starts_with("error=") ? Kind::error : Kind::time;
     packet_.view.position = given_.eye(azimuth_deg);
+    render::FramePacket seen = packet_;
+    seen.background = {0, 0, 0, 1};  // what errors are told over
     const std::int64_t start = now_ns();
     CATENA_TRY(const render::QualityChoice choice,
-               render::choose_quality(*renderer_, packet_, {kind, std::atof(mode.c_str() + mode.find('=') + 1)}));
+               render::choose_quality(*renderer_, seen, {kind, std::atof(mode.c_str() + mode.find('=') + 1)}));
     settings_ = choice.settings;
     note_ = fmt::format("chosen in {:.0f} ms, estimated {:.2f}: ", ms_since(start), choice.estimated_rmse);
     return Done{};

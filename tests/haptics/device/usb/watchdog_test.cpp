@@ -161,7 +161,9 @@ TEST_F(WatchdogUsb, AKilledProgramHoldsNoForce) {
     const int status = rig.wait();
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
     ASSERT_TRUE(eventually([&] { return !Rig::lives(watchdog); })) << "its work is done";
-    EXPECT_EQ(rig.bulks(), bulks + 2);
+    // two zeros; one more where the machine had stalled the program just before
+    EXPECT_GE(rig.bulks(), bulks + 2);
+    EXPECT_LE(rig.bulks(), bulks + 3);
     EXPECT_EQ(rig.last().force_n, 0) << i;
     outlived_ms.push_back(rig.force_outlived_ms(killed_ns));
     EXPECT_NE(rig.said().find("catena: the program has ended with a force on: its device was let go\n"), std::string::npos) << rig.said();
