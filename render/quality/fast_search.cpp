@@ -32,8 +32,8 @@ FastSearch::FastSearch(Lattice& lattice, double error, const SearchProgress& pro
 
 Result<std::optional<QualityChoice>> FastSearch::find() {
   CATENA_CHECK(add_candidates(false));
-  if (lattice_.packet().volumes.front().shade) CATENA_CHECK(add_candidates(true));
-  leaps_ = lattice_.renderer().leaps() && !lattice_.packet().volumes.front().shade;
+  if (lattice_.shaded()) CATENA_CHECK(add_candidates(true));
+  leaps_ = lattice_.renderer().leaps() && !lattice_.shaded();
   progress_(kStepsDone);
   CATENA_CHECK(try_every_ray());
   for (int drawn = 0; !candidates_.empty() && drawn < kMaxPictures;) {
@@ -59,7 +59,7 @@ RenderSettings FastSearch::planned(const Plan& plan, double step, bool smooth) c
 /// The longest steps whose rays alone are good enough, and steady, with every plan of interpolation. Light by the gradient of the cell
 /// has an error that no step mends: steps that make it hardly less are the last.
 Outcome FastSearch::add_candidates(bool smooth) {
-  const bool facets = !smooth && lattice_.packet().volumes.front().shade;
+  const bool facets = !smooth && lattice_.shaded();
   const std::size_t most = candidates_.size() + kGoodSteps * std::size(kPlans);
   double before = std::numeric_limits<double>::infinity();
   for (const double step : kSteps) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "engine/base/numbers.h"
@@ -37,8 +38,9 @@ LatticeError compare_over_ground(const Picture& a, const Picture& b) {
   return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 0.999)};
 }
 
-/// What lies over black, over white.
-Picture on_white(Picture picture) {
+/// A picture that lies over the first ground, over the one of that number: the second is white, and then the first was black.
+Picture over_ground(Picture picture, std::size_t ground) {
+  if (ground == 0) return picture;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
     for (std::size_t c = i; c < i + 3; ++c) picture.rgba[c] = std::uint8_t(std::min(255, picture.rgba[c] + 255 - picture.rgba[i + 3]));
   return picture;
@@ -88,11 +90,7 @@ Outcome Lattice::begin(double goal, bool moves) {
   if (moves && renderer_.draws_fast(packet_)) {
     CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
     const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
-    most_flicker_ = {kFlickerGoal * std::max(goal, flicker_between(none, truth_, none, next_truth_))};
-    if (grounds_.size() > 1) {
-      const double white = flicker_between(on_white(none), on_white(truth_), on_white(none), on_white(next_truth_));
-      most_flicker_.push_back(kFlickerGoal * std::max(goal, white));
-    }
+    for (const double change : flicker(none, truth_, none, next_truth_)) most_flicker_.push_back(kFlickerGoal * std::max(goal, change));
   }
   if (!renderer_.draws_fast(packet_)) return Done{};
   // it may have no memory for the grid
@@ -124,6 +122,8 @@ Outcome Lattice::find_truth(double goal) {
   return Done{};
 }
 
+bool Lattice::shaded() const { return std::ranges::any_of(packet_.volumes, &VolumeItem::shade); }
+
 bool Lattice::empty() const {
   for (std::size_t i = 3; i < truth_.rgba.size(); i += 4)
     if (truth_.rgba[i] > 0) return false;
@@ -143,10 +143,20 @@ Result<LatticeError> Lattice::of_picture(const RenderSettings& settings) {
 }
 
 LatticeError Lattice::compare(const Picture& a, const Picture& b) const {
-  LatticeError error = compare_over_ground(a, b);
-  if (grounds_.size() == 1) return error;
-  const LatticeError white = compare_over_ground(on_white(a), on_white(b));
-  return {std::max(error.rmse, white.rmse), std::max(error.above, white.above), std::max(error.p999, white.p999)};
+  LatticeError worst;
+  for (std::size_t ground = 0; ground < grounds_.size(); ++ground) {
+    const LatticeError error = compare_over_ground(over_ground(a, ground), over_ground(b, ground));
+    worst = {std::max(worst.rmse, error.rmse), std::max(worst.above, error.above), std::max(worst.p999, error.p999)};
+  }
+  return worst;
+}
+
+std::vector<double> Lattice::flicker(const Picture& last, const Picture& last_truth, const Picture& now, const Picture& truth) const {
+  std::vector<double> each;
+  for (std::size_t ground = 0; ground < grounds_.size(); ++ground)
+    each.push_back(
+        flicker_between(over_ground(last, ground), over_ground(last_truth, ground), over_ground(now, ground), over_ground(truth, ground)));
+  return each;
 }
 
 /// With what is left of the converged rays' own error, as far as it is more than rounding makes of nothing.
@@ -164,7 +174,7 @@ Result<std::array<double, 2>> Lattice::refined() const {
 Result<bool> Lattice::keeps_what_is_thin(double e) {
   CATENA_TRY(const Picture picture, renderer_.read_back());
   if (fine_.rgba.empty()) {
-    CATENA_CHECK(renderer_.draw(packet_, fast_rung(kFineStep, 1, 0, -1, packet_.volumes.front().shade)));
+    CATENA_CHECK(renderer_.draw(packet_, fast_rung(kFineStep, 1, 0, -1, shaded())));
     CATENA_TRY(fine_, renderer_.read_back());
     ++pictures_;
   }
@@ -182,9 +192,7 @@ Result<Picture> Lattice::drawn_lattice() {
 }
 
 bool Lattice::is_steady(const Picture& after) const {
-  return flicker_between(last_, truth_, after, next_truth_) <= most_flicker_.front() &&
-         (grounds_.size() == 1 ||
-          flicker_between(on_white(last_), on_white(truth_), on_white(after), on_white(next_truth_)) <= most_flicker_.back());
+  return std::ranges::equal(flicker(last_, truth_, after, next_truth_), most_flicker_, std::less_equal<>());
 }
 
 Result<bool> Lattice::rays_are_steady(const RenderSettings& settings) {

@@ -35,6 +35,7 @@ class Lattice {
   bool fast() const { return fast_; }                ///< the fast raycast draws the picture
   double truth_step() const { return truth_step_; }  ///< of the converged rays, voxels
   double truth_error() const { return truth_error_; }
+  bool shaded() const;                        ///< a volume of it is
   bool empty() const;                         ///< every pixel was looked at, and nothing is in any
   int pictures() const { return pictures_; }  ///< drawn so far
 
@@ -54,6 +55,8 @@ class Lattice {
   Outcome find_truth(double goal);
   Result<Picture> drawn_lattice();
   LatticeError compare(const Picture& a, const Picture& b) const;
+  /// Over each ground.
+  std::vector<double> flicker(const Picture& last, const Picture& last_truth, const Picture& now, const Picture& truth) const;
   LatticeError off_the_truth() const;
   bool is_steady(const Picture& after) const;
 

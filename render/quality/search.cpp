@@ -19,10 +19,6 @@ constexpr double kEveryPixel[] = {2, 1.4, 1, 0.7, 0.5};
 /// little.
 constexpr double kRingShare = 0.5;
 
-bool is_shaded(const Lattice& lattice) {
-  return std::ranges::any_of(lattice.packet().volumes, [](const VolumeItem& item) { return item.shade; });
-}
-
 QualityChoice choice(const Lattice& lattice, const RenderSettings& settings, double error, bool reached) {
   return {settings, error, 0, reached, lattice.pictures()};
 }
@@ -46,7 +42,7 @@ Result<QualityChoice> settings_for_error(Lattice& lattice, double e, const Searc
     if (step < 2 * lattice.truth_step()) break;
     CATENA_TRY(const LatticeError rays, lattice.of_rays(exact_rung(step)));
     if (rays.good_for(e)) good = choice(lattice, exact_rung(step), rays.above, true);
-    if (good && rays.above <= (is_shaded(lattice) ? kRingShare : 1) * e) break;
+    if (good && rays.above <= (lattice.shaded() ? kRingShare : 1) * e) break;
   }
   if (good) return *good;
   RenderSettings finest = reference_settings();
@@ -55,7 +51,7 @@ Result<QualityChoice> settings_for_error(Lattice& lattice, double e, const Searc
 }
 
 Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const SearchProgress& progress, const DrawTimer& timer) {
-  const bool shaded = is_shaded(lattice);
+  const bool shaded = lattice.shaded();
   std::vector<RenderSettings> settings;
   std::vector<TimedPicture> tried;
   const auto fits = [&](const RenderSettings& next) -> Result<bool> {

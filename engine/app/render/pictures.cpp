@@ -127,9 +127,10 @@ struct Sample {
   render::FramePacket packet;
   double share = 1;  ///< of the picture's samples
 };
-Sample sample_of(const render::FramePacket& packet, const render::TilePlan& plan, std::uint32_t longest) {
-  const bool whole =
-      std::max(plan.samples_x(), plan.samples_y()) <= longest && std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kOnePiece;
+Sample sample_of(const Frames& frames, const render::FramePacket& packet) {
+  const render::TilePlan& plan = frames.plan;
+  const bool whole = std::max(plan.samples_x(), plan.samples_y()) <= frames.renderer->longest_side() &&
+                     std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kOnePiece;
   if (plan.antialias == 1 && (plan.count() == 1 || whole)) return {packet};
   const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
   return {render::tile_packet(packet, plan, middle),
@@ -138,7 +139,7 @@ Sample sample_of(const render::FramePacket& packet, const render::TilePlan& plan
 
 /// Settings for the goal.
 render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
-  const Sample sample = sample_of(packet, frames.plan, frames.renderer->longest_side());
+  const Sample sample = sample_of(frames, packet);
   if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
   Progress progress("choosing how to draw", 1);
   return machine(render::choose_quality(*frames.renderer, sample.packet, goal, [&progress](double done) { progress.at(done); }));
@@ -148,7 +149,7 @@ render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, 
 Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const scene::Plan& wanted, const RenderOptions& o,
                       const scene::Scene& scene, std::FILE* words) {
   CATENA_TRY(const std::string text, plan::text_of(scene));
-  const Sample sample = sample_of(packet, frames.plan, frames.renderer->longest_side());
+  const Sample sample = sample_of(frames, packet);
   std::vector<std::string> options = o.fields;
   options.insert(options.end(), {o.grid, o.colors.map, fmt::format("{}", fmt::join(o.colors.range, " ")), o.annotate.title});
   frames.goal = machine(plan::make_eye_plan(*frames.renderer, sample.packet, wanted, {scene, text, options, sample.share},
@@ -160,7 +161,7 @@ Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const s
 
 /// "observed: error 1.7/255 in 95 ms": the error of the last picture, the median of the times.
 std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
-  const auto error = render::rmse_of(*frames.renderer, sample_of(packet, frames.plan, frames.renderer->longest_side()).packet, settings);
+  const auto error = render::rmse_of(*frames.renderer, sample_of(frames, packet).packet, settings);
   return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", *error) : "not known", quantile(times, 0.5));
 }
 

@@ -161,9 +161,12 @@ TEST_F(WatchdogUsb, AKilledProgramHoldsNoForce) {
     const int status = rig.wait();
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
     ASSERT_TRUE(eventually([&] { return !Rig::lives(watchdog); })) << "its work is done";
-    // two zeros; one more where the machine had stalled the program just before
+    // two zeros; a machine that is slow to end the program has it stand still first, which is said, and lets go then, too
+    const bool stood_still = rig.said().find("has stood still with a force on") != std::string::npos;
     EXPECT_GE(rig.bulks(), bulks + 2);
-    EXPECT_LE(rig.bulks(), bulks + 3);
+    if (!stood_still) {
+      EXPECT_EQ(rig.bulks(), bulks + 2);
+    }
     EXPECT_EQ(rig.last().force_n, 0) << i;
     outlived_ms.push_back(rig.force_outlived_ms(killed_ns));
     EXPECT_NE(rig.said().find("catena: the program has ended with a force on: its device was let go\n"), std::string::npos) << rig.said();
