@@ -82,6 +82,28 @@ bool has_layer(const char* name) {
   return std::any_of(layers.begin(), layers.end(), [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
 }
 
+VkApplicationInfo application_info() {
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "catena";
+  application.apiVersion = VK_API_VERSION_1_3;
+  return application;
+}
+
+/// The loader unloads a driver with the last instance, and NVIDIA's (580) cannot be loaded a 31st time (its static thread-local
+/// storage is used up): one instance without anything stays to the end of the process.
+void keep_the_driver_loaded() {
+  static const VkInstance kept = [] {
+    const VkApplicationInfo application = application_info();
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pApplicationInfo = &application;
+    VkInstance made = VK_NULL_HANDLE;
+    return vkCreateInstance(&info, nullptr, &made) == VK_SUCCESS ? made : VkInstance(VK_NULL_HANDLE);
+  }();
+  (void)kept;
+}
+
 }  // namespace
 
 void Messages::add(std::string text) {
@@ -120,10 +142,8 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
 
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = "catena";
-  application.apiVersion = VK_API_VERSION_1_3;
+  keep_the_driver_loaded();
+  const VkApplicationInfo application = application_info();
 
   // validation, with synchronization checks
   VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&self->messages_);

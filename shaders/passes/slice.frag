@@ -20,6 +20,7 @@ struct Hit {
   float t, value;
   vec3 p;          // local
   vec2 gradient;   // of the value, a pixel
+  vec2 slope;      // of t, a pixel
 };
 
 vec3 table_color(float value) {
@@ -67,12 +68,13 @@ bool is_clipped(vec2 q, float t) {
   return false;
 }
 
+#define BESIDE 0.0078125  // pixels
 #define FACE_SLACK 1e-3  // voxels: a plane in a face of the domain is drawn
 
 Hit meet(vec2 q) {
   Hit hit;
   hit.value = 0.0;
-  hit.gradient = vec2(0.0);
+  hit.gradient = hit.slope = vec2(0.0);
   const LocalRay ray = local_ray(0, q);
   const float at = slice.plane.at + slice.plane.at_x * q.x + slice.plane.at_y * q.y;
   const float along = slice.plane.along + slice.plane.along_x * q.x + slice.plane.along_y * q.y;
@@ -87,10 +89,9 @@ Hit meet(vec2 q) {
   vec3 local;
   hit.seen = value_at(hit.p, hit.value, local);
   // the plane's own ray from pixel to pixel
-  const vec3 x = frame.grids[0].origin_x + hit.t * frame.grids[0].direction_x -
-                 (slice.plane.at_x + hit.t * slice.plane.along_x) / along * ray.direction;
-  const vec3 y = frame.grids[0].origin_y + hit.t * frame.grids[0].direction_y -
-                 (slice.plane.at_y + hit.t * slice.plane.along_y) / along * ray.direction;
+  hit.slope = -(vec2(slice.plane.at_x, slice.plane.at_y) + hit.t * vec2(slice.plane.along_x, slice.plane.along_y)) / along;
+  const vec3 x = frame.grids[0].origin_x + hit.t * frame.grids[0].direction_x + hit.slope.x * ray.direction;
+  const vec3 y = frame.grids[0].origin_y + hit.t * frame.grids[0].direction_y + hit.slope.y * ray.direction;
   hit.gradient = vec2(dot(local, x), dot(local, y));
   return hit;
 }
@@ -145,7 +146,8 @@ void main() {
     color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);
   }
-  // both parts of the depth are rounded, also where their sum is small
-  const float t = hit.t - slice.nearer * (abs(hit.t) + layer.reference_depth);
+  // both parts of the depth are rounded, also where their sum is small; a GPU moves the corners of triangles to 256ths of a pixel, and so
+  // those in this plane in depth
+  const float t = hit.t - slice.nearer * (abs(hit.t) + layer.reference_depth) - BESIDE * (abs(hit.slope.x) + abs(hit.slope.y));
   write_fragment(hit.seen && alpha > 0.0, color, alpha, t, frame.grids[0].id);
 }

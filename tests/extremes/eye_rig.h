@@ -44,7 +44,7 @@ struct Eye {
     test::use_lavapipe();
     render::vk::DeviceOptions options;
     options.validation = true;
-    options.choose = "cpu";
+    options.choose = test::test_device();
     auto made = render::Renderer::create(options);
     CATENA_ASSERT(static_cast<bool>(made));
     renderer = std::move(*made);

@@ -79,7 +79,7 @@ class UnusedParts : public testing::Test {
 
   static void draw(const render::FramePacket& packet, Work& work) {
     render::vk::DeviceOptions options;
-    options.choose = "cpu";
+    options.choose = test::test_device();
     auto renderer = render::Renderer::create(options);
     ASSERT_TRUE(renderer) << renderer.error().message;
     const Outcome drawn = (*renderer)->draw(packet);

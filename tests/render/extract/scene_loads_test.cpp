@@ -21,7 +21,7 @@ const std::string kScene = R"({
 TEST(SceneLoads, AHundredHoldNoMore) {
   test::use_lavapipe();
   vk::DeviceOptions options;
-  options.choose = "cpu";
+  options.choose = test::test_device();
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
   std::uint64_t device = 0, host = 0;

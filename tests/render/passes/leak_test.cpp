@@ -41,7 +41,7 @@ FramePacket frame_of(int k, const std::vector<GridPtr>& grids) {
 TEST_F(Leaks, AThousandFramesHoldNoMore) {
   // without the validation layer: it keeps books of its own
   vk::DeviceOptions options;
-  options.choose = "cpu";
+  options.choose = test_device();
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
   std::vector<GridPtr> grids;

@@ -99,8 +99,12 @@ TEST_F(SlicePicture, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
         field::Cursor cursor;
         const auto color = table_color(kTable, grid->sample(met.world, cursor).value);
         for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(int(std::lround(255 * color[c])) - int(p[c])));
-        // nearer by what puts it over surfaces in its plane
-        worst_depth = std::max(worst_depth, std::fabs(depth->depth[at] - (1 - 8e-6) * met.view_depth));
+        // nearer by what puts it over surfaces in its plane: a share of its distance, and what a 128th of a pixel to either side is nearer
+        const auto beside = [&](double dx, double dy) {
+          return std::fabs(meet(camera, packet.slices[0], x + 0.5 + dx, y + 0.5 + dy).view_depth - met.view_depth);
+        };
+        const double due = (1 - 8e-6) * met.view_depth - beside(1. / 128, 0) - beside(0, 1. / 128);
+        worst_depth = std::max(worst_depth, std::fabs(depth->depth[at] - due));
       }
     EXPECT_GT(inside, 3000);
     EXPECT_LE(worst, 1);

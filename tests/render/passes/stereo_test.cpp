@@ -268,7 +268,8 @@ void expect_packed(Packing packing, const Picture& picture, const std::vector<Pi
     }
   const bool computed = packing == Packing::anaglyph || packing == Packing::anaglyph_grey || packing == Packing::side_by_side_half ||
                         packing == Packing::top_bottom_half;
-  EXPECT_LE(255 * worst, computed ? 0.51 : 0) << name;
+  // how halves of 1/255 are rounded is a driver's choice
+  EXPECT_LE(255 * worst, !computed ? 0 : on_lavapipe() ? 0.51 : 0.6) << name;
 }
 
 TEST_F(StereoPicture, EveryPackingIsMadeOfTheEyesOwnPictures) {

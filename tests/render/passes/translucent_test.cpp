@@ -293,7 +293,8 @@ TEST_F(Translucent, LayersExistOnlyWhereSomethingIsTranslucent) {
   packet.slices[0].point = {0, 10, 0};
   packet.slices[0].normal = {0, 1, 0};
   draw(packet);
-  EXPECT_LE(renderer_->stats().gpu_bytes, before + 16 * 120 * 120) << "the target of the raycast alone stays";
+  const std::uint64_t rounding = on_lavapipe() ? 0 : 1 << 16;  // of a GPU's images
+  EXPECT_LE(renderer_->stats().gpu_bytes, before + 16 * 120 * 120 + rounding) << "the target of the raycast alone stays";
 }
 
 /// Tiles and eyes: a part of the frustum draws the same part of the picture.

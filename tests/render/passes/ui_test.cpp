@@ -315,7 +315,7 @@ TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
 
 TEST_F(Ui, AThousandPaintsHoldNoMore) {
   vk::DeviceOptions options;  // without the validation layer: it keeps books of its own
-  options.choose = "cpu";
+  options.choose = test_device();
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
   FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
@@ -400,7 +400,7 @@ TEST(UiFailures, MirrorsMakeRoomForTheWindow) {
   use_lavapipe();
   vk::DeviceOptions options;
   options.validation = true;
-  options.choose = "cpu";
+  options.choose = test_device();
   options.memory_budget_bytes = 4'000'000;
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer);

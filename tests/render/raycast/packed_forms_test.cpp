@@ -132,7 +132,7 @@ TEST_F(Bricks, HaveGradientsAsFineAsTheDeviceHasRoomFor) {
 
   vk::DeviceOptions options;
   options.validation = true;
-  options.choose = "cpu";
+  options.choose = test_device();
   options.memory_budget_bytes = fine_bytes * 3 / 4;
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;

@@ -60,6 +60,14 @@ class Sampling : public DeviceFixture {
     return out;
   }
 
+  /// What the filter of a GPU may be off by, which weighs in 256ths along each axis. Cubic cells and lavapipe weigh in floats.
+  static double of_weights(const field::ScalarGrid& grid, const Vec3& index, field::Cursor& cursor) {
+    if (on_lavapipe() || grid.interpolation() != field::Interpolation::linear) return 0;
+    const field::ScalarCell cell = grid.cell(grid.base_of(index), cursor);
+    const auto [least, most] = std::minmax_element(std::begin(cell.corner), std::end(cell.corner));
+    return 3.0 / 512 * (*most - *least);
+  }
+
   /// The worst error at 10,000 random points of the domain, against `tolerance(value)`.
   void expect_close(const field::ScalarGrid& grid, const MirrorOptions& options, const std::function<double(double)>& tolerance) {
     auto mirror = make_grid_mirror(*device_, grid, options);
@@ -94,7 +102,8 @@ class Sampling : public DeviceFixture {
         continue;
       }
       ++compared;
-      worst = std::max(worst, std::fabs(values[i] - truth.value) / tolerance(truth.value));
+      const double allowed = tolerance(truth.value) + of_weights(grid, grid.mapping().index_from_world(world[i]), cursor);
+      worst = std::max(worst, std::fabs(values[i] - truth.value) / allowed);
     }
     EXPECT_GT(compared, 2000);
     EXPECT_LE(worst, 1.0);

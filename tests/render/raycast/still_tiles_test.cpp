@@ -13,7 +13,7 @@ class StillTiles : public PictureTest {
  protected:
   void SetUp() override {
     PictureTest::SetUp();
-    auto other = Renderer::create({true, "cpu", {}});
+    auto other = Renderer::create({true, test_device(), {}});
     ASSERT_TRUE(other) << other.error().message;
     other_ = std::move(*other);
     const auto grid =

@@ -1,4 +1,4 @@
-/// A bare device on lavapipe with the validation layer on; what it said is a failure.
+/// A bare device with the validation layer on; what it said is a failure.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ class DeviceFixture : public testing::Test {
  protected:
   void SetUp() override {
     use_lavapipe();
-    auto device = render::vk::Device::create({true, "cpu", {}});
+    auto device = render::vk::Device::create({true, test_device(), {}});
     ASSERT_TRUE(device) << device.error().message;
     device_ = std::move(*device);
   }

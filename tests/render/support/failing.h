@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "render/vk/device.h"
+#include "tests/support/vulkan.h"
 
 namespace catena::test {
 
@@ -23,7 +24,7 @@ struct Failing {
 inline render::vk::DeviceOptions failing_options(const std::shared_ptr<Failing>& failing) {
   render::vk::DeviceOptions options;
   options.validation = true;
-  options.choose = "cpu";
+  options.choose = test_device();
   options.fail = [failing](render::vk::DriverCall call) {
     return call == failing->call && ++failing->calls == failing->at ? failing->result : VK_SUCCESS;
   };

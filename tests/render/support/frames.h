@@ -43,7 +43,7 @@ class PictureTest : public testing::Test {
     use_lavapipe();
     render::vk::DeviceOptions options;
     options.validation = true;
-    options.choose = "cpu";
+    options.choose = test_device();
     auto renderer = render::Renderer::create(options);
     ASSERT_TRUE(renderer) << renderer.error().message;
     renderer_ = std::move(*renderer);

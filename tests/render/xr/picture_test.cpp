@@ -148,7 +148,7 @@ TEST_F(HeadsetPicture, WhatIsSubmittedIsWhatAFileWouldHold) {
     ASSERT_TRUE(mirrored);
     EXPECT_EQ(mirrored->rgba, runtime_.record().last[0].rgba);
     // and each eye is what a renderer without a headset makes of its view
-    auto plain = Renderer::create({true, "cpu", {}});
+    auto plain = Renderer::create({true, test_device(), {}});
     ASSERT_TRUE(plain);
     for (std::size_t k = 0; k < 2; ++k) {
       packet.view = *eye_view(placement, xr::room_eye(runtime_.script().views[k]));
