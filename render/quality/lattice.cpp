@@ -13,7 +13,7 @@
 namespace catena::render {
 namespace {
 
-constexpr double kDeviations = 2;                               // of the lattice's mean, that an estimate lies above it
+constexpr double kDeviations = 3;                               // of the lattice's mean, that an estimate lies above it
 constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
 constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
 constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at

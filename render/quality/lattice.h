@@ -15,7 +15,7 @@ inline constexpr double kRoughGoal = 1.5;  ///< 1/255: from it on the error of s
 /// Errors on the lattice, 1/255.
 struct LatticeError {
   double rmse = 0;   ///< over the covered pixels
-  double above = 0;  ///< the true one is at most so, but in one of forty pictures
+  double above = 0;  ///< the true one is at most so, whatever chance makes of the lattice
   double p999 = 0;   ///< of the largest of a pixel's differences
   bool good_for(double e) const { return above <= e && p999 <= kFarthest * e; }
 };
