@@ -78,9 +78,9 @@ void Progress::at(double done, std::string_view doing) {
     std::fputs(fmt::format("\r{}: {:3.0f} % {:<16}", printable(what_), 100 * part, doing).c_str(), stderr);
     std::fflush(stderr);
   } else {
-    const int quarter = static_cast<int>(4 * part);
-    if (quarter <= quarters_) return;
-    quarters_ = quarter;
+    const int tenth = static_cast<int>(10 * part);
+    if (tenth <= tenths_) return;
+    tenths_ = tenth;
     tell(fmt::format("{}: {:.0f} %{}{}", what_, 100 * part, doing.empty() ? "" : ", ", doing));
   }
   shown_ = true;

@@ -64,7 +64,7 @@ class Progress {
   std::string what_;
   double total_;
   std::int64_t start_, last_ = 0;
-  int quarters_ = 0;
+  int tenths_ = 0;
   bool terminal_, shown_ = false;
 };
 

@@ -128,7 +128,8 @@ Result<NpyHead> read_npy_head(std::span<const std::byte> bytes, bool axes_xyz) {
   double all = 1;
   for (const std::int64_t v : n) all *= static_cast<double>(v);
   constexpr double kMost = 1e15;
-  if (n.empty() || n.size() > 4 || !(all >= 1) || all > kMost)
+  if (all > kMost) return Error{fmt::format("has the shape ({}), which is more than {:.0e} values", fmt::join(n, ", "), kMost)};
+  if (n.empty() || n.size() > 4 || !(all >= 1))
     return Error{fmt::format("has the shape ({}), expected one to four sizes of 1 or more", fmt::join(n, ", "))};
   std::vector<std::uint64_t> stride(n.size());
   std::uint64_t next = 1;

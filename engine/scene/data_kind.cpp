@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <unordered_set>
 
 #include "engine/base/numbers.h"
@@ -24,6 +25,7 @@ constexpr double kUnitSlope = 0.05, kUnitSlopes = 0.9;
 // Hounsfield units
 constexpr double kAirLo = -1100, kAirHi = -850, kSoftLo = -150, kSoftHi = 200, kTissueShare = 0.05, kLeastHounsfield = -5000;
 constexpr double kEqualNeighbours = 0.6;
+constexpr double kRegions = 0.4;  // of neighbours, in regions of a voxel's thickness half, of random labels a third
 // solids: two plateaus
 constexpr double kPlateau = 0.1, kPlateaus = 0.9, kLeastPlateau = 0.02;
 // scans
@@ -33,7 +35,8 @@ constexpr double kEmpty = 0.6;
 /// What is summed over the neighbours in blocks.
 struct Neighbours {
   double first = 0, second = 0;
-  std::array<std::size_t, 3> pairs{}, equal{};  // along each axis
+  std::array<std::size_t, 3> pairs{}, equal{};  // along each axis, both in the foreground
+  std::size_t touching = 0;                     // pairs of which one at least is in it
   std::size_t slopes = 0, unit_slopes = 0;
 };
 
@@ -125,7 +128,9 @@ void measure_neighbours(const std::vector<float>& block, const field::Mapping& m
         sums.second += std::fabs(a - 2 * b + c);
       }
   const auto compare = [&](int axis, double a, double b) {
-    if (!std::isfinite(a) || !std::isfinite(b) || !is_foreground(a) || !is_foreground(b)) return;
+    if (!std::isfinite(a) || !std::isfinite(b)) return;
+    sums.touching += is_foreground(a) || is_foreground(b);
+    if (!is_foreground(a) || !is_foreground(b)) return;
     ++sums.pairs[axis];
     sums.equal[axis] += a == b;
   };
@@ -183,6 +188,7 @@ DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
   }
   facts.equal_share = 1;
   for (int axis = 0; axis < 3; ++axis) facts.equal_share = std::min(facts.equal_share, share(sums.equal[axis], sums.pairs[axis]));
+  facts.region_share = share(std::accumulate(sums.equal.begin(), sums.equal.end(), std::size_t{0}), sums.touching);
   facts.roughness = sums.first > 0 ? sums.second / sums.first : 0;
   facts.distance_share = share(sums.unit_slopes, sums.slopes);
   return facts;
@@ -195,7 +201,8 @@ DataKind kind_of(const DataFacts& f) {
   if (f.level_set || (both_signs && f.distance_share >= kUnitSlopes)) return DataKind::level_set;
   if (f.hounsfield) return DataKind::ct;
   if (f.least >= kLeastHounsfield && f.air_share >= kTissueShare && f.soft_share >= kTissueShare) return DataKind::ct;
-  if (f.whole_numbers && f.distinct > 1 && f.distinct <= kMostLabels && f.equal_share >= kEqualNeighbours) return DataKind::label_map;
+  if (f.whole_numbers && f.distinct > 1 && f.distinct <= kMostLabels && f.equal_share >= kEqualNeighbours && f.region_share >= kRegions)
+    return DataKind::label_map;
   if (f.plateau_share >= kPlateaus || (!f.whole_numbers && f.equal_share >= kEqualNeighbours)) return DataKind::solid;
   if (!f.patient && !f.masked && f.least >= 0 && f.least < f.hi && f.empty_share >= kEmpty) return DataKind::cloud;
   if (rough && f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost) return DataKind::angiogram;
@@ -220,7 +227,8 @@ std::string why(DataKind kind, const DataFacts& f) {
                           : percent(f.air_share) + " of the values are air near -1000, " + percent(f.soft_share) + " soft tissue near 0";
     case DataKind::label_map:
       if (f.labels) return "the file says so";
-      return fmt::format("{} different whole numbers, and {} of all neighbours are equal", f.distinct, percent(f.equal_share));
+      return fmt::format("{} different whole numbers, and {} of the neighbours at and in what is not background are equal", f.distinct,
+                         percent(f.region_share));
     case DataKind::solid:
       return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are at either end of the range"
                                           : percent(f.equal_share) + " of all neighbours are equal";

@@ -46,6 +46,7 @@ struct DataFacts {
   double least = 0;                      ///< the lowest value of all samples
   // neighbours
   double equal_share = 0;     ///< of neighbours in the foreground, along the axis where it is least
+  double region_share = 0;    ///< of neighbours of which one at least is in the foreground: as large as regions hang together
   double roughness = 0;       ///< of the foreground: mean |second difference| by mean |first difference|; white noise: 1.7
   double distance_share = 0;  ///< of the places that are not flat: those whose gradient is about 1 long
 };

@@ -147,6 +147,7 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
   FirstLook look;
   look.whole = facts.masked && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
   look.note = "looks like " + std::string(kind_word(kind)) + ": " + why(kind, facts);
+  if (grid.min_value() == grid.max_value()) look.note = "every value is " + to_text(grid.min_value());
   const auto level = [&](double value) {
     return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (grid.min_value() + grid.max_value());
   };

@@ -1,7 +1,7 @@
 /// Settings for a stated error or time, from measured residuals. The error of a setting is measured on this very picture: the pixels
 /// of a sparse lattice (every 13th each way, or more, until about 6000 of them are covered) against converged rays through them.
 ///   RMSE: 8-bit RGB over the background (of a transparent one: over black or white, the larger), in 1/255, of the covered pixels: where
-///   the picture's or the converged one's alpha, without a background, is at least 1/255 (measure.h). The estimate is two standard
+///   the picture's or the converged one's alpha, without a background, is at least 1/255 (measure.h). The estimate is three standard
 ///   deviations of the lattice's mean above it, and counts what is left of the converged rays' own error.
 /// error=E: every ray step, lit by either gradient, whose rays alone stay below E and steady (tried on the lattice: cheap) with every plan
 /// of interpolation, in the order of their expected cost; the cheapest, by the rays that it marches, whose finished picture stays below E,
@@ -54,6 +54,10 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms);
 
 /// The error of the picture that `settings` draw, measured the same way.
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
+
+/// What half the step of exact rays changes on about 4000 pixels of the picture, 1/255: about as much they are off. Cheap beside the
+/// picture.
+Result<double> change_of_half_step(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
 /// Errors below it are what rounding to 8 bits makes of nothing, 1/255.
 inline constexpr double kLeastTold = 0.4;

@@ -32,21 +32,28 @@ std::string word_of_signal(int signal_number) {
 
 }  // namespace
 
-Interrupt::Interrupt() : Interrupt(std::vector<int>(std::begin(kAsking), std::end(kAsking))) {
+Interrupt::Interrupt() {
+  begin();
+  for (const int signal_number : kAsking) take(signal_number, false, 0);
   // what somebody handles or ignores ends nothing
-  for (const int signal_number : kEnding) take(signal_number, true);
-  for (int signal_number = SIGRTMIN; signal_number <= SIGRTMAX; ++signal_number) take(signal_number, true);
+  for (const int signal_number : kEnding) take(signal_number, true, 0);
+  for (int signal_number = SIGRTMIN; signal_number <= SIGRTMAX; ++signal_number) take(signal_number, true, 0);
 }
 
-Interrupt::Interrupt(std::vector<int> asking) {
+Interrupt::Interrupt(const std::vector<int>& asking) {
+  begin();
+  for (const int signal_number : asking) take(signal_number, false, static_cast<int>(SA_RESETHAND));
+}
+
+void Interrupt::begin() {
   asked_to_end = false;
   first_signal = 0;
-  for (const int signal_number : asking) take(signal_number, false);
 }
 
-void Interrupt::take(int signal_number, bool only_default) {
+void Interrupt::take(int signal_number, bool only_default, int flags) {
   struct sigaction action {};
   action.sa_handler = on_signal;
+  action.sa_flags = flags;
   sigemptyset(&action.sa_mask);
   Before before{signal_number, {}};
   if (sigaction(signal_number, nullptr, &before.action) != 0) return;

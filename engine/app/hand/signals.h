@@ -16,8 +16,9 @@ namespace catena::app {
 class Interrupt {
  public:
   Interrupt();
-  explicit Interrupt(std::vector<int> asking);  ///< only these
-  ~Interrupt();                                 ///< as it was before
+  /// Only these, for work that holds no device: the same signal once more ends the process at once.
+  explicit Interrupt(const std::vector<int>& asking);
+  ~Interrupt();  ///< as it was before
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
@@ -27,7 +28,8 @@ class Interrupt {
   Outcome outcome() const;
 
  private:
-  void take(int signal_number, bool only_default);
+  static void begin();
+  void take(int signal_number, bool only_default, int flags);
 
   struct Before {
     int signal_number;

@@ -121,6 +121,7 @@ class Frames {
 };
 
 constexpr double kBalancedError = 2;  // 1/255: hardly seen beside the converged picture
+constexpr double kConverged = 1;      // 1/255: what calls itself a reference is off by less
 
 /// What is measured of a picture: all of it, or the middle tile of one that is large or supersampled.
 struct Sample {
@@ -266,6 +267,14 @@ Outcome render_pictures(const RenderOptions& given) {
     stats.estimated_rmse = choice.estimated_rmse;
     say(words, fmt::format("quality {}: {}, error about {:.2f}/255{}", quality, describe(frames.settings), choice.estimated_rmse,
                            choice.reached ? "" : " (nothing reached the goal: the nearest was taken)"));
+  }
+  if (quality == "reference" && !planned) {
+    stats.estimated_rmse = machine(render::change_of_half_step(*frames.renderer, sample_of(frames, packet).packet, frames.settings));
+    if (*stats.estimated_rmse > kConverged)
+      tell_from_catena(
+          fmt::format("note: reference has not converged here: half its step changes the picture by {:.2g}/255, since opacity "
+                      "rises within a step. --quality step=0.02 is nearer to the truth",
+                      *stats.estimated_rmse));
   }
   stats.quality_mode = planned ? frames.goal->sentence() : wanted.goal ? quality + ": " + describe(frames.settings) : quality;
   stats.tiles = frames.plan.count();

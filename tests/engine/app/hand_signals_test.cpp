@@ -127,6 +127,16 @@ TEST(Interrupt, WhatWouldEndTheProgramIsAnErrorOfTheMachine) {
   EXPECT_TRUE(interrupt.outcome()) << "the first one counts: a person asked";
 }
 
+TEST(Interrupt, WorkWithoutADeviceEndsAtOnceWhereItIsAskedAgain) {
+  const auto asked = [](int times) {
+    const app::Interrupt interrupt({SIGINT, SIGTERM});
+    for (int k = 0; k < times; ++k) std::raise(SIGINT);
+    std::exit(interrupt.asked() ? 7 : 8);
+  };
+  EXPECT_EXIT(asked(1), testing::ExitedWithCode(7), "");
+  EXPECT_EXIT(asked(2), testing::KilledBySignal(SIGINT), "");
+}
+
 TEST(Interrupt, WhatSomebodyIgnoresOrHandlesIsLeftAlone) {
   std::signal(SIGUSR1, SIG_IGN);
   const app::Interrupt interrupt;

@@ -32,6 +32,12 @@ class Offscreen : public testing::Test {
     const auto run = render(more);
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
+  /// A shell about a sphere, within which values differ by `width`.
+  void shell(double width) {
+    scene(R"({"fields": {"f": {"analytic": "sphere", "resolution": 32}}, "volumes": [{"field": "f", "shade": true, "extinction": [[)" +
+          std::to_string(0.5 - width) + ", 0], [0.5, 60], [" + std::to_string(0.5 + width) + R"(, 0]],
+      "color": [[0, 1, 1, 1], [1, 1, 1, 1]]}], "camera": {"position": [0, -4, 2], "target": [0, 0, 0]}})");
+  }
   void refused(const std::vector<std::string>& more, const std::vector<std::string>& expects) {
     const int before = files();
     const auto run = render(more);
@@ -364,6 +370,22 @@ TEST_F(Offscreen, OutputsThatCannotBe) {
   // an input is never written over, by no numbered name either
   test::write_file(folder_ / "p_1.png", "t,x,y,z\n0,0,0,0\n");
   refused({"-o", folder_ / "p_%d.png", "--frames", "2", "--probe", folder_ / "p_1.png"}, {"p_1.png", "input"});
+}
+
+TEST_F(Offscreen, AReferenceThatHasNotConvergedSaysSo) {
+  const std::vector<std::string> options{"-o",        folder_ / "o.png", "--size",  "160x120",
+                                         "--quality", "reference",       "--stats", folder_ / "o.json"};
+  for (const double width : {0.2, 0.0005}) {
+    shell(width);
+    const auto run = render(options);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const bool steep = width < 0.1;
+    EXPECT_EQ(run.err.find("note: reference has not converged here") != std::string::npos, steep) << run.err;
+    const auto stats = json::read(folder_ / "o.json");
+    ASSERT_TRUE(stats);
+    const double stated = stats->find("quality")->find("estimated_rmse")->number;
+    EXPECT_TRUE(steep ? stated > 1 : stated < 0.5) << stated;
+  }
 }
 
 TEST_F(Offscreen, StandardOutputIsThePictureAlone) {

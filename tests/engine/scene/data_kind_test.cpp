@@ -58,6 +58,11 @@ TEST(DataKind, AScanWithoutAScaleIsMrOfAPatientOnly) {
 TEST(DataKind, LabelsAreWholeNumbersWithEqualNeighbours) {
   const auto label = [](const Vec3& p) { return norm(p) > 0.9 ? 0 : 1 + int(3 * (p.x + 1)) + 10 * int(3 * (p.y + 1)); };
   EXPECT_EQ(kind(grid_of([&](const Vec3& p, int) { return label(p); }), kPatient), DataKind::label_map);
+  // regions of a voxel's thickness are regions, numbers at random are none, however few
+  const auto sheets = [](const Vec3&, int n) { return n / (kSize * kSize) == 20 ? 3 : n / kSize % kSize == 30 ? 5 : 0; };
+  EXPECT_EQ(kind(grid_of(sheets)), DataKind::label_map);
+  for (const int most : {2, 4, 9})
+    EXPECT_NE(kind(grid_of([&](const Vec3&, int n) { return std::floor(most * (0.5 + 0.499 * noise(n))); })), DataKind::label_map) << most;
   // whole numbers alone are none: an 8-bit scan
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int n) { return std::round(std::max(0.0, head(p, n, 0, 100, 60))); }), kPatient), DataKind::mr);
 }
