@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.06, 0.04, 0.03};
 
+constexpr double kAbout = 1.6;  // of a time that is wanted, and by it
+
 /// Where things are thin, refinement costs more than every pixel's rays do, and the ladder has a gap: its best takes less than this of the
 /// time.
 constexpr double kUnused = 0.6;
@@ -23,8 +25,10 @@ QualityChoice choice(const Lattice& lattice, const RenderSettings& settings, dou
   return {settings, error, 0, reached, lattice.pictures()};
 }
 
-Result<double> quicker_of_two(const Lattice& lattice, const RenderSettings& settings) {
+/// The quicker of two, where it is about the time that is wanted; else one says enough.
+Result<double> time_of(const Lattice& lattice, const RenderSettings& settings, double wanted_ms) {
   CATENA_TRY(const double first, drawing_ms(lattice.renderer(), lattice.packet(), settings));
+  if (first < wanted_ms / kAbout || first > wanted_ms * kAbout) return first;
   CATENA_TRY(const double second, drawing_ms(lattice.renderer(), lattice.packet(), settings));
   return std::min(first, second);
 }
@@ -57,7 +61,7 @@ Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const Searc
   const auto fits = [&](const RenderSettings& next) -> Result<bool> {
     // the first picture pays for pipelines and mirrors
     CATENA_TRY(const LatticeError error, lattice.of_picture(next));
-    CATENA_TRY(const double took, timer ? timer(next) : quicker_of_two(lattice, next));
+    CATENA_TRY(const double took, timer ? timer(next) : time_of(lattice, next, ms));
     settings.push_back(next);
     tried.push_back({took, error.above});
     return took <= ms;
