@@ -181,8 +181,9 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
         look.parts = body(level(0));
         break;
       case DataKind::angiogram:
-        look.parts = angiogram(field, facts);
-        break;
+        // black, as its least values are: on anything lighter its outline would be a dark rag
+        look.parts = angiogram(field, facts) + ",\n  \"background\": [0, 0, 0]";
+        return look;
       case DataKind::cloud:
         look.parts = colored_volume(field, grid, {"grey", {}});
         break;
