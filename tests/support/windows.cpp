@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kFunctions = R"(
 until_() { for i in $(seq 600); do "$@" > /dev/null 2>&1 && return; kill -0 $V 2> /dev/null || break; sleep 0.05; done; "$@" > /dev/null 2>&1; }
-titled() { until_ env LC_ALL=C.UTF-8 xdotool search --name "$1" && echo "titled $1" || echo "never titled $1"; }
+titled() { until_ xdotool search --name "$1" && echo "titled $1" || echo "never titled $1"; }
 written() { until_ test -s "$1" || echo "never written $1"; }
 gone() { until_ test ! -e "$1" || echo "never gone $1"; }
 says() { until_ grep -q -- "$1" log || echo "never says $1"; }
@@ -32,7 +32,7 @@ bool can_drive_windows() {
 
 int drive_windows(const TemporaryFolder& folder, const std::string& script) {
   write_file(folder / "script.sh", "cd " + folder.path() + "\nexport HOME=" + folder.path() + " XDG_STATE_HOME=" + (folder / "state") +
-                                       " CATENA=" + program_path() + "\n" + kFunctions + script);
+                                       " LC_ALL=C.UTF-8 CATENA=" + program_path() + "\n" + kFunctions + script);
   const int status = std::system(
       ("timeout -k 5 120 " + on_display("1000x700") + "sh " + (folder / "script.sh") + " > " + (folder / "log") + " 2>&1").c_str());
   return WIFEXITED(status) && WEXITSTATUS(status) < 124 ? WEXITSTATUS(status) : -1;
