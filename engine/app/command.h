@@ -52,8 +52,8 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
 /// "1.23 MiB", "512 B".
 std::string human_bytes(double bytes);
 
-/// A line on stderr that says how far long work is: rewritten in place on a terminal, after the first second; elsewhere at most four lines,
-/// after the first ten.
+/// A line on stderr that says how far long work is: rewritten in place on a terminal, after the first second; elsewhere at most ten lines,
+/// after the first ten seconds.
 class Progress {
  public:
   Progress(std::string what, double total);

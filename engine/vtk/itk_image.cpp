@@ -73,7 +73,8 @@ Mapping turned_round(const Mapping& m) {
 std::string words_of(const itk::ExceptionObject& error) {
   const std::string words = error.GetDescription();
   const auto object = words.find("): ");
-  return (words.starts_with("ITK ERROR: ") || words.starts_with("itk::ERROR: ")) && object != std::string::npos ? words.substr(object + 3) : words;
+  return (words.starts_with("ITK ERROR: ") || words.starts_with("itk::ERROR: ")) && object != std::string::npos ? words.substr(object + 3)
+                                                                                                                : words;
 }
 
 Result<Shape> shape_of(const itk::ImageIOBase& io) {

@@ -17,6 +17,7 @@ constexpr double kDeviations = 3;                               // of the lattic
 constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
 constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
 constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
+constexpr double kLookedAt = 4000;                              // pixels, where half a step is tried
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
 constexpr std::uint32_t kSparser = 3;                           // the lattice that shows at which step rays have converged,
@@ -120,6 +121,15 @@ Outcome Lattice::find_truth(double goal) {
   if (!sparser) return Done{};
   CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
   return Done{};
+}
+
+Result<double> Lattice::change_of_half_step(const RenderSettings& settings) const {
+  const auto spacing = std::max(1u, std::uint32_t(std::sqrt(double(packet_.width) * packet_.height / kLookedAt)));
+  RenderSettings half = settings;
+  half.step_voxels /= 2;
+  CATENA_TRY(const Picture picture, renderer_.probe(packet_, settings, spacing));
+  CATENA_TRY(const Picture finer, renderer_.probe(packet_, half, spacing));
+  return compare(picture, finer).rmse;
 }
 
 bool Lattice::shaded() const { return std::ranges::any_of(packet_.volumes, &VolumeItem::shade); }

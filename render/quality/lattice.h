@@ -39,6 +39,9 @@ class Lattice {
   bool empty() const;                         ///< every pixel was looked at, and nothing is in any
   int pictures() const { return pictures_; }  ///< drawn so far
 
+  /// By how much rays of half the step differ, on a lattice of its own; begin() is not needed.
+  Result<double> change_of_half_step(const RenderSettings& settings) const;
+
   /// Of the rays alone; of the finished picture.
   Result<LatticeError> of_rays(const RenderSettings& settings);
   Result<LatticeError> of_picture(const RenderSettings& settings);

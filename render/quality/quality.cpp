@@ -2,19 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
-#include "render/image/measure.h"
 #include "render/quality/refinement.h"
 #include "render/quality/search.h"
 
 namespace catena::render {
 namespace {
 
-constexpr double kBegun = 0.25;     // of a search, what makes its converged rays
-constexpr double kLookedAt = 4000;  // pixels
+constexpr double kBegun = 0.25;  // of a search, what makes its converged rays
 
 /// The packet as its first eye sees it.
 FramePacket first_eye(const FramePacket& packet) {
@@ -72,17 +66,7 @@ Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, cons
 Result<double> change_of_half_step(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
   if (!packet.eyes.empty()) return change_of_half_step(renderer, first_eye(packet), settings);
   if (!draws_rays(packet)) return 0.0;
-  FramePacket alone = packet;
-  if (alone.background[3] < 1) alone.background = {};
-  alone.background[3] = 0;
-  alone.overlay = {};
-  const auto spacing = std::max(1u, std::uint32_t(std::sqrt(double(packet.width) * packet.height / kLookedAt)));
-  RenderSettings half = settings;
-  half.step_voxels /= 2;
-  CATENA_TRY(const Picture picture, renderer.probe(alone, settings, spacing));
-  CATENA_TRY(const Picture finer, renderer.probe(alone, half, spacing));
-  const std::vector<double> squares = covered_errors(picture, finer).squares;
-  return squares.empty() ? 0.0 : std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / double(squares.size()));
+  return Lattice(renderer, packet).change_of_half_step(settings);
 }
 
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,

@@ -25,6 +25,11 @@ void on_signal(int signal_number) {
   asked_to_end.store(true);
 }
 
+void forget_signals() {
+  asked_to_end = false;
+  first_signal = 0;
+}
+
 std::string word_of_signal(int signal_number) {
   if (const char* word = sigabbrev_np(signal_number)) return fmt::format("SIG{} ({})", word, sigdescr_np(signal_number));
   return fmt::format("signal {}", signal_number);
@@ -33,7 +38,7 @@ std::string word_of_signal(int signal_number) {
 }  // namespace
 
 Interrupt::Interrupt() {
-  begin();
+  forget_signals();
   for (const int signal_number : kAsking) take(signal_number, false, 0);
   // what somebody handles or ignores ends nothing
   for (const int signal_number : kEnding) take(signal_number, true, 0);
@@ -41,13 +46,8 @@ Interrupt::Interrupt() {
 }
 
 Interrupt::Interrupt(const std::vector<int>& asking) {
-  begin();
+  forget_signals();
   for (const int signal_number : asking) take(signal_number, false, static_cast<int>(SA_RESETHAND));
-}
-
-void Interrupt::begin() {
-  asked_to_end = false;
-  first_signal = 0;
 }
 
 void Interrupt::take(int signal_number, bool only_default, int flags) {

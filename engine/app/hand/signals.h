@@ -28,7 +28,6 @@ class Interrupt {
   Outcome outcome() const;
 
  private:
-  static void begin();
   void take(int signal_number, bool only_default, int flags);
 
   struct Before {
