@@ -23,7 +23,7 @@ while (<>) {
     s/\]\((?:[\w.-]+\/)*([\w-]+)\.md#([\w-]+)\)/](#$1-$2)/g;
     s/\]\([\w.\/]*viewer\/README\.md\)/](#page-viewer)/g;
     s/\]\((?:\.\.\/)*README\.md\)/](index.html)/g;
-    s/(!\[[^\]]*\]\()[\w.\/]*\/([\w-]+\.(?:png|gif)\))/$1$2/g;  # Doxygen looks for pictures by their names
+    s/(!\[[^\]]*\]\()[\w.\/-]*\/([\w-]+\.(?:png|gif)\))/$1$2/g;  # Doxygen looks for pictures by their names
   }
   print;
 }

@@ -1,6 +1,7 @@
 #include "engine/app/command.h"
 
 #include <fmt/core.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -12,9 +13,12 @@
 #include "engine/app/options.h"
 #include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
+#include "engine/base/input_files.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
+#include "engine/base/threads.h"
 
 namespace catena::app {
 
@@ -109,7 +113,7 @@ int parse_and_work(int argc, char** argv) {
     return bad_input(unknown.empty() ? usage_message(program, error) : unknown);
   }
   const Outcome done = chosen();
-  if (!done) return done.error().machine ? machine_failed(done.error().message) : bad_input(done.error().message);
+  if (!done) return exit_code_of(done.error()) == 1 ? machine_failed(done.error().message) : bad_input(done.error().message);
   return view_exit_code;
 }
 
@@ -122,11 +126,13 @@ static int guarded(int argc, char** argv) {
   } catch (const MachineFailure& failure) {
     return machine_failed(failure.message);
   } catch (const std::bad_alloc&) {
-    std::fputs("catena: out of memory\n", stderr);
+    std::fprintf(stderr, "catena: %s\n", out_of_memory());  // nothing may be allocated
   } catch (const std::system_error& error) {
     if (std::ferror(stdout) != 0) return 0;  // the output is lost: that is said at the end
+    if (is_thread_refusal(error)) return machine_failed("no other thread can be started: " + cause_of(thread_refusal()));
     return machine_failed(fmt::format("this machine does not give what is needed: {}", error.what()));
   } catch (const std::exception& error) {
+    if (is_thread_refusal(error)) return machine_failed("no other thread can be started: " + cause_of(thread_refusal()));
     return machine_failed(fmt::format("ended by an error that nothing handles: {}", error.what()));
   }
   return 1;
@@ -134,6 +140,9 @@ static int guarded(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   ms_since_process_start();
+  keep_freed_memory();
+  protect_inputs(true);
+  field::set_while_reading(tell_reading);
   keep_standard_descriptors();
   return exit_code_after_output(guarded(argc, argv));
 }

@@ -3,12 +3,20 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <utility>
 
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
+#include "engine/scene/follow.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -40,17 +48,66 @@ void tell_new_notes(const scene::Scene& scene, std::size_t told) {
 }
 
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors,
-                                const std::string& grid) {
+                                const std::string& grid, int step) {
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, field_overrides(field_options));
   if (is_scene_file(path)) {
     if (!grid.empty()) return Error{path + ": --grid goes with a data file; a scene names its grids"};
-    if (!colors.map.empty() || colors.range) return Error{path + ": --colormap and --range go with a data file; a scene says its colours"};
+    if (!colors.is_default()) return Error{path + ": --colormap, --range and --mapping go with a data file; a scene says its colours"};
     auto scene = scene::read_scene(path, overrides);
     if (scene) tell_new_notes(*scene, 0);
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  return scene::scene_for_file(path, grid, colors);
+  return scene::scene_for_file(path, grid, colors, std::max(0, step));
+}
+
+Result<scene::Scene> open_followed(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,
+                                   double seconds) {
+  const std::int64_t end_ns = seconds > 0 ? now_ns() + static_cast<std::int64_t>(1e9 * seconds) : std::numeric_limits<std::int64_t>::max();
+  if (!is_scene_file(source)) {
+    CATENA_TRY(source, scene::followed_source(source));
+  }
+  bool told = false;
+  for (;;) {
+    auto opened = open_scene(source, field_options, {}, grid);
+    if (opened && !scene::follow_steps(*opened))
+      return Error{source +
+                   ": --follow: nothing in it can get steps in time; a field of a pattern, or of a file that has steps, was expected"};
+    if (opened || opened.error().machine || is_scene_file(source) || !scene::may_be_half_written(source) || now_ns() > end_ns)
+      return opened;
+    if (!std::exchange(told, true)) tell_from_catena("waiting until there is a whole file (" + opened.error().message + ")");
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+}
+
+Outcome check_step(int step, int last, const std::string& option, const std::string& source) {
+  if (step <= last) return Done{};
+  return Error{last == 0 ? fmt::format("{}: no field of {} has steps in time", option, source)
+                         : fmt::format("{}: the last step of {} is {}, counted from 0", option, source, last)};
+}
+
+Outcome go_to_step(scene::Scene& scene, int step, const std::string& option) {
+  if (step < 0) return Done{};
+  std::vector<scene::Entity> fields;
+  scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource&) { fields.push_back(e); });
+  scene::set_step(scene, step);
+  for (const scene::Entity e : fields) {
+    CATENA_TRY(const field::AnyField loaded, scene::use_field(scene, e, scene.world.get<scene::FieldSource>(e).where));
+  }
+  return check_step(step, scene::step_count(scene) - 1, option, scene.path);
+}
+
+Result<std::vector<field::GridInfo>> grids_of(const std::string& path, const std::string& grid, int step) {
+  CATENA_TRY(std::vector<field::GridInfo> grids, field::describe(path, step));
+  if (grid.empty()) return grids;
+  for (const auto& way : {&field::GridInfo::name, &field::GridInfo::number})
+    if (const auto found = std::ranges::find(grids, grid, way); found != grids.end()) return std::vector{*found};
+  std::string known;
+  for (const field::GridInfo& one : grids) known += (known.empty() ? "" : ", ") + one.number + (one.number.empty() ? "" : " ") + one.name;
+  // the volumes of a DICOM series
+  std::erase_if(grids, [&](const field::GridInfo& one) { return !one.number.starts_with(grid + "."); });
+  if (!grids.empty()) return grids;
+  return Error{one_line(path + ": there is no grid " + in_quotes(grid) + ", the file has: " + known)};
 }
 
 std::string human_bytes(double bytes) {
@@ -61,6 +118,27 @@ std::string human_bytes(double bytes) {
 }
 
 constexpr std::int64_t kQuietNs = 1'000'000'000, kQuietElsewhereNs = 10 * kQuietNs;
+
+void tell_reading(const std::string& path, double seconds, bool ended) {
+  static std::mutex mutex;
+  static bool shown = false;
+  static double next_s = 1e-9 * kQuietElsewhereNs;
+  const std::scoped_lock lock(mutex);
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (ended) {
+    if (std::exchange(shown, false) && terminal) print_now(STDERR_FILENO, "\r\033[K");
+    next_s = 1e-9 * kQuietElsewhereNs;
+    return;
+  }
+  if (seconds < 1e-9 * static_cast<double>(terminal ? kQuietNs : kQuietElsewhereNs)) return;
+  if (terminal) {
+    print_now(STDERR_FILENO, fmt::format("\rreading {}: {:.0f} s", printable(path), seconds));
+  } else if (seconds >= next_s) {
+    tell(fmt::format("reading {}: {:.0f} s so far", path, seconds));
+    next_s *= 3;
+  }
+  shown = true;
+}
 
 Progress::Progress(std::string what, double total)
     : what_(std::move(what)), total_(total), start_(now_ns()), terminal_(isatty(STDERR_FILENO) != 0) {}

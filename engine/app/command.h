@@ -6,6 +6,7 @@
 
 #include "engine/base/result.h"
 #include "engine/base/version.h"
+#include "engine/field/load.h"
 #include "engine/scene/scene.h"
 
 namespace CLI {
@@ -40,17 +41,32 @@ struct MachineFailure {
 
 /// A scene file (.json), or a bare data file.
 bool is_scene_file(const std::string& path);
-/// `colors` is for a bare data file.
+/// What a data file says of its grids; of one alone where `grid` names it, or is its number.
+Result<std::vector<field::GridInfo>> grids_of(const std::string& path, const std::string& grid, int step = 0);
+
+/// `colors`, `grid` and `step` are for a bare data file.
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {},
-                                const scene::NamedColors& colors = {}, const std::string& grid = {});
+                                const scene::NamedColors& colors = {}, const std::string& grid = {}, int step = 0);
+/// The same of a scene that is followed (engine/scene/follow.h): a data file that is still being written is waited for. `source` becomes
+/// what is followed. Error: nothing in it can get steps, or none was whole after `seconds` (0: no limit).
+Result<scene::Scene> open_followed(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,
+                                   double seconds);
 /// Says the notes that a scene has got since it had `told` of them: the first, and how many more. (open_scene has told those of the scene
 /// file; those of its data come when they are loaded.)
 void tell_new_notes(const scene::Scene& scene, std::size_t told);
+/// Refuses a step in time beyond the last one of `source`; `option` states it ("--step 3").
+Outcome check_step(int step, int last, const std::string& option, const std::string& source);
+/// Goes to a step in time, which `option` states ("--step 3"); below 0: nothing is stated. Loads the fields, whose files say how many
+/// there are. Error: a step beyond the last one.
+Outcome go_to_step(scene::Scene& scene, int step, const std::string& option);
 /// NAME=FILE[:GRID], as the command line gives them.
 Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options);
 
 /// "1.23 MiB", "512 B".
 std::string human_bytes(double bytes);
+
+/// The same of a file that is read by another program: how long it has taken (field::set_while_reading).
+void tell_reading(const std::string& path, double seconds, bool ended);
 
 /// A line on stderr that says how far long work is: rewritten in place on a terminal, after the first second; elsewhere at most ten lines,
 /// after the first ten seconds.

@@ -90,6 +90,7 @@ Outcome test(const DevicesOptions& options) {
   settings.firmware = options.firmware;
   settings.tell = [](const std::string& news) { tell(news); };
   auto opened = haptics::open_device(options.name, settings);
+  if (!opened && !haptics::table_of_device(options.name).empty()) return opened.error();
   if (!opened) throw MachineFailure{options.name + ": " + opened.error().message};
   haptics::Device& device = **opened;
   const Interrupt interrupt;
@@ -105,6 +106,7 @@ Outcome test(const DevicesOptions& options) {
   const DeviceCheck check = check_device(device, check_options, paced(check_options.rate_hz));
   device.stop();
   CATENA_CHECK(interrupt.outcome());
+  CATENA_CHECK(device.files_written());
   print_check(device, options.name, check);
   if (!check.failure.empty()) throw MachineFailure{options.name + ": " + check.failure};
   fmt::print("pass{}\n", options.forces ? "" : " (no forces: --forces pushes, too)");

@@ -137,7 +137,9 @@ Outcome export_any(const ExportOptions& options) {
   const int parts = int(part.isosurface.has_value()) + int(part.slice.has_value()) + int(part.streamlines.has_value()) +
                     int(!part.mesh.empty()) + int(!part.field.empty()) + int(!part.probe.empty());
   if (is_log_file(options.log)) {
+    if (!part.grid.empty()) return Error{options.log + ": a recording has no grids; --grid goes with a data file"};
     if (parts > 0) return Error{options.log + ": a recording has no parts; " + kParts + " go with a scene"};
+    if (part.step >= 0) return Error{options.log + ": --step goes with a scene or a data file"};
     return export_log(options);
   }
   if (!options.details.empty()) return Error{options.log + ": --details goes with a recording (.catlog)"};
@@ -155,7 +157,7 @@ void add_export(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ExportOptions>();
   SceneExport& part = options->part;
   CLI::App* command = program.add_subcommand("export", "a recording (.catlog) as CSV; a part of a scene for other programs");
-  command->add_option("FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->required();
+  add_source(*command, "FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->required();
   command->add_option("-o,--output", options->output, "of a recording: CSV, the columns of replay; of a scene: by its ending")->required();
   command->add_option("--details", options->details, "of a recording: all else that was recorded, CSV");
   command->add_option("--poses", options->poses, "of a recording with a headset: head, hands and gaze of every picture, CSV");
@@ -164,6 +166,8 @@ void add_export(CLI::App& program, Work& chosen) {
   command->add_option("--slice", part.slice, "number in the scene's list: .csv or .vtp, with the values of all fields")->check(number);
   command->add_option("--streamlines", part.streamlines, "number in the scene's list: .vtp or .csv")->check(number);
   command->add_option("--mesh", part.mesh, "name of a mesh: " + surface_endings());
+  command->add_option("--grid", part.grid, "of a data file that holds several: which field its scene shows");
+  command->add_option("--step", part.step, "which step in time, from 0, of fields that have several (default: the scene's)")->check(number);
   command->add_option("--field", part.field, "name of a field: " + field::written_endings());
   command->add_option("--probe", part.probe, "a path of the hand: .csv, with the values of all fields");
   command->add_option("--spacing", part.spacing, "of a slice's samples, world units (default: the smallest voxel edge)")

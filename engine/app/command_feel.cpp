@@ -164,6 +164,7 @@ Outcome feel(const FeelOptions& options) {
   print_out(observer.sentence(scene, servo.report().compute.p50_us), kPatienceMs);
   print_out(felt.sentences(*program), kPatienceMs);
   print_out(haptics::servo_summary(servo.report(), printable(hand.device->capabilities().name)), kPatienceMs);
+  CATENA_CHECK(hand.device->files_written());
   return interrupt.outcome();
 }
 

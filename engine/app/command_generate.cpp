@@ -75,7 +75,7 @@ Outcome generate(const GenerateOptions& o) {
 void add_generate(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<GenerateOptions>();
   CLI::App* command = program.add_subcommand("generate", "sample an analytic field on a grid");
-  command->add_option("NAME", options->name, "the field: " + joined(field::analytic_names()))->required();
+  command->add_option("NAME", options->name, "the field: " + joined(field::analytic_names(), field::analytic_names().size()))->required();
   command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
   command->add_option("--resolution", options->resolution, "nodes an axis, both ends included")->required();
   command->add_option("--box", options->box, "LO HI: the cube to sample")->capture_default_str();

@@ -2,15 +2,20 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <set>
 
 #include "engine/app/command.h"
+#include "engine/app/options.h"
+#include "engine/app/render/outputs.h"
 #include "engine/app/run_files.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/load.h"
 #include "engine/field/write.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -21,13 +26,44 @@ struct ImportOptions {
   std::vector<int> shape;
   std::vector<double> spacing{1, 1, 1}, origin{0, 0, 0};
   std::string type = "float32";
+  int step = -1;
 };
 
-Outcome import_file(const ImportOptions& o) {
+/// None may be a file that is read: of a series all are, not a step's alone.
+Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& outputs) {
   RunFiles files;
   files.reads(o.input);
-  files.writes("-o", o.output);
-  CATENA_CHECK(files.check());
+  for (const std::string& output : outputs) files.writes("-o", output);
+  return files.check();
+}
+
+/// `told`: notes of steps before, which are not repeated.
+Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, const std::string& output, std::set<std::string>& told) {
+  std::vector<std::string> notes;
+  CATENA_TRY(const std::string name, field::convert(request, output, o.name, &notes));
+  for (const std::string& note : notes)
+    if (told.insert(note).second) tell_from_catena("note: " + request.path + ": " + note);
+  fmt::print("{}: {}\n", printable(output), printable(name));
+  return Done{};
+}
+
+Result<int> count_steps(const field::LoadRequest& request) {
+  if (scene::is_pattern(request.path)) return static_cast<int>(scene::files_of_pattern(request.path).size());
+  CATENA_TRY(const field::AnyField first, field::load(request));
+  return scene::steps_of_file(request.path, first).count;
+}
+
+/// One output holds one step.
+Outcome check_one_step(const ImportOptions& o, const field::LoadRequest& request) {
+  const bool pattern = scene::is_pattern(request.path);
+  if (o.step < 0 && !pattern) return Done{};
+  CATENA_TRY(const int steps, count_steps(request));
+  if (o.step < 0)
+    return Error{fmt::format("{}: {} files for one output: --step N was expected, or %03d in the output's name for all", o.input, steps)};
+  return check_step(o.step, steps - 1, fmt::format("--step {}", o.step), o.input);
+}
+
+Outcome import_file(const ImportOptions& o) {
   if (!field::is_written(o.output) && !o.output.starts_with("/dev/"))
     return Error{o.output + ": expected an output that ends in " + field::written_endings()};
   const bool raw_file = field::needs_layout(o.input);
@@ -44,10 +80,21 @@ Outcome import_file(const ImportOptions& o) {
     raw.type = o.type;
     request.raw = raw;
   }
-  std::vector<std::string> notes;
-  CATENA_TRY(const std::string name, field::convert(request, o.output, o.name, &notes));
-  for (const std::string& note : notes) tell_from_catena("note: " + o.input + ": " + note);
-  fmt::print("{}: {}\n", printable(o.output), printable(name));
+  std::set<std::string> told;
+  if (!is_numbered(o.output)) {
+    CATENA_CHECK(check_one_step(o, request));
+    CATENA_CHECK(check_outputs(o, {o.output}));
+    CATENA_CHECK(import_step(o, scene::request_at(request, std::max(o.step, 0)), o.output, told));
+    if (const std::size_t steps = field::times_in(o.input).size(); o.step < 0 && steps > 1)
+      tell_from_catena(fmt::format("note: {}: step 0 of {} is written; --step N, or %03d in the output's name for all", o.input, steps));
+    return Done{};
+  }
+  if (o.step >= 0) return Error{fmt::format("--step {}: goes with one output, and {} is one for each step", o.step, o.output)};
+  CATENA_TRY(const int steps, count_steps(request));
+  std::vector<std::string> outputs;
+  for (int step = 0; step < steps; ++step) outputs.push_back(numbered(o.output, step));
+  CATENA_CHECK(check_outputs(o, outputs));
+  for (int step = 0; step < steps; ++step) CATENA_CHECK(import_step(o, scene::request_at(request, step), outputs[step], told));
   return Done{};
 }
 
@@ -56,9 +103,14 @@ Outcome import_file(const ImportOptions& o) {
 void add_import(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* command = program.add_subcommand("import", "convert a data file");
-  command->add_option("IN", options->input, field::field_file_words())->required();
-  command->add_option("-o,--output", options->output, "the grid: " + field::written_endings())->required();
-  command->add_option("--grid", options->grid, "which grid of a .vdb");
+  add_source(*command, "IN", options->input, field::field_file_words())->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "the grid: " + field::written_endings() + "; %03d in a name numbers the steps in time, which are then all written")
+      ->required();
+  command->add_option("--step", options->step, "which step in time, from 0 (default: the first of one file)")
+      ->check(CLI::Range(0, 1'000'000));
+  command->add_option("--grid", options->grid, "which grid of a file that holds several");
   command->add_option("--name", options->name, "the grid's name in the output");
   command->add_option("--shape", options->shape, ".raw: voxels along x y z")->expected(3);
   command->add_option("--spacing", options->spacing, ".raw: voxel edges")->expected(3)->capture_default_str();

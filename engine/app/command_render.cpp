@@ -12,7 +12,7 @@ namespace catena::app {
 void add_render(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = program.add_subcommand("render", "a picture, offscreen");
-  command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->required();
   command
       ->add_option("-o,--output", options->output,
                    ".png, .exr (linear, premultiplied), or .mp4, .webm, .gif (needs ffmpeg); %03d in a name numbers the frames")

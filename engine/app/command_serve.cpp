@@ -7,6 +7,7 @@
 #include "engine/app/options.h"
 #include "engine/app/run_files.h"
 #include "engine/app/serve/serve.h"
+#include "engine/scene/follow.h"
 
 namespace catena::app {
 
@@ -15,22 +16,29 @@ namespace {
 const std::string kServedQuality = "time=50";
 
 struct ServeArguments {
-  std::string source, address = "127.0.0.1", size = "1024x768", quality, framed_by;
+  std::string source, grid, address = "127.0.0.1", size = "1024x768", quality, framed_by;
   std::vector<std::string> fields, names;
   int port = 8642;
   double seconds = 0, gpu_memory_mb = 0;
-  bool until_stdin_ends = false;
+  bool until_stdin_ends = false, follow = false;
   RealtimeChoice realtime;
   AnnotateOptions annotate;
 };
 
-Outcome start_serving(const ServeArguments& o) {
+Outcome start_serving(const ServeArguments& given) {
+  ServeArguments o = given;
   CATENA_TRY(const Size size, parse_size(o.size, 4096));
   ServeOptions options;
-  options.source = o.source;
+  options.grid = o.grid;
   CATENA_TRY(options.overrides, field_overrides(o.fields));
-  options.adjust = [annotations = o.annotate](scene::Scene& scene) { return annotate(scene, annotations); };
-  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+  options.adjust = [annotations = o.annotate, follow = o.follow](scene::Scene& scene) {
+    if (follow) scene::follow_steps(scene);
+    return annotate(scene, annotations);
+  };
+  CATENA_TRY(scene::Scene scene,
+             o.follow ? open_followed(o.source, o.fields, o.grid, o.seconds) : open_scene(o.source, o.fields, {}, o.grid));
+  options.source = o.source;
+  options.follow = o.follow;
   CATENA_CHECK(options.adjust(scene));
   const std::string& own = scene.quality.empty() ? kServedQuality : scene.quality;
   CATENA_TRY(options.quality, parse_quality(o.quality.empty() ? own : o.quality));
@@ -55,7 +63,8 @@ Outcome start_serving(const ServeArguments& o) {
 void add_serve(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ServeArguments>();
   CLI::App* command = program.add_subcommand("serve", "the scene in a browser, here or through `ssh -L`: orbit, and the mouse as the hand");
-  command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file")->required();
+  command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
   command->add_option("--port", options->port, "to listen at; 0: any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
   command->add_option("--address", options->address, "to listen at, in numbers; 0.0.0.0 lets other machines in, without encryption")
       ->capture_default_str();
@@ -71,6 +80,7 @@ void add_serve(CLI::App& program, Work& chosen) {
       ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
       ->check(number_between(1, 1e9));
   command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
+  command->add_flag("--follow", options->follow, "steps in time that a running program adds are shown as they come, once they are whole");
   command->add_flag("--until-stdin-ends", options->until_stdin_ends, "end when the standard input does: with the program at its other end");
   add_annotate_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <map>
@@ -16,9 +17,11 @@
 #include "engine/base/clock.h"
 #include "engine/base/csv.h"
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 #include "engine/field/load.h"
 #include "engine/flow/batch.h"
 #include "engine/scene/lines.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -26,7 +29,7 @@ namespace {
 
 struct TraceOptions {
   std::string source, field, seeds, output, kind = "vector", stats;
-  int repeat = 1;
+  int repeat = 1, time_step = -1;
   double length = 0, min_speed = 0, tolerance = 0, step = 0;
 };
 
@@ -38,18 +41,24 @@ std::int64_t process_cpu_ns() {
 
 /// The scene, or one made of the grids of a data file that the options name.
 Result<scene::Scene> scene_of(const TraceOptions& options) {
-  if (is_scene_file(options.source)) return open_scene(options.source);
   scene::Scene scene;
   scene.path = options.source;
+  if (is_scene_file(options.source)) {
+    CATENA_TRY(scene, open_scene(options.source));
+    CATENA_CHECK(go_to_step(scene, options.time_step, fmt::format("--time-step {}", options.time_step)));
+  } else {
+    scene.time.step = std::max(options.time_step, 0);
+  }
   return scene;
 }
 
 scene::Entity add_grid(scene::Scene& scene, const std::string& grid) {
   const scene::Entity entity = scene.world.create();
   scene::FieldSource source;
-  source.file.emplace();
-  source.file->path = scene.path;
-  source.file->grid = grid;
+  field::LoadRequest request;
+  request.path = scene.path;
+  request.grid = grid;
+  source.file = scene::request_at(request, scene.time.step);
   source.where.file = std::make_shared<const std::string>(scene.path);
   scene.world.emplace<scene::Name>(entity, {grid});
   scene.world.emplace<scene::FieldSource>(entity, std::move(source));
@@ -61,18 +70,19 @@ Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptio
   if (is_scene_file(options.source)) {
     const scene::Entity entity = scene::find_field(scene, options.field);
     if (!entity) {
-      std::string known;
-      scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource&) {
-        known += (known.empty() ? "" : ", ") + scene.world.get<scene::Name>(e).value;
-      });
-      return Error{options.source + ": no field \"" + options.field + "\"; known: " + (known.empty() ? "none" : known)};
+      std::vector<std::string_view> known;
+      scene.world.each<scene::FieldSource>(
+          [&](scene::Entity e, const scene::FieldSource&) { known.push_back(scene.world.get<scene::Name>(e).value); });
+      return Error{options.source + ": no field \"" + options.field + "\"; known: " + (known.empty() ? "none" : joined(known))};
     }
     CATENA_TRY(any, scene::use_field(scene, entity, scene.world.get<scene::FieldSource>(entity).where));
   } else {
     field::LoadRequest request;
     request.path = options.source;
     request.grid = options.field;
-    CATENA_TRY(any, field::load(request));
+    CATENA_TRY(any, field::load(scene::request_at(request, scene.time.step)));
+    CATENA_CHECK(check_step(options.time_step, scene::steps_of_file(options.source, any).count - 1,
+                            fmt::format("--time-step {}", options.time_step), options.source));
   }
   if (!any.vector) return Error{options.source + ": field \"" + options.field + "\" is a scalar field: expected a vector field to trace"};
   return any.vector;
@@ -213,7 +223,7 @@ Outcome trace_lines(const TraceOptions& options) {
 void add_trace(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<TraceOptions>();
   CLI::App* command = program.add_subcommand("trace", "streamlines through seeds, as arc-length curves");
-  command->add_option("SOURCE", options->source, "a scene file (.json) or a data file")->required();
+  add_source(*command, "SOURCE", options->source, "a scene file (.json) or a data file")->required();
   command->add_option("--field", options->field, "a field of the scene, or a grid of the file")->required();
   command
       ->add_option("--seeds", options->seeds,
@@ -227,6 +237,8 @@ void add_trace(CLI::App& program, Work& chosen) {
                    "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
       ->check(CLI::Range(0.0, 0.01));
   command->add_option("--step", options->step, "with a tolerance: the longest step, voxels (default: 0.5)")->check(CLI::Range(0.01, 4.0));
+  command->add_option("--time-step", options->time_step, "which step in time, from 0, of a field that has several (default: the scene's)")
+      ->check(CLI::Range(0, 1'000'000));
   command->add_option("--repeat", options->repeat, "trace a table so many times, for --stats: medians, and the first")
       ->check(CLI::Range(1, 1000));
   command->add_option("--stats", options->stats, "figures, JSON");

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/options.h"
 #include "engine/app/tradeoff/measure_scene.h"
 #include "engine/app/tradeoff/results.h"
 #include "engine/base/text.h"
@@ -41,8 +42,8 @@ void add_tradeoff(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command =
       program.add_subcommand("tradeoff", "what the settings of a scene cost and what they buy, measured; or figures of the paper");
-  command->add_option("SOURCE", options->source,
-                      "a scene (.json) or a data file to measure; or the tradeoff.json of a run, for its page again");
+  add_source(*command, "SOURCE", options->source,
+             "a scene (.json) or a data file to measure; or the tradeoff.json of a run, for its page again");
   command
       ->add_option("--figure", options->figure,
                    "2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest spring")

@@ -8,6 +8,7 @@
 #include "engine/app/plan/make_plan.h"
 #include "engine/app/run_files.h"
 #include "engine/app/viewer/viewer.h"
+#include "engine/scene/follow.h"
 #include "haptics/device/registry.h"
 
 namespace catena::app {
@@ -17,12 +18,12 @@ namespace {
 const std::string kQuality = "time=50";
 
 struct ViewArguments {
-  std::string source, device, device_file, head, size = "1024x768", quality, plan, shaders, screenshot, window_screenshot, servo_stats,
-                                                 frame_stats, record, firmware;
+  std::string source, grid, device, device_file, head, size = "1024x768", quality, plan, shaders, screenshot, window_screenshot,
+                                                       servo_stats, frame_stats, record, firmware;
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0, gpu_memory_mb = 0;
-  bool no_panels = false, headset = false;
+  bool no_panels = false, headset = false, follow = false;
   RealtimeChoice realtime;
   AnnotateOptions annotate;
   StereoChoice stereo;
@@ -45,21 +46,30 @@ RunFiles files_of(const ViewArguments& o, const scene::Scene& scene) {
   return files;
 }
 
-Outcome open_window(const ViewArguments& o, int& exit_code) {
+Outcome open_window(const ViewArguments& given, int& exit_code) {
+  ViewArguments o = given;
   CATENA_TRY(const Size size, parse_size(o.size));
   ViewOptions options;
-  options.source = o.source;
+  options.grid = o.grid;
   CATENA_TRY(options.overrides, field_overrides(o.fields));
-  options.adjust = [annotations = o.annotate, stereo = o.stereo, device = o.device_file](scene::Scene& scene) -> Outcome {
+  options.adjust = [annotations = o.annotate, stereo = o.stereo, device = o.device_file,
+                    follow = o.follow](scene::Scene& scene) -> Outcome {
+    if (follow) scene::follow_steps(scene);
     CATENA_CHECK(annotate(scene, annotations));
     CATENA_CHECK(use_device_file(device, scene));
     return stereo.apply(scene.stereo);
   };
   {
+    if (o.source.empty() && !o.grid.empty()) return Error{"--grid: there is no data file that holds it, expected a SOURCE"};
     if (o.source.empty() && !o.fields.empty()) return Error{"--field: there is no scene whose field it could replace, expected a SOURCE"};
-    CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene()) : open_scene(o.source, o.fields));
+    if (o.source.empty() && o.follow) return Error{"--follow: there is nothing to follow, expected a SOURCE"};
+    CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene())
+                                   : o.follow       ? open_followed(o.source, o.fields, o.grid, o.seconds)
+                                                    : open_scene(o.source, o.fields, {}, o.grid));
+    options.source = o.source;
+    options.follow = o.follow;
     if (!o.source.empty()) CATENA_CHECK(options.adjust(scene));
-    CATENA_CHECK(files_of(o, scene).check());
+    CATENA_CHECK(files_of(o, scene).check(/*keeps_scene=*/true));
     options.quality_stated = !o.quality.empty();
     const std::string& own = scene.quality.empty() ? kQuality : scene.quality;
     CATENA_TRY(options.quality, parse_quality(options.quality_stated ? o.quality : own));
@@ -94,7 +104,7 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
 void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   auto options = std::make_shared<ViewArguments>();
   CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
-  command->add_option("SOURCE", options->source, "a scene (.json) or a data file; without it the window says how to begin");
+  add_source(*command, "SOURCE", options->source, "a scene (.json) or a data file (without it the window says how to begin)");
   command->add_option(
       "--device", options->device,
       "what holds the probe: mouse, or a haptic device (its forces are off until F). Default: the scene's, or else the mouse, "
@@ -105,6 +115,7 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   command->add_option(
       "--head", options->head,
       "a tracked head before --screen: CSV, t,x,y,z, world units, played by time; or a device (default: the mouse moves it)");
+  command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
   command->add_option(
@@ -123,6 +134,7 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
   command->add_option("--window-screenshot", options->window_screenshot, "the same with the panels over it, .png");
+  command->add_flag("--follow", options->follow, "steps in time that a running program adds are shown as they come, once they are whole");
   command->add_flag("--xr", options->headset, "show it in a headset (OpenXR), too: the window mirrors one eye");
   command->add_flag("--no-panels", options->no_panels, "begin without the panels (Tab shows them)");
   command->add_option("--frame-stats", options->frame_stats, "how long the pictures took, histograms, JSON");

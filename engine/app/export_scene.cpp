@@ -12,6 +12,7 @@
 #include "engine/base/csv.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/field/units.h"
 #include "engine/field/write.h"
@@ -211,6 +212,8 @@ Outcome export_field(const SceneExport& options, scene::Scene& scene) {
   CATENA_TRY(const field::AnyField drawn, scene::use_drawn_field(scene, entity, where));
   const auto& file = scene.world.get<scene::FieldSource>(entity).file;
   CATENA_CHECK(field::write_field(options.output, drawn, options.field, file ? field::units_of(file->path, file->grid) : field::Units{}));
+  if (const std::string lost = field::lost_in(options.output, drawn); !lost.empty())
+    tell_from_catena("note: " + options.output + ": " + lost);
   say(options.output, options.field);
   return Done{};
 }
@@ -218,7 +221,8 @@ Outcome export_field(const SceneExport& options, scene::Scene& scene) {
 }  // namespace
 
 Outcome export_scene(const SceneExport& options) {
-  CATENA_TRY(scene::Scene scene, open_scene(options.source));
+  CATENA_TRY(scene::Scene scene, open_scene(options.source, {}, {}, options.grid, options.step));
+  CATENA_CHECK(go_to_step(scene, options.step, fmt::format("--step {}", options.step)));
   RunFiles files(scene);
   files.reads(options.source);
   files.reads(options.probe);

@@ -31,13 +31,14 @@ std::string FrameStats::json() const {
   return fmt::format(
       "{{\n  \"device\": {},\n  \"driver\": {},\n  \"frames\": {},\n"
       "  \"frame_ms\": {{\"median\": {:.3f}, \"p99\": {:.3f}, \"max\": {:.3f}}},\n"
-      "  \"first_frame_ms\": {:.3f},\n  \"load_ms\": {:.3f},\n  \"mirror_ms\": {:.3f},\n  \"encode_ms\": {:.3f},\n"
+      "  \"first_frame_ms\": {:.3f},\n  \"load_ms\": {:.3f},\n  \"mirror_ms\": {:.3f},\n  \"choose_ms\": {:.3f},\n  "
+      "\"encode_ms\": {:.3f},\n"
       "  \"quality\": {{\"mode\": {}, \"estimated_rmse\": {}}},\n"
       "  \"tiles\": {},\n  \"objects\": {},\n"
       "  \"mirror_coarsening\": {},\n"
       "  \"cpu_bytes\": {},\n  \"gpu_bytes\": {},\n  \"gpu_budget_bytes\": {},\n  \"validation_messages\": {}\n}}\n",
       json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(times, 0.99), quantile(times, 1), first_frame_ms,
-      load_ms, mirror_ms, encode_ms, json_string(quality_mode),
+      load_ms, mirror_ms, choose_ms, encode_ms, json_string(quality_mode),
       estimated_rmse ? fmt::format("{:.4f}", *estimated_rmse) : std::string("null"), tiles, objects_json(objects),
       coarsening_json(mirror_coarsening), cpu_bytes, gpu_bytes, gpu_budget_bytes, validation_messages);
 }

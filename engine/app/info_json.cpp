@@ -11,6 +11,7 @@
 #include "engine/curves/points.h"
 #include "engine/field/formats.h"
 #include "engine/field/units.h"
+#include "engine/scene/steps.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
 #include "haptics/device/settings.h"
@@ -30,25 +31,44 @@ std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
   const field::Units units = field::units_of(path, g.name);
   JsonObject out;
   out.add("name", g.name).add("type", g.type).add("usable", g.usable).add("vector", g.is_vector);
+  if (!g.number.empty()) out.add("number", g.number);
+  if (g.images > 0) out.add("images", std::uint64_t{static_cast<std::uint32_t>(g.images)});
   out.add("size", size).add("lowest", lowest).raw("axes", json_array({json_of(j[0]), json_of(j[1]), json_of(j[2])}));
   out.add("origin", g.mapping.origin).add_word("unit", units.value).add_word("length_unit", units.length).add("patient", units.patient);
   out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)}))
       .add("active_" + std::string(field::counted_word(g.counted)), g.stats.active_voxels);
   if (g.usable) {
     out.raw("range", json_array({json_of(g.stats.min), json_of(g.stats.max)}));
+    out.raw("display_range", json_array({json_of(g.shown.lo), json_of(g.shown.hi)}));
     if (g.is_vector) out.raw("component_range", json_array({json_of(g.stats.component_min), json_of(g.stats.component_max)}));
     out.add("not_finite", g.stats.nan_count);
   }
   return out.add("bytes", std::uint64_t{g.bytes}).text();
 }
 
-Result<std::string> json_of_file(const std::string& path) {
-  CATENA_TRY(const std::vector<field::GridInfo> grids, field::describe(path));
+/// "steps", and "times" where all are stated, with "time_unit"; of a pattern "files".
+void add_steps(JsonObject& out, const std::string& path, const scene::StepList& steps) {
+  std::vector<std::string> times, files;
+  if (scene::is_pattern(path))
+    for (const std::string& one : scene::files_of_pattern(path)) files.push_back(json_of(one));
+  for (const double time : steps.times) times.push_back(json_of(time));
+  out.add("steps", std::uint64_t{static_cast<std::uint32_t>(steps.count)});
+  if (static_cast<int>(times.size()) == steps.count) out.raw("times", json_array(times)).add_word("time_unit", steps.time_unit);
+  if (!files.empty()) out.raw("files", json_array(files));
+}
+
+Result<std::string> json_of_file(const std::string& path, const std::string& grid, int step) {
+  const field::LoadRequest at = scene::request_at(path, step);
+  CATENA_TRY(const std::vector<field::GridInfo> grids, grids_of(at.path, grid, at.step));
   std::vector<std::string> described, notes;
-  for (const field::GridInfo& g : grids) described.push_back(json_of_grid(path, g));
-  if (!field::needs_layout(path))
-    for (const std::string& line : scene::look_of_file(path)) notes.push_back(json_of(line));
-  return JsonObject().add("kind", "data").add("file", path).raw("grids", json_array(described)).raw("notes", json_array(notes)).text();
+  for (const field::GridInfo& g : grids) described.push_back(json_of_grid(at.path, g));
+  const scene::FileLook look = field::needs_layout(path) ? scene::FileLook{} : scene::look_of_file(path, grid, step);
+  if (look.steps.count > 0) CATENA_CHECK(check_step(step, look.steps.count - 1, fmt::format("--step {}", step), path));
+  for (const std::string& line : look.lines) notes.push_back(json_of(line));
+  JsonObject out;
+  out.add("kind", "data").add("file", path).raw("grids", json_array(described)).raw("notes", json_array(notes));
+  add_steps(out, path, look.steps);
+  return out.text();
 }
 
 void add_mesh(JsonObject& out, const mesh::TriangleMesh& mesh) {
@@ -63,11 +83,13 @@ void add_mesh(JsonObject& out, const mesh::TriangleMesh& mesh) {
   count("bytes", mesh.bytes());
 }
 
-Result<std::string> json_of_mesh(const std::string& path) {
-  CATENA_TRY(const mesh::MeshPtr mesh, mesh::load_mesh(path));
+Result<std::string> json_of_mesh(const std::string& path, int step) {
+  const field::LoadRequest at = scene::request_at(path, step);
+  CATENA_TRY(const mesh::MeshPtr mesh, mesh::load_mesh(at.path, {}, at.step));
   JsonObject out;
   out.add("kind", "mesh").add("file", path);
   add_mesh(out, *mesh);
+  add_steps(out, path, scene::steps_of_file(path, {}));
   return out.text();
 }
 
@@ -157,33 +179,35 @@ JsonObject json_of_set(const std::string& kind, const std::string& path, const S
   for (const curves::PointValues& one : set.values) values.push_back(json_of(one.name));
   JsonObject out;
   out.add("kind", kind).add("file", path).add("points", std::uint64_t{set.points.size()});
+  add_steps(out, path, scene::steps_of_file(path, {}));
   return out.raw("world_box", json_array({json_of(set.lowest), json_of(set.highest)})).raw("values", json_array(values));
 }
 
-Result<std::string> json_of_data(const std::string& path) {
+Result<std::string> json_of_data(const std::string& path, const std::string& grid, int step) {
+  const field::LoadRequest at = scene::request_at(path, step);
   switch (scene::kind_of_file(path)) {
     case scene::FileKind::mesh:
-      return json_of_mesh(path);
+      return json_of_mesh(path, step);
     case scene::FileKind::curves: {
-      CATENA_TRY(const curves::CurveSetPtr set, curves::load_curves(path));
+      CATENA_TRY(const curves::CurveSetPtr set, curves::load_curves(at.path, at.step));
       return json_of_set("curves", path, *set).add("lines", std::uint64_t{set->lines()}).text();
     }
     case scene::FileKind::points: {
-      CATENA_TRY(const curves::PointSetPtr set, curves::load_points(path));
+      CATENA_TRY(const curves::PointSetPtr set, curves::load_points(at.path, at.step));
       return json_of_set("points", path, *set).add("spacing", set->spacing).text();
     }
     case scene::FileKind::field:
       break;
   }
-  return json_of_file(path);
+  return json_of_file(path, grid, step);
 }
 
 }  // namespace
 
-Outcome print_json_info(const std::string& path) {
+Outcome print_json_info(const std::string& path, const std::string& grid, int step) {
   CATENA_TRY(const std::string text, is_log_file(path)     ? json_of_log(path)
                                      : is_scene_file(path) ? json_of_scene(path)
-                                                           : json_of_data(path));
+                                                           : json_of_data(path, grid, step));
   fmt::print("{}\n", text);
   return Done{};
 }

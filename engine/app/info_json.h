@@ -6,6 +6,6 @@
 
 namespace catena::app {
 
-Outcome print_json_info(const std::string& path);
+Outcome print_json_info(const std::string& path, const std::string& grid, int step);
 
 }  // namespace catena::app

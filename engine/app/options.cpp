@@ -1,13 +1,32 @@
 #include "engine/app/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
+
+CLI::Option* add_source(CLI::App& command, const std::string& name, std::string& source, const std::string& help) {
+  return command.add_option_function<std::vector<std::string>>(
+      name,
+      [&source](const std::vector<std::string>& files) {
+        if (files.size() > 1)
+          for (const char* single : {".json", ".catlog"})
+            for (const std::string& file : files)
+              if (has_ending(file, single))
+                throw CLI::ValidationError(
+                    file + ": several files were expected to be one series of data files; a scene or a recording goes alone");
+        const auto one = scene::pattern_of(files);
+        if (!one) throw CLI::ValidationError(one_line(one.error().message));
+        source = *one;
+      },
+      help + "; several files of one series are its steps in time");
+}
 
 void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
   command.add_option("--title", options.title, "text at the top of the picture");
@@ -32,17 +51,34 @@ Outcome annotate(scene::Scene& scene, const AnnotateOptions& options) {
 void ColorOption::add_to(CLI::App& command) {
   command.add_option("--colormap", map, "colour map of a data file (catena info --colormaps lists them); lines show their speed by it");
   command.add_option("--range", range, "the values between which a data file's colours, and a volume's opacity, lie: LO HI")->expected(2);
+  command.add_option("--mapping", mapping, "linear, log or symlog: the scale of a data file's colours, and of a volume's opacity");
+  command.add_option("--linear-below", linear_below,
+                     "of --mapping symlog: up to this size values are linear (default: a thousandth of the greatest)");
 }
 
 Result<scene::NamedColors> ColorOption::named() const {
   scene::NamedColors colors;
   if (!map.empty() && !scene::is_color_map(map)) return Error{one_line("--colormap: " + scene::not_a_color_map(map))};
   colors.map = map;
+  if (!mapping.empty()) {
+    const auto word = std::ranges::find(scene::kMappingWords, mapping);
+    if (word == std::end(scene::kMappingWords))
+      return Error{one_line("--mapping " + in_quotes(mapping) + ": linear, log or symlog was expected")};
+    colors.mapping.kind = static_cast<scene::ValueMapping::Kind>(word - std::begin(scene::kMappingWords));
+  }
+  if (!linear_below.empty()) {
+    const auto size = parse_double(linear_below);
+    if (!size || !(*size > 0) || colors.mapping.kind != scene::ValueMapping::Kind::symlog)
+      return Error{one_line("--linear-below " + linear_below + ": a size above 0 beside --mapping symlog was expected")};
+    colors.mapping.linear_below = *size;
+  }
   if (range.empty()) return colors;
   const auto lo = parse_double(range[0]), hi = parse_double(range[1]);
   if (!lo || !hi || !scene::is_color_range(*lo, *hi))
     return Error{one_line("--range " + range[0] + " " + range[1] + ": two rising numbers LO HI were expected")};
   colors.range = {*lo, *hi};
+  if (const std::string problem = scene::mapping_problem(colors.mapping, *lo, "--range"); !problem.empty())
+    return Error{one_line("--range " + range[0] + " " + range[1] + ": " + problem)};
   return colors;
 }
 

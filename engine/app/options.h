@@ -22,6 +22,10 @@
 
 namespace catena::app {
 
+/// A positional option that takes a file, or several files of one series in any order, which become the pattern that stands for them
+/// (engine/scene/steps.h).
+CLI::Option* add_source(CLI::App& command, const std::string& name, std::string& source, const std::string& help);
+
 inline CLI::Validator number_between(double least, double most) {
   return CLI::Validator(
       [least, most](const std::string& text) -> std::string {
@@ -150,7 +154,7 @@ Outcome annotate(scene::Scene& scene, const AnnotateOptions& options);
 
 }  // namespace catena::app
 
-/// --colormap NAME and --range LO HI: how a bare data file is coloured.
+/// --colormap NAME, --range LO HI, --mapping WORD and --linear-below SIZE: how a bare data file is coloured.
 namespace CLI {
 class App;
 }
@@ -160,6 +164,7 @@ namespace catena::app {
 struct ColorOption {
   std::string map;
   std::vector<std::string> range;
+  std::string mapping, linear_below;
 
   void add_to(CLI::App& command);
   Result<scene::NamedColors> named() const;

@@ -16,7 +16,9 @@
 #include <string>
 
 #include "engine/app/hand/signals.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/tell.h"
+#include "engine/base/threads.h"
 
 namespace catena::app {
 
@@ -25,15 +27,24 @@ namespace {
 constexpr std::size_t kThreadStack = 2u << 20;
 constexpr rlim_t kWantedStack = 8u << 20, kLeastStack = 1u << 20;
 
+void say_no_thread(char* line, std::size_t size) noexcept {
+  try {
+    std::snprintf(line, size, "catena: no other thread can be started: %s\n", cause_of(thread_refusal()).c_str());
+  } catch (const std::bad_alloc&) {
+    std::snprintf(line, size, "catena: %s\n", out_of_memory());
+  }
+}
+
 // No allocation: there may be no memory.
 [[noreturn]] void on_terminate() {
   char line[256] = "catena: ended by an error that nothing handles\n";
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
   } catch (const std::bad_alloc&) {
-    std::snprintf(line, sizeof line, "catena: out of memory\n");
+    std::snprintf(line, sizeof line, "catena: %s\n", out_of_memory());
   } catch (const std::exception& error) {
     std::snprintf(line, sizeof line, "catena: ended by an error that nothing handles: %.180s\n", error.what());
+    if (is_thread_refusal(error)) say_no_thread(line, sizeof line);
   } catch (...) {
   }
   let_go();
@@ -67,6 +78,7 @@ Outcome enlarge_first_stack() {
 
 Outcome prepare_process() {
   std::set_terminate(on_terminate);
+  tell_of_crashes();
   std::signal(SIGXFSZ, SIG_IGN);
   enlarge_stacks_of_threads();
   return enlarge_first_stack();
@@ -90,11 +102,12 @@ void keep_standard_descriptors() {
 int exit_code_after_output(int code) {
   const bool lost_before = std::ferror(stdout) != 0;
   errno = 0;
-  if (std::fflush(stdout) == 0 && !lost_before) return code;
-  const int why = errno;
+  const bool flushed = std::fflush(stdout) == 0 && !lost_before;
+  if (flushed && lost_output() == 0) return code;
+  const int why = flushed ? lost_output() : errno;
   if (code != 0 || ended_by_broken_pipe()) return code;
   if (why == EPIPE || reader_has_gone()) return 1;
-  const std::string reason = why != 0 ? " (" + std::string(std::strerror(why)) + ")" : "";
+  const std::string reason = why != 0 ? " (" + cause_of(why) + ")" : "";
   tell_from_catena("standard output cannot be written" + reason + ": what was printed is lost, a place that takes it was expected");
   return 1;
 }

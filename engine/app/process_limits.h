@@ -2,6 +2,7 @@
 ///   stack      of new threads: at least 2 MiB, whatever the limit says, for a thread's stack is taken from it. Of the first thread: raised
 ///              to 8 MiB as far as the hard limit allows; below 1 MiB the program refuses to start
 ///   file size  SIGXFSZ is ignored: a write beyond it fails, and is told as a full disk is
+///   crash      is said in one line, and ends with the signal
 ///   any        an exception that nobody handles (no memory, no thread) lets the device go and ends with one line and exit code 1
 #pragma once
 #include "engine/base/result.h"

@@ -113,7 +113,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
     details->write(line + "\n");
   };
   const Result<log::LogReplay> replayed = log::replay_log(reader, hooks);
-  if (!replayed) return Error{options.log + ": " + replayed.error().message};
+  if (!replayed) return Error{options.log + ": " + replayed.error().message, replayed.error().machine};
   const log::LogReplay& result = *replayed;
 
   CATENA_CHECK(open(json, options.stats, replay_stats_json(result.stats, running ? use.json(*running) : std::string())));

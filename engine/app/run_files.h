@@ -24,15 +24,17 @@ class RunFiles {
   void reads(const std::string& path);
   void reads(const std::vector<std::string>& paths);
   void reads(const scene::Scene& scene);
-  /// What a device reads: "recorded:PATH.csv".
+  /// What a device reads, "recorded:PATH.csv", or writes, "emulated-falcon:process:PATH.csv".
   void reads_device(const std::string& name);
   /// All that lies in a folder.
   void reads_folder(const std::string& folder);
   void writes(const std::string& option, const std::string& path);
 
   const std::vector<std::string>& inputs() const { return inputs_; }
-  /// Before anything is opened for writing (engine/base/output_file.h).
-  Outcome check() const { return check_outputs(outputs_, inputs_); }
+  /// Before anything is opened for writing: no output is an input, or a part of one that its reader opens, and no two are one file
+  /// (engine/base/output_file.h). From then on all of the inputs are protected for as long as the program runs; `keeps_scene`: but for
+  /// scene files, which a window saves.
+  Outcome check(bool keeps_scene = false) const;
 
  private:
   std::vector<std::string> inputs_;

@@ -6,11 +6,15 @@
 #include <cerrno>
 #include <cstring>
 
+#include "engine/base/input_files.h"
+#include "engine/base/machine_failure.h"
+
 namespace catena {
 
 Outcome append_whole(const std::string& path, std::string_view header, std::string_view text) {
-  const auto cannot = [&] { return Error{path + ": cannot write: " + std::strerror(errno)}; };
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  CATENA_CHECK(check_no_input(path));
+  const auto cannot = [&] { return system_error(path + ": cannot write", errno); };
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
   if (file < 0) return cannot();
   const off_t size = ::lseek(file, 0, SEEK_END);
   const std::string all = std::string(size == 0 ? header : "") + std::string(text);

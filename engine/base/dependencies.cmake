@@ -61,13 +61,15 @@ target_link_libraries(catena_spnav INTERFACE ${SPNAV_LIBRARY})
 # What catena-read-vtk reads with: optional. Libraries by name: the packages' own configuration wants all that they could be used for.
 find_path(VTK_INCLUDE_DIR vtkVersion.h PATH_SUFFIXES vtk-9.1)
 find_path(ITK_INCLUDE_DIR itkImageIOBase.h PATH_SUFFIXES ITK-5.2)
+find_path(GDCM_INCLUDE_DIR gdcmReader.h PATH_SUFFIXES gdcm-3.0)
+find_path(NETCDF_INCLUDE_DIR netcdf.h)
 find_path(GIFTI_INCLUDE_DIR gifti_io.h PATH_SUFFIXES gifti)
 pkg_check_modules(LIBZIP IMPORTED_TARGET libzip)
 set(CATENA_VTK ON)
 set(catena_vtk_libraries "")
-foreach(name vtkCommonCore-9.1 vtkCommonDataModel-9.1 vtkCommonExecutionModel-9.1 vtkCommonMath-9.1 vtkFiltersCore-9.1 vtkFiltersGeometry-9.1
-    vtkIOCore-9.1 vtkIOXML-9.1 vtkIOLegacy-9.1 vtkIOGeometry-9.1 vtkIOEnSight-9.1 vtkIOCGNSReader-9.1 vtkIONetCDF-9.1 vtkIOPLY-9.1
-    vtksys-9.1 ITKIONRRD ITKIOMeta ITKIOGDCM ITKIOImageBase ITKCommon itksys giftiio)
+foreach(name vtkCommonCore-9.1 vtkCommonDataModel-9.1 vtkCommonExecutionModel-9.1 vtkCommonMath-9.1 vtkFiltersCore-9.1 vtkFiltersExtraction-9.1
+    vtkFiltersGeometry-9.1 vtkIOCore-9.1 vtkIOXML-9.1 vtkIOXMLParser-9.1 vtkIOLegacy-9.1 vtkIOGeometry-9.1 vtkIOEnSight-9.1 vtkIOCGNSReader-9.1 vtkIONetCDF-9.1 vtkIOParallel-9.1 vtkParallelCore-9.1
+    vtksys-9.1 ITKIONRRD ITKIOMeta ITKIOImageBase ITKCommon itksys gdcmMSFF gdcmDICT gdcmDSED gdcmCommon giftiio netcdf)
   string(MAKE_C_IDENTIFIER "LIBRARY_${name}" variable)
   find_library(${variable} NAMES ${name} ${name}-5.2)
   list(APPEND catena_vtk_libraries ${${variable}})
@@ -75,15 +77,15 @@ foreach(name vtkCommonCore-9.1 vtkCommonDataModel-9.1 vtkCommonExecutionModel-9.
     set(CATENA_VTK OFF)
   endif()
 endforeach()
-if(NOT VTK_INCLUDE_DIR OR NOT ITK_INCLUDE_DIR OR NOT GIFTI_INCLUDE_DIR OR NOT LIBZIP_FOUND)
+if(NOT VTK_INCLUDE_DIR OR NOT ITK_INCLUDE_DIR OR NOT GDCM_INCLUDE_DIR OR NOT GIFTI_INCLUDE_DIR OR NOT NETCDF_INCLUDE_DIR OR NOT LIBZIP_FOUND)
   set(CATENA_VTK OFF)
 endif()
 if(CATENA_VTK)
   add_library(catena_vtk INTERFACE)
-  target_include_directories(catena_vtk SYSTEM INTERFACE ${VTK_INCLUDE_DIR} ${ITK_INCLUDE_DIR} ${GIFTI_INCLUDE_DIR} ${NIFTI_INCLUDE_DIR})
+  target_include_directories(catena_vtk SYSTEM INTERFACE ${VTK_INCLUDE_DIR} ${ITK_INCLUDE_DIR} ${GDCM_INCLUDE_DIR} ${GIFTI_INCLUDE_DIR} ${NETCDF_INCLUDE_DIR} ${NIFTI_INCLUDE_DIR})
   target_link_libraries(catena_vtk INTERFACE ${catena_vtk_libraries} PkgConfig::LIBZIP)
 else()
-  message(STATUS "Files of VTK, ITK and NumPy's .npz will not be read: libvtk9-dev, libinsighttoolkit5-dev, libgiftiio-dev or libzip-dev is missing")
+  message(STATUS "Files of VTK, ITK and NumPy's .npz will not be read: libvtk9-dev, libinsighttoolkit5-dev, libgdcm-dev, libgiftiio-dev, libnetcdf-dev or libzip-dev is missing")
 endif()
 
 # Headsets: the headers alone, since the loader is opened when one is asked for. Optional.

@@ -4,14 +4,16 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <cstring>
+#include <cerrno>
 #include <utility>
+
+#include "engine/base/machine_failure.h"
 
 namespace catena {
 
 Result<FolderLock> FolderLock::take(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return Error{folder + ": cannot read the folder: " + std::strerror(errno)};
+  if (descriptor < 0) return system_error(folder + ": cannot read the folder", errno);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return FolderLock(descriptor);
   ::close(descriptor);
   return Error{folder + ": another session writes to it; its end was expected, or another folder"};

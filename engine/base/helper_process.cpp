@@ -5,6 +5,7 @@
 #include <link.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/auxv.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/result.h"
 
 namespace catena {
@@ -49,6 +51,15 @@ struct Plan {
 
 constexpr int kAway = 64;  ///< where descriptors wait for their places
 
+/// The running program's file. Where /proc is not mounted: the name by which the kernel was asked for it.
+std::filesystem::path program_itself() {
+  std::error_code code;
+  const std::filesystem::path linked = std::filesystem::read_symlink("/proc/self/exe", code);
+  if (!code) return linked;
+  const char* const asked = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+  return asked != nullptr ? std::filesystem::weakly_canonical(asked, code) : std::filesystem::path();
+}
+
 }  // namespace
 
 std::string too_few_descriptors() {
@@ -71,7 +82,7 @@ std::string helper_path(const std::string& name) {
   if (::dladdr1(reinterpret_cast<const void*>(&helper_path), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 &&
       map != nullptr && map->l_name[0] != '\0')
     look_in(fs::canonical(map->l_name, code).parent_path());
-  look_in(fs::read_symlink("/proc/self/exe", code).parent_path());
+  look_in(program_itself().parent_path());
   for (const fs::path& place : places)
     if (::access(place.c_str(), X_OK) == 0) return place.lexically_normal().string();
   return places.front().string();
@@ -95,10 +106,10 @@ Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<co
   const auto failed = [&](int code) {
     if (code == EINVAL || too_many_files(code))
       return Error{path + ": this part of Catena cannot be started: " + too_few_descriptors(), true};
-    if (code == EAGAIN || code == ENOMEM)
-      return Error{
-          path + ": this part of Catena cannot be started (" + std::strerror(code) + "): this machine does not give what is needed", true};
-    return Error{path + ": this part of Catena cannot be started (" + std::strerror(code) + "), expected it beside the program"};
+    return Error{path + ": this part of Catena cannot be started (" + cause_of(code) + ")" +
+                     (is_machine_failure(code) ? ": this machine does not give what is needed"
+                                               : ": expected it beside the program, as the package catena installs it"),
+                 true};
   };
   // the descriptors: out of the way first, so that none overwrites another
   Plan plan;
@@ -121,7 +132,9 @@ Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<co
   posix_spawnattr_setflags(&plan.attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
   pid_t pid = -1;
   char* const arguments[] = {const_cast<char*>(path.c_str()), nullptr};
-  char* const environment[] = {nullptr};
+  // VTK's parallel sort leaves equal items in an order that differs from run to run
+  static char one_thread[] = "VTK_SMP_BACKEND_IN_USE=Sequential";
+  char* const environment[] = {one_thread, nullptr};
   if (const int code = posix_spawn(&pid, path.c_str(), &plan.files, &plan.attributes, arguments, environment); code != 0)
     return failed(code);
   return HelperProcess(pid);
@@ -133,19 +146,20 @@ HelperProcess::~HelperProcess() {
   if (pid_ > 0) wait(0);
 }
 
-HelperEnd HelperProcess::wait(double limit_s) {
-  const std::int64_t until = now_ns() + static_cast<std::int64_t>(1e9 * limit_s);
+HelperEnd HelperProcess::wait(double limit_s, const std::function<void(double)>& while_waiting) {
+  const std::int64_t start = now_ns(), until = start + static_cast<std::int64_t>(1e9 * limit_s);
   const Descriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
   int status = 0;
+  rusage used{};
   bool too_long = false;
   for (;;) {
-    const pid_t waited = ::waitpid(pid_, &status, WNOHANG);
+    const pid_t waited = ::wait4(pid_, &status, WNOHANG, &used);
     if (waited == pid_ || (waited < 0 && errno != EINTR)) break;
     const std::int64_t left_ns = until - now_ns();
     if (left_ns <= 0) {
       too_long = true;
       ::kill(pid_, SIGKILL);
-      while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+      while (::wait4(pid_, &status, 0, &used) < 0 && errno == EINTR) {
       }
       break;
     }
@@ -153,11 +167,14 @@ HelperEnd HelperProcess::wait(double limit_s) {
     constexpr int kPollMs = 2, kLongestMs = 1000;
     pollfd poller{ended.get(), POLLIN, 0};
     ::poll(&poller, ended ? 1 : 0, ended ? static_cast<int>(std::min<std::int64_t>(left_ns / 1'000'000 + 1, kLongestMs)) : kPollMs);
+    if (while_waiting) while_waiting(1e-3 * ms_since(start));
   }
   pid_ = -1;
-  if (too_long) return {HelperEnd::How::too_long, SIGKILL};
-  if (WIFSIGNALED(status)) return {HelperEnd::How::killed, WTERMSIG(status)};
-  return {HelperEnd::How::exited, WIFEXITED(status) ? WEXITSTATUS(status) : 0};
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const double cpu_s = seconds(used.ru_utime) + seconds(used.ru_stime);
+  if (too_long) return {HelperEnd::How::too_long, SIGKILL, cpu_s};
+  if (WIFSIGNALED(status)) return {HelperEnd::How::killed, WTERMSIG(status), cpu_s};
+  return {HelperEnd::How::exited, WIFEXITED(status) ? WEXITSTATUS(status) : 0, cpu_s};
 }
 
 }  // namespace catena

@@ -4,6 +4,7 @@
 #pragma once
 #include <sys/types.h>
 
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,7 +22,8 @@ std::string too_few_descriptors();
 
 struct HelperEnd {
   enum class How { exited, killed, too_long } how = How::exited;
-  int code = 0;  ///< of the exit, or the signal's number
+  int code = 0;      ///< of the exit, or the signal's number
+  double cpu_s = 0;  ///< processor time that it took
 };
 
 class HelperProcess {
@@ -33,8 +35,8 @@ class HelperProcess {
   HelperProcess& operator=(HelperProcess&&) = delete;
   ~HelperProcess();  ///< kills what still runs
 
-  /// Waits for its end, at most so long; then it is killed.
-  HelperEnd wait(double limit_s);
+  /// Waits for its end, at most so long; then it is killed. `while_waiting` is called about once a second with the seconds so far.
+  HelperEnd wait(double limit_s, const std::function<void(double)>& while_waiting = {});
 
  private:
   explicit HelperProcess(pid_t pid) : pid_(pid) {}

@@ -20,7 +20,7 @@ enum class Kind { null, boolean, number, string, array, object };
 /// A value of a document with its place in the text. Plain data: copies are deep; reading is safe from any thread.
 struct Node {
   Kind kind = Kind::null;                   ///< which of the members below mean something
-  int line = 0;                             ///< 1-based line of the value
+  int line = 0;                             ///< 1-based line of the value; -1: it lies in no file, and `file` holds its place
   std::size_t begin = 0, end = 0;           ///< its bytes in the text, a byte order mark counted; its key and comments are outside
   std::shared_ptr<const std::string> file;  ///< the file's name as the user gave it
   std::string label;                        ///< its key, or "chain[2]" for an item; empty at the top level

@@ -1,6 +1,9 @@
 #include "engine/base/memory_limit.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -8,12 +11,15 @@
 #include <fstream>
 #include <limits>
 
+#include "engine/base/machine_failure.h"
+
 namespace catena {
 namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 std::atomic<std::uint64_t> chosen_limit{kNoLimit};
-std::atomic<std::uint64_t> held_bytes{0};
+std::atomic<std::uint64_t> held_bytes{0}, refusals{0};
+std::atomic<bool> chosen_of_addresses{false};
 
 /// MemAvailable of /proc/meminfo; where it cannot be read, nothing is known and nothing is refused.
 std::uint64_t free_on_the_machine() {
@@ -32,22 +38,52 @@ std::uint64_t free_in_the_group() {
   return most > current ? most - current : 0;
 }
 
+/// What the limit on addresses leaves of them. Without /proc nothing is known of those in use, and half is taken for free.
+std::uint64_t free_addresses() {
+  const auto limit = limit_in_force(RLIMIT_AS);
+  if (!limit) return kNoLimit;
+  std::uint64_t pages = 0;
+  if (!(std::ifstream("/proc/self/statm") >> pages)) return *limit / 2;
+  const std::uint64_t used = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return *limit > used ? *limit - used : 0;
+}
+
 }  // namespace
 
-void set_memory_limit(std::optional<std::uint64_t> bytes) { chosen_limit = bytes.value_or(kNoLimit); }
+void set_memory_limit(std::optional<std::uint64_t> bytes, bool of_addresses) {
+  chosen_limit = bytes.value_or(kNoLimit);
+  chosen_of_addresses = of_addresses;
+}
+
+bool memory_is_of_addresses() {
+  if (chosen_limit != kNoLimit) return chosen_of_addresses;
+  const std::uint64_t addresses = free_addresses();
+  return addresses != kNoLimit && addresses <= std::min(free_on_the_machine(), free_in_the_group()) / 4 * 3;
+}
+
+std::uint64_t memory_refusals() { return refusals; }
+
+std::optional<std::uint64_t> stated_memory() {
+  const std::uint64_t limit = chosen_limit;
+  return limit == kNoLimit ? std::nullopt : std::optional(limit);
+}
 
 std::uint64_t allowed_memory() {
   const std::uint64_t limit = chosen_limit, held = held_bytes;
   if (limit != kNoLimit) return limit > held ? limit - held : 0;
   const std::uint64_t available = std::min(free_on_the_machine(), free_in_the_group());
-  return available == kNoLimit ? available : available / 4 * 3;
+  return std::min(available == kNoLimit ? available : available / 4 * 3, free_addresses());
 }
 
 Outcome ask_for_memory(const std::string& what, double bytes, std::uint64_t allowed) {
   if (bytes <= static_cast<double>(allowed)) return Done{};
+  ++refusals;
   constexpr double kMegabyte = 1e6;
-  return Error{fmt::format("{} needs {:.0f} MB of memory, expected at most {:.0f} MB (--memory MB allows more)", what,
-                           std::ceil(bytes / kMegabyte), std::floor(static_cast<double>(allowed) / kMegabyte))};
+  const bool of_addresses = memory_is_of_addresses();
+  return Error{fmt::format("{} needs {:.0f} MB of memory, expected at most {:.0f} MB ({})", what, std::ceil(bytes / kMegabyte),
+                           std::floor(static_cast<double>(allowed) / kMegabyte),
+                           of_addresses ? "ulimit -v allows no more" : "--memory MB allows more"),
+               of_addresses};
 }
 
 Outcome ask_for_memory(const std::string& what, double bytes) { return ask_for_memory(what, bytes, allowed_memory()); }
@@ -60,5 +96,12 @@ Outcome ask_for_text_memory(const std::string& what, double bytes) {
 
 HeldMemory::HeldMemory(std::uint64_t bytes) : bytes_(bytes) { held_bytes += bytes; }
 HeldMemory::~HeldMemory() { held_bytes -= bytes_; }
+
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // setting the one ends the allocator's own choice of the other
+#endif
+}
 
 }  // namespace catena

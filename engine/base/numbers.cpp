@@ -23,6 +23,21 @@ std::string to_text(double value) {
   return out;
 }
 
+std::string readable(double value, int digits) {
+  constexpr double kMostWritten = 1e10, kMostFixed = 1e7, kLeastFixed = 1e-4;
+  if (!std::isfinite(value) || value == 0) return to_text(value + 0.0);
+  const double rounded = rounded_to(value, digits), size = std::fabs(rounded);
+  if (value == std::floor(value) && std::fabs(value) < kMostWritten && (size < kMostFixed || rounded != value))
+    return fmt::format("{:.0f}", value);
+  char buffer[40];
+  const bool fixed = size >= kLeastFixed && size < kMostFixed;
+  const auto format = fixed ? std::chars_format::fixed : std::chars_format::scientific;
+  const std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, rounded, format).ptr);
+  const std::size_t e = text.find('e');
+  // "1e+20" as "1e20", "2e-07" as "2e-7"
+  return fixed ? text : text.substr(0, e) + "e" + std::to_string(std::atoi(text.c_str() + e + 1));
+}
+
 double rounded_to(double value, int digits) {
   return std::isfinite(value) ? parse_double(fmt::format("{:.{}g}", value, digits)).value_or(value) : value;
 }

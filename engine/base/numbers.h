@@ -13,6 +13,10 @@ namespace catena {
 std::string to_text(double value);
 void append_text(std::string& out, double value);
 
+/// As people read it, not exactly: about so many digits, "1e20", "-9999", "0.1" for a 32-bit 0.1, never "-0". Whole numbers of up to ten
+/// digits are written out.
+std::string readable(double value, int digits = 6);
+
 /// A finite or non-finite double; nothing if `text` (blanks at its ends allowed) is not wholly a number.
 std::optional<double> parse_double(std::string_view text);
 std::optional<long long> parse_integer(std::string_view text);

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/result.h"
 
 namespace catena {
@@ -94,16 +95,25 @@ Outcome check_output(const std::string& path, const std::vector<std::string>& in
 namespace fs = std::filesystem;
 
 namespace {
-Error cannot_write(const std::string& path, int code) {
-  return Error{path + ": cannot write: " + std::strerror(code), too_many_files(code)};
+Error cannot_write(const std::string& path, int code) { return system_error(path + ": cannot write", code); }
+
+/// A pipe, a socket or a device, never waited for: a pipe that nobody reads is refused.
+Result<int> open_directly(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_TRUNC | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENXIO) return Error{path + ": nothing reads from this pipe or socket: expected a file, or a reader first"};
+  if (descriptor < 0) return cannot_write(path, errno);
+  // who reads may be slower than who writes
+  static_cast<void>(::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK));
+  return descriptor;
 }
+
+}  // namespace
 
 bool written_directly(const std::string& path) {
   std::error_code ignored;
   const auto status = fs::status(path, ignored);
   return fs::exists(status) && !fs::is_regular_file(status);
 }
-}  // namespace
 
 OutputFile::OutputFile(std::string path, std::optional<PartFile> part, std::FILE* file)
     : path_(std::move(path)), part_(std::move(part)), file_(file) {}
@@ -119,7 +129,8 @@ OutputFile::~OutputFile() {
 
 Result<OutputFile> OutputFile::open(const std::string& name) {
   if (written_directly(name)) {
-    std::FILE* const file = std::fopen(name.c_str(), "wbe");
+    CATENA_TRY(const int descriptor, open_directly(name));
+    std::FILE* const file = ::fdopen(descriptor, "wb");
     if (file == nullptr) return cannot_write(name, errno);
     return OutputFile(name, std::nullopt, file);
   }
@@ -128,7 +139,7 @@ Result<OutputFile> OutputFile::open(const std::string& name) {
   std::string path = name;
   if (fs::is_symlink(name, code)) {
     path = fs::weakly_canonical(name, code).string();
-    if (code) return Error{name + ": cannot write: " + code.message()};
+    if (code) return cannot_write(name, code.value());
   }
   CATENA_TRY(PartFile part, PartFile::create(path));
   // the stream has a descriptor of its own: the part's keeps the lock until the end

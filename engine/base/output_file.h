@@ -61,6 +61,9 @@ class PartFile {
   int descriptor_ = -1;
 };
 
+/// Whether an output of that name is written directly: the place is a pipe, a socket or a device.
+bool written_directly(const std::string& path);
+
 /// The name of an unfinished file or folder for `path`; another one at every call.
 std::string part_name(const std::string& path);
 

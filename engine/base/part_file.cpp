@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/input_files.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/result.h"
 
 namespace catena {
@@ -30,9 +32,7 @@ namespace {
 constexpr std::size_t kDigits = 12;
 constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name holds 255
 
-Error cannot_write_part(const std::string& path, int code) {
-  return Error{path + ": cannot write: " + std::strerror(code), too_many_files(code)};
-}
+Error cannot_write_part(const std::string& path, int code) { return system_error(path + ": cannot write", code); }
 
 /// ".../flow.json.part", the beginning of all its unfinished files.
 std::string beginning_of(const std::string& path) {
@@ -117,6 +117,7 @@ void remove_stale_parts(const std::string& path) {
 }
 
 Result<PartFile> PartFile::create(const std::string& path, bool owner_only) {
+  CATENA_CHECK(check_no_input(path));
   remove_stale_parts(path);
   struct stat old {};
   const bool replaces = ::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode);
@@ -146,6 +147,7 @@ PartFile::~PartFile() {
 }
 
 Outcome PartFile::commit() {
+  CATENA_CHECK(check_no_input(path_));
   if (std::rename(name_.c_str(), path_.c_str()) != 0) return cannot_write_part(path_, errno);
   name_.clear();
   return Done{};

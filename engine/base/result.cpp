@@ -1,12 +1,22 @@
 #include "engine/base/result.h"
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 
+#include "engine/base/tell.h"
+
 namespace catena {
+
+namespace {
+std::atomic<bool> spoken{false};
+}  // namespace
+
+bool assertion_has_spoken() noexcept { return spoken; }
 
 void assertion_failed(const char* expression, const char* file, int line) {
   std::fprintf(stderr, "catena: a bug: %s at %s:%d\n", expression, file, line);
+  spoken = true;
   std::abort();
 }
 

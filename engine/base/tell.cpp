@@ -6,10 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <string>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/text.h"
 
 namespace catena {
@@ -17,12 +19,22 @@ namespace catena {
 namespace {
 
 constexpr int kPatienceMs = 500;
+std::atomic<int> output_error{0};
+
+void keep_output_error(int descriptor, int code) noexcept {
+  int none = 0;
+  if (code == EIO && ::isatty(descriptor) == 1) return;  // the terminal has been closed: nobody looks
+  if (descriptor == STDOUT_FILENO) output_error.compare_exchange_strong(none, code);
+}
 
 void tell_line(std::string_view before, std::string_view line) noexcept {
   try {
-    print_now(STDERR_FILENO, std::string(before) + printable(one_line(std::string(line))) + "\n", kPatienceMs);
+    const std::string whole = std::string(before) + printable(one_line(std::string(line.substr(0, 2 * kLongestLine))));
+    print_now(STDERR_FILENO, cut_to(whole, kLongestLine) + "\n", kPatienceMs);
   } catch (...) {
-    print_now(STDERR_FILENO, "catena: out of memory\n", kPatienceMs);
+    char words[256];
+    std::snprintf(words, sizeof words, "catena: %s\n", out_of_memory());
+    print_now(STDERR_FILENO, words, kPatienceMs);
   }
 }
 
@@ -33,7 +45,7 @@ void tell_from_catena(std::string_view line) noexcept { tell_line("catena: ", li
 
 void print_now(int descriptor, std::string_view text, int wait_ms) noexcept {
   struct stat about {};
-  if (::fstat(descriptor, &about) != 0) return;
+  if (::fstat(descriptor, &about) != 0) return keep_output_error(descriptor, errno);
   // what others that print left in their buffer comes first, where that does not wait either
   pollfd ready{descriptor, POLLOUT, 0};
   if (::poll(&ready, 1, wait_ms) != 1) return;
@@ -58,9 +70,12 @@ void print_now(int descriptor, std::string_view text, int wait_ms) noexcept {
     if (n < 0 && errno == EINTR) continue;
     pollfd again{to, POLLOUT, 0};
     if (n < 0 && errno == EAGAIN && wait_ms > 0 && ::poll(&again, 1, wait_ms) == 1 && (again.revents & POLLOUT) != 0) continue;
+    if (n < 0 && errno != EAGAIN) keep_output_error(descriptor, errno);
     break;
   }
   if (own >= 0) ::close(own);
 }
+
+int lost_output() noexcept { return output_error; }
 
 }  // namespace catena

@@ -13,6 +13,13 @@ void tell(std::string_view line) noexcept;
 void tell_from_catena(std::string_view line) noexcept;
 
 /// Writes the text, as it is, to standard output (1) or standard error (2), as far as it is taken within `wait_ms`. Files take all of it.
+/// An error of a write to standard output (a full disk, no waiting) is kept for lost_output().
 void print_now(int descriptor, std::string_view text, int wait_ms = 0) noexcept;
+
+/// Whether a failed CATENA_ASSERT has said why the program aborts.
+bool assertion_has_spoken() noexcept;
+
+/// The first error (errno) of print_now() on standard output; 0: none.
+int lost_output() noexcept;
 
 }  // namespace catena

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/result.h"
 
@@ -40,6 +41,11 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   const auto failed = [&](const std::string& why) {
     return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")};
   };
+  const auto unreadable = [&](int why) {
+    Error error = failed("cannot be read: " + cause_of(why));
+    error.machine = is_machine_failure(why);
+    return error;
+  };
   const auto too_large = [&](std::uint64_t bytes) {
     return Error{one_line(path + ": is " + size_in_words(bytes) + " large; " + std::string(expected) + " of at most " +
                           size_in_words(most_bytes) + " was expected")};
@@ -48,17 +54,19 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (descriptor < 0 && errno == ENXIO) return failed("is a socket or a device");
   if (descriptor < 0) {
-    const int why = errno;
-    Error error = failed("cannot be read: " + std::string(std::strerror(why)));
-    error.machine = too_many_files(why);
-    return error;
+    return unreadable(errno);
   }
   const Closer closer{descriptor};
   struct stat about {};
-  if (::fstat(descriptor, &about) != 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  if (::fstat(descriptor, &about) != 0) return unreadable(errno);
   if (!S_ISREG(about.st_mode)) return failed(kind_of_place(about.st_mode));
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size > most_bytes) return too_large(size);
+  // a file of holes is no text, whatever its size: nothing of it is read
+  constexpr std::uint64_t kLarge = 16 << 20, kMostRatio = 100;
+  const std::uint64_t on_disk = 512 * static_cast<std::uint64_t>(about.st_blocks);
+  if (size > kLarge && on_disk < size / kMostRatio)
+    return failed("is " + size_in_words(size) + " large, with " + size_in_words(on_disk) + " on the disk and nothing else");
   CATENA_CHECK(ask_for_text_memory(one_line(path), static_cast<double>(size)));
   std::string text;
   text.reserve(size);
@@ -66,7 +74,7 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   for (;;) {
     const ssize_t got = ::read(descriptor, buffer, sizeof buffer);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+    if (got < 0) return unreadable(errno);
     if (got == 0) return text;
     // one that grows while it is read
     if (text.size() + static_cast<std::size_t>(got) > most_bytes) return too_large(text.size() + static_cast<std::size_t>(got));
@@ -145,10 +153,39 @@ bool has_ending(std::string_view name, std::string_view lower_case) {
   return std::equal(name.begin(), name.end(), lower_case.begin(), [&](char a, char b) { return lower(a) == b; });
 }
 
-std::string joined(const std::vector<std::string_view>& words) {
+std::string joined(const std::vector<std::string_view>& words, std::size_t most) {
   std::string out;
-  for (std::string_view word : words) out.append(out.empty() ? "" : ", ").append(word);
+  const std::size_t shown = std::min(words.size(), most);
+  for (std::size_t i = 0; i < shown; ++i) out.append(i == 0 ? "" : ", ").append(words[i]);
+  if (shown < words.size()) out += " and " + std::to_string(words.size() - shown) + " more";
   return out;
+}
+
+std::string without_addresses(std::string text) {
+  const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
+  constexpr std::size_t kLeastDigits = 6;
+  for (std::size_t at = 0; (at = text.find("0x", at)) != std::string::npos;) {
+    std::size_t begin = at, end = at + 2;
+    while (end < text.size() && is_hex(text[end])) ++end;
+    if (end - at < 2 + kLeastDigits) {
+      at = end;
+      continue;
+    }
+    // with the brackets around it, and the blank before
+    if (begin > 0 && end < text.size() && text[begin - 1] == '(' && text[end] == ')') --begin, ++end;
+    if (begin > 0 && text[begin - 1] == ' ') --begin;
+    text.erase(begin, end - begin);
+    at = begin;
+  }
+  return text;
+}
+
+std::string cut_to(std::string text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t end = most - std::min<std::size_t>(most, 3);
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+  text.resize(end);
+  return text + "...";
 }
 
 namespace {

@@ -30,8 +30,18 @@ std::string one_line(std::string text);
 /// each become '?'. Whatever else it says stays.
 std::string printable(std::string_view text);
 
-/// `a, b, c`
-std::string joined(const std::vector<std::string_view>& words);
+/// How many names a list in a message shows.
+inline constexpr std::size_t kListed = 10;
+/// The longest line that is printed, in bytes.
+inline constexpr std::size_t kLongestLine = 2000;
+
+/// A library's words without the addresses of its objects: "vtkFoo (0x55d0c8a0): bad" is "vtkFoo: bad".
+std::string without_addresses(std::string text);
+
+/// `a, b, c`; beyond `most`: `a, b, c and 7 more`.
+std::string joined(const std::vector<std::string_view>& words, std::size_t most = kListed);
+/// At most so many bytes, cut between two UTF-8 characters; "..." ends a text that was cut.
+std::string cut_to(std::string text, std::size_t most);
 /// `a, b or c`
 std::string alternatives(const std::vector<std::string_view>& words);
 

@@ -1,11 +1,39 @@
 #include "engine/base/threads.h"
 
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "engine/base/machine_failure.h"
+
 namespace catena {
 
+int thread_refusal() {
+  if (!limit_in_force(RLIMIT_AS)) return EAGAIN;
+  if (!limit_in_force(RLIMIT_NPROC)) return ENOMEM;
+  std::size_t stack = 8u << 20;
+  if (pthread_attr_t attributes; pthread_getattr_default_np(&attributes) == 0) {
+    pthread_attr_getstacksize(&attributes, &stack);
+    pthread_attr_destroy(&attributes);
+  }
+  void* const tried = ::mmap(nullptr, stack, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (tried == MAP_FAILED) return ENOMEM;
+  ::munmap(tried, stack);
+  return EAGAIN;
+}
+
+bool is_thread_refusal(const std::exception& thrown) {
+  const auto* error = dynamic_cast<const std::system_error*>(&thrown);
+  return (error != nullptr && error->code() == std::errc::resource_unavailable_try_again) ||
+         std::strstr(thrown.what(), "pthread_create") != nullptr || std::strstr(thrown.what(), std::strerror(EAGAIN)) != nullptr;
+}
+
 Error no_thread(const std::string& what, const std::system_error& error) {
-  return {what + ": no other thread can be started (" + error.code().message() +
-              "); more processes (ulimit -u) or more memory (ulimit -v) were expected",
-          true};
+  const int code = is_thread_refusal(error) ? thread_refusal() : error.code().value();
+  return {what + ": no other thread can be started: " + cause_of(code), true};
 }
 
 }  // namespace catena

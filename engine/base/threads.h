@@ -2,6 +2,7 @@
 /// program that holds a device.
 #pragma once
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <string>
 #include <system_error>
@@ -12,7 +13,13 @@
 
 namespace catena {
 
-/// "the servo: no thread more can be started (...)": an Error of the machine.
+/// Why a thread could not be started, a code of errno: ENOMEM where this process gets no addresses for another stack, else EAGAIN.
+/// pthread_create answers EAGAIN to both. To be asked at once, before anything is freed.
+int thread_refusal();
+/// Whether an exception says that a thread could not be started: of the standard library, TBB or ITK.
+bool is_thread_refusal(const std::exception& thrown);
+
+/// "the servo: no other thread can be started: CAUSE": an Error of the machine.
 Error no_thread(const std::string& what, const std::system_error& error);
 
 /// `what` needs it: "the servo". Out of memory is still std::bad_alloc.

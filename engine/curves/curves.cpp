@@ -47,6 +47,7 @@ Result<Builder> Builder::create(std::string name, std::size_t most_points, std::
 bool Builder::add(const Vec3& point, const float* values) {
   if (!(max_abs(point) <= kFarthest) || !is_finite(point)) return false;
   const glm::vec3 p(point);
+  rounded_ = std::max(rounded_, max_abs(point - Vec3(p)));
   if (made_.points.size() > made_.first.back() && made_.points.back() == p) return true;
   made_.points.push_back(p);
   for (std::size_t k = 0; k < made_.values.size(); ++k) made_.values[k].values.push_back(values[k]);
@@ -78,6 +79,11 @@ Result<CurveSet> Builder::finish() {
       set.lowest[i] = std::min(set.lowest[i], static_cast<double>(p[i]));
       set.highest[i] = std::max(set.highest[i], static_cast<double>(p[i]));
     }
+  // single precision parts points that lie together far from the origin
+  constexpr double kOfBox = 1e-5;
+  if (rounded_ > kOfBox * max_abs(set.highest - set.lowest))
+    set.note += fmt::format("{}the points lie far from the origin, and are rounded by up to {:.2g}: subtract an offset from them",
+                            set.note.empty() ? "" : "; ", rounded_);
   set.version = next_version.fetch_add(1);
   set.held = HeldMemory(set.bytes());
   return std::move(made_);

@@ -67,6 +67,7 @@ class Builder {
  private:
   CurveSet made_;
   std::size_t dropped_ = 0;
+  double rounded_ = 0;  ///< the largest difference of a coordinate from what is kept
 };
 
 }  // namespace catena::curves

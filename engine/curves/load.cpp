@@ -12,7 +12,8 @@ struct Format {
   std::string_view ending;
   Result<CurveSet> (*parse)(std::string_view bytes, const std::string& name);
 };
-constexpr Format kFormats[] = {{".tck", parse_tck}, {".trk", parse_trk}, {".vtp", nullptr}, {".vtk", nullptr}, {".vtu", nullptr}};
+constexpr Format kFormats[] = {{".tck", parse_tck}, {".trk", parse_trk}, {".vtp", nullptr},   {".vtk", nullptr},
+                               {".vtu", nullptr},   {".pvd", nullptr},   {".series", nullptr}};
 
 const Format* format_of(std::string_view path) {
   for (const Format& format : kFormats)
@@ -33,12 +34,12 @@ const std::vector<std::string_view>& curve_endings() {
   return endings;
 }
 
-Result<CurveSetPtr> load_curves(const std::string& path) {
+Result<CurveSetPtr> load_curves(const std::string& path, int step) {
   const Format* format = format_of(path);
   const std::string wanted = "a file of curves (" + alternatives(curve_endings()) + ")";
   if (format == nullptr) return Error{one_line(path + ": has an unknown kind; " + wanted + " was expected")};
   if (format->parse == nullptr) {
-    CATENA_TRY(CurveSet set, read_line_shape(path));
+    CATENA_TRY(CurveSet set, read_line_shape(path, step));
     return CurveSetPtr(std::make_shared<CurveSet>(std::move(set)));
   }
   CATENA_TRY(const std::string bytes, read_text(path, wanted, kMaxBytes));

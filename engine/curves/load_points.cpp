@@ -199,7 +199,7 @@ const PointValues* PointSet::find(std::string_view wanted) const {
 }
 
 const std::vector<std::string_view>& point_endings() {
-  static const std::vector<std::string_view> endings{".csv", ".tsv", ".xyz", ".vtp", ".vtk", ".ply"};
+  static const std::vector<std::string_view> endings{".csv", ".tsv", ".xyz", ".vtp", ".vtk", ".ply", ".pvd", ".series"};
   return endings;
 }
 
@@ -232,11 +232,11 @@ Result<PointSet> parse_points(std::string_view text, const std::string& name) {
   return completed(std::move(set), name);
 }
 
-Result<PointSetPtr> load_points(const std::string& path) {
+Result<PointSetPtr> load_points(const std::string& path, int step) {
   const std::string wanted = "a table of points (" + alternatives(point_endings()) + ")";
   if (!is_point_file(path)) return Error{one_line(path + ": has an unknown kind; " + wanted + " was expected")};
   if (!is_text(path)) {
-    CATENA_TRY(PointSet shape, read_point_shape(path));
+    CATENA_TRY(PointSet shape, read_point_shape(path, step));
     CATENA_TRY(PointSet made, completed(std::move(shape), path));
     return PointSetPtr(std::make_shared<PointSet>(std::move(made)));
   }

@@ -7,9 +7,10 @@
 namespace catena::curves {
 namespace {
 
-Result<field::ReaderAnswer> ask_for_shape(const std::string& path) {
+Result<field::ReaderAnswer> ask_for_shape(const std::string& path, int step) {
   field::LoadRequest request;
   request.path = path;
+  request.step = step;
   return field::ask_reader(field::ReadMode::shape, request);
 }
 
@@ -17,8 +18,8 @@ Error cannot_be(const std::string& path, const std::string& what) { return Error
 
 }  // namespace
 
-Result<CurveSet> read_line_shape(const std::string& path) {
-  CATENA_TRY(const field::ReaderAnswer answer, ask_for_shape(path));
+Result<CurveSet> read_line_shape(const std::string& path, int step) {
+  CATENA_TRY(const field::ReaderAnswer answer, ask_for_shape(path, step));
   const field::ShapeReply& shape = answer.reply.shape;
   const auto xyz = answer.numbers<double>(shape.points);
   const auto lines = answer.numbers<std::uint32_t>(shape.lines);
@@ -44,8 +45,8 @@ Result<CurveSet> read_line_shape(const std::string& path) {
   return set;
 }
 
-Result<PointSet> read_point_shape(const std::string& path) {
-  CATENA_TRY(const field::ReaderAnswer answer, ask_for_shape(path));
+Result<PointSet> read_point_shape(const std::string& path, int step) {
+  CATENA_TRY(const field::ReaderAnswer answer, ask_for_shape(path, step));
   const field::ShapeReply& shape = answer.reply.shape;
   const auto xyz = answer.numbers<double>(shape.points);
   const auto values = answer.numbers<float>(shape.values);

@@ -38,12 +38,12 @@ bool is_point_file(std::string_view path);  ///< by its ending, any case
 /// The endings, in lower case with the dot.
 const std::vector<std::string_view>& point_endings();
 
-/// Reads a file.
-Result<PointSetPtr> load_points(const std::string& path);
+/// Reads a file. `step`: of a file that has several in time.
+Result<PointSetPtr> load_points(const std::string& path, int step = 0);
 /// The contents of a file; `name` begins every message.
 Result<PointSet> parse_points(std::string_view text, const std::string& name);
 /// All points in a file of the program catena-read-vtk (.vtp, .vtk, .ply), with the number at each that most would colour by; not yet
 /// measured.
-Result<PointSet> read_point_shape(const std::string& path);
+Result<PointSet> read_point_shape(const std::string& path, int step);
 
 }  // namespace catena::curves

@@ -163,6 +163,47 @@ class Leaf {
   std::vector<std::uint8_t> counts_;  ///< by fine voxel; empty: all
 };
 
+/// Masks for the blocks at `origins`: all voxels, and the cells. The cell at c has the fine cells from factor c + factor / 2 on, `factor`
+/// an axis; it is invalid where half of those that the fine grid has, or more, are.
+Outcome mask_cells(const ScalarGrid& grid, int factor, const std::vector<nanovdb::Coord>& origins, NanoBuffers& buffers) {
+  using Mask = nanovdb::ValueMask;
+  std::vector<NanoBlock<Mask>> voxels, cells;
+  NanoMemory memory = reserve_leaves<Mask>(origins.size());
+  for (std::size_t n = 0; n < origins.size(); ++n) {
+    voxels.push_back({origins[n], NanoBlock<Mask>::kTile, true});
+    cells.push_back({origins[n], static_cast<std::uint32_t>(n), false});
+  }
+  const Vec3 &lo = grid.index_box().lo, &hi = grid.index_box().hi;
+  parallel_for(origins.size(), 1, [&](std::size_t begin, std::size_t end) {
+    const int edge = kLeaf * factor;
+    std::vector<std::uint8_t> fine(static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge));
+    for (std::size_t n = begin; n < end; ++n) {
+      auto& leaf = NanoBuilder<Mask>::leaf_of(memory.data(), n);
+      leaf.mBBoxMin = origins[n];
+      const nanovdb::Coord first(origins[n][0] * factor + factor / 2, origins[n][1] * factor + factor / 2,
+                                 origins[n][2] * factor + factor / 2);
+      grid.read_cell_valid({first[0], first[1], first[2]}, {edge, edge, edge}, fine);
+      int all[512] = {}, valid[512] = {};
+      std::size_t i = 0;
+      for (int z = 0; z < edge; ++z)
+        for (int y = 0; y < edge; ++y)
+          for (int x = 0; x < edge; ++x, ++i) {
+            const Vec3 base(first[0] + x, first[1] + y, first[2] + z);
+            bool legal = true;
+            for (int a = 0; a < 3; ++a) legal = legal && base[a] >= lo[a] && base[a] < std::max(hi[a], lo[a] + 1);
+            const int at = x / factor * 64 + y / factor * 8 + z / factor;
+            all[at] += legal ? 1 : 0;
+            valid[at] += fine[i];
+          }
+      for (int at = 0; at < 512; ++at)
+        if (all[at] == 0 || 2 * valid[at] > all[at]) leaf.mValueMask.setOn(static_cast<std::uint32_t>(at));
+    }
+  });
+  CATENA_TRY(buffers.voxels, finish_blocks<Mask>(reserve_leaves<Mask>(0), 0, std::move(voxels), false));
+  CATENA_TRY(buffers.own_cells, finish_blocks<Mask>(std::move(memory), origins.size(), std::move(cells), false));
+  return Done{};
+}
+
 }  // namespace
 
 Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
@@ -235,6 +276,8 @@ Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
   });
   NanoBuffers buffers;
   CATENA_TRY(buffers.values, finish_blocks<float>(std::move(memory), leaves.size(), std::move(blocks), background));
+
+  if (grid.has_cell_mask()) CATENA_CHECK(mask_cells(grid, factor, origins, buffers));
 
   const Mapping& fine = grid.mapping();
   const Mapping mapping =

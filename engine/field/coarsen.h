@@ -3,9 +3,9 @@
 ///   fine index = factor c + (factor - 1) / 2
 /// Beyond its faces the fine grid is continued by odd reflection, v(lo - k) = 2 v(lo) - v(lo + k), so that the coarse grid reaches over
 /// the whole fine domain and a linear field stays what it is. Only voxels of valid cells are averaged; next to others the
-/// reflection is not odd but plain; where there is none the coarse voxel is NaN, and its cells are invalid.
-/// Of a grid whose nearest voxel counts (Interpolation) a coarse voxel is one of the fine voxels there: no value is invented.
-/// Blocks that hold one value stay as they are: a sparse grid stays sparse.
+/// reflection is not odd but plain; where there is none the coarse voxel is NaN, and its cells are invalid. Where the mask is one of cells
+/// a coarse cell is invalid when half of the fine cells in it, or more, are. Of a grid whose nearest voxel counts (Interpolation) a coarse
+/// voxel is one of the fine voxels there: no value is invented. Blocks that hold one value stay as they are: a sparse grid stays sparse.
 #pragma once
 #include "engine/base/result.h"
 #include "engine/field/grid.h"

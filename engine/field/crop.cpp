@@ -42,6 +42,19 @@ Result<std::shared_ptr<const Grid>> part_of(const std::string& path, const Voxel
     }
     return Done{};
   };
+  if (whole.cells_masked)
+    source.read_cells = [&](int first, int count, std::span<std::uint8_t> cells) -> Outcome {
+      const auto row = static_cast<std::size_t>(part.size.x);
+      std::size_t to = 0;
+      for (int z = first; z < first + count; ++z) {
+        whole.read_cells(part.from.z + z, layer_valid);
+        for (int y = 0; y < part.size.y; ++y, to += row) {
+          const std::size_t at = static_cast<std::size_t>(part.from.y + y) * static_cast<std::size_t>(whole.size.x) + part.from.x;
+          std::copy_n(layer_valid.begin() + static_cast<std::ptrdiff_t>(at), row, cells.begin() + static_cast<std::ptrdiff_t>(to));
+        }
+      }
+      return Done{};
+    };
   const Mapping mapping = Mapping::from_linear(whole.mapping.world_from_index_linear,
                                                whole.mapping.world_from_index(Vec3(part.from.x, part.from.y, part.from.z)));
   return make_dense<Grid>(whole.name, mapping, source, fmt::format("{}: within \"crop\" the grid \"{}\" ", path, whole.name), true);

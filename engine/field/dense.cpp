@@ -63,13 +63,14 @@ void add_values(const DenseSlab<T>& slab, Growing<T>& grid) {
   });
 }
 
-/// The same for the mask; blocks without a valid voxel are left out. Says whether a voxel of the box is invalid.
+/// The same for a mask; blocks without a bit are left out. Says whether a bit of the box is missing.
 template <class T>
-bool add_valid(const DenseSlab<T>& slab, const Index3& size, Growing<nanovdb::ValueMask>& mask) {
+bool add_bits(const DenseSlab<T>& slab, const Index3& size, void (DenseSlab<T>::*gather)(std::size_t, nanovdb::Mask<3>&) const,
+              Growing<nanovdb::ValueMask>& mask) {
   bool some_invalid = false;
   for (std::size_t b = 0; b < slab.blocks(); ++b) {
     nanovdb::Mask<3> valid;
-    slab.gather_valid(b, valid);
+    (slab.*gather)(b, valid);
     const nanovdb::Coord origin = slab.origin(b);
     const auto inside = [&](int axis, int extent) { return static_cast<std::uint32_t>(std::min(kLeafEdge, extent - origin[axis])); };
     const std::uint32_t count = valid.countOn();
@@ -93,6 +94,7 @@ DenseSlab<T>::DenseSlab(const DenseSource& source) : source_(source), across_(bl
   const auto voxels = static_cast<std::size_t>(source.size.x) * source.size.y * std::min(kLeafEdge, source.size.z);
   values_.resize(voxels);
   if (source.masked) valid_.resize(voxels);
+  if (source.read_cells) cells_.resize(voxels);
 }
 
 template <class T>
@@ -106,8 +108,9 @@ Outcome DenseSlab<T>::read(int z) {
   layers_ = std::min(kLeafEdge, source_.size.z - z);
   const std::size_t voxels = static_cast<std::size_t>(source_.size.x) * source_.size.y * layers_;
   constexpr std::size_t components = sizeof(T) / sizeof(float);
-  return source_.read(z, layers_, {reinterpret_cast<float*>(values_.data()), voxels * components},
-                      {valid_.data(), source_.masked ? voxels : 0});
+  CATENA_CHECK(source_.read(z, layers_, {reinterpret_cast<float*>(values_.data()), voxels * components},
+                            {valid_.data(), source_.masked ? voxels : 0}));
+  return source_.read_cells ? source_.read_cells(z, layers_, {cells_.data(), voxels}) : Outcome(Done{});
 }
 
 template <class T>
@@ -156,10 +159,10 @@ void DenseSlab<T>::gather(std::size_t block, T* values, nanovdb::Mask<3>& active
 }
 
 template <class T>
-void DenseSlab<T>::gather_valid(std::size_t block, nanovdb::Mask<3>& valid) const {
-  valid.setOff();
+void DenseSlab<T>::gather_bits(std::size_t block, const std::vector<std::uint8_t>& bytes, nanovdb::Mask<3>& bits) const {
+  bits.setOff();
   for_voxels(block, [&](std::uint32_t n, std::size_t at) {
-    if (valid_[at] != 0) valid.setOn(n);
+    if (bytes[at] != 0) bits.setOn(n);
     return true;
   });
 }
@@ -186,15 +189,18 @@ Result<std::shared_ptr<const Grid>> make_dense(std::string name, const Mapping& 
   const std::uint64_t blocks = static_cast<std::uint64_t>(blocks_of(size.x)) * blocks_of(size.y) * blocks_of(size.z);
   CATENA_ASSERT(voxels_of(size) > 0 && blocks < kNoLeaf);
   Growing<T> grid{reserve_leaves<T>(blocks), 0, {}};
-  Growing<nanovdb::ValueMask> mask;
+  Growing<nanovdb::ValueMask> mask, cells;
+  CATENA_ASSERT(source.masked || !source.read_cells);
   if (source.masked) mask.memory = reserve_leaves<nanovdb::ValueMask>(blocks);
-  bool some_invalid = !drop_full_mask;
+  if (source.read_cells) cells.memory = reserve_leaves<nanovdb::ValueMask>(blocks);
+  bool some_invalid = !drop_full_mask, some_cell_invalid = false;
   {
     DenseSlab<T> slab(source);
     for (int z = 0; z < size.z; z += kLeafEdge) {
       CATENA_CHECK(slab.read(z));
       add_values(slab, grid);
-      if (source.masked && add_valid(slab, size, mask)) some_invalid = true;
+      if (source.masked && add_bits(slab, size, &DenseSlab<T>::gather_valid, mask)) some_invalid = true;
+      if (source.read_cells && add_bits(slab, size, &DenseSlab<T>::gather_cells, cells)) some_cell_invalid = true;
     }
   }
   const auto told = [&](const Error& e) { return Error{prefix + e.message}; };
@@ -202,7 +208,13 @@ Result<std::shared_ptr<const Grid>> make_dense(std::string name, const Mapping& 
   auto values = finish_blocks<T>(std::move(grid.memory), grid.leaves, std::move(grid.blocks), T(0.f));
   if (!values) return told(values.error());
   buffers.values = std::move(*values);
-  if (source.masked && some_invalid) {
+  buffers.range = source.range;
+  if (some_cell_invalid) {
+    auto all = finish_blocks<nanovdb::ValueMask>(std::move(cells.memory), cells.leaves, std::move(cells.blocks), false);
+    if (!all) return told(all.error());
+    buffers.own_cells = std::move(*all);
+  }
+  if (source.masked && (some_invalid || some_cell_invalid)) {
     auto voxels = finish_blocks<nanovdb::ValueMask>(std::move(mask.memory), mask.leaves, std::move(mask.blocks), false);
     if (!voxels) return told(voxels.error());
     buffers.voxels = std::move(*voxels);

@@ -2,8 +2,10 @@
 #pragma once
 #include <nanovdb/NanoVDB.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,10 @@ struct DenseSource {
   Index3 size;
   bool masked = false;  ///< `valid` is asked for too: 0 or 1 a voxel
   std::function<Outcome(int z, int layers, std::span<float> values, std::span<std::uint8_t> valid)> read;
+  /// With `masked` only, asked for after `read` for the same layers; empty: the mask is one of voxels. 1 where the cell based at the voxel
+  /// may be valid. Voxels that no such cell touches are not valid, and `valid` says so.
+  std::function<Outcome(int z, int layers, std::span<std::uint8_t> cells)> read_cells{};
+  std::optional<std::array<double, 2>> range{};  ///< of the data that these were resampled from
 };
 
 inline bool is_finite_value(float v) { return std::isfinite(v); }
@@ -38,16 +44,18 @@ class DenseSlab {
   bool constant(std::size_t block, T& value) const;
   /// All voxels of the block that lie in the box, in the order of a leaf.
   void gather(std::size_t block, T* values, nanovdb::Mask<3>& active) const;
-  void gather_valid(std::size_t block, nanovdb::Mask<3>& valid) const;
+  void gather_valid(std::size_t block, nanovdb::Mask<3>& valid) const { gather_bits(block, valid_, valid); }
+  void gather_cells(std::size_t block, nanovdb::Mask<3>& cells) const { gather_bits(block, cells_, cells); }
 
  private:
   template <class Visit>
   void for_voxels(std::size_t block, const Visit& visit) const;
+  void gather_bits(std::size_t block, const std::vector<std::uint8_t>& bytes, nanovdb::Mask<3>& bits) const;
 
   const DenseSource& source_;
   int across_, along_, z_ = 0, layers_ = 0;  ///< blocks along x and y; layers in memory
   std::vector<T> values_;
-  std::vector<std::uint8_t> valid_;
+  std::vector<std::uint8_t> valid_, cells_;
 };
 
 /// What is wrong with the data as a field is told as `PREFIX...`: "x.raw: the data has no finite value in any active voxel".

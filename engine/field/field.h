@@ -127,7 +127,9 @@ using VectorFieldPtr = std::shared_ptr<const VectorField>;
 struct AnyField {
   ScalarFieldPtr scalar;             ///< set: it is a scalar field
   VectorFieldPtr vector;             ///< set: it is a vector field
-  std::vector<double> times{};       ///< of the file's steps in time; empty: it has one
+  std::vector<double> times{};       ///< of the file's steps in time; one, or empty: it has one step
+  std::string time_unit{};           ///< of `times`: "s", "hours since 2001-01-01"; empty: not stated
+  std::int64_t newest_ns = 0;        ///< when the youngest file that was read was last changed, since 1970; 0: not known
   std::vector<std::string> notes{};  ///< what is not as it was in the file: sentences without an end
   /// What both kinds share; null where neither is set.
   const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }

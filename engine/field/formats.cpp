@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/result.h"
 #include "engine/base/text.h"
 
@@ -20,6 +21,14 @@ std::vector<FileFormat>& registry() {
 
 }  // namespace
 
+bool has_dicom_magic(std::string_view path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return false;
+  char head[132] = {};
+  std::ifstream(std::string(path), std::ios::binary).read(head, sizeof head);
+  return std::string_view(head + 128, 4) == "DICM";
+}
+
 void add_format(FileFormat format) { registry().push_back(std::move(format)); }
 
 const FileFormat* format_of(std::string_view path, std::string_view* ending) {
@@ -30,7 +39,7 @@ const FileFormat* format_of(std::string_view path, std::string_view* ending) {
         return &format;
       }
   std::error_code code;
-  if (!std::filesystem::is_directory(path, code)) return nullptr;
+  if (!std::filesystem::is_directory(path, code) && !has_dicom_magic(path)) return nullptr;
   for (const FileFormat& format : registry())
     if (format.folders) {
       if (ending != nullptr) *ending = "";
@@ -67,7 +76,7 @@ Result<std::uint64_t> readable_file(const std::string& path) {
   errno = 0;
   if (error || !std::ifstream(path, std::ios::binary)) {
     const int why = errno;
-    return Error{fmt::format("{}: cannot be opened ({})", path, std::strerror(why)), too_many_files(why)};
+    return Error{fmt::format("{}: cannot be opened ({})", path, cause_of(why)), is_machine_failure(why)};
   }
   if (size == 0) return Error{fmt::format("{}: the file is empty", path)};
   return size;

@@ -15,7 +15,7 @@
 
 namespace catena::field {
 
-/// By its name alone.
+/// By its name; a folder and a DICOM file without an ending by themselves.
 bool is_field_file(std::string_view path);
 /// Whether it is of a format that does not say its own layout (.raw): a scene or an option has to.
 bool needs_layout(std::string_view path);
@@ -27,6 +27,9 @@ std::vector<std::string_view> field_endings(bool bare = false);
 std::string field_file_words();
 
 /// Private to this room: the checks that every reader makes of a path.
+
+/// DICOM files often have names without an ending: "DICM" after 128 bytes tells them.
+bool has_dicom_magic(std::string_view path);
 
 /// The size of a regular file that can be opened; else an error that names it.
 Result<std::uint64_t> readable_file(const std::string& path);
@@ -44,6 +47,8 @@ struct DenseFile {
   int components = 1;           ///< 1 or 3
   DenseSource source;           ///< keeps the file open
   std::vector<double> times{};  ///< as those of AnyField
+  std::string time_unit{};      ///< as that of AnyField
+  std::int64_t newest_ns = 0;   ///< as that of AnyField
   std::vector<std::string> notes{};
   std::shared_ptr<const Rounding> rounding{};  ///< what reading the numbers has rounded so far; none: nothing is told of it
 };
@@ -51,7 +56,7 @@ Result<AnyField> load_dense(const DenseFile& file);
 /// The same grid read by its cubic cells. What is no grid of its own values (points, meshes) is as it was.
 Result<AnyField> smooth(AnyField field, const std::string& path);
 /// Of a format that holds one grid: what there is once it is loaded.
-Result<std::vector<GridInfo>> describe_loaded(const std::string& path);
+Result<std::vector<GridInfo>> describe_loaded(const std::string& path, int step);
 
 /// One row of the registry of formats (formats.cpp).
 struct FileFormat {
@@ -60,9 +65,9 @@ struct FileFormat {
   /// Either a box of numbers is opened, or one grid of the file is loaded.
   Result<DenseFile> (*open)(const LoadRequest& request) = nullptr;
   Result<AnyField> (*load)(const LoadRequest& request) = nullptr;
-  Result<std::vector<GridInfo>> (*describe)(const std::string& path) = nullptr;
+  Result<std::vector<GridInfo>> (*describe)(const std::string& path, int step) = nullptr;
   Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< nullptr: the format has none
-  bool folders = false;                                                        ///< it reads folders, too
+  bool folders = false;                                                        ///< it reads folders, and DICOM files without an ending, too
 };
 /// One more, at start-up, before anything reads a file.
 void add_format(FileFormat format);

@@ -130,61 +130,9 @@ Index3 ScalarGrid::base_of(const Vec3& index) const noexcept { return storage_->
 std::size_t ScalarGrid::bytes() const noexcept { return storage_->bytes() + (ghosts_ ? ghosts_->memory.size() : 0); }
 float ScalarGrid::background() const { return storage_->values->tree().background(); }
 bool ScalarGrid::has_mask() const { return storage_->may_be_invalid; }
-
-namespace {
-
-/// Calls visit(place in the block, value) for every ghost of the region.
-template <class Grid, class Visit>
-void for_ghosts(const Grid& ghosts, const Index3& origin, const Index3& size, const Visit& visit) {
-  for_blocks(ghosts, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
-    const auto* leaf = accessor.probeLeaf(block);
-    if (leaf == nullptr) return;
-    for (std::int32_t z = first.z; z < after.z; ++z)
-      for (std::int32_t y = first.y; y < after.y; ++y)
-        for (std::int32_t x = first.x; x < after.x; ++x) {
-          const auto n = static_cast<std::uint32_t>((x & 7) * 64 + (y & 7) * 8 + (z & 7));
-          if (!leaf->valueMask().isOn(n)) continue;
-          visit((static_cast<std::size_t>(z - origin.z) * size.y + (y - origin.y)) * size.x + (x - origin.x), leaf->getValue(n));
-        }
-  });
-}
-
-}  // namespace
-
-void ScalarGrid::read_block(const Index3& origin, const Index3& size, std::span<float> out) const {
-  CATENA_ASSERT(out.size() >= static_cast<std::size_t>(size.x) * size.y * size.z);
-  for_blocks(*storage_->values, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
-    const auto* leaf = accessor.probeLeaf(block);
-    const float* values = leaf ? leaf->data()->mValues : nullptr;
-    const float constant = leaf ? 0.f : accessor.getValue(block);
-    for (std::int32_t z = first.z; z < after.z; ++z)
-      for (std::int32_t y = first.y; y < after.y; ++y) {
-        float* row = out.data() + (static_cast<std::size_t>(z - origin.z) * size.y + (y - origin.y)) * size.x;
-        for (std::int32_t x = first.x; x < after.x; ++x)
-          row[x - origin.x] = values ? values[(x & 7) * 64 + (y & 7) * 8 + (z & 7)] : constant;
-      }
-  });
-  if (ghosts_) for_ghosts(*ghosts_->grid, origin, size, [&](std::size_t at, float ghost) { out[at] = ghost; });
-}
-
-void ScalarGrid::read_cell_valid(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const {
-  CATENA_ASSERT(out.size() >= static_cast<std::size_t>(size.x) * size.y * size.z);
-  Cursor cursor;  // of corners alone, whatever the grid is read by
-  std::size_t n = 0;
-  for (std::int32_t z = origin.z; z < origin.z + size.z; ++z)
-    for (std::int32_t y = origin.y; y < origin.y + size.y; ++y)
-      for (std::int32_t x = origin.x; x < origin.x + size.x; ++x, ++n) {
-        const Index3 base{x, y, z};
-        out[n] = storage_->legal(base) && (!storage_->may_be_invalid || linear_walk(*this, *storage_, base, cursor).valid);
-      }
-}
-
-bool ScalarGrid::constant_block(const Index3& origin, float& value) const {
-  const auto accessor = storage_->values->getAccessor();
-  if (accessor.probeLeaf(coord(origin))) return false;
-  value = accessor.getValue(coord(origin));
-  return true;
-}
+bool ScalarGrid::has_cell_mask() const { return storage_->cells_masked; }
+double ScalarGrid::min_value() const noexcept { return storage_->data_range ? (*storage_->data_range)[0] : stats_.min; }
+double ScalarGrid::max_value() const noexcept { return storage_->data_range ? (*storage_->data_range)[1] : stats_.max; }
 
 VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage,
                        const GridStats& stats, std::shared_ptr<const Ghosts> ghosts)
@@ -259,26 +207,7 @@ VectorCell VectorGrid::cell(const Index3& base, Cursor& cursor) const noexcept {
 Index3 VectorGrid::base_of(const Vec3& index) const noexcept { return storage_->base_of(index); }
 std::size_t VectorGrid::bytes() const noexcept { return storage_->bytes() + (ghosts_ ? ghosts_->memory.size() : 0); }
 bool VectorGrid::has_mask() const { return storage_->may_be_invalid; }
-
-void VectorGrid::read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const {
-  CATENA_ASSERT(xyz_out.size() >= 3 * static_cast<std::size_t>(size.x) * size.y * size.z);
-  for_blocks(*storage_->values, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
-    const auto* leaf = accessor.probeLeaf(block);
-    const nanovdb::Vec3f* values = leaf ? leaf->data()->mValues : nullptr;
-    const nanovdb::Vec3f constant = leaf ? nanovdb::Vec3f(0.f) : accessor.getValue(block);
-    for (std::int32_t z = first.z; z < after.z; ++z)
-      for (std::int32_t y = first.y; y < after.y; ++y) {
-        float* row = xyz_out.data() + 3 * (static_cast<std::size_t>(z - origin.z) * size.y + (y - origin.y)) * size.x;
-        for (std::int32_t x = first.x; x < after.x; ++x) {
-          const nanovdb::Vec3f& v = values ? values[(x & 7) * 64 + (y & 7) * 8 + (z & 7)] : constant;
-          for (int c = 0; c < 3; ++c) row[3 * (x - origin.x) + c] = v[c];
-        }
-      }
-  });
-  if (!ghosts_) return;
-  for_ghosts(*ghosts_->grid, origin, size, [&](std::size_t at, const nanovdb::Vec3f& ghost) {
-    for (int c = 0; c < 3; ++c) xyz_out[3 * at + static_cast<std::size_t>(c)] = ghost[c];
-  });
-}
+double VectorGrid::min_length() const noexcept { return storage_->data_range ? (*storage_->data_range)[0] : stats_.min; }
+double VectorGrid::max_length() const noexcept { return storage_->data_range ? (*storage_->data_range)[1] : stats_.max; }
 
 }  // namespace catena::field

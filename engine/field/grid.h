@@ -32,9 +32,10 @@ class ScalarGrid final : public ScalarField {
   /// As ScalarField says, by the grid's interpolation.
   ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
   Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override;
-  double min_value() const noexcept override { return stats_.min; }
-  /// As ScalarField says.
-  double max_value() const noexcept override { return stats_.max; }
+  double min_value() const noexcept override;
+  /// As ScalarField says. Of data that were resampled (engine/vtk/resample.h) both are the range of the file's own values, which stats(),
+  /// of the voxels, may leave.
+  double max_value() const noexcept override;
   /// Itself.
   const ScalarGrid* grid() const noexcept override { return this; }
   /// True.
@@ -61,6 +62,8 @@ class ScalarGrid final : public ScalarField {
   /// The value of voxels that the tree does not hold.
   float background() const;
   bool has_mask() const;  ///< some cells may be invalid: a `valid` mask, or values that are not finite
+  /// Cells may be invalid though all their corners are valid: the mask was given by cells, and voxels alone do not say it.
+  bool has_cell_mask() const;
   /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background. Of a cubic grid
   /// missing samples are given as their ghosts (ghosts.h).
   void read_block(const Index3& origin, const Index3& size, std::span<float> out) const;
@@ -114,6 +117,10 @@ class VectorGrid final : public VectorField {
   const GridStats& stats() const { return stats_; }
   /// As in ScalarGrid.
   bool has_mask() const;
+  /// The least and the greatest length, as ScalarGrid's min_value() and max_value().
+  double min_length() const noexcept;
+  /// As min_length() the least.
+  double max_length() const noexcept;
   /// As in ScalarGrid, three floats a voxel.
   void read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const;
   const Storage& storage() const { return *storage_; }  ///< opaque outside this room
@@ -125,12 +132,14 @@ class VectorGrid final : public VectorField {
 };
 
 /// Grids made in memory: values by voxel, x fastest, over `size` voxels from index (0, 0, 0). `valid` (optional) by voxel.
+/// `cells` (optional, beside `valid`) by cell, at the number of the voxel at its base: 0 makes a cell with valid corners invalid.
 /// Voxels whose value is not finite are kept and counted.
 std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                   std::span<const float> values, std::span<const std::uint8_t> valid = {});
+                                                   std::span<const float> values, std::span<const std::uint8_t> valid = {},
+                                                   std::span<const std::uint8_t> cells = {});
 /// The same of vectors, three floats a voxel in world axes.
 std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
-                                                   std::span<const std::uint8_t> valid = {});
+                                                   std::span<const std::uint8_t> valid = {}, std::span<const std::uint8_t> cells = {});
 
 /// Samples any field at `resolution` nodes an axis, both ends included, over the cube lo..hi (the grid `generate` writes).
 std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);

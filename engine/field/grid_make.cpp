@@ -17,17 +17,28 @@ Index3 index3(const nanovdb::Coord& c) { return {c[0], c[1], c[2]}; }
 Vec3 vec3(const nanovdb::Coord& c) { return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])}; }
 
 /// Layers of what is in memory already.
-DenseSource layers_of(const Index3& size, std::span<const float> values, std::span<const std::uint8_t> valid) {
+DenseSource layers_of(const Index3& size, std::span<const float> values, std::span<const std::uint8_t> valid,
+                      std::span<const std::uint8_t> cells) {
+  CATENA_ASSERT(cells.empty() || (!valid.empty() && cells.size() == valid.size()));
   const std::size_t layer = static_cast<std::size_t>(size.x) * size.y;
   const auto copy = [layer]<class V>(std::span<const V> from, std::size_t components, int z, std::span<V> to) {
     std::copy_n(from.data() + static_cast<std::size_t>(z) * layer * components, to.size(), to.data());
   };
   const std::size_t components = values.size() / (layer * static_cast<std::size_t>(size.z));
-  return {size, !valid.empty(), [=](int z, int, std::span<float> values_out, std::span<std::uint8_t> valid_out) -> Outcome {
-            copy(values, components, z, values_out);
-            copy(valid, 1, z, valid_out);
-            return Done{};
-          }};
+  DenseSource source;
+  source.size = size;
+  source.masked = !valid.empty();
+  source.read = [=](int z, int, std::span<float> values_out, std::span<std::uint8_t> valid_out) -> Outcome {
+    copy(values, components, z, values_out);
+    copy(valid, 1, z, valid_out);
+    return Done{};
+  };
+  if (!cells.empty())
+    source.read_cells = [=](int z, int, std::span<std::uint8_t> out) -> Outcome {
+      copy(cells, 1, z, out);
+      return Done{};
+    };
+  return source;
 }
 
 std::size_t voxel_count(const Index3& size) { return static_cast<std::size_t>(size.x) * size.y * size.z; }
@@ -49,19 +60,25 @@ Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Ma
   if (box.empty()) return Error{"has no active voxels, expected a grid with data"};
   if (!is_near(box)) return too_far(box);
   const auto [stats, ranged] = stats_of(values, valid);
-  if (stats.nan_count == stats.active_voxels) return Error{"has no finite value in any active voxel"};
-  if (!ranged) return Error{"has no valid voxel with a finite value: the mask leaves nothing of it"};
+  if (!ranged && valid) return Error{"has no valid voxel with a finite value: the mask leaves nothing of it"};
+  if (!ranged) return Error{"has no finite value in any active voxel"};
   // its parts
   auto storage = std::make_unique<typename Grid::Storage>();
   storage->set_box(index3(box.lo), index3(box.hi));
   storage->values = &values;
   if (valid) {
     if (buffers.cells.size() == 0) {
-      CATENA_TRY(buffers.cells, erode(*valid, box, &NanoMemory::reserve, [](double bytes) { return ask_for_memory("its mask", bytes); }));
+      const bool own = buffers.own_cells.size() > 0;
+      const NanoMask* own_cells = own ? &nano_grid<nanovdb::ValueMask>(buffers.own_cells) : nullptr;
+      CATENA_TRY(buffers.cells,
+                 erode(*valid, box, own_cells, &NanoMemory::reserve, [](double bytes) { return ask_for_memory("its mask", bytes); }));
+      buffers.cells_masked = own;
     }
+    storage->cells_masked = buffers.cells_masked;
     storage->valid_voxels = valid;
     storage->valid_cells = &nano_grid<nanovdb::ValueMask>(buffers.cells);
   }
+  storage->data_range = buffers.range;
   storage->values_memory = std::move(buffers.values);
   storage->voxels_memory = std::move(buffers.voxels);
   storage->cells_memory = std::move(buffers.cells);
@@ -74,17 +91,18 @@ template Result<std::shared_ptr<const ScalarGrid>> grid_from_buffers<ScalarGrid>
 template Result<std::shared_ptr<const VectorGrid>> grid_from_buffers<VectorGrid>(std::string, const Mapping&, NanoBuffers);
 
 std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                   std::span<const float> values, std::span<const std::uint8_t> valid) {
+                                                   std::span<const float> values, std::span<const std::uint8_t> valid,
+                                                   std::span<const std::uint8_t> cells) {
   CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && values.size() == voxel_count(size));
   CATENA_ASSERT(valid.empty() || valid.size() == voxel_count(size));
-  return make_dense<ScalarGrid>(std::move(name), mapping, layers_of(size, values, valid), {}).value();
+  return make_dense<ScalarGrid>(std::move(name), mapping, layers_of(size, values, valid, cells), {}).value();
 }
 
 std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
-                                                   std::span<const std::uint8_t> valid) {
+                                                   std::span<const std::uint8_t> valid, std::span<const std::uint8_t> cells) {
   CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && xyz.size() == 3 * voxel_count(size));
   CATENA_ASSERT(valid.empty() || valid.size() == voxel_count(size));
-  return make_dense<VectorGrid>(std::move(name), mapping, layers_of(size, xyz, valid), {}).value();
+  return make_dense<VectorGrid>(std::move(name), mapping, layers_of(size, xyz, valid, cells), {}).value();
 }
 
 }  // namespace catena::field

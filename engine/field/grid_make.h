@@ -1,5 +1,8 @@
 /// Private to this room: a grid from its buffers, checked for what a field must hold.
 #pragma once
+#include <array>
+#include <optional>
+
 #include "engine/base/result.h"
 #include "engine/field/grid.h"
 #include "engine/field/nano_stats.h"
@@ -17,9 +20,12 @@ struct GridValue<VectorGrid> {
   using Type = nanovdb::Vec3f;
 };
 
-/// Values; the valid voxels and the valid cells, both empty where there is no mask. Cells that are missing are made.
+/// Values; the valid voxels and the valid cells, both empty where there is no mask. Cells that are missing are made, of the voxels and of
+/// `own_cells`, a mask of cells beside that of voxels (empty: there is none).
 struct NanoBuffers {
-  NanoMemory values, voxels, cells;
+  NanoMemory values, voxels, cells, own_cells;
+  bool cells_masked = false;                     ///< where `cells` are there: a mask of cells is in them
+  std::optional<std::array<double, 2>> range{};  ///< of the data that were resampled
 };
 
 /// An error (one phrase: "has no active voxels, ...") where no voxel is active, valid or finite, or where indices are too large.

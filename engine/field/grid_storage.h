@@ -1,13 +1,17 @@
 /// Private to this room: the NanoVDB buffers behind a grid, and the walk's memory.
-/// Where there is a mask, `valid_cells` has one bit a cell: set when all eight corners of the cell with that base are valid.
+/// Where there is a mask, `valid_cells` has one bit a cell: set when all eight corners of the cell with that base are valid and a mask of
+/// cells, where there is one, does not exclude it.
 #pragma once
 #include <nanovdb/NanoVDB.h>
 
+#include <array>
 #include <cstring>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <type_traits>
 
+#include "engine/base/display_range.h"
 #include "engine/field/grid.h"
 #include "engine/field/nano_stats.h"
 
@@ -25,12 +29,21 @@ struct GridStorage {
   Index3 lo, last;  ///< legal bases: lo..last
   Index3 step;      ///< 1, or 0 along an axis of one layer
   bool may_be_invalid = false;
+  bool cells_masked = false;                          ///< `valid_cells` is less than what `valid_voxels` says
+  std::optional<std::array<double, 2>> data_range{};  ///< of the data that were resampled: scalars, lengths of vectors
+  mutable std::mutex range_mutex;
+  mutable std::optional<DisplayRange> range;  ///< once somebody has asked (display_range.h)
 
   std::size_t bytes() const { return values_memory.size() + voxels_memory.size() + cells_memory.size(); }
   void set_box(const Index3& first, const Index3& final_voxel) {
     lo = first;
     step = {first.x < final_voxel.x, first.y < final_voxel.y, first.z < final_voxel.z};
     last = {final_voxel.x - step.x, final_voxel.y - step.y, final_voxel.z - step.z};
+  }
+  /// Whether the cell at a base is valid as far as the masks say.
+  template <class Accessor>
+  bool cell_valid(const Accessor& cells, const Index3& base) const {
+    return legal(base) && cells.getValue(nanovdb::Coord(base.x, base.y, base.z));
   }
   Index3 hi() const { return {last.x + step.x, last.y + step.y, last.z + step.z}; }  ///< the last voxel
   bool legal(const Index3& b) const { return b.x >= lo.x && b.y >= lo.y && b.z >= lo.z && b.x <= last.x && b.y <= last.y && b.z <= last.z; }

@@ -28,6 +28,11 @@ class Keeper {
     return loaded;
   }
 
+  void add(const LoadRequest& request, const AnyField& field) {
+    const std::scoped_lock lock(mutex_);
+    keep(request, field);
+  }
+
   bool has(const LoadRequest& request) {
     const std::scoped_lock lock(mutex_);
     return std::any_of(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.request == request; });
@@ -121,6 +126,7 @@ Keeper& keeper() {
 Result<AnyField> load_kept(const LoadRequest& request) { return keeper().load(request); }
 void load_ahead(std::vector<LoadRequest> requests) { keeper().ahead(std::move(requests)); }
 bool is_kept(const LoadRequest& request) { return keeper().has(request); }
+void keep(const LoadRequest& request, const AnyField& field) { keeper().add(request, field); }
 void forget_kept() { keeper().forget(); }
 
 }  // namespace catena::field

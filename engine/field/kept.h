@@ -12,6 +12,8 @@ Result<AnyField> load_kept(const LoadRequest& request);
 /// Loads these, in order, on a thread of its own; what was to be loaded before and has not begun is forgotten. Errors are left to who asks.
 void load_ahead(std::vector<LoadRequest> requests);
 bool is_kept(const LoadRequest& request);
+/// Keeps what was loaded elsewhere.
+void keep(const LoadRequest& request, const AnyField& field);
 /// Nothing is kept any more; waits for what is being loaded. For tests, and at the end of the program.
 void forget_kept();
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/field/dense.h"
+#include "engine/field/display_range.h"
 #include "engine/field/formats.h"
 #include "engine/field/write_box.h"
 
@@ -106,6 +107,26 @@ float tent(const Layers& layers, const Index3& size, const Index3& at, int facto
   return static_cast<float>(sum / weights);
 }
 
+/// One layer of a mask of cells: a coarse cell is invalid where half of the fine cells in it, or more, are.
+void coarse_cells(const VoxelBox& box, int factor, int z, std::span<std::uint8_t> out) {
+  const int n[3] = {box.size.x, box.size.y, box.size.z};
+  int step[3], left[3];
+  for (int a = 0; a < 3; ++a) step[a] = step_of(n[a], factor), left[a] = left_of(n[a], factor);
+  std::vector<int> invalid(out.size(), 0);
+  std::vector<std::uint8_t> layer(box.layer_voxels());
+  for (int k = z * step[2]; k < (z + 1) * step[2] && k < n[2]; ++k) {
+    box.read_cells(k, layer);
+    for (int y = 0; y < std::max(1, left[1] - 1); ++y)
+      for (int x = 0; x < std::max(1, left[0] - 1); ++x)
+        for (int j = 0; j < step[1]; ++j)
+          for (int i = 0; i < step[0]; ++i)
+            invalid[static_cast<std::size_t>(y) * static_cast<std::size_t>(left[0]) + static_cast<std::size_t>(x)] +=
+                layer[static_cast<std::size_t>(y * step[1] + j) * static_cast<std::size_t>(n[0]) +
+                      static_cast<std::size_t>(x * step[0] + i)] == 0;
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * invalid[i] < step[0] * step[1] * step[2] ? 1 : 0;
+}
+
 template <class Grid>
 Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const AnyField& field, int factor, bool averaged) {
   const VoxelBox box(field, field.get()->name(), {});
@@ -134,6 +155,12 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
     }
     return Done{};
   };
+  if (box.cells_masked)
+    source.read_cells = [&](int first, int count, std::span<std::uint8_t> cells) -> Outcome {
+      const std::size_t plane = static_cast<std::size_t>(source.size.x) * static_cast<std::size_t>(source.size.y);
+      for (int z = 0; z < count; ++z) coarse_cells(box, factor, first + z, cells.subspan(static_cast<std::size_t>(z) * plane, plane));
+      return Done{};
+    };
   Mapping mapping = box.mapping;
   const Vec3 steps(step(n.x), step(n.y), step(n.z));
   for (int axis = 0; axis < 3; ++axis) mapping.world_from_index_linear[axis] *= steps[axis];
@@ -171,7 +198,8 @@ Result<AnyField> at_level(const std::string& path, AnyField field, int level, bo
   }
   const Difference off =
       numbers != nullptr ? difference(*numbers, *coarse.scalar->grid()) : difference(*field.vector->grid(), *coarse.vector->grid());
-  const double scale = numbers != nullptr ? numbers->max_value() - numbers->min_value() : field.vector->grid()->stats().max;
+  const DisplayRange range = display_range(field);
+  const double scale = numbers != nullptr ? range.hi - range.lo : range.hi;
   const Box& now = coarse.get()->index_box();
   const auto size = [](const Box& b) {
     const Vec3 n = b.hi - b.lo + Vec3(1.0);

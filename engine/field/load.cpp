@@ -1,15 +1,23 @@
 #include "engine/field/load.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <new>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/text.h"
-#include "engine/field/formats.h"
+#include "engine/base/threads.h"
 #include "engine/field/crop.h"
+#include "engine/field/display_range.h"
+#include "engine/field/foreign.h"
+#include "engine/field/formats.h"
 #include "engine/field/level.h"
 
 namespace catena::field {
@@ -23,8 +31,10 @@ Result<T> guarded(const std::string& path, const Body& body) {
   try {
     return body();
   } catch (const std::bad_alloc&) {
+    if (limit_in_force(RLIMIT_AS)) return Error{path + ": there is not enough memory to read it: " + cause_of(ENOMEM), true};
     return Error{fmt::format("{}: not enough memory to read it (or the file is damaged)", path)};
   } catch (const std::exception& e) {
+    if (is_thread_refusal(e)) return Error{path + ": no other thread can be started: " + cause_of(thread_refusal()), true};
     return Error{fmt::format("{}: the file is damaged or of an unknown kind ({})", path, one_line(e.what()))};
   } catch (...) {
     return Error{fmt::format("{}: the file is damaged or of an unknown kind", path)};
@@ -38,7 +48,24 @@ bool has_finite_box(const Field& field) {
   return finite;
 }
 
+/// Where the largest size of a value lies outside 1e-30 .. 1e30, what that hints at: a sentence without an end.
+std::string absurd_sizes(const AnyField& field) {
+  const GridStats* stats = field.scalar && field.scalar->grid()   ? &field.scalar->grid()->stats()
+                           : field.vector && field.vector->grid() ? &field.vector->grid()->stats()
+                                                                  : nullptr;
+  if (stats == nullptr) return {};
+  const double most = std::max(std::fabs(stats->min), std::fabs(stats->max));
+  constexpr double kSmallest = 1e-30, kLargest = 1e30;
+  if (most == 0 || (most >= kSmallest && most <= kLargest)) return {};
+  return fmt::format(
+      "the values go from {:.3g} to {:.3g}: if that is not meant, the type or the order of the bytes is another one, or a number stands "
+      "for \"no data\"",
+      stats->min, stats->max);
+}
+
 Error unknown_kind(const std::string& path) {
+  if (const std::string conversion = conversion_of(path); !conversion.empty())
+    return Error{fmt::format("{}: this is {}", path, conversion)};
   return Error{fmt::format("{}: unknown kind of file, expected {}", path, field_file_words())};
 }
 
@@ -67,6 +94,8 @@ Result<AnyField> load_dense(const DenseFile& file) {
     CATENA_TRY(field.scalar, make_dense<ScalarGrid>(file.name, file.mapping, file.source, file.prefix));
   }
   field.times = file.times;
+  field.time_unit = file.time_unit;
+  field.newest_ns = file.newest_ns;
   field.notes = file.notes;
   if (file.rounding)
     for (std::string& note : notes_of(*file.rounding, file.type)) field.notes.push_back(std::move(note));
@@ -75,9 +104,10 @@ Result<AnyField> load_dense(const DenseFile& file) {
   return field;
 }
 
-Result<std::vector<GridInfo>> describe_loaded(const std::string& path) {
+Result<std::vector<GridInfo>> describe_loaded(const std::string& path, int step) {
   LoadRequest request;
   request.path = path;
+  request.step = step;
   const FileFormat* format = format_of(path);
   std::string type;
   Result<AnyField> loaded = Error{};
@@ -94,6 +124,7 @@ Result<std::vector<GridInfo>> describe_loaded(const std::string& path) {
   info.name = any.name();
   info.type = !type.empty() ? type : field.scalar ? "float" : "vec3s";
   info.stats = field.scalar ? field.scalar->grid()->stats() : field.vector->grid()->stats();
+  info.shown = display_range(field);
   const Vec3 size = any.index_box().hi - any.index_box().lo;
   info.size = {std::llround(size.x) + 1, std::llround(size.y) + 1, std::llround(size.z) + 1};
   info.mapping = any.mapping();
@@ -108,13 +139,20 @@ void count_grid() { ++grids; }
 void count_mask() { ++masks; }
 LoadCounters load_counters() { return {files, grids, masks}; }
 
+/// The format; of a folder with a known ending (Zarr) none.
+static const FileFormat* format_to_read(const std::string& path) {
+  std::string_view ending;
+  const FileFormat* format = format_of(path, &ending);
+  return format != nullptr && ending.empty() && !conversion_of(path).empty() ? nullptr : format;
+}
+
 Result<AnyField> load(const LoadRequest& request) {
-  const FileFormat* format = format_of(request.path);
+  const FileFormat* format = format_to_read(request.path);
   if (request.raw && (format == nullptr || !format->needs_layout))
     return Error{fmt::format("{}: shape, spacing, origin and type belong to .raw files only", request.path)};
   return guarded<AnyField>(request.path, [&]() -> Result<AnyField> {
     if (format == nullptr) {
-      CATENA_CHECK(readable_file(request.path));
+      if (!std::filesystem::is_directory(request.path)) CATENA_CHECK(readable_file(request.path));
       return unknown_kind(request.path);
     }
     Result<AnyField> field = Error{};
@@ -127,6 +165,9 @@ Result<AnyField> load(const LoadRequest& request) {
     if (field && !has_finite_box(*field->get()))
       return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
     if (!field) return field;
+    const auto is_hinted = [](const std::string& note) { return note.find("bytes") != std::string::npos; };
+    if (const std::string absurd = absurd_sizes(*field); !absurd.empty() && std::ranges::none_of(field->notes, is_hinted))
+      field->notes.push_back(absurd);
     if (request.crop && !has_ending(request.path, ".vdb")) {  // of a .vdb nothing else was read
       CATENA_TRY(field, cropped(request.path, *field, *request.crop));
     }
@@ -141,11 +182,11 @@ Result<AnyField> load(const LoadRequest& request) {
   });
 }
 
-Result<std::vector<GridInfo>> describe(const std::string& path) {
-  const FileFormat* format = format_of(path);
+Result<std::vector<GridInfo>> describe(const std::string& path, int step) {
+  const FileFormat* format = format_to_read(path);
   return guarded<std::vector<GridInfo>>(path, [&]() -> Result<std::vector<GridInfo>> {
-    if (format != nullptr) return format->describe(path);
-    CATENA_CHECK(readable_file(path));
+    if (format != nullptr) return format->describe(path, step);
+    if (!std::filesystem::is_directory(path)) CATENA_CHECK(readable_file(path));
     return unknown_kind(path);
   });
 }

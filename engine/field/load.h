@@ -4,11 +4,13 @@
 /// allocated on the word of a header beyond what engine/base/memory_limit.h allows.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/display_range.h"
 #include "engine/base/result.h"
 #include "engine/field/grid.h"
 
@@ -65,13 +67,16 @@ struct GridInfo {
   Index3 lowest{0, 0, 0};             ///< index of the first voxel
   Mapping mapping;                    ///< world from index
   GridStats stats;                    ///< active_voxels: how many of what is counted
+  DisplayRange shown;                 ///< of a usable grid (display_range.h)
   Counted counted = Counted::voxels;  ///< what size and active_voxels count
   std::size_t bytes = 0;              ///< in memory, as NanoVDB
   bool usable = false;                ///< Catena can load it as a field
   bool is_vector = false;             ///< Vectors of three components.
+  std::string number;                 ///< of a DICOM series, by which --grid finds it, too; empty: none
+  std::int32_t images = 0;            ///< that a DICOM volume was made of; 0: not counted
 };
-/// Describes every grid of a file.
-Result<std::vector<GridInfo>> describe(const std::string& path);
+/// Describes every grid of a file, as it is at a step in time.
+Result<std::vector<GridInfo>> describe(const std::string& path, int step = 0);
 
 /// What of a file of the program catena-read-vtk is drawn as it lies, beside points.
 struct Shapes {
@@ -79,6 +84,9 @@ struct Shapes {
 };
 /// Empty where the file cannot be read.
 std::optional<Shapes> shapes_in(const std::string& path);
+
+/// The times of the steps that a file of the program catena-read-vtk states; empty: none, or it is another file.
+std::vector<double> times_in(const std::string& path);
 
 /// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
 struct WriteItem {
@@ -91,6 +99,11 @@ Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items);
 /// Reads one grid and writes it to a .vdb; raw and NIfTI files layer by layer, without a grid in this process's memory. Returns the grid's
 /// name in the output: `name`, else its own, else the file's.
 Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name);
+
+/// Called about once a second while a file is read by another program, with the seconds so far, and once with `ended`. Any thread.
+using WhileReading = std::function<void(const std::string& path, double seconds, bool ended)>;
+/// Once, before anything is read.
+void set_while_reading(WhileReading called);
 
 /// Counts of what was really loaded, so that a test can show that only what the scene names is.
 struct LoadCounters {

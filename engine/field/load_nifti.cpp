@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <vector>
 
+#include "engine/base/input_files.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/number_type.h"
@@ -48,11 +51,38 @@ std::string_view word_of(int datatype) {
   }
 }
 
-Mapping mapping_of(const nifti_image& image) {
-  const mat44& m = image.sform_code > 0 ? image.sto_xyz : image.qto_xyz;
+Mapping mapping_of(const mat44& m) {
   Mat3 j;
   for (int a = 0; a < 3; ++a) j[a] = Vec3(m.m[0][a], m.m[1][a], m.m[2][a]);
   return Mapping::from_linear(j, Vec3(m.m[0][3], m.m[1][3], m.m[2][3]));
+}
+
+bool is_usable(const Mapping& mapping) {
+  return is_finite(mapping.origin) && is_finite(mapping.index_from_world(Vec3(1.0))) && mapping.smallest_edge() > 0;
+}
+
+/// The sform, else the qform, else the voxel sizes. A note says where the sform cannot be used, and where both say different places.
+Result<Mapping> placement_of(const nifti_image& image, const std::string& path, std::vector<std::string>& notes) {
+  const bool has_sform = image.sform_code > 0, has_qform = image.qform_code > 0;
+  const Mapping sform = mapping_of(image.sto_xyz), qform = mapping_of(image.qto_xyz);
+  if (has_sform && is_usable(sform)) {
+    if (!has_qform || !is_usable(qform)) return sform;
+    double apart = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 index((corner & 1) * (image.nx - 1.0), (corner >> 1 & 1) * (image.ny - 1.0), (corner >> 2) * (image.nz - 1.0));
+      apart = std::max(apart, norm(sform.world_from_index(index) - qform.world_from_index(index)));
+    }
+    constexpr double kOfVoxel = 0.01;
+    if (apart > kOfVoxel * sform.smallest_edge())
+      notes.push_back(fmt::format("sform ({}) and qform ({}) differ, by up to {:.3g} at the corners: the sform is used",
+                                  nifti_xform_string(image.sform_code), nifti_xform_string(image.qform_code), apart));
+    return sform;
+  }
+  if (has_sform && !has_qform)
+    return Error{fmt::format("{}: the transform of the header (sform) cannot be inverted, and there is no qform", path)};
+  if (!is_usable(qform)) return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
+  if (has_sform) notes.push_back("the sform cannot be inverted: the qform is used");
+  return qform;
 }
 
 /// The voxels of one volume, in order. The library's stream is inflated no further than the header promises.
@@ -123,21 +153,39 @@ class NiftiLayers {
   std::vector<std::byte> raw_;
 };
 
-/// Seconds; empty: the fourth axis is none of time.
-std::vector<double> times_of(const nifti_image& image) {
+/// Steps along the fourth axis.
+struct Steps {
+  std::vector<double> times;  ///< seconds; empty: it is not one of time
+  std::string interval;       ///< a phrase for the type
+  std::string note;           ///< why they have no times
+};
+Steps steps_of(const nifti_image& image, double dt, int volume) {
+  Steps steps;
+  if (image.nt <= 1) return steps;
+  const std::string which = fmt::format("volume {} of {}, counted from 0: ", volume, image.nt);
+  const std::string other = "; \"step\" of the field chooses another";
   const double unit = image.time_units == NIFTI_UNITS_SEC    ? 1
                       : image.time_units == NIFTI_UNITS_MSEC ? 1e-3
                       : image.time_units == NIFTI_UNITS_USEC ? 1e-6
                                                              : 0;
-  std::vector<double> times;
-  for (int i = 0; i < image.nt && image.nt > 1 && unit > 0; ++i)
-    times.push_back(unit * (static_cast<double>(image.toffset) + i * static_cast<double>(image.dt)));
-  return times;
+  if (unit == 0) {
+    const std::string stated = image.time_units > 0 ? std::string(", but in ") + nifti_units_string(image.time_units)
+                               : dt != 0            ? fmt::format(" (pixdim[4] is {:g}, without a unit)", dt)
+                                                    : "";
+    steps.note = which + "the header does not say that they are steps in time" + stated + other;
+  } else if (!(dt > 0) || !std::isfinite(dt) || !std::isfinite(image.toffset)) {
+    steps.note = which + fmt::format("pixdim[4], the time between them, is {:g}, so that they have no times", dt) + other;
+  } else {
+    for (int i = 0; i < image.nt; ++i) steps.times.push_back(unit * (static_cast<double>(image.toffset) + i * dt));
+    steps.interval = fmt::format(", {:g} s apart from {:g} s on", unit * dt, steps.times.front());
+  }
+  return steps;
 }
 
 struct Header {
   Image image;
   bool swapped = false;
+  std::array<float, 5> pixdim{};  ///< as stored: the library makes 1 of 0
 };
 
 /// The header is looked at first: the library reports some bad ones on stderr, whatever its debug level, and takes a place of the voxels
@@ -163,8 +211,9 @@ Result<Header> read_header(const std::string& path) {
   constexpr std::int32_t kMaxOffset = 1 << 28;
   if (!(header->vox_offset >= 0 && header->vox_offset <= static_cast<float>(kMaxOffset)))
     return Error{fmt::format("{}: vox_offset is {}, expected 0 to {} bytes before the voxels", path, header->vox_offset, kMaxOffset)};
-  Header read{Image(nifti_convert_nhdr2nim(*header, path.c_str())), swapped != 0};
+  Header read{Image(nifti_convert_nhdr2nim(*header, path.c_str())), swapped != 0, {}};
   if (!read.image) return unknown();
+  std::copy_n(header->pixdim, read.pixdim.size(), read.pixdim.begin());
   return read;
 }
 
@@ -189,22 +238,29 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
         fmt::format("{}: the image has {} dimensions (vectors or more), expected a scalar volume of 3, or 4 with time", path, image.ndim)};
   if (image.nx < 1 || image.ny < 1 || image.nz < 1 || image.iname_offset < 0 || !image.iname)
     return Error{fmt::format("{}: the header is damaged", path)};
-  const Mapping mapping = mapping_of(image);
-  if (!is_finite(mapping.origin) || !is_finite(mapping.index_from_world(Vec3(1.0))) || !(mapping.smallest_edge() > 0))
-    return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
+  std::vector<std::string> notes;
+  CATENA_TRY(const Mapping mapping, placement_of(image, path, notes));
+  for (std::size_t a = 1; a <= 3 && image.sform_code <= 0; ++a)
+    if (static_cast<int>(a) <= image.ndim && (header.pixdim[a] == 0 || !std::isfinite(header.pixdim[a])))
+      notes.push_back(fmt::format("pixdim[{}], the size of a voxel, is {:g}: 1 is taken for it", a, header.pixdim[a]));
+  if (image.scl_slope != 0 && !(std::isfinite(image.scl_slope) && std::isfinite(image.scl_inter)))
+    notes.push_back("scl_slope or scl_inter is not finite: the values are as stored");
   // the voxels of the first volume: dimensions are 16-bit numbers
   const int volumes = std::max(image.nt, 1), volume = std::min(request.step, volumes - 1);
   const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size, volume);
+  if (const auto voxels = file_id(image.iname)) add_inputs({*voxels});  // another file (.img) where the header says so
   CATENA_CHECK(layers->open(image.iname));
-  DenseFile file{
-      name, volumes > 1 ? fmt::format("{}, first of {} volumes", word, volumes) : std::string(word), path + ": the volume ", mapping, 1,
-      {}};
-  file.times = times_of(image);
-  if (volumes > 1 && file.times.empty())
-    file.notes.push_back(
-        fmt::format("volume {} of {}, counted from 0: the header does not say that they are steps in time; \"step\" of the "
-                    "field chooses another",
-                    volume, volumes));
+  Steps steps = steps_of(image, static_cast<double>(header.pixdim[4]), volume);
+  DenseFile file{name,
+                 volumes > 1 ? fmt::format("{}, first of {} volumes{}", word, volumes, steps.interval) : std::string(word),
+                 path + ": the volume ",
+                 mapping,
+                 1,
+                 {}};
+  file.times = std::move(steps.times);
+  if (!file.times.empty()) file.time_unit = "s";
+  if (!steps.note.empty()) notes.push_back(steps.note);
+  file.notes = std::move(notes);
   file.rounding = layers->rounding;
   file.source.size = {image.nx, image.ny, image.nz};
   CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, image.nx, image.ny, image.nz), file.source.size, 1,

@@ -98,7 +98,7 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
   return file;
 }
 
-static Result<std::vector<GridInfo>> describe_raw(const std::string& path) {
+static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) {
   CATENA_CHECK(readable_file(path));
   return Error{
       path +

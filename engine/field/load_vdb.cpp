@@ -26,6 +26,7 @@ Result<NanoBuffers> buffers_of(const ReaderAnswer& answer) {
   if (!answer.reply.masked) return buffers;
   CATENA_TRY(buffers.voxels, buffer_at<nanovdb::ValueMask>(answer.memory, answer.reply.voxels));
   CATENA_TRY(buffers.cells, buffer_at<nanovdb::ValueMask>(answer.memory, answer.reply.cells));
+  buffers.cells_masked = answer.reply.cells_masked;
   return buffers;
 }
 

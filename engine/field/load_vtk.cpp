@@ -2,9 +2,13 @@
 // as it is checked here.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
+#include "engine/base/text.h"
 #include "engine/field/formats.h"
+#include "engine/field/parts.h"
 #include "engine/field/reader.h"
 
 namespace catena::field {
@@ -30,12 +34,16 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   if (!mapping.is_sound()) return damaged_answer(path, "the transform cannot be inverted");
   const std::span<const float> values = kept->numbers<float>(dense.values);
   const std::span<const std::uint8_t> valid = kept->numbers<std::uint8_t>(dense.valid);
+  const std::span<const std::uint8_t> cells = kept->numbers<std::uint8_t>(dense.cells);
   const double voxels = static_cast<double>(n.x) * n.y * n.z;
-  if (static_cast<double>(values.size()) != voxels * components || (!valid.empty() && static_cast<double>(valid.size()) != voxels))
+  if (static_cast<double>(values.size()) != voxels * components || (!valid.empty() && static_cast<double>(valid.size()) != voxels) ||
+      (!cells.empty() && cells.size() != valid.size()))
     return damaged_answer(path, "there are not as many values as voxels");
   CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, components, !valid.empty()));
   DenseFile file{reply.name, dense.type, path + ": " + reply.name + " ", mapping, components, {}};
   file.times = reply.times;
+  file.time_unit = reply.time_unit;
+  file.newest_ns = reply.newest_ns;
   file.notes = reply.notes;
   file.source.size = n;
   file.source.masked = !valid.empty();
@@ -47,6 +55,18 @@ Result<AnyField> load_answered(const LoadRequest& request) {
     for (std::size_t i = 0; i < good.size(); ++i) good[i] = valid[first + i] != 0 ? 1 : 0;
     return Done{};
   };
+  if (!cells.empty())
+    file.source.read_cells = [kept, cells, n](int z, int layers, std::span<std::uint8_t> good) -> Outcome {
+      const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
+      const std::size_t first = layer * static_cast<std::size_t>(z), count = layer * static_cast<std::size_t>(layers);
+      for (std::size_t i = 0; i < count; ++i) good[i] = cells[first + i] != 0 ? 1 : 0;
+      return Done{};
+    };
+  if (dense.has_range) {
+    if (!(std::isfinite(dense.least) && std::isfinite(dense.most) && dense.least <= dense.most))
+      return damaged_answer(path, "the range is none");
+    file.source.range = {{dense.least, dense.most}};
+  }
   return load_dense(file);
 }
 
@@ -68,12 +88,20 @@ std::optional<Shapes> shapes_in(const std::string& path) {
   return file ? std::optional(file->shapes) : std::nullopt;
 }
 
+std::vector<double> times_in(const std::string& path) {
+  const std::vector<std::string_view> endings = vtk_format().endings;
+  if (case_folder(path).empty() && std::ranges::none_of(endings, [&](std::string_view ending) { return has_ending(path, ending); }))
+    return {};
+  const std::optional<ReadReply> file = words_of(path);
+  return file ? file->times : std::vector<double>();
+}
+
 /// .npy: a single array, described by loading it.
 FileFormat npy_format() { return {.endings = {".npy"}, .load = load_answered, .describe = describe_loaded}; }
 
 FileFormat vtk_format() {
-  return {.endings = {".vti",  ".vtr", ".vts", ".vtu", ".vtm",  ".vtmb", ".vtk",   ".pvti", ".pvtr", ".pvts", ".pvtu", ".nrrd",
-                      ".nhdr", ".mha", ".mhd", ".dcm", ".foam", ".case", ".encas", ".cgns", ".nc",   ".cdf",  ".npz"},
+  return {.endings = {".vti", ".vtr", ".vts", ".vtu",  ".vtm",  ".vtmb",  ".vtk",  ".pvti", ".pvtr", ".pvts", ".pvtu", ".nrrd",  ".nhdr",
+                      ".mha", ".mhd", ".dcm", ".foam", ".case", ".encas", ".cgns", ".nc",   ".cdf",  ".npz",  ".pvd",  ".series"},
           .load = load_answered,
           .describe = describe_answered,
           .units = units_answered,

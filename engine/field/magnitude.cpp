@@ -5,7 +5,9 @@
 
 #include "engine/base/threads.h"
 #include "engine/field/dense.h"
+#include "engine/field/display_range.h"
 #include "engine/field/grid.h"
+#include "engine/field/grid_storage.h"
 
 namespace catena::field {
 namespace {
@@ -62,14 +64,17 @@ void mark_corners(const VectorGrid& grid, const Index3& size, int z, int layers,
 }  // namespace
 
 double largest_magnitude(const VectorField& field) {
-  if (field.grid() != nullptr) return field.grid()->stats().max;
+  if (field.grid() != nullptr) return display_range(*field.grid()).hi;
   return largest(field, [&](const Vec3& world, Cursor& cursor) { return norm(field.sample(world, cursor).value); });
 }
 
 double largest_gradient(const ScalarField& field) {
+  const DisplayRange range = display_range(field);
   return largest(field, [&](const Vec3& world, Cursor& cursor) {
     const ScalarSample sample = field.sample(world, cursor);
-    return sample.inside ? norm(sample.gradient) : 0.0;
+    // the middle of a cell with an outlier at a corner lies beyond the range, too
+    const bool counts = (range.below.count == 0 || sample.value >= range.lo) && (range.above.count == 0 || sample.value <= range.hi);
+    return sample.inside && counts ? norm(sample.gradient) : 0.0;
   });
 }
 
@@ -94,7 +99,22 @@ Result<std::shared_ptr<const ScalarGrid>> magnitude_grid(const VectorGrid& grid,
   };
   Mapping mapping = grid.mapping();
   mapping.origin = mapping.world_from_index(box.lo);
-  auto made = make_dense<ScalarGrid>(grid.name(), mapping, {size, grid.has_mask(), read}, what + " ");
+  DenseSource source{size, grid.has_mask(), read};
+  const VectorGrid::Storage& storage = grid.storage();
+  if (storage.cells_masked)
+    source.read_cells = [&](int z, int layers, std::span<std::uint8_t> cells) -> Outcome {
+      const auto valid = storage.valid_cells->getAccessor();
+      std::size_t n = 0;
+      for (int k = z; k < z + layers; ++k)
+        for (int j = 0; j < size.y; ++j)
+          for (int i = 0; i < size.x; ++i, ++n) {
+            const Index3 base{origin.x + i, origin.y + j, origin.z + k};
+            cells[n] = !storage.legal(base) || storage.cell_valid(valid, base) ? 1 : 0;
+          }
+      return Done{};
+    };
+  source.range = storage.data_range;
+  auto made = make_dense<ScalarGrid>(grid.name(), mapping, source, what + " ");
   if (!made) return Error{made.error().message + "; magnitudes that fit into 32-bit floats were expected"};
   return made;
 }

@@ -1,6 +1,7 @@
 /// The largest magnitude X of a field: what safe normalisation divides by. Off the tick: it reads the whole field.
 ///   vector grids: max |v| over the active voxels; scalar grids: max |grad s| over the cells' centres
 ///   formulas: over 33^3 places of the box -2..2, finite ones only
+/// Outliers and fill values (display_range.h) do not count, nor do cells with one.
 /// And the magnitudes themselves as a grid.
 #pragma once
 #include <memory>

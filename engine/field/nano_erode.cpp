@@ -75,7 +75,7 @@ struct Region {
 
 class Eroder {
  public:
-  Eroder(const NanoMask& valid, const ActiveBox& box) : valid_(valid), box_(box) {
+  Eroder(const NanoMask& valid, const ActiveBox& box, const NanoMask* cells) : valid_(valid), cells_(cells), box_(box) {
     for (int a = 0; a < 3; ++a) step_[a] = box.voxels(a) > 1 ? 1 : 0;
   }
 
@@ -93,8 +93,10 @@ class Eroder {
   }
 
   void look_at(Region& region) const {
-    const Clipped mask(valid_, box_);
-    if (surrounded(region.origin, kLowerEdge, [&](const Coord& c) { return mask.region(c); })) {
+    const Clipped mask(valid_, box_), cells(cells_ != nullptr ? *cells_ : valid_, box_);
+    const Fill own = cells_ != nullptr ? cells.region(region.origin) : Fill::all;
+    if (own == Fill::none) return;
+    if (own == Fill::all && surrounded(region.origin, kLowerEdge, [&](const Coord& c) { return mask.region(c); })) {
       region.fill = Fill::all;
       return;
     }
@@ -102,9 +104,10 @@ class Eroder {
     for (std::uint32_t n = 0; n < kLowerEntries; ++n) {
       const Coord block = lower_coord(region.origin, n);
       const Fill fill = mask.block(block);
-      if (fill == Fill::none) continue;
+      const Fill own_block = cells_ != nullptr ? cells.block(block) : Fill::all;
+      if (fill == Fill::none || own_block == Fill::none) continue;
       const std::uint64_t bit = std::uint64_t{1} << (n & 63);
-      if (fill == Fill::all && surrounded(block, kLeafEdge, state)) {
+      if (fill == Fill::all && own_block == Fill::all && surrounded(block, kLeafEdge, state)) {
         region.full[n >> 6] |= bit;
       } else {
         region.partial[n >> 6] |= bit;
@@ -114,7 +117,7 @@ class Eroder {
   }
 
   void fill(const Coord& origin, NanoTypes<Mask>::Leaf& leaf) const {
-    const Clipped mask(valid_, box_);
+    const Clipped mask(valid_, box_), cells(cells_ != nullptr ? *cells_ : valid_, box_);
     // the block and one layer beyond it, then eight corners a cell
     bool window[9][9][9];
     for (int x = 0; x < 9; ++x)
@@ -124,7 +127,7 @@ class Eroder {
     for (int x = 0; x < 8; ++x)
       for (int y = 0; y < 8; ++y)
         for (int z = 0; z < 8; ++z) {
-          bool all = true;
+          bool all = cells_ == nullptr || cells.voxel(origin.offsetBy(x, y, z));
           for (int c = 0; c < 8; ++c) all = all && window[x + (c & 1) * step_[0]][y + (c >> 1 & 1) * step_[1]][z + (c >> 2) * step_[2]];
           if (all) leaf.mValueMask.setOn(static_cast<std::uint32_t>(x * 64 + y * 8 + z));
         }
@@ -141,6 +144,7 @@ class Eroder {
   }
 
   const NanoMask& valid_;
+  const NanoMask* cells_;  ///< null: none
   ActiveBox box_;
   std::array<std::int32_t, 3> step_{};
 };
@@ -154,9 +158,9 @@ void for_bits(const std::array<std::uint64_t, 64>& bits, const Visit& visit) {
 
 }  // namespace
 
-Result<NanoMemory> erode(const NanoMask& valid, const ActiveBox& box, const NanoAllocator& allocate,
+Result<NanoMemory> erode(const NanoMask& valid, const ActiveBox& box, const NanoMask* cells, const NanoAllocator& allocate,
                          const std::function<Outcome(double bytes)>& ask) {
-  const Eroder eroder(valid, box);
+  const Eroder eroder(valid, box, cells);
   // what becomes of each region
   const std::vector<Coord> origins = eroder.candidates();
   CATENA_CHECK(ask(static_cast<double>(origins.size()) * sizeof(Region)));

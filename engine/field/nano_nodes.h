@@ -20,6 +20,22 @@ class MaskView {
   }
   /// Some voxel of the region is on.
   bool any(const nanovdb::Coord& origin, std::int32_t edge) const { return find<true>(origin, edge); }
+  /// Voxels of the region that are on.
+  std::uint64_t count(const nanovdb::Coord& origin, std::int32_t edge) const {
+    const auto* entry = root_.probeTile(origin);
+    if (entry == nullptr) return 0;
+    if (entry->isValue()) return entry->value ? cube(edge) : 0;
+    const auto& upper = *reinterpret_cast<const Upper*>(root_.data()->getChild(entry));
+    const std::uint32_t own = upper_entry(origin);
+    if (edge == kLowerEdge) return count_in_upper(upper, own);
+    if (edge != kUpperEdge) {
+      if (!upper.mChildMask.isOn(own)) return upper.mTable[own].value ? cube(edge) : 0;
+      return count_in_lower(*reinterpret_cast<const Lower*>(upper.getChild(own)), lower_entry(origin));
+    }
+    std::uint64_t all = 0;
+    for (std::uint32_t n = 0; n < kUpperEntries; ++n) all += count_in_upper(upper, n);
+    return all;
+  }
   /// Every voxel of the region is on.
   bool all(const nanovdb::Coord& origin, std::int32_t edge) const { return !find<false>(origin, edge); }
 
@@ -27,6 +43,19 @@ class MaskView {
   using Upper = NanoTypes<nanovdb::ValueMask>::Upper;
   using Lower = NanoTypes<nanovdb::ValueMask>::Lower;
   using Leaf = NanoTypes<nanovdb::ValueMask>::Leaf;
+
+  static std::uint64_t cube(std::int64_t edge) { return static_cast<std::uint64_t>(edge * edge * edge); }
+  static std::uint64_t count_in_upper(const Upper& upper, std::uint32_t n) {
+    if (!upper.mChildMask.isOn(n)) return upper.mTable[n].value ? cube(kLowerEdge) : 0;
+    const auto& lower = *reinterpret_cast<const Lower*>(upper.getChild(n));
+    std::uint64_t all = 0;
+    for (std::uint32_t m = 0; m < kLowerEntries; ++m) all += count_in_lower(lower, m);
+    return all;
+  }
+  static std::uint64_t count_in_lower(const Lower& lower, std::uint32_t n) {
+    if (!lower.mChildMask.isOn(n)) return lower.mTable[n].value ? cube(8) : 0;
+    return reinterpret_cast<const Leaf*>(lower.getChild(n))->mValueMask.countOn();
+  }
 
   template <bool kOn>
   bool find(const nanovdb::Coord& origin, std::int32_t edge) const {

@@ -94,29 +94,25 @@ std::uint32_t widen_all(GridStats& s, const nanovdb::Vec3f* values) {
 
 template <class T>
 void add_leaf(GridStats& s, const typename NanoTypes<T>::Leaf& leaf, const MaskView* valid) {
-  const bool full = leaf.mValueMask.isOn();
-  if (full) s.active_voxels += 512;
-  if (full && valid == nullptr) {
+  if (valid == nullptr && leaf.mValueMask.isOn()) {
+    s.active_voxels += 512;
     s.nan_count += widen_all(s, leaf.mValues);
     return;
   }
   for (int x = 0; x < 8; ++x) {
-    const std::uint64_t active = leaf.mValueMask.template getWord<std::uint64_t>(x);
-    const std::uint64_t ranged = valid ? valid->word(leaf.mBBoxMin, x) : ~std::uint64_t{0};
-    if (!full) s.active_voxels += static_cast<std::uint64_t>(std::popcount(active));
-    for (std::uint64_t left = active; left != 0; left &= left - 1) {
-      const int at = std::countr_zero(left);
-      GridStats unseen;
-      if (!widen(ranged >> at & 1 ? s : unseen, leaf.mValues[64 * x + at])) ++s.nan_count;
-    }
+    const std::uint64_t counted =
+        leaf.mValueMask.template getWord<std::uint64_t>(x) & (valid ? valid->word(leaf.mBBoxMin, x) : ~std::uint64_t{0});
+    s.active_voxels += static_cast<std::uint64_t>(std::popcount(counted));
+    for (std::uint64_t left = counted; left != 0; left &= left - 1)
+      if (!widen(s, leaf.mValues[64 * x + std::countr_zero(left)])) ++s.nan_count;
   }
 }
 
 template <class Value>
 void add_tile(GridStats& s, const nanovdb::Coord& origin, std::int32_t edge, const Value& value, const MaskView* valid) {
-  GridStats unseen;
-  s.active_voxels += cube(edge);
-  if (!widen(valid == nullptr || valid->any(origin, edge) ? s : unseen, value)) s.nan_count += cube(edge);
+  const std::uint64_t counted = valid ? valid->count(origin, edge) : cube(edge);
+  s.active_voxels += counted;
+  if (counted > 0 && !widen(s, value)) s.nan_count += counted;
 }
 
 /// Calls body(part, begin, end) for the whole array in pieces, each with parts of its own.

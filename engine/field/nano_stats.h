@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/base/display_range.h"
 #include "engine/base/result.h"
 #include "engine/field/grid.h"
 #include "engine/field/nano_build.h"
@@ -37,7 +38,7 @@ ActiveBox active_box(const nanovdb::NanoGrid<T>& grid);
 inline constexpr std::int32_t kFarthestIndex = (1 << 30) - kUpperEdge;
 bool is_near(const ActiveBox& box);
 
-/// Statistics over the active voxels; with a mask the ranges count only the valid ones. Where there is none, the ranges are zero;
+/// Statistics over the active voxels; with a mask over those that are valid. Where there is none, the ranges are zero;
 /// `ranged` says so.
 struct NanoStats {
   GridStats stats;
@@ -46,15 +47,20 @@ struct NanoStats {
 template <class T>
 NanoStats stats_of(const nanovdb::NanoGrid<T>& grid, const NanoMask* valid);
 
+/// The display range of the same values (display_range.h).
+template <class T>
+DisplayRange range_of_grid(const nanovdb::NanoGrid<T>& grid, const NanoMask* valid, const GridStats& stats);
+
 /// Of a mask: the number of its voxels.
 std::uint64_t count_of(const NanoMask& mask);
 
 /// Private to this room and to engine/vdb: from valid voxels to valid cells.
-///   bit at ijk: the voxels ijk + (0 or 1, 0 or 1, 0 or 1) are all valid and within the box of the grid that is masked
+///   bit at ijk: the voxels ijk + (0 or 1, 0 or 1, 0 or 1) are all valid and within the box of the grid that is masked, and `cells`,
+///               where it is not null, has the bit as well
 /// Along an axis of one layer a cell has no thickness. Work and memory grow with the surface of large tiles, not with what they hold.
 
 /// Memory comes from `allocate`, in one piece of the exact size; before, `ask` is told the bytes and may refuse.
-Result<NanoMemory> erode(const NanoMask& valid, const ActiveBox& box, const NanoAllocator& allocate,
+Result<NanoMemory> erode(const NanoMask& valid, const ActiveBox& box, const NanoMask* cells, const NanoAllocator& allocate,
                          const std::function<Outcome(double bytes)>& ask);
 
 }  // namespace catena::field

@@ -3,20 +3,26 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "engine/base/helper_process.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
+#include "engine/field/parts.h"
 
 namespace catena::field {
 namespace {
@@ -37,12 +43,13 @@ bool write_at(int fd, std::uint64_t at, const void* data, std::size_t bytes) {
 Result<Descriptor> file_with_request(const ReadRequest& request) {
   const std::string text = encode(request);
   Descriptor file(::memfd_create("catena-read", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  if (!file && errno == EMFILE) return Error{request.what.path + ": cannot be read: " + too_few_descriptors(), true};
+  if (!file && too_many_files(errno)) return Error{request.what.path + ": cannot be read: " + too_few_descriptors(), true};
   ExchangeHead head;
   head.offset = sizeof head;
   head.bytes = text.size();
+  head.of_addresses = memory_is_of_addresses() ? 1 : 0;
   if (!file || !write_at(file.get(), 0, &head, sizeof head) || !write_at(file.get(), head.offset, text.data(), text.size()))
-    return Error{fmt::format("{}: no memory to read it into ({})", request.what.path, std::strerror(errno)), true};
+    return Error{fmt::format("{}: no memory to read it into ({})", request.what.path, cause_of(errno)), true};
   return file;
 }
 
@@ -86,23 +93,71 @@ Result<std::string> program_for(const std::string& path) {
   if (is_vdb(path) || has_ending(path, ".npy")) return helper_path("catena-read");
   std::string program = helper_path("catena-read-vtk");
   if (!std::filesystem::exists(program))
-    return Error{path +
-                 ": is read by the program catena-read-vtk, which was not built (it needs the packages libvtk9-dev and "
-                 "libinsighttoolkit5-dev)"};
+    return Error{path + ": cannot be read: " + program +
+                     ", the part of Catena that reads it, is missing: expected the package catena, or a build with the packages "
+                     "libvtk9-dev and libinsighttoolkit5-dev",
+                 true};
   return program;
 }
 
+std::string how_it_ended(const HelperEnd& end) {
+  return end.how == HelperEnd::How::killed ? ::strsignal(end.code) : fmt::format("code {}", end.code);
+}
+
+ReaderState state_of(const Descriptor& file) {
+  ExchangeHead head;
+  const bool read = ::pread(file.get(), &head, sizeof head, 0) == static_cast<ssize_t>(sizeof head);
+  return read ? head.state : ReaderState::not_started;
+}
+
+/// Why it is this machine that kept a reader from its answer; empty: it is not. A limit that a shell has set is to blame for what was
+/// refused to the reader; where there is none, what it asked for came from the file.
+std::string machines_part(ReaderState state, const HelperEnd& end) {
+  const std::string limits = limits_in_words();
+  switch (state) {
+    case ReaderState::not_started:
+      return fmt::format("its reader could not be started ({}){}", how_it_ended(end),
+                         limit_in_force(RLIMIT_AS)           ? ": a library is missing, or: " + cause_of(ENOMEM)
+                         : end.how == HelperEnd::How::exited ? ": a library is missing"
+                                                             : "");
+    case ReaderState::no_thread:
+      return "its reader: no other thread can be started: " + cause_of(EAGAIN);
+    case ReaderState::no_stack:
+      return "its reader: no memory for another thread: " +
+             (limit_in_force(RLIMIT_AS) ? cause_of(ENOMEM) : std::string("--memory MB allows more"));
+    case ReaderState::no_memory:
+      return limit_in_force(RLIMIT_AS) ? "there is not enough memory to read it: " + cause_of(ENOMEM) : "";
+    case ReaderState::no_room:
+      return limits.empty() ? "" : "there is no room to read it into: " + limits;
+    case ReaderState::refused_memory:
+    case ReaderState::reading:
+      break;
+  }
+  // an allocation of a C library, of which nothing is noted
+  const bool broke = end.how == HelperEnd::How::killed && (end.code == SIGABRT || end.code == SIGSEGV || end.code == SIGBUS);
+  return broke && limit_in_force(RLIMIT_AS)
+             ? fmt::format("its reader broke down ({}): it had too little memory, or the file is damaged; {}", how_it_ended(end), limits)
+             : "";
+}
+
 /// What became of a reader that did not answer.
-Error end_of(const ReadRequest& request, const HelperEnd& end) {
+Error end_of(const ReadRequest& request, const HelperEnd& end, ReaderState state) {
   const std::string& path = request.what.path;
+  const auto own_time = limit_in_force(RLIMIT_CPU);
+  if (end.how == HelperEnd::How::killed && end.code == SIGXCPU && own_time && *own_time < request.cpu_s)
+    return Error{
+        fmt::format("{}: reading it took more than the {} s of processor time that this process may take (ulimit -t)", path, *own_time),
+        true};
   const bool out_of_time = end.how == HelperEnd::How::too_long || (end.how == HelperEnd::How::killed && end.code == SIGXCPU);
   if (out_of_time)
     return Error{
-        fmt::format("{}: reading it took more than {} s of processor time: the file is damaged, {}", path, request.cpu_s, wanted(path))};
-  if (end.how == HelperEnd::How::killed && end.code == SIGKILL)
-    return Error{fmt::format("{}: its reader was killed (by hand, or as memory ran out), expected it to end by itself", path)};
+        fmt::format("{}: reading it took more than {:.0f} s of processor time, which is too long for its size: the file is damaged, {}",
+                    path, std::max(1.0, std::floor(end.cpu_s)), wanted(path))};
   if (end.how == HelperEnd::How::killed && (end.code == SIGINT || end.code == SIGTERM || end.code == SIGHUP))
-    return Error{fmt::format("{}: reading it was interrupted, expected it to end by itself", path)};
+    return Error{fmt::format("{}: reading it was interrupted, expected it to end by itself", path), true};
+  if (const std::string why = machines_part(state, end); !why.empty()) return Error{path + ": " + why, true};
+  if (end.how == HelperEnd::How::killed && end.code == SIGKILL)
+    return Error{fmt::format("{}: its reader was killed (by hand, or as memory ran out), expected it to end by itself", path), true};
   if (end.how == HelperEnd::How::killed)
     return Error{fmt::format("{}: the file is damaged (its reader broke down: {}), {}", path, ::strsignal(end.code), wanted(path))};
   return Error{fmt::format("{}: the file is damaged (its reader gave up with code {}), {}", path, end.code, wanted(path))};
@@ -127,7 +182,7 @@ Result<ReaderAnswer> take_answer(const std::string& path, const Descriptor& file
   ExchangeHead head;
   if (bytes < sizeof head) return damaged_answer(path, "the head is missing");
   void* start = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file.get(), 0);
-  if (start == MAP_FAILED) return Error{fmt::format("{}: no memory to map it ({})", path, std::strerror(errno))};
+  if (start == MAP_FAILED) return Error{fmt::format("{}: no memory to map it ({})", path, cause_of(errno)), true};
   ReaderAnswer answer;
   answer.memory = NanoMemory::mapped(start, bytes, true);
   std::memcpy(&head, start, sizeof head);
@@ -150,9 +205,17 @@ struct Known {
 std::mutex known_mutex;
 std::map<std::string, Known> known_words;
 
+/// A case changes with its folders of times.
 bool look_at(const std::string& path, Known& file) {
   std::error_code code;
   file.at = std::filesystem::last_write_time(path, code);
+  if (const std::filesystem::path folder = case_folder(path); !code && !folder.empty()) {
+    for (const auto& one : {folder, folder / "processor0"}) {
+      std::error_code ignored;
+      const auto changed = std::filesystem::last_write_time(one, ignored);
+      if (!ignored) file.at = std::max(file.at, changed);
+    }
+  }
   if (!code && !is_folder(path)) file.bytes = std::filesystem::file_size(path, code);
   return !code;
 }
@@ -164,10 +227,21 @@ void keep_words(const std::string& path, const Known& before, const ReadReply& r
   entry.words.patient = reply.patient;
   entry.words.words = reply.words;
   entry.words.shapes = reply.shapes;
+  entry.words.times = reply.times;
   const std::scoped_lock lock(known_mutex);
   constexpr std::size_t kMost = 256;
   if (known_words.size() >= kMost) known_words.clear();
   known_words[path] = std::move(entry);
+}
+
+// ---- the files that readers opened, by the path that was asked for ----
+
+std::map<std::string, std::set<FileId>> opened_for;
+
+void keep_opened(const std::string& path, const std::vector<FileId>& files) {
+  add_inputs(files);
+  const std::scoped_lock lock(known_mutex);
+  opened_for[path].insert(files.begin(), files.end());
 }
 
 }  // namespace
@@ -186,6 +260,9 @@ std::uint64_t reading_time_s(std::uint64_t file_bytes) {
   return kLeast + file_bytes / kBytesPerSecond;
 }
 
+static WhileReading while_reading;
+void set_while_reading(WhileReading called) { while_reading = std::move(called); }
+
 Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   std::uint64_t size = 0;
   // OpenFOAM's case is the folder: the file in it is only its name, and empty as a rule
@@ -195,7 +272,8 @@ Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   }
   CATENA_TRY(const std::string program, program_for(what.path));
   const ReaderSettings& settings = reader_settings();
-  ReadRequest request{mode, what, allowed_memory(), settings.cpu_s > 0 ? settings.cpu_s : time_for(what.path, size)};
+  ReadRequest request{mode, what, settings.memory_bytes > 0 ? settings.memory_bytes : allowed_memory(), stated_memory().value_or(0),
+                      settings.cpu_s > 0 ? settings.cpu_s : time_for(what.path, size)};
   Known before;
   const bool can_keep = look_at(what.path, before);
   // the reader does its work
@@ -206,25 +284,40 @@ Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   // a reader that sleeps uses no processor time: disks may be slow, but not without end
   constexpr double kLeastWait = 60, kWaits = 10;
   const double wall_s = settings.wall_s > 0 ? settings.wall_s : std::max(kLeastWait, kWaits * static_cast<double>(request.cpu_s));
-  const HelperEnd end = reader->wait(wall_s);
-  if (end.how != HelperEnd::How::exited || end.code != 0) return end_of(request, end);
+  const HelperEnd end = reader->wait(wall_s, [&](double seconds) {
+    if (while_reading) while_reading(what.path, seconds, false);
+  });
+  if (while_reading) while_reading(what.path, 0, true);
+  if (end.how != HelperEnd::How::exited || end.code != 0) return end_of(request, end, state_of(file));
   // what it wrote
   CATENA_TRY(ReaderAnswer answer, take_answer(what.path, file));
+  keep_opened(what.path, answer.reply.opened);
   constexpr std::size_t kLongestError = 2000;
-  if (!answer.reply.error.empty()) return Error{one_line(answer.reply.error.substr(0, kLongestError))};
+  if (!answer.reply.error.empty()) {
+    const ReaderState state = state_of(file);
+    const std::string why = machines_part(state, end);
+    if (!why.empty()) return Error{what.path + ": " + why, true};
+    return Error{one_line(answer.reply.error.substr(0, kLongestError)), state == ReaderState::refused_memory && memory_is_of_addresses()};
+  }
   if (can_keep) keep_words(what.path, before, answer.reply);
   return answer;
 }
 
-Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
+Result<std::vector<GridInfo>> describe_answered(const std::string& path, int step) {
   LoadRequest request;
   request.path = path;
+  request.step = step;
   CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
   for (const GridInfo& grid : answer.reply.grids) {
     if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
     if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
   }
   return std::move(answer.reply.grids);
+}
+
+std::set<FileId> opened_by_readers(const std::string& path) {
+  const std::scoped_lock lock(known_mutex);
+  return opened_for[path];
 }
 
 std::optional<ReadReply> words_of(const std::string& path) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -31,7 +32,7 @@ struct ReaderAnswer {
 Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& request);
 
 /// What the reader says of each grid, checked.
-Result<std::vector<GridInfo>> describe_answered(const std::string& path);
+Result<std::vector<GridInfo>> describe_answered(const std::string& path, int step);
 
 /// The sentence on an answer that cannot be: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
 Error damaged_answer(const std::string& path, std::string_view what);
@@ -41,11 +42,15 @@ struct ReaderSettings {
   std::string program;
   std::uint64_t cpu_s = 0;
   double wall_s = 0;
+  std::uint64_t memory_bytes = 0;  ///< that the machine has free; not stated by anybody
 };
 ReaderSettings& reader_settings();
 
 /// The processor time that reading a .vdb file of so many bytes may take.
 std::uint64_t reading_time_s(std::uint64_t file_bytes);
+
+/// The data files that readers have opened so far where this path was asked for.
+std::set<FileId> opened_by_readers(const std::string& path);
 
 /// What every answer about a file has, its words on units and what of it is drawn, from the last one or from a new one; nothing where it
 /// cannot be read.

@@ -104,10 +104,19 @@ void put(Encoder& e, const GridInfo& g) {
   e.number(g.stats.max);
   e.vector(g.stats.component_min);
   e.vector(g.stats.component_max);
+  for (const double v : {g.shown.lo, g.shown.hi, g.shown.least, g.shown.most}) e.number(v);
+  e.number(g.shown.count);
+  for (const DisplayRange::Beyond* beyond : {&g.shown.below, &g.shown.above}) {
+    e.number(beyond->count);
+    e.number(beyond->nearest);
+    e.number(beyond->farthest);
+  }
   e.number<std::uint64_t>(g.bytes);
   e.flag(g.usable);
   e.flag(g.is_vector);
   e.number(static_cast<std::uint8_t>(g.counted));
+  e.words(g.number);
+  e.number(g.images);
 }
 
 GridInfo get_info(Decoder& d) {
@@ -123,11 +132,20 @@ GridInfo get_info(Decoder& d) {
   g.stats.max = d.number<double>();
   g.stats.component_min = d.vector();
   g.stats.component_max = d.vector();
+  for (double* v : {&g.shown.lo, &g.shown.hi, &g.shown.least, &g.shown.most}) *v = d.number<double>();
+  g.shown.count = d.number<std::uint64_t>();
+  for (DisplayRange::Beyond* beyond : {&g.shown.below, &g.shown.above}) {
+    beyond->count = d.number<std::uint64_t>();
+    beyond->nearest = d.number<double>();
+    beyond->farthest = d.number<double>();
+  }
   g.bytes = d.number<std::uint64_t>();
   g.usable = d.flag();
   g.is_vector = d.flag();
   const auto counted = d.number<std::uint8_t>();
   g.counted = counted > static_cast<std::uint8_t>(Counted::cells) ? Counted::voxels : static_cast<Counted>(counted);
+  g.number = d.words();
+  g.images = d.number<std::int32_t>();
   return g;
 }
 
@@ -153,6 +171,7 @@ std::string encode(const ReadRequest& r) {
   e.vector(crop.lo);
   e.vector(crop.hi);
   e.number(r.memory_bytes);
+  e.number(r.stated_memory);
   e.number(r.cpu_s);
   return e.take();
 }
@@ -173,6 +192,7 @@ Result<ReadRequest> decode_request(std::span<const std::byte> bytes) {
   const Vec3 lo = d.vector(), hi = d.vector();
   if (has_crop) r.what.crop = Box{lo, hi};
   r.memory_bytes = d.number<std::uint64_t>();
+  r.stated_memory = d.number<std::uint64_t>();
   r.cpu_s = d.number<std::uint64_t>();
   if (!d.finished() || mode > static_cast<std::uint8_t>(ReadMode::shape)) return Error{"the request is incomplete"};
   r.mode = static_cast<ReadMode>(mode);
@@ -185,6 +205,7 @@ std::string encode(const ReadReply& r) {
   e.words(r.name);
   e.flag(r.is_vector);
   e.flag(r.masked);
+  e.flag(r.cells_masked);
   e.mapping(r.mapping);
   for (const Piece& p : {r.values, r.voxels, r.cells}) e.piece(p);
   e.number<std::uint64_t>(r.grids.size());
@@ -192,14 +213,18 @@ std::string encode(const ReadReply& r) {
   for (const std::int64_t n : {r.dense.size.x, r.dense.size.y, r.dense.size.z}) e.number(n);
   e.number(r.dense.components);
   e.words(r.dense.type);
-  for (const Piece& p :
-       {r.dense.values, r.dense.valid, r.shape.points, r.shape.triangles, r.shape.lines, r.shape.ends, r.shape.loose, r.shape.values})
+  for (const Piece& p : {r.dense.values, r.dense.valid, r.dense.cells, r.shape.points, r.shape.triangles, r.shape.lines, r.shape.ends,
+                         r.shape.loose, r.shape.values})
     e.piece(p);
+  e.flag(r.dense.has_range);
+  e.number(r.dense.least);
+  e.number(r.dense.most);
   e.words(r.shape.value_name);
   e.number<std::uint64_t>(r.notes.size());
   for (const std::string& note : r.notes) e.words(note);
   e.number<std::uint64_t>(r.times.size());
   for (const double t : r.times) e.number(t);
+  e.words(r.time_unit);
   e.words(r.units);
   e.words(r.unit_length);
   e.flag(r.patient);
@@ -214,6 +239,12 @@ std::string encode(const ReadReply& r) {
   e.flag(r.shapes.lines);
   e.number(r.confinement.landlock_version);
   e.flag(r.confinement.seccomp);
+  e.number(r.newest_ns);
+  e.number<std::uint64_t>(r.opened.size());
+  for (const FileId& id : r.opened) {
+    e.number(id.device);
+    e.number(id.inode);
+  }
   return e.take();
 }
 
@@ -224,6 +255,7 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
   r.name = d.words();
   r.is_vector = d.flag();
   r.masked = d.flag();
+  r.cells_masked = d.flag();
   r.mapping = d.mapping();
   for (Piece* p : {&r.values, &r.voxels, &r.cells}) *p = d.piece();
   constexpr std::size_t kLeastInfo = 16, kLeastWords = 24;
@@ -231,12 +263,16 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
   for (std::int64_t* n : {&r.dense.size.x, &r.dense.size.y, &r.dense.size.z}) *n = d.number<std::int64_t>();
   r.dense.components = d.number<std::int32_t>();
   r.dense.type = d.words();
-  for (Piece* p : {&r.dense.values, &r.dense.valid, &r.shape.points, &r.shape.triangles, &r.shape.lines, &r.shape.ends, &r.shape.loose,
-                   &r.shape.values})
+  for (Piece* p : {&r.dense.values, &r.dense.valid, &r.dense.cells, &r.shape.points, &r.shape.triangles, &r.shape.lines, &r.shape.ends,
+                   &r.shape.loose, &r.shape.values})
     *p = d.piece();
+  r.dense.has_range = d.flag();
+  r.dense.least = d.number<double>();
+  r.dense.most = d.number<double>();
   r.shape.value_name = d.words();
   for (std::uint64_t n = d.count(sizeof(std::uint64_t)); n > 0 && d.ok(); --n) r.notes.push_back(d.words());
   for (std::uint64_t n = d.count(sizeof(double)); n > 0 && d.ok(); --n) r.times.push_back(d.number<double>());
+  r.time_unit = d.words();
   r.units = d.words();
   r.unit_length = d.words();
   r.patient = d.flag();
@@ -252,6 +288,13 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
   r.shapes.lines = d.flag();
   r.confinement.landlock_version = d.number<std::uint32_t>();
   r.confinement.seccomp = d.flag();
+  r.newest_ns = d.number<std::int64_t>();
+  for (std::uint64_t n = d.count(2 * sizeof(std::uint64_t)); n > 0 && d.ok(); --n) {
+    FileId id;
+    id.device = d.number<std::uint64_t>();
+    id.inode = d.number<std::uint64_t>();
+    r.opened.push_back(id);
+  }
   if (!d.finished()) return Error{"its reply is incomplete"};
   return r;
 }

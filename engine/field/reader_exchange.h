@@ -9,21 +9,39 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "engine/base/input_files.h"
 #include "engine/field/load.h"
 
 namespace catena::field {
 
 inline constexpr std::uint64_t kExchangeMagic = 0x31615644'6e746143;  // "CatnDVa1"
-inline constexpr std::uint32_t kExchangeVersion = 2;
+inline constexpr std::uint32_t kExchangeVersion = 4;
+/// Of the grid of a .vdb that masks cells, beside "valid": true at the base of each that is valid.
+inline constexpr std::string_view kCellMaskName = "valid_cells";
 inline constexpr std::uint64_t kPieceAlignment = 4096;
+
+/// How far a reader has come, and what the machine did not give it. It is written as it happens, so that it is known of a reader that
+/// dies, too.
+enum class ReaderState : std::uint32_t {
+  not_started,  ///< it has not read the request: the program could not be loaded
+  reading,
+  no_memory,       ///< an allocation has failed
+  no_thread,       ///< a thread could not be started
+  no_stack,        ///< nor could this one, for want of memory for its stack
+  no_room,         ///< the file in memory could not grow
+  refused_memory,  ///< the file needs more memory than it may take
+};
 
 struct ExchangeHead {
   std::uint64_t magic = kExchangeMagic;
   std::uint32_t version = kExchangeVersion;
   std::uint32_t from_reader = 0;  ///< 0: a request follows; 1: a reply
   std::uint64_t offset = 0, bytes = 0;
+  ReaderState state = ReaderState::not_started;
+  std::uint32_t of_addresses = 0;  ///< of a request: 1: its limit on memory is what ulimit -v leaves
 };
 
 /// load: one grid. describe: what there is. words: what every reply has, nothing else. shape: what is drawn as it lies, triangles, lines
@@ -34,6 +52,7 @@ struct ReadRequest {
   ReadMode mode = ReadMode::load;
   LoadRequest what;  ///< without the layout of raw files
   std::uint64_t memory_bytes = 0;
+  std::uint64_t stated_memory = 0;  ///< what the user allows (--memory), in bytes; 0: nothing is stated
   std::uint64_t cpu_s = 0;
 };
 
@@ -54,6 +73,9 @@ struct DenseReply {
   std::string type;             ///< as the file says: "float64", "int16"
   Piece values;                 ///< 32-bit floats
   Piece valid;                  ///< a byte a voxel, 0 or 1; empty: all are valid
+  Piece cells{};                ///< beside `valid`: a byte a voxel, 0 where the cell based at it is not valid; empty: no mask of cells
+  bool has_range = false;       ///< the values were resampled: `least` and `most` are those of the data
+  double least = 0, most = 0;   ///< of vectors: lengths
 };
 
 /// What is drawn as it lies. Numbers of points are 32-bit.
@@ -77,7 +99,7 @@ struct ReadReply {
   std::string error;  ///< not empty: a sentence, and nothing else
   // load
   std::string name;
-  bool is_vector = false, masked = false;
+  bool is_vector = false, masked = false, cells_masked = false;
   Mapping mapping;
   Piece values, voxels, cells;
   // describe
@@ -87,12 +109,15 @@ struct ReadReply {
   ShapeReply shape;
   std::vector<std::string> notes;  ///< what of the file is not as it was: sentences without an end
   std::vector<double> times;       ///< of the file's steps; empty: it has none
+  std::string time_unit;           ///< of `times`; empty: not stated
   // always
   std::string units, unit_length;  ///< of the file
   bool patient = false;            ///< the world is a patient's (engine/field/units.h)
   std::vector<GridWords> words;
   Shapes shapes;  ///< that it has, handed over or not
   Confinement confinement;
+  std::vector<FileId> opened;  ///< the data files that were opened, with an error, too
+  std::int64_t newest_ns = 0;  ///< when the youngest of them was last changed, since 1970; 0: not known
 };
 
 std::string encode(const ReadRequest& request);

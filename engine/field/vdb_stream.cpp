@@ -14,6 +14,7 @@
 #include <mutex>
 
 #include "engine/base/helper_process.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 
@@ -42,7 +43,7 @@ Result<VdbStream> VdbStream::open(const std::string& path) {
   if (fs::is_directory(path, ignored)) return Error{fmt::format("{}: this is a folder, expected the name of a file to write", path)};
   CATENA_TRY(OutputFile file, OutputFile::open(path));
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return cannot_write(path, std::strerror(errno), true);
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return cannot_write(path, cause_of(errno), true);
   Descriptor near(ends[0]), far(ends[1]);
   const int given[] = {far.get(), ::fileno(file.stream())};
   auto writer = HelperProcess::start(helper_path("catena-write"), given);
@@ -118,9 +119,19 @@ Outcome VdbStream::finish() {
   }
   constexpr double kLongestWait_s = 60;  // it has closed its end
   const HelperEnd end = writer_.wait(kLongestWait_s);
-  if (!answer.empty()) return cannot_write(path_, answer);
-  if (end.how != HelperEnd::How::exited || end.code != 0) return cannot_write(path_, "the program catena-write broke down");
-  if (broken_) return cannot_write(path_, "the program catena-write ended too early");
+  const std::string limits = limits_in_words();
+  if (!answer.empty()) {
+    const bool machine = answer.front() == '1';
+    return cannot_write(path_, answer.substr(1), machine);
+  }
+  // what it writes is the program's own: it breaks down where the machine refuses it something
+  if (end.how != HelperEnd::How::exited || end.code != 0)
+    return cannot_write(path_,
+                        fmt::format("the program catena-write broke down ({}){}",
+                                    end.how == HelperEnd::How::exited ? fmt::format("code {}", end.code) : ::strsignal(end.code),
+                                    limits.empty() ? "" : ": " + limits),
+                        true);
+  if (broken_) return cannot_write(path_, "the program catena-write ended too early", true);
   return file_.commit();
 }
 

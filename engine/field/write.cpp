@@ -28,9 +28,18 @@ const Writer* writer_of(std::string_view path) {
   return nullptr;
 }
 
-const NanoMask* mask_of(const AnyField& field) {
-  return field.scalar ? field.scalar->grid()->storage().valid_voxels : field.vector->grid()->storage().valid_voxels;
+/// `use` of the storage of either kind of grid.
+template <class Use>
+auto with_storage(const AnyField& field, const Use& use) {
+  return field.scalar ? use(field.scalar->grid()->storage()) : use(field.vector->grid()->storage());
 }
+
+const NanoMask* mask_of(const AnyField& field) {
+  return with_storage(field, [](const auto& storage) { return storage.valid_voxels; });
+}
+
+/// The formats that hold a mask of cells.
+bool holds_cells(std::string_view path) { return has_ending(path, ".vdb") || has_ending(path, ".vti"); }
 
 }  // namespace
 
@@ -40,6 +49,7 @@ VoxelBox::VoxelBox(const AnyField& field, const std::string& box_name, const Uni
       mapping(field.get()->mapping()),
       components(field.vector ? 3 : 1),
       masked(mask_of(field) != nullptr),
+      cells_masked(with_storage(field, [](const auto& storage) { return storage.cells_masked; })),
       field_(field) {
   CATENA_ASSERT(field.get()->is_grid());
   const auto index = [](const Vec3& v) {
@@ -71,6 +81,20 @@ void VoxelBox::read_valid(std::int32_t z, std::span<std::uint8_t> out) const {
     for (std::int32_t x = 0; x < size.x; ++x) out[n++] = accessor.getValue({lowest_.x + x, lowest_.y + y, lowest_.z + z}) ? 1 : 0;
 }
 
+void VoxelBox::read_cells(std::int32_t z, std::span<std::uint8_t> out) const {
+  std::fill(out.begin(), out.end(), std::uint8_t{1});
+  with_storage(field_, [&](const auto& storage) {
+    if (storage.valid_cells == nullptr) return;
+    const auto cells = storage.valid_cells->getAccessor();
+    std::size_t n = 0;
+    for (std::int32_t y = 0; y < size.y; ++y)
+      for (std::int32_t x = 0; x < size.x; ++x, ++n) {
+        const Index3 base{lowest_.x + x, lowest_.y + y, lowest_.z + z};
+        if (storage.legal(base)) out[n] = storage.cell_valid(cells, base) ? 1 : 0;
+      }
+  });
+}
+
 void VoxelBox::read_with_holes(std::int32_t z, std::span<float> out) const {
   read_values(z, out);
   if (!masked) return;
@@ -87,6 +111,35 @@ std::string written_endings() {
   std::vector<std::string_view> endings;
   for (const Writer& writer : kWriters) endings.push_back(writer.ending);
   return alternatives(endings);
+}
+
+std::string lost_in(const std::string& path, const AnyField& field) {
+  const VoxelBox box(field, {}, {});
+  if (!box.cells_masked || holds_cells(path)) return {};
+  // cells between valid voxels that are not valid
+  std::vector<std::uint8_t> below(box.layer_voxels()), above(box.layer_voxels()), cells(box.layer_voxels());
+  const int step[3] = {box.size.x > 1, box.size.y > 1, box.size.z > 1};
+  std::uint64_t lost = 0;
+  for (int z = 0; z < std::max(1, box.size.z - 1); ++z) {
+    box.read_valid(z, below);
+    box.read_valid(z + step[2], above);
+    box.read_cells(z, cells);
+    for (int y = 0; y < std::max(1, box.size.y - 1); ++y)
+      for (int x = 0; x < std::max(1, box.size.x - 1); ++x) {
+        const auto at = [&](int i, int j) { return static_cast<std::size_t>(y + j) * static_cast<std::size_t>(box.size.x) + x + i; };
+        bool open = cells[at(0, 0)] == 0;
+        for (int c = 0; c < 4 && open; ++c) {
+          const std::size_t corner = at((c & 1) * step[0], (c >> 1) * step[1]);
+          open = below[corner] != 0 && above[corner] != 0;
+        }
+        lost += open ? 1 : 0;
+      }
+  }
+  if (lost == 0) return {};
+  return fmt::format(
+      "{} cells without a value have valid voxels at all their corners: {} masks voxels only, and they are filled in it "
+      "(.vdb and .vti keep them)",
+      lost, path.substr(path.find_last_of('/') + 1));
 }
 
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
@@ -114,6 +167,7 @@ Result<std::string> convert(const LoadRequest& request, const std::string& path,
     CATENA_CHECK(write_vdb(path, {{field, chosen}}));
   } else {
     CATENA_CHECK(write_field(path, field, chosen, units_of(request.path, request.grid)));
+    if (const std::string lost = lost_in(path, field); notes != nullptr && !lost.empty()) notes->push_back(lost);
   }
   return chosen;
 }

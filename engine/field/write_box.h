@@ -17,14 +17,17 @@ class VoxelBox {
   Units units;
   Mapping mapping;  ///< of voxel (0, 0, 0) of the box
   Index3 size;
-  int components = 1;   ///< 1 or 3
-  bool masked = false;  ///< some voxel may be invalid
+  int components = 1;         ///< 1 or 3
+  bool masked = false;        ///< some voxel may be invalid
+  bool cells_masked = false;  ///< beside the voxels some cells are invalid of themselves
 
   std::size_t layer_voxels() const { return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y); }
   double voxels() const { return static_cast<double>(size.x) * size.y * size.z; }
   /// One layer across z, x fastest; of vectors all components of a voxel together.
   void read_values(std::int32_t z, std::span<float> out) const;
   void read_valid(std::int32_t z, std::span<std::uint8_t> out) const;  ///< 0 or 1; all 1 without a mask
+  /// The same of the cells based at the voxels of one layer. Those based at the last voxel of an axis are none: 1.
+  void read_cells(std::int32_t z, std::span<std::uint8_t> out) const;
   /// The same values, NaN where a voxel is invalid.
   void read_with_holes(std::int32_t z, std::span<float> out) const;
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/field/write_box.h"
@@ -63,19 +64,11 @@ nifti_1_header header_of(const VoxelBox& box) {
   return header;
 }
 
-}  // namespace
-
-Outcome write_nifti(const std::string& path, const VoxelBox& box) {
-  constexpr int kMost = 32767;
-  for (const int n : {box.size.x, box.size.y, box.size.z})
-    if (n > kMost) return Error{fmt::format("{}: an axis has {} voxels, a NIfTI-1 file holds at most {}", path, n, kMost)};
-  // through a link to the file that it names
-  std::error_code code;
-  const bool link = std::filesystem::is_symlink(path, code);
-  CATENA_TRY(PartFile part, PartFile::create(link ? std::filesystem::weakly_canonical(path, code).string() : path));
+/// Into `place`; errors name `path`.
+Outcome write_into(const std::string& place, const std::string& path, const VoxelBox& box) {
   errno = 0;
-  const auto failed = [&] { return Error{path + ": cannot write: " + (errno != 0 ? std::strerror(errno) : "the stream broke off")}; };
-  std::unique_ptr<znzptr, CloseStream> file(znzopen(part.name().c_str(), "wb", has_ending(path, ".gz")));
+  const auto failed = [&] { return system_error(path + ": cannot write", errno != 0 ? errno : EIO); };
+  std::unique_ptr<znzptr, CloseStream> file(znzopen(place.c_str(), "wb", has_ending(path, ".gz")));
   if (!file) return failed();
   const auto write = [&](const void* data, std::size_t bytes) { return znzwrite(data, 1, bytes, file.get()) == bytes; };
   const nifti_1_header header = header_of(box);
@@ -92,7 +85,25 @@ Outcome write_nifti(const std::string& path, const VoxelBox& box) {
       if (!write(layer.data(), layer.size() * sizeof(float))) return failed();
     }
   znzFile last = file.release();
-  if (znzclose(last) != 0) return failed();
+  return znzclose(last) != 0 ? failed() : Outcome(Done{});
+}
+
+}  // namespace
+
+Outcome write_nifti(const std::string& path, const VoxelBox& box) {
+  constexpr int kMost = 32767;
+  for (const int n : {box.size.x, box.size.y, box.size.z})
+    if (n > kMost) return Error{fmt::format("{}: an axis has {} voxels, a NIfTI-1 file holds at most {}", path, n, kMost)};
+  if (written_directly(path)) {
+    CATENA_TRY(OutputFile direct, OutputFile::open(path));
+    CATENA_CHECK(write_into(fmt::format("/proc/self/fd/{}", ::fileno(direct.stream())), path, box));
+    return direct.commit();
+  }
+  // through a link to the file that it names
+  std::error_code code;
+  const bool link = std::filesystem::is_symlink(path, code);
+  CATENA_TRY(PartFile part, PartFile::create(link ? std::filesystem::weakly_canonical(path, code).string() : path));
+  CATENA_CHECK(write_into(part.name(), path, box));
   return part.commit();
 }
 

@@ -8,6 +8,7 @@
 #include "engine/field/formats.h"
 #include "engine/field/grid_storage.h"
 #include "engine/field/nano_nodes.h"
+#include "engine/field/reader_exchange.h"
 #include "engine/field/vdb_stream.h"
 
 namespace catena::field {
@@ -106,7 +107,8 @@ Result<bool> stream_layers(VdbStream& out, const DenseSource& source) {
 
 Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) {
   // one mask for the file
-  const NanoMask* mask = nullptr;
+  const NanoMask *mask = nullptr, *cells = nullptr;
+  bool cells_masked = false;
   const Field* masked = nullptr;
   for (const WriteItem& item : items) {
     CATENA_CHECK(check_volume(path, item.field.get()->mapping()));
@@ -115,9 +117,12 @@ Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) 
     CATENA_ASSERT(scalar || vector);
     const NanoMask* own = scalar ? scalar->storage().valid_voxels : vector->storage().valid_voxels;
     if (!own) continue;
-    if (mask && !same_voxels(*mask, *own))
+    const NanoMask* own_cells = scalar ? scalar->storage().valid_cells : vector->storage().valid_cells;
+    cells_masked = cells_masked || (scalar ? scalar->storage().cells_masked : vector->storage().cells_masked);
+    if (mask && (!same_voxels(*mask, *own) || (cells_masked && !same_voxels(*cells, *own_cells))))
       return Error{fmt::format("{}: the grids have different masks, and a file has room for one", path)};
     mask = own;
+    cells = own_cells;
     masked = item.field.get();
   }
   CATENA_TRY(VdbStream out, VdbStream::open(path));
@@ -138,6 +143,10 @@ Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) 
   if (mask) {
     out.begin_grid(StreamKind::mask, "valid", masked->mapping(), nullptr, false);
     stream_nodes(out, *mask);
+  }
+  if (cells_masked) {
+    out.begin_grid(StreamKind::mask, std::string(kCellMaskName), masked->mapping(), nullptr, false);
+    stream_nodes(out, *cells);
   }
   return out.finish();
 }

@@ -37,6 +37,12 @@ Outcome write_vti(const std::string& path, const VoxelBox& box) {
                                          write_bytes(to, values.data(), values.size() * sizeof(float));
                                        }
                                      }}};
+  // a byte a cell, 1 to the last but one of each axis
+  constexpr std::uint8_t kHiddenCell = 32;
+  const auto cells_along = [](int n) { return std::max(n - 1, 1); };
+  const std::uint64_t cell_count = static_cast<std::uint64_t>(cells_along(box.size.x)) *
+                                   static_cast<std::uint64_t>(cells_along(box.size.y)) *
+                                   static_cast<std::uint64_t>(cells_along(box.size.z));
   if (box.masked)
     arrays.push_back({"UInt8", "vtkGhostType", 1, voxels, [&](OutputFile& to) {
                         constexpr std::uint8_t kHiddenPoint = 2;
@@ -48,6 +54,17 @@ Outcome write_vti(const std::string& path, const VoxelBox& box) {
                         }
                       }});
   file.section("PointData", fmt::format("{}=\"{}\"", box.components == 3 ? "Vectors" : "Scalars", xml_text(box.name)), std::move(arrays));
+  if (box.cells_masked)
+    file.section("CellData", {}, {{"UInt8", "vtkGhostType", 1, cell_count, [&](OutputFile& to) {
+                                     std::vector<std::uint8_t> cells(layer);
+                                     for (int z = 0; z < cells_along(box.size.z) && !to.failed(); ++z) {
+                                       box.read_cells(z, cells);
+                                       for (std::uint8_t& c : cells) c = c != 0 ? 0 : kHiddenCell;
+                                       for (int y = 0; y < cells_along(box.size.y); ++y)
+                                         write_bytes(to, &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(box.size.x)],
+                                                     static_cast<std::size_t>(cells_along(box.size.x)));
+                                     }
+                                   }}});
   file.finish();
   return out.commit();
 }

@@ -58,9 +58,9 @@ class BatchBranch {
   Branch& out_;
 };
 
-constexpr float kShortest = 0.01f;   ///< voxels: below it the exact marcher goes on
+constexpr float kShortest = 1e-4f;   ///< voxels: below it the exact marcher goes on
 constexpr double kFirstStep = 0.25;  ///< voxels
-constexpr double kByHand = 2;        ///< voxels: as far as the exact marcher goes at a time
+constexpr double kByHand = 0.5;      ///< voxels: as far as the exact marcher goes at a time
 
 /// Rates, places and voxels of a batch are far from either end of the double range.
 double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }

@@ -2,7 +2,7 @@
 /// it stay trace()'s one curve (curve.h); these are lines of a stated, coarser tolerance, and an order of magnitude cheaper.
 ///   grids: RK4 with an error estimate (batch_step.h), eight lines a core in turn, all cores; knots are the steps, with the arc
 ///          length by Simpson's rule on each step's cubic. Where a line leaves the domain or its valid cells, or slows down to
-///          nothing, steps are halved to 0.01 voxel and the exact marcher (march.h) takes over for a while: ends mean the same
+///          nothing, steps are halved to 1e-4 voxels and the exact marcher (march.h) takes over for a while: ends mean the same
 ///          BOUNDARY, CRITICAL, LENGTH, LAP. A lap closes within 0.01 voxel, or 10 tolerances, of the seed.
 ///   formulas, line fields (v ~ -v), cubic grids, grids of one layer: trace() itself at this tolerance, seeds over all cores
 /// Results do not depend on the number of threads, nor on which other seeds are in the batch, nor on AVX2. Off the tick.

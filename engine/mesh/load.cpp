@@ -12,8 +12,8 @@ struct Format {
   std::string_view ending;
   Result<Soup> (*parse)(std::string_view bytes, const std::string& name);  ///< nullptr: the reader program does
 };
-constexpr Format kFormats[] = {{".stl", parse_stl}, {".obj", parse_obj}, {".ply", nullptr}, {".gii", nullptr},
-                               {".vtp", nullptr},   {".vtk", nullptr},   {".vtu", nullptr}, {".vtm", nullptr}};
+constexpr Format kFormats[] = {{".stl", parse_stl}, {".obj", parse_obj}, {".ply", nullptr}, {".gii", nullptr}, {".vtp", nullptr},
+                               {".vtk", nullptr},   {".vtu", nullptr},   {".vtm", nullptr}, {".pvd", nullptr}, {".series", nullptr}};
 
 const Format* format_of(std::string_view path) {
   for (const Format& format : kFormats)
@@ -22,8 +22,8 @@ const Format* format_of(std::string_view path) {
 }
 
 /// The text is gone when the mesh is made.
-Result<Soup> read_soup(const std::string& path) {
-  if (format_of(path)->parse == nullptr) return read_shape(path);
+Result<Soup> read_soup(const std::string& path, int step) {
+  if (format_of(path)->parse == nullptr) return read_shape(path, step);
   CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (" + alternatives(mesh_endings()) + ")", kMaxBytes));
   return format_of(path)->parse(bytes, path);
 }
@@ -41,10 +41,10 @@ const std::vector<std::string_view>& mesh_endings() {
   return endings;
 }
 
-Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement) {
+Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement, int step) {
   const auto failed = [&](const std::string& what) { return Error{one_line(path + ": " + what)}; };
   if (!is_mesh_file(path)) return failed("has an unknown kind; a " + alternatives(mesh_endings()) + " file was expected");
-  CATENA_TRY(Soup soup, read_soup(path));
+  CATENA_TRY(Soup soup, read_soup(path, step));
   for (Vec3& v : soup.vertices) {
     v = v * placement.scale + placement.offset;
     if (!is_finite(v)) return failed("a scaled vertex is not finite; a smaller scale was expected");

@@ -23,8 +23,8 @@ struct Placement {
   bool operator==(const Placement&) const = default;
 };
 
-/// Reads a file of any of these formats and makes the mesh.
-Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement = {});
+/// Reads a file of any of these formats and makes the mesh. `step`: of a file that has several in time.
+Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement = {}, int step = 0);
 
 /// The contents of a file; `name` begins every message.
 Result<Soup> parse_stl(std::string_view bytes, const std::string& name);
@@ -32,6 +32,6 @@ Result<Soup> parse_stl(std::string_view bytes, const std::string& name);
 Result<Soup> parse_obj(std::string_view text, const std::string& name);
 
 /// The surface in a file of the reader program: a whole sentence where there is none.
-Result<Soup> read_shape(const std::string& path);
+Result<Soup> read_shape(const std::string& path, int step);
 
 }  // namespace catena::mesh

@@ -4,9 +4,10 @@
 
 namespace catena::mesh {
 
-Result<Soup> read_shape(const std::string& path) {
+Result<Soup> read_shape(const std::string& path, int step) {
   field::LoadRequest request;
   request.path = path;
+  request.step = step;
   CATENA_TRY(const field::ReaderAnswer answer, field::ask_reader(field::ReadMode::shape, request));
   const auto xyz = answer.numbers<double>(answer.reply.shape.points);
   const auto corners = answer.numbers<std::uint32_t>(answer.reply.shape.triangles);

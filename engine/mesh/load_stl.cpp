@@ -150,6 +150,10 @@ Result<Soup> parse_stl(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kHeader)
     return Error{one_line(name + ": has " + std::to_string(bytes.size()) +
                           " bytes and does not begin with \"solid\"; a binary STL of at least 84 bytes, or a text, was expected")};
+  const std::uint32_t other_order = count >> 24 | (count >> 8 & 0xff00) | (count << 8 & 0xff0000) | count << 24;
+  if (!fits && kHeader + std::uint64_t{kRecord} * other_order == bytes.size())
+    return Error{one_line(
+        name + ": byte 80: the number of triangles fits the file in big-endian order; a binary STL in little-endian order was expected")};
   if (!fits)
     return Error{one_line(name + ": byte 80: says " + std::to_string(count) + " triangles, which take " + std::to_string(wanted) +
                           " bytes, but the file has " + std::to_string(bytes.size()) + "; a whole STL file was expected")};

@@ -16,7 +16,8 @@ struct Voxels {
   const char* base = nullptr;
   field::Index3 size{0, 0, 0};
   py::ssize_t sx = 0, sy = 0, sz = 0, sc = 0;
-  bool vectors = false, swapped = false;  ///< swapped: of the other byte order
+  int components = 1;    ///< 1, or 2 or 3 of vectors
+  bool swapped = false;  ///< of the other byte order
 };
 
 /// A number of 16 bits (IEEE 754).
@@ -37,13 +38,13 @@ T number_at(const char* from, bool swapped) {
 
 template <class T>
 void read_layers(const Voxels& v, int z, std::span<float> out) {
-  const int components = v.vectors ? 3 : 1;
   std::size_t n = 0;
   for (int k = z; n < out.size(); ++k)
     for (int j = 0; j < v.size.y; ++j) {
       const char* row = v.base + k * v.sz + j * v.sy;
       for (int i = 0; i < v.size.x; ++i, row += v.sx)
-        for (int c = 0; c < components; ++c) out[n++] = static_cast<float>(number_at<T>(row + c * v.sc, v.swapped));
+        for (int c = 0; c < (v.components == 1 ? 1 : 3); ++c)
+          out[n++] = c < v.components ? static_cast<float>(number_at<T>(row + c * v.sc, v.swapped)) : 0.f;
     }
 }
 
@@ -78,20 +79,29 @@ Reader reader_of(const py::dtype& type) {
   }
 }
 
-Voxels voxels_of(const py::array& array, const std::string& axes, const std::string& name) {
+/// A missing dimension, and one of a single voxel, has that voxel twice: a stride of 0.
+Voxels voxels_of(const py::array& array, const std::string& axes, const std::string& name, bool vectors) {
   if (axes != "zyx" && axes != "xyz") throw Failure(Error{name + ": axes is \"" + axes + "\"; \"zyx\" or \"xyz\" was expected"});
   Voxels v;
-  v.vectors = array.ndim() == 4 && array.shape(3) == 3;
-  if (array.ndim() != 3 && !v.vectors)
-    throw Failure(
-        Error{name + ": the array has the shape " + shape_of(array) + "; three dimensions were expected, or a fourth of 3 for vectors"});
-  const auto at = [&](int axis) { return axes == "xyz" ? axis : 2 - axis; };
-  for (int axis = 0; axis < 3; ++axis)
+  const int axes_of_voxels = static_cast<int>(array.ndim()) - (vectors ? 1 : 0);
+  const py::ssize_t last = array.ndim() > 0 ? array.shape(array.ndim() - 1) : 0;
+  if (axes_of_voxels < 1 || axes_of_voxels > 3 || (vectors && last != 2 && last != 3))
+    throw Failure(Error{name + ": the array has the shape " + shape_of(array) +
+                        (vectors ? "; one to three dimensions and a last one of 2 or 3 components were expected for vectors"
+                                 : "; one to three dimensions were expected, or a fourth of 2 or 3 components for vectors")});
+  int size[3] = {2, 2, 2};
+  py::ssize_t strides[3] = {0, 0, 0};
+  for (int axis = 0; axis < axes_of_voxels; ++axis) {
     if (array.shape(axis) > 65536) throw Failure(Error{name + ": an axis has more than 65536 voxels"});
+    const int to = axes == "xyz" ? axis : axes_of_voxels - 1 - axis;
+    size[to] = static_cast<int>(array.shape(axis));
+    strides[to] = array.strides(axis);
+    if (size[to] == 1) size[to] = 2, strides[to] = 0;
+  }
   v.base = static_cast<const char*>(array.data());
-  v.size = {static_cast<int>(array.shape(at(0))), static_cast<int>(array.shape(at(1))), static_cast<int>(array.shape(at(2)))};
-  v.sx = array.strides(at(0)), v.sy = array.strides(at(1)), v.sz = array.strides(at(2));
-  v.sc = v.vectors ? array.strides(3) : 0;
+  v.size = {size[0], size[1], size[2]};
+  v.sx = strides[0], v.sy = strides[1], v.sz = strides[2];
+  if (vectors) v.components = static_cast<int>(last), v.sc = array.strides(array.ndim() - 1);
   return v;
 }
 
@@ -130,18 +140,18 @@ Field with_interpolation(Field field, const std::string& words, const std::strin
 }
 
 Field from_array(const py::array& array, const std::string& axes, const py::object& affine, const std::string& name,
-                 const std::string& interpolation) {
+                 const std::string& interpolation, bool vectors) {
   const Reader reader = reader_of(array.dtype());
   if (reader == nullptr)
     throw Failure(
         Error{name + ": the array holds " + py::cast<std::string>(py::str(array.dtype())) + "; real numbers were expected (astype)"});
-  Voxels voxels = voxels_of(array, axes, name);
+  Voxels voxels = voxels_of(array, axes, name, vectors);
   voxels.swapped = array.dtype().byteorder() == '>';
   const field::Mapping mapping = mapping_of(affine, name);
   const py::gil_scoped_release unlocked;
   field::Layers layers;
   layers.size = voxels.size;
-  layers.vectors = voxels.vectors;
+  layers.vectors = vectors;
   layers.read = [&](int z, std::span<float> out) { reader(voxels, z, out); };
   return with_interpolation({take(field::make_grid(name, mapping, layers))}, interpolation, name);
 }
@@ -154,7 +164,8 @@ Field field_of(const py::handle& value, const std::string& name) {
 }
 
 void add_arrays(py::module_& m) {
-  m.def("_from_array", from_array, py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("name"), py::arg("interpolation"));
+  m.def("_from_array", from_array, py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("name"), py::arg("interpolation"),
+        py::arg("vectors"));
   m.def(
       "_from_file",
       [](const py::object& file, const std::string& grid, int step, const std::string& interpolation) {

@@ -94,7 +94,7 @@ void add_fields(py::module_& m) {
           "range",
           [](const Field& f) -> py::object {
             if (f.any.scalar) return py::make_tuple(f.any.scalar->min_value(), f.any.scalar->max_value());
-            if (const field::VectorGrid* grid = f.any.vector->grid()) return py::make_tuple(grid->stats().min, grid->stats().max);
+            if (const field::VectorGrid* grid = f.any.vector->grid()) return py::make_tuple(grid->min_length(), grid->max_length());
             return py::none();
           },
           "(least, most) of the values; of a vector grid of their lengths; None for a vector formula.")

@@ -5,6 +5,7 @@
 
 #include "engine/base/version.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/scene_object.h"
 
 namespace catena::python {
 
@@ -67,7 +68,7 @@ scene::Scene scene_of(const py::object& what, const py::object& fields) {
   if (py::isinstance<py::dict>(what)) {
     const std::string text = py::cast<std::string>(py::module_::import("catena").attr("_text_of_scene")(what));
     const py::gil_scoped_release unlocked;
-    return take(scene::parse_scene(text, "scene", given));
+    return take(scene::parse_scene_object(text, "scene", given));
   }
   const std::string path = path_of(what);
   const py::gil_scoped_release unlocked;
@@ -95,8 +96,11 @@ PYBIND11_MODULE(_catena, m) {
     } catch (const Failure& failure) {
       // one line, whatever was named in it; what the program's flag does is a function here
       std::string line = failure.message;
-      constexpr std::string_view kFlag = "--memory MB";
-      if (const auto at = line.find(kFlag); at != std::string::npos) line.replace(at, kFlag.size(), "catena.memory_limit(MB)");
+      constexpr std::string_view kFlag = "--memory ";
+      if (const auto at = line.find(kFlag); at != std::string::npos) {
+        const std::size_t number = at + kFlag.size(), end = std::min(line.find_first_of(" )", number), line.size());
+        line.replace(at, end - at, "catena.memory_limit(" + line.substr(number, end - number) + ")");
+      }
       std::replace_if(
           line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }, '?');
       const auto text =

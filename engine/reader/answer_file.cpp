@@ -2,8 +2,18 @@
 
 #include <sys/mman.h>
 #include <unistd.h>
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <new>
+#include <system_error>
 #include <vector>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/threads.h"
 
 namespace catena::reader {
 namespace {
@@ -16,6 +26,7 @@ bool write_at(int fd, std::uint64_t at, const void* data, std::size_t bytes) {
   const char* from = static_cast<const char*>(data);
   while (bytes > 0) {
     const ssize_t n = ::pwrite(fd, from, bytes, static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     from += n;
     at += static_cast<std::uint64_t>(n);
@@ -24,9 +35,45 @@ bool write_at(int fd, std::uint64_t at, const void* data, std::size_t bytes) {
   return true;
 }
 
+int noted_file = -1;
+
+void on_no_memory() {
+  AnswerFile(noted_file).note(field::ReaderState::no_memory);
+  throw std::bad_alloc();
+}
+
+/// Libraries start threads where nothing can be caught.
+[[noreturn]] void on_terminate_of_reader() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    AnswerFile(noted_file).note(error);
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 
-Result<field::ReadRequest> AnswerFile::request() const {
+void AnswerFile::note(field::ReaderState state) const noexcept {
+  [[maybe_unused]] const auto written = ::pwrite(fd_, &state, sizeof state, offsetof(field::ExchangeHead, state));
+}
+
+void AnswerFile::note(const std::exception& thrown) const noexcept {
+  if (is_thread_refusal(thrown)) note(thread_refusal() == ENOMEM ? field::ReaderState::no_stack : field::ReaderState::no_thread);
+}
+
+void note_early_failures() noexcept {
+  std::uint64_t magic = 0;
+  if (::pread(kAnswer, &magic, sizeof magic, offsetof(field::ExchangeHead, magic)) != static_cast<ssize_t>(sizeof magic) ||
+      magic != field::kExchangeMagic)
+    return;
+  noted_file = kAnswer;
+  std::set_new_handler(on_no_memory);
+  std::set_terminate(on_terminate_of_reader);
+}
+
+Result<field::ReadRequest> AnswerFile::request() {
   field::ExchangeHead head;
   if (::pread(fd_, &head, sizeof head, 0) != static_cast<ssize_t>(sizeof head) || head.magic != field::kExchangeMagic ||
       head.version != field::kExchangeVersion || head.from_reader != 0 || head.bytes > kLongestRequest)
@@ -34,15 +81,25 @@ Result<field::ReadRequest> AnswerFile::request() const {
   std::vector<std::byte> text(head.bytes);
   if (::pread(fd_, text.data(), text.size(), static_cast<off_t>(head.offset)) != static_cast<ssize_t>(text.size()))
     return Error{"there is no request"};
-  return field::decode_request(text);
+  noted_file = fd_;
+  note(field::ReaderState::reading);
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an answer that fails
+  std::set_new_handler(on_no_memory);
+  std::set_terminate(on_terminate_of_reader);
+  auto request = field::decode_request(text);
+  if (request) set_memory_limit(request->memory_bytes, head.of_addresses != 0);
+  return request;
 }
 
 field::NanoMemory AnswerFile::allocate(std::size_t bytes, field::Piece& piece) {
   piece = {end_, bytes};
   end_ = aligned(end_ + bytes);
-  if (::ftruncate(fd_, static_cast<off_t>(end_)) != 0) throw std::bad_alloc();
+  if (::ftruncate(fd_, static_cast<off_t>(end_)) != 0) {
+    note(field::ReaderState::no_room);
+    throw std::bad_alloc();
+  }
   void* start = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, static_cast<off_t>(piece.offset));
-  if (start == MAP_FAILED) throw std::bad_alloc();
+  if (start == MAP_FAILED) on_no_memory();
   return field::NanoMemory::mapped(start, bytes, false);
 }
 
@@ -52,7 +109,12 @@ bool AnswerFile::finish(const field::ReadReply& reply) {
   head.from_reader = 1;
   head.offset = end_;
   head.bytes = text.size();
-  return write_at(fd_, head.offset, text.data(), text.size()) && write_at(fd_, 0, &head, sizeof head);
+  field::ExchangeHead before;
+  if (::pread(fd_, &before, sizeof before, 0) == static_cast<ssize_t>(sizeof before)) head.state = before.state;
+  if (head.state == field::ReaderState::reading && memory_refusals() > 0) head.state = field::ReaderState::refused_memory;
+  const bool written = write_at(fd_, head.offset, text.data(), text.size()) && write_at(fd_, 0, &head, sizeof head);
+  if (!written) note(field::ReaderState::no_room);
+  return written;
 }
 
 }  // namespace catena::reader

@@ -1,6 +1,7 @@
 #include "engine/reader/confine.h"
 
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <linux/landlock.h>
 #include <malloc.h>
 #include <sched.h>
@@ -11,6 +12,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -26,15 +28,19 @@ constexpr bool kSanitized = true;  // these map terabytes of addresses
 constexpr bool kSanitized = false;
 #endif
 
+/// Never above what a shell has set, which root could exceed.
 void set_limit(__rlimit_resource what, std::uint64_t soft, std::uint64_t hard) {
-  const rlimit limit{soft, hard};
+  rlimit limit{};
+  if (::getrlimit(what, &limit) != 0) return;
+  limit = {std::min<rlim_t>(soft, limit.rlim_cur), std::min<rlim_t>(hard, limit.rlim_max)};
   ::setrlimit(what, &limit);
 }
 
-/// The addresses that this process has mapped now.
+/// The addresses that this process has mapped now. Without /proc: as many as the largest reader has.
 std::uint64_t mapped_bytes() {
+  constexpr std::uint64_t kLargest = std::uint64_t{2} << 30;
   std::uint64_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
+  if (!(std::ifstream("/proc/self/statm") >> pages)) return kLargest;
   return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
@@ -49,7 +55,7 @@ void set_limits(const ProcessLimits& limits) {
     ::signal(SIGXFSZ, SIG_IGN);
     set_limit(RLIMIT_FSIZE, limits.memory_bytes + kRoom, limits.memory_bytes + kRoom);
   }
-  if (limits.cpu_s > 0) set_limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1);
+  if (limits.cpu_s > 0) set_limit(RLIMIT_CPU, limits.cpu_s, std::max(limits.cpu_s, limits.most_cpu_s) + 1);
   set_limit(RLIMIT_CORE, 0, 0);
 }
 
@@ -68,6 +74,16 @@ bool allow_reading(int ruleset, const std::string& folder) {
 bool change_root(const std::string& folder) {
   if (::chroot(folder.c_str()) != 0 && (::unshare(CLONE_NEWUSER) != 0 || ::chroot(folder.c_str()) != 0)) return false;
   return ::chdir("/") == 0;
+}
+
+/// No right of root stays, whoever started the process: nothing is left to use, to hand on or to take back.
+bool drop_capabilities() {
+  ::prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+  for (unsigned long capability = 0; ::prctl(PR_CAPBSET_READ, capability, 0, 0, 0) >= 0; ++capability)
+    ::prctl(PR_CAPBSET_DROP, capability, 0, 0, 0);
+  __user_cap_header_struct head{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3] = {};
+  return ::syscall(SYS_capset, &head, none) == 0;
 }
 
 /// No file or folder may be opened, made or removed, but for those to read. 0: the kernel has no Landlock.
@@ -108,7 +124,7 @@ bool allow_opening(scmp_filter_ctx filter) {
 }
 
 /// What a program needs that reads and writes open descriptors, has threads and memory, and ends. All else is refused with EPERM.
-bool seccomp(bool opens_files) {
+bool seccomp(bool opens_files, bool raises_time) {
   const std::unique_ptr<void, void (*)(void*)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)), [](void* f) { seccomp_release(f); });
   if (!filter) return false;
   constexpr int kAllowed[] = {SCMP_SYS(read),         SCMP_SYS(pread64),         SCMP_SYS(readv),
@@ -142,6 +158,8 @@ bool seccomp(bool opens_files) {
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFL)) == 0;
   good =
       good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0), SCMP_A2(SCMP_CMP_EQ, 0)) == 0;
+  good = good && (!raises_time || seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0),
+                                                   SCMP_A1(SCMP_CMP_EQ, RLIMIT_CPU)) == 0);
   // the end of an assertion, and nobody else's
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
                                   SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid()))) == 0;
@@ -162,7 +180,8 @@ Result<field::Confinement> confine(const ProcessLimits& limits, bool* root_chang
   if (!folder.empty() && confinement.landlock_version == 0 && !moved)
     return Error{"this kernel keeps a process neither in a folder (Landlock) nor in a root of its own, expected one that does"};
   if (root_changed != nullptr) *root_changed = moved;
-  confinement.seccomp = seccomp(!folder.empty());
+  if (!drop_capabilities()) return Error{std::string("privileges cannot be given up: ") + std::strerror(errno)};
+  confinement.seccomp = seccomp(!folder.empty(), limits.most_cpu_s > 0);
   if (!confinement.seccomp) return Error{"this kernel does not filter system calls (seccomp), expected one that does"};
   return confinement;
 }

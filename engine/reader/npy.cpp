@@ -213,11 +213,22 @@ field::ReadReply answer_npy(const field::ReadRequest& request, std::span<const s
     return reply;
   }
   reply.is_vector = head->components > 1;
-  reply.dense = {npy_grid_size(*head), reply.is_vector ? 3 : 1, head->type, {}, {}};
+  reply.dense.size = npy_grid_size(*head);
+  reply.dense.components = reply.is_vector ? 3 : 1;
+  reply.dense.type = head->type;
   field::NanoMemory memory = out.allocate(static_cast<std::size_t>(bytes), reply.dense.values);
   const field::Rounding rounding =
       decode_npy(*head, numbers, {reinterpret_cast<float*>(memory.data()), static_cast<std::size_t>(npy_floats(*head))});
   reply.notes = field::notes_of(rounding, head->type);
+  // a last size of 2 or 3 may have been meant as components
+  const field::Size3& n = head->size;
+  const std::int64_t last = !request.what.axes_xyz ? n.x : n.z > 1 ? n.z : n.y, first = request.what.axes_xyz ? n.x : std::max(n.y, n.z);
+  if (!reply.is_vector && (last == 2 || last == 3) && first > 3)
+    reply.notes.push_back(
+        fmt::format("the last size, {}, was read as voxels of scalars; vectors of {} components have four sizes, as "
+                    "(1, {}, {}, {})",
+                    last, last, request.what.axes_xyz ? n.x : std::max<std::int64_t>(n.z, 1),
+                    request.what.axes_xyz ? std::max<std::int64_t>(n.y, 1) : n.y, last));
   return reply;
 }
 

@@ -9,12 +9,15 @@
 #include <optional>
 
 #include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/field/display_range.h"
 #include "engine/field/formats.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/first_look.h"
 #include "engine/scene/labels.h"
+#include "engine/scene/points_look.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/steps.h"
 
@@ -23,20 +26,21 @@ namespace {
 
 /// A file that is looked into; its grids are described once, when somebody asks for them.
 struct LookedInto {
-  std::string path;   ///< of a pattern: its first file
+  std::string path;   ///< of a pattern: its file at the step
+  int step = 0;       ///< in that file
   bool found = true;  ///< false: no file is called like the pattern
   FileKind kind = FileKind::field;
   std::optional<Result<std::vector<field::GridInfo>>> described{};
 
   const Result<std::vector<field::GridInfo>>& grids() {
-    if (!described) described = field::describe(path);
+    if (!described) described = field::describe(path, step);
     return *described;
   }
 };
 
-LookedInto look_into(const std::string& name) {
-  const std::vector<std::string> files = is_pattern(name) ? files_of_pattern(name) : std::vector<std::string>{name};
-  LookedInto file{files.empty() ? name : files.front(), !files.empty()};
+LookedInto look_into(const std::string& name, int step = 0) {
+  const field::LoadRequest request = request_at(name, step);
+  LookedInto file{request.path, request.step, !is_pattern(request.path)};
   const std::string& path = file.path;
   const bool field = field::is_field_file(path), mesh = mesh::is_mesh_file(path), curves = curves::is_curve_file(path),
              points = curves::is_point_file(path);
@@ -91,6 +95,27 @@ std::string other_fields(LookedInto& looked, const std::string& shown, const std
   return text;
 }
 
+struct LaterStep {
+  field::AnyField field;
+  int step = 0;
+};
+
+/// The last step of a field that is uniform at the step of `bare`, as a simulation's often is when it starts: colours are chosen by it.
+std::optional<LaterStep> later_step(const std::string& path, const BareFile& bare) {
+  const auto is_uniform = [](const field::AnyField& field) {
+    const DisplayRange range = field::display_range(field);
+    return !(range.lo < range.hi);
+  };
+  if (!is_uniform(bare.field)) return std::nullopt;
+  const int last = steps_of_file(path, bare.field).count - 1;
+  field::LoadRequest request = bare.request;
+  request.path = path;
+  if (last < 1) return std::nullopt;
+  const auto field = field::load(request_at(request, last));
+  if (!field || is_uniform(*field) || (field->scalar == nullptr) != (bare.field.scalar == nullptr)) return std::nullopt;
+  return LaterStep{*field, last};
+}
+
 /// Fibres that lie in a body are what its file is looked at for: in a translucent shell.
 void show_fibres(LookedInto& file, BareFile& bare, FirstLook& look) {
   const auto& grids = file.grids();
@@ -116,61 +141,6 @@ std::string curves_note(const curves::CurveSet& set) {
                      set.lines() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
 }
 
-/// A running number says nothing of its points.
-bool counts_rows(const std::vector<float>& values) {
-  for (std::size_t i = 1; i < values.size(); ++i)
-    if (values[i] - values[i - 1] != 1) return false;
-  return true;
-}
-
-/// From the 1 to the 99 percentile, where the rest would take a tenth of the colours or more (of few values half of them, for their ends
-/// are far apart by chance); else none: all.
-std::optional<std::array<double, 2>> range_without_tails(const std::vector<float>& values) {
-  constexpr double kTail = 0.01;
-  constexpr std::size_t kMany = 100;
-  std::vector<float> sorted;
-  std::ranges::copy_if(values, std::back_inserter(sorted), [](float v) { return std::isfinite(v); });
-  std::ranges::sort(sorted);
-  const double last = static_cast<double>(sorted.size()) - 1;
-  if (!(last > 1)) return std::nullopt;
-  const double lo = sorted[static_cast<std::size_t>(std::ceil(kTail * last))], hi = sorted[static_cast<std::size_t>((1 - kTail) * last)];
-  const double whole = static_cast<double>(sorted.back()) - sorted.front(), most = sorted.size() < kMany ? 0.5 : 0.9;
-  if (!is_color_range(lo, hi) || hi - lo > most * whole) return std::nullopt;
-  const double digits = 2 - std::floor(std::log10(hi - lo)), factor = std::pow(10, std::fabs(digits));
-  const auto rounded = [&](double v) { return digits > 0 ? std::round(v * factor) / factor : std::round(v / factor) * factor; };
-  return std::array{rounded(lo), rounded(hi)};
-}
-
-/// Balls, coloured by the first column of values that differ; a colour map alone needs such a column.
-Result<std::string> points_parts(const curves::PointSet& set, const std::string& file, const NamedColors& colors, std::string& note) {
-  const curves::PointValues* shown = nullptr;
-  for (const curves::PointValues& one : set.values) {
-    const auto differs = [&](float v) { return std::isfinite(v) && v != one.values.front(); };
-    if (shown == nullptr && one.name != "radius" && !counts_rows(one.values) && std::ranges::any_of(one.values, differs)) shown = &one;
-  }
-  if (shown == nullptr && (!colors.map.empty() || colors.range))
-    return Error{one_line(set.name + ": the table has no column of values to colour; a colour map goes with one")};
-  const auto range = shown == nullptr || colors.range ? colors.range : range_without_tails(shown->values);
-  const bool cut = range && !colors.range;
-  std::string coloured;
-  if (shown != nullptr) coloured = ", coloured by " + in_quotes(shown->name);
-  if (cut) coloured += fmt::format(" from {} to {}, its 1 to 99 percentile", text_of((*range)[0]), text_of((*range)[1]));
-  if (set.core.strays > 0) coloured += fmt::format("; {} far from the others outside of the first view", set.core.strays);
-  note = fmt::format("a table of points (it has columns x, y, z): {} of them as balls{}{}", set.points.size(), coloured,
-                     set.note.empty() ? "" : "; " + set.note);
-  std::string text = "  \"points\": [{\"name\": \"points\", \"file\": " + file;
-  if (shown != nullptr) {
-    text += ", \"color_by\": {\"value\": " + json::string_text(shown->name);
-    if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
-    if (range) text += ", \"range\": " + text_of(*range);
-    text += "}";
-  }
-  return text + "}]" +
-         (shown != nullptr ? ",\n  \"scalar_bars\": [{\"points\": 0" +
-                                 (cut ? ", \"title\": " + json::string_text(shown->name + ", 1 to 99 percentile") : "") + "}]"
-                           : "");
-}
-
 void forget_lines(json::Node& node) {
   node.line = 0;
   for (json::Node& item : node.items) forget_lines(item);
@@ -184,43 +154,45 @@ void forget_lines(Scene& scene) {
 
 }  // namespace
 
-Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
+Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors, int step) {
   BareFile bare;
   bare.scene_path = path + ".json";
   const std::string file = json::string_text(std::filesystem::path(path).filename().string());
-  LookedInto looked = look_into(path);
+  LookedInto looked = look_into(path, step);
+  bare.request.path = looked.path;
+  bare.request.step = looked.step;
+  if (!looked.found) return Error{one_line(path + ": no file is called like this")};
   if (looked.kind == FileKind::mesh) {
-    if (!colors.map.empty() || colors.range)
-      return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
-    CATENA_TRY(bare.mesh, mesh::load_mesh(path));
+    if (!colors.is_default()) return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
+    CATENA_TRY(bare.mesh, mesh::load_mesh(looked.path, {}, looked.step));
     bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
   if (looked.kind == FileKind::curves) {
-    if (!colors.map.empty() || colors.range)
+    if (!colors.is_default())
       return Error{one_line(path + ": curves are shown in the colours of their directions; a colour map goes with a data file")};
-    CATENA_TRY(bare.curves, curves::load_curves(path));
+    CATENA_TRY(bare.curves, curves::load_curves(looked.path, looked.step));
     bare.note = curves_note(*bare.curves);
     bare.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
   if (looked.kind == FileKind::points) {
-    CATENA_TRY(bare.points, curves::load_points(path));
+    CATENA_TRY(bare.points, curves::load_points(looked.path, looked.step));
     CATENA_TRY(const std::string parts, points_parts(*bare.points, file, colors, bare.note));
     bare.text = "{\n" + parts + ",\n" + soft_background() + "\n}\n";
     return bare;
   }
   if (field::needs_layout(path))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
-  if (!looked.found) return Error{one_line(path + ": no file is called like this")};
-  bare.request.path = looked.path;
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(looked, bare.request));
-  const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
-  FirstLook look = bare.field.scalar
-                       ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
-                       : first_look(name, *bare.field.vector->grid(), colors);
-  if (grid.empty() && colors.map.empty() && !colors.range) show_fibres(looked, bare, look);
+  const std::string name = json::string_text(field_name(bare.field.get()->name()));
+  const auto later = later_step(path, bare);
+  const field::AnyField& seen = later ? later->field : bare.field;
+  FirstLook look = seen.scalar ? first_look(name, *seen.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
+                               : first_look(name, *seen.vector->grid(), colors);
+  if (later) look.note += fmt::format(" (at step {}; at step {} all values are equal)", later->step, step);
+  if (grid.empty() && colors.is_default()) show_fibres(looked, bare, look);
   bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
@@ -245,16 +217,23 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
     bare.text += others;
     if (!others.empty()) bare.note += "; the file holds other fields, too: --grid NAME shows one (catena info FILE)";
   }
-  bare.text += "},\n" + (bare.field.times.size() > 1 ? std::string("  \"time\": {\"step\": 0},\n") : std::string()) + look.parts + "\n}\n";
+  if (const std::string note = beyond_note(field::display_range(bare.field)); !note.empty()) bare.field.notes.push_back(note);
+  bare.text += std::string("},\n") +
+               (bare.field.times.size() > 1 || is_pattern(path) ? fmt::format("  \"time\": {{\"step\": {}}},\n", step) : "") + look.parts +
+               "\n}\n";
   return bare;
 }
 
-std::vector<std::string> look_of_file(const std::string& path) {
-  const auto bare = describe_bare_file(path, {}, {});
-  if (!bare) return {};
-  std::vector<std::string> lines{bare->note};
-  lines.insert(lines.end(), bare->field.notes.begin(), bare->field.notes.end());
-  return lines;
+FileLook look_of_file(const std::string& path, const std::string& grid, int step) {
+  FileLook look;
+  const auto bare = describe_bare_file(path, grid, {}, step);
+  if (!bare) return look;
+  if (!bare->note.empty()) look.lines.push_back(bare->note);
+  look.lines.insert(look.lines.end(), bare->field.notes.begin(), bare->field.notes.end());
+  look.steps = steps_of_file(path, bare->field);
+  if (is_pattern(path) && !std::ranges::is_sorted(look.steps.times))
+    look.lines.push_back("the times that the files state do not rise in the order of the numbers in their names, in which they are shown");
+  return look;
 }
 
 FileKind kind_of_file(const std::string& path) { return look_into(path).kind; }
@@ -262,23 +241,25 @@ FileKind kind_of_file(const std::string& path) { return look_into(path).kind; }
 void adopt_loaded(const BareFile& bare, Scene& scene) {
   scene.world.each<FieldSource>([&](Entity, FieldSource& source) {
     const auto adopt = [&](const std::string& grid, const field::AnyField& field) {
-      if (field.get() != nullptr && source.file && same_file(source.file->path, bare.request.path) && source.file->grid == grid)
+      if (field.get() != nullptr && source.file && same_file(source.file->path, bare.request.path) && source.file->grid == grid &&
+          source.file->step == bare.request.step)
         source.loaded = source.drawn = field;
     };
     adopt(bare.request.grid, bare.field);
     adopt(bare.fibres_grid, bare.fibres);
     find_labels(source);
   });
+  const auto adopt_shape = [&](auto& source, const auto& loaded) {
+    if (loaded == nullptr || !same_file(source.path, bare.request.path)) return;
+    if (source.steps.series.empty() && source.steps.step != bare.request.step) return;
+    source.loaded = loaded;
+    find_times(source.steps, source.path);
+  };
   scene.world.each<MeshSource>([&](Entity, MeshSource& source) {
-    if (bare.mesh && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5)) && source.placement == mesh::Placement{})
-      source.loaded = bare.mesh;
+    if (source.placement == mesh::Placement{}) adopt_shape(source, bare.mesh);
   });
-  scene.world.each<DrawnPoints>([&](Entity, DrawnPoints& source) {
-    if (bare.points && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5))) source.loaded = bare.points;
-  });
-  scene.world.each<DrawnCurves>([&](Entity, DrawnCurves& source) {
-    if (bare.curves && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5))) source.loaded = bare.curves;
-  });
+  scene.world.each<DrawnPoints>([&](Entity, DrawnPoints& source) { adopt_shape(source, bare.points); });
+  scene.world.each<DrawnCurves>([&](Entity, DrawnCurves& source) { adopt_shape(source, bare.curves); });
 }
 
 namespace {
@@ -299,11 +280,11 @@ void forget_all_lines(Scene& scene) {
 Outcome check_size_of_values(const field::AnyField& field, const std::string& path) {
   const field::ScalarGrid* grid = field.scalar ? field.scalar->grid() : nullptr;
   if (grid == nullptr) return Done{};
-  const field::GridStats& stats = grid->stats();
-  const double most = std::max(std::fabs(stats.min), std::fabs(stats.max));
+  const DisplayRange& range = field::display_range(*grid);
+  const double most = std::max(std::fabs(range.lo), std::fabs(range.hi));
   if (most == 0 || (most >= kLeastSize && most <= kMostSize)) return Done{};
-  return Error{fmt::format("{}: its values go from {:g} to {:g}; sizes from 1e-30 to 1e30 were expected: scale the data", path, stats.min,
-                           stats.max)};
+  return Error{fmt::format("{}: its values go from {} to {}; sizes from 1e-30 to 1e30 were expected: scale the data", path,
+                           readable(range.lo), readable(range.hi))};
 }
 
 }  // namespace
@@ -320,21 +301,21 @@ Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& co
   const std::string more = look.fields.empty() ? look.fields : look.fields.substr(1);
   CATENA_TRY(Scene scene, parse_scene("{\"fields\": {" + more + "},\n" + look.parts + "}", "field", {with}));
   scene.notes.push_back("field " + look.note);
+  if (const std::string note = beyond_note(field::display_range(grid)); !note.empty()) scene.notes.push_back("field: " + note);
   forget_all_lines(scene);
   CATENA_CHECK(use_drawn_field(scene, find_field(scene, "field"), {}));
   return scene;
 }
 
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
-  CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors));
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors, int step) {
+  CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors, step));
   CATENA_CHECK(check_size_of_values(bare.field, path));
   CATENA_TRY(Scene scene, parse_scene(bare.text, path));
   adopt_loaded(bare, scene);
   if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
   for (const std::string& note : bare.field.notes) scene.notes.push_back(path + ": " + note);
   forget_all_lines(scene);
-  if (bare.field.get() != nullptr)
-    CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(grid.empty() ? bare.field.get()->name() : grid)), {}));
+  if (bare.field.get() != nullptr) CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(bare.field.get()->name())), {}));
   return scene;
 }
 

@@ -19,7 +19,7 @@ struct BareFile {
   curves::CurveSetPtr curves;  ///< or this
 };
 
-Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors);
+Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors, int step = 0);
 /// Gives the scene that was read from the text what is loaded already.
 void adopt_loaded(const BareFile& bare, Scene& scene);
 

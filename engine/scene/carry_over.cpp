@@ -35,9 +35,14 @@ bool same_map(const Scene& old, const FieldSource& before, const Scene& fresh, c
 
 bool same_drawing(const FieldSource& a, const FieldSource& b) { return a.file || (a.resolution == b.resolution && a.box == b.box); }
 
-bool same_mesh(const MeshSource& a, const MeshSource& b) {
-  return a.placement == b.placement && (a.path == b.path || same_file(a.path, b.path));
+/// Of one step of one file.
+template <class T>
+bool same_table(const T& a, const T& b) {
+  const bool same_step = a.steps.step == b.steps.step || std::max(a.steps.times.size(), b.steps.times.size()) < 2;
+  return same_step && (a.path == b.path || same_file(a.path, b.path));
 }
+
+bool same_mesh(const MeshSource& a, const MeshSource& b) { return a.placement == b.placement && same_table(a, b); }
 
 void carry_fields(Scene& old, Scene& fresh) {
   fresh.world.each<FieldSource>([&](Entity e, FieldSource& source) {
@@ -57,32 +62,19 @@ void carry_fields(Scene& old, Scene& fresh) {
   });
 }
 
-void carry_meshes(Scene& old, Scene& fresh) {
-  fresh.world.each<MeshSource>([&](Entity, MeshSource& source) {
-    old.world.each<MeshSource>([&](Entity, const MeshSource& before) {
-      if (!source.loaded && before.loaded && same_mesh(before, source)) source.loaded = before.loaded;
-    });
-  });
-}
-
-/// Curves or points.
-template <class T>
-bool same_table(const T& a, const T& b) {
-  return a.path == b.path || same_file(a.path, b.path);
-}
-
-template <class T>
-void carry_tables(Scene& old, Scene& fresh) {
+/// Meshes, curves or points.
+template <class T, class Same>
+void carry_shapes(Scene& old, Scene& fresh, const Same& is_same) {
   fresh.world.each<T>([&](Entity, T& source) {
     old.world.each<T>([&](Entity, const T& before) {
-      if (!source.loaded && before.loaded && same_table(before, source)) source.loaded = before.loaded;
+      if (source.loaded || !before.loaded || !is_same(before, source)) return;
+      source.loaded = before.loaded;
+      source.steps.times = before.steps.times;
     });
   });
 }
 
 // ---- automatic colours and opacities: functions of the drawn grid and of what is stated besides ----
-
-bool same_named(const NamedColors& a, const NamedColors& b) { return a.map == b.map && a.range == b.range; }
 
 bool states(const json::Node& where, const char* key) { return where.find(key) != nullptr; }
 bool states_colors(const json::Node& where) {
@@ -99,9 +91,9 @@ void carry_transfers(const Scene& old, Scene& fresh) {
       if (fresh.world.get<FieldSource>(volume.field).labels != old.world.get<FieldSource>(before.field).labels) return;
       if (grid == nullptr || old.world.get<FieldSource>(before.field).drawn.get() != grid || !made.file.empty() || !transfer.file.empty())
         return;
-      if (transfer.colors.empty() && !states_colors(before.where) && same_named(made.named, transfer.named)) transfer.colors = made.colors;
+      if (transfer.colors.empty() && !states_colors(before.where) && made.named == transfer.named) transfer.colors = made.colors;
       if (transfer.opacities.empty() && transfer.extinctions.empty() && !states(before.where, "opacity") &&
-          !states(before.where, "extinction") && made.named.range == transfer.named.range)
+          !states(before.where, "extinction") && made.named.range == transfer.named.range && made.named.mapping == transfer.named.mapping)
         transfer.extinctions = made.extinctions;
     });
   });
@@ -180,14 +172,41 @@ void carry_widgets(const Scene& old, Scene& fresh) {
   });
 }
 
+/// The steps that are known of what is read from the same pattern or file: those that have come since stay, and no others come.
+void carry_steps(const Scene& old, Scene& fresh) {
+  fresh.world.each<FieldSource>([&](Entity, FieldSource& source) {
+    old.world.each<FieldSource>([&](Entity, const FieldSource& before) {
+      if (before.pattern != source.pattern || before.own_step || source.own_step || !before.file || !source.file) return;
+      if (source.pattern.empty() && before.file->path != source.file->path) return;
+      source.series = before.series;
+      source.follows = before.follows;
+      source.known_times = before.known_times;
+      put_step(source, fresh.time.step);
+    });
+  });
+  const auto carry = [&](auto& shape, const auto& before) {
+    if (before.steps.pattern != shape.steps.pattern || before.steps.pattern.empty()) return;
+    shape.steps.series = before.steps.series;
+    shape.steps.follows = before.steps.follows;
+    put_step(shape, fresh.time.step);
+  };
+  fresh.world.each<MeshSource>(
+      [&](Entity, MeshSource& shape) { old.world.each<MeshSource>([&](Entity, const MeshSource& before) { carry(shape, before); }); });
+  fresh.world.each<DrawnCurves>(
+      [&](Entity, DrawnCurves& shape) { old.world.each<DrawnCurves>([&](Entity, const DrawnCurves& before) { carry(shape, before); }); });
+  fresh.world.each<DrawnPoints>(
+      [&](Entity, DrawnPoints& shape) { old.world.each<DrawnPoints>([&](Entity, const DrawnPoints& before) { carry(shape, before); }); });
+}
+
 }  // namespace
 
 void carry_over(Scene& old, Scene& fresh) {
+  carry_steps(old, fresh);
   set_step(fresh, old.time.step);
   carry_fields(old, fresh);
-  carry_meshes(old, fresh);
-  carry_tables<DrawnCurves>(old, fresh);
-  carry_tables<DrawnPoints>(old, fresh);
+  carry_shapes<MeshSource>(old, fresh, same_mesh);
+  carry_shapes<DrawnCurves>(old, fresh, same_table<DrawnCurves>);
+  carry_shapes<DrawnPoints>(old, fresh, same_table<DrawnPoints>);
   carry_transfers(old, fresh);
   // before the lines, which hold their curves
   for (auto& [key, curve] : old.curves)

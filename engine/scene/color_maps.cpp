@@ -6,9 +6,12 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <tuple>
 
+#include "engine/base/numbers.h"
 #include "engine/base/result.h"
 #include "engine/base/text.h"
+#include "engine/base/value_scale.h"
 
 namespace catena::scene {
 namespace {
@@ -114,7 +117,7 @@ std::string not_a_color_map(std::string_view name) {
          suggestion(name, color_map_names());
 }
 
-std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi) {
+std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi, double linear_below) {
   const ColorMap* map = find_map(name);
   CATENA_ASSERT(map != nullptr && std::isfinite(lo) && std::isfinite(hi));
   if (!(lo < hi)) return {{lo, middle_of(map->points)}};
@@ -123,7 +126,7 @@ std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi) {
   const std::size_t count = map->points.size();
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const ColorPoint& point = map->points[reversed ? count - 1 - i : i];
-    const double t = reversed ? 1 - point.value : point.value, value = i == 0 ? lo : (1 - t) * lo + t * hi;
+    const double t = reversed ? 1 - point.value : point.value, value = value_between(lo, hi, i == 0 ? 0 : t, linear_below);
     // in a range of a few bits neighbours fall together
     if (i == 0 || (value > points.back().value && value < hi)) points.push_back({value, point.color});
   }
@@ -136,12 +139,59 @@ bool is_color_range(double lo, double hi) {
   return std::fabs(lo) <= most && std::fabs(hi) <= most && static_cast<float>(lo) < static_cast<float>(hi);
 }
 
-std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
-                                    std::string_view fallback) {
+double linear_below(const ValueMapping& mapping, double lo, double hi) {
+  constexpr double kShown = 1e-3;  // of the greatest
+  if (mapping.kind == ValueMapping::Kind::linear) return 0;
+  if (mapping.kind == ValueMapping::Kind::log) return std::max(lo, 0.0);
+  return mapping.linear_below > 0 ? mapping.linear_below : kShown * std::max(std::fabs(lo), std::fabs(hi));
+}
+
+double linear_below(const TransferFunction& transfer) {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  const auto take = [&](const auto& points) {
+    for (const auto& p : points) lo = std::min(lo, p.value), hi = std::max(hi, p.value);
+  };
+  take(transfer.colors);
+  take(transfer.opacities);
+  take(transfer.extinctions);
+  return lo <= hi ? linear_below(transfer.named.mapping, lo, hi) : 0;
+}
+
+std::string mapping_problem(const ValueMapping& mapping, double lo, const std::string& what) {
+  if (mapping.kind != ValueMapping::Kind::log || lo > 0) return {};
+  return "\"mapping\" is \"log\", but " + what + " begins at " + to_text(lo) +
+         "; values above 0, or \"symlog\", which shows 0 and both signs, were expected";
+}
+
+Outcome check_mapping(const json::Node& item, const ValueMapping& mapping, double lo) {
+  const std::string problem = mapping_problem(mapping, lo, "the range of the values");
+  return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or(item, "mapping"), problem + " (\"range\" states others)");
+}
+
+Outcome check_mapping(const ColorBy& by, double lo) {
+  return by.colors.empty() && !by.named.range ? check_mapping(by.where, by.named.mapping, lo) : Outcome(Done{});
+}
+
+std::vector<ColorPoint> color_points(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                     std::string_view fallback) {
   if (!table.empty()) return table;
   const std::string_view name = named.map.empty() ? fallback : std::string_view(named.map);
-  if (named.range) return named_map(name, (*named.range)[0], (*named.range)[1]);
-  return lo <= hi ? named_map(name, lo, hi) : named_map(name, 0, 1);
+  if (named.range) std::tie(lo, hi) = std::pair((*named.range)[0], (*named.range)[1]);
+  if (!(lo <= hi)) lo = 0, hi = 1;
+  return named_map(name, lo, hi, linear_below(named.mapping, lo, hi));
+}
+
+std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                    std::string_view fallback) {
+  constexpr double kOff = 1.0 / 2048;
+  std::vector<ColorPoint> points = color_points(table, named, lo, hi, fallback);
+  if (named.mapping.kind == ValueMapping::Kind::linear) return points;
+  std::vector<std::array<double, 4>> rows;
+  for (const ColorPoint& p : points) rows.push_back({p.value, p.color.r, p.color.g, p.color.b});
+  points.clear();
+  for (const auto& row : refined(rows, linear_below(named.mapping, rows.front()[0], rows.back()[0]), kOff))
+    points.push_back({row[0], {static_cast<float>(row[1]), static_cast<float>(row[2]), static_cast<float>(row[3])}});
+  return points;
 }
 
 namespace {

@@ -42,7 +42,10 @@ struct FieldSource {
   json::Node where;                        ///< its place in the scene file, for messages
   std::optional<field::LoadRequest> file;  ///< either this
   bool grid_is_a_wish = false;             ///< a replaced file may lack the grid that the first one had
+  std::string pattern{};                   ///< the name in the scene, where it stands for several files; empty: one file
   std::vector<std::string> series{};       ///< the files of a pattern, in order; `file` has the one of the scene's step
+  bool follows = false;                    ///< steps may be added while it is shown (follow.h)
+  std::vector<double> known_times{};       ///< with `follows`: of the steps within one file that are whole; empty: not looked at yet
   bool stepped = false;                    ///< it has gone from one step to another
   bool own_step = false;                   ///< it states its step, and does not follow the scene's
   std::string analytic;                    ///< or this
@@ -57,15 +60,28 @@ struct FieldSource {
   field::AnyField drawn;                   ///< a grid (the eye's); the same object for files
 };
 
+/// The scale on which values lie between the points of colours and opacities, and along a colour bar (engine/base/value_scale.h).
+struct ValueMapping {
+  /// log: by the logarithm of the value; symlog: the same away from zero on both sides, and linear about zero.
+  enum class Kind { linear, log, symlog };
+  Kind kind = Kind::linear;  ///< linear unless stated
+  double linear_below = 0;   ///< symlog: linear up to this size of a value, the field's unit; 0: a thousandth of the greatest that is shown
+  bool operator==(const ValueMapping&) const = default;
+};
+
 /// A colour map by its name, laid over a range once the values are known (color_maps.h).
 struct NamedColors {
   std::string map;                             ///< empty: the default of what is coloured
   std::optional<std::array<double, 2>> range;  ///< empty: that of the values
+  ValueMapping mapping{};                      ///< of a table of colours, too, and of opacities
+  bool operator==(const NamedColors&) const = default;
+  /// Whether nothing of it was stated.
+  bool is_default() const { return *this == NamedColors{}; }
 };
 
-/// Piecewise-linear maps over field values, values rising. The scene gives either extinctions (sigma per world unit) or
-/// opacities (alpha per opacity_unit), which become sigma = -ln(1 - alpha) / opacity_unit at their points once the drawn
-/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear. A factor that follows the
+/// Piecewise-linear maps over field values, on the scale of `named.mapping`, values rising. The scene gives either extinctions (sigma per
+/// world unit) or opacities (alpha per opacity_unit), which become sigma = -ln(1 - alpha) / opacity_unit at their points once the drawn
+/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear on the scale. A factor that follows the
 /// length of the field's gradient (field units per world unit) multiplies sigma.
 struct TransferFunction {
   /// A colour at a value.
@@ -85,7 +101,7 @@ struct TransferFunction {
   std::vector<OpacityPoint> opacities;       ///< either these
   double opacity_unit = 0;                   ///< world length; 0: the smallest voxel edge of the drawn grid
   std::vector<ExtinctionPoint> extinctions;  ///< or these; values rising
-  NamedColors named;                         ///< where `colors` is empty
+  NamedColors named;                         ///< where `colors` is empty; its mapping always
   /// A factor at a length of the gradient.
   struct GradientPoint {
     double gradient, factor;  ///< field units per world unit; 0 to 1
@@ -103,7 +119,7 @@ struct ColorBy {
   Entity field;                                      ///< at the same place of the world: a scalar, or the magnitude of a vector
   json::Node where;                                  ///< its place in the file, for messages
   std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
-  NamedColors named{};                               ///< viridis, all values (lines, surfaces: the drawn ones), where it does not say
+  NamedColors named{};  ///< viridis, all values (lines, surfaces: the drawn ones), where it does not say; mapping
 };
 
 /// A scalar field that rays go through.
@@ -131,10 +147,27 @@ struct Isosurface {
   std::optional<ColorBy> color_by{};  ///< none: `color` everywhere
 };
 
+/// The steps in time of a file, or of a pattern.
+struct StepList {
+  int count = 1;              ///< how many there are
+  std::vector<double> times;  ///< of all steps; of a pattern those of its first and its last file; empty: none is stated
+  std::string time_unit;      ///< of `times`; empty: not stated
+};
+
+/// The steps in time of what a mesh, curves or points are read from.
+struct FileSteps {
+  std::string pattern;              ///< the name in the scene, where it stands for several files; empty: one file
+  std::vector<std::string> series;  ///< the files of a pattern, in order; `path` is that of the scene's step; empty: one file
+  std::vector<double> times;        ///< of the steps within one file (.pvd, .series), once it is loaded; empty: it has one
+  int step = 0;                     ///< which step within one file
+  bool follows = false;             ///< steps may be added while it is shown (follow.h)
+};
+
 /// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
 struct MeshSource {
   json::Node where;           ///< its place in the file, for messages
   std::string path;           ///< the file, as the program opens it
+  FileSteps steps;            ///< of the file, or of the pattern
   mesh::Placement placement;  ///< world = scale * file + offset
   mesh::MeshPtr loaded;       ///< felt and drawn: one object
 };
@@ -155,6 +188,7 @@ struct SurfaceMesh {
 struct DrawnCurves {
   json::Node where;                 ///< its place in the file, for messages
   std::string path;                 ///< the file, as the program opens it
+  FileSteps steps;                  ///< of the file, or of the pattern
   curves::CurveSetPtr loaded;       ///< felt and drawn: one object; none before something asks for it
   double radius = 0;                ///< of the tubes; 0: fitted
   std::optional<Color> color;       ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
@@ -166,6 +200,7 @@ struct DrawnCurves {
 struct DrawnPoints {
   json::Node where;                 ///< its place in the file, for messages
   std::string path;                 ///< the file, as the program opens it
+  FileSteps steps;                  ///< of the file, or of the pattern
   curves::PointSetPtr loaded;       ///< felt and drawn: one object; none before something asks for it
   double radius = 0;                ///< of all balls; 0: by `radius_by`, or fitted
   std::string radius_by;            ///< the column that says each ball's; empty: the column "radius", where the table has one

@@ -165,7 +165,8 @@ DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
   // blocks spread over the box, each whole: an edge that the box cuts off is left out
   std::vector<float> blocks, block(kEdge * kEdge * kEdge), values;
   std::vector<std::uint8_t> valid(block.size());
-  each_block(grid.index_box(), kMostVoxels, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+  const DisplayRange& range = display_range(grid);
+  field::each_block(grid.index_box(), kMostVoxels, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
     block.assign(block.size(), 0.f);
     const std::span<float> part(block.data(), count);
     grid.read_block(origin, extent, part);
@@ -174,8 +175,10 @@ DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
       for (std::size_t i = 0; i < count; ++i)
         if (valid[i] == 0) block[i] = NAN;
     }
-    for (const float v : part)
+    for (float& v : part) {
+      if (!range.shows(v)) v = NAN;
       if (std::isfinite(v)) values.push_back(v);
+    }
     if (count == block.size()) blocks.insert(blocks.end(), block.begin(), block.end());
   });
   if (values.empty()) return facts;

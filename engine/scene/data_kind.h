@@ -1,11 +1,11 @@
 /// What kind of data a scalar grid holds, from what its file says and what its values look like, so that a file without a scene is shown as
 /// a specialist would show it. Off the tick, any thread; the same grid always gives the same answer.
 ///
-/// Measured on at most about a million voxels in blocks of 8^3 that are spread over the box, those of invalid cells left out. The
-/// background b is the fullest of 256 bins over the values if it holds over 5 % of them and lies in the lowest fifth of the range, else the
-/// lowest value; the foreground is what is 2 % of the range or more away from it.
-/// What the file says is a label map and holds whole numbers is one. Else the order is that of the rules, and the first that holds is the
-/// kind:
+/// Measured on at most about a million voxels in blocks of 8^3 that are spread over the box, those of invalid cells and those beyond
+/// the display range (engine/field/display_range.h) left out. The background b is the fullest of 256 bins over the values if it holds over
+/// 5 % of them and lies in the lowest fifth of the range, else the lowest value; the foreground is what is 2 % of the range or more away
+/// from it. What the file says is a label map and holds whole numbers is one. Else the order is that of the rules, and the first that holds
+/// is the kind:
 ///   level set    the file says so; or values of both signs, and in 90 % of the places the gradient is 0.95 to 1.05 long (world units)
 ///   CT           the unit is HU; or no value is below -5000, and 5 % of the values lie from -1100 to -850 (air) and 5 % from -150 to 200
 ///                (soft tissue), in Hounsfield units

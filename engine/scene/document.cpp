@@ -1,5 +1,7 @@
 #include "engine/scene/document.h"
 
+#include <filesystem>
+
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -8,17 +10,18 @@
 
 namespace catena::scene {
 
-Result<Document> Document::open(const std::string& path, const std::vector<FieldOverride>& overrides, const NamedColors& colors) {
+Result<Document> Document::open(const std::string& path, const std::vector<FieldOverride>& overrides, const NamedColors& colors,
+                                const std::string& grid) {
   Document document;
   document.path_ = path;
   document.overrides_ = overrides;
   if (path.ends_with(".json")) {
-    if (!colors.map.empty() || colors.range)
-      return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
+    if (!colors.is_default()) return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
+    if (!grid.empty()) return Error{one_line(path + ": a scene names its grids; a data file was expected beside the name of a grid")};
     CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)", kMaxJsonBytes));
   } else {
     if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};
-    CATENA_TRY(BareFile bare, describe_bare_file(path, {}, colors));
+    CATENA_TRY(BareFile bare, describe_bare_file(path, grid, colors));
     document.path_ = bare.scene_path;
     document.saved_ = bare.text;
     document.loaded_ = std::make_shared<const BareFile>(std::move(bare));
@@ -100,7 +103,23 @@ void Document::redo() {
   if (can_redo()) ++now_;
 }
 
-// ---- to the disk ----
+// ---- to and from the disk ----
+
+Document::OnDisk Document::on_disk() const {
+  std::error_code code;
+  const auto status = std::filesystem::status(path_, code);
+  if (status.type() == std::filesystem::file_type::not_found) return OnDisk::gone;
+  const auto there = read_text(path_, "a scene file (JSON)", kMaxJsonBytes);
+  if (!there) return OnDisk::no_file;
+  return *there == saved_ ? OnDisk::as_known : OnDisk::changed;
+}
+
+Outcome Document::take_from_disk() {
+  CATENA_TRY(std::string theirs, read_text(path_, "a scene file (JSON)", kMaxJsonBytes));
+  CATENA_CHECK(push(theirs, "the text of the file", {}));
+  saved_ = std::move(theirs);
+  return Done{};
+}
 
 Result<std::string> Document::whole_text() const { return moved_text(text(), path_, path_, overrides_); }
 

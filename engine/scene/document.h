@@ -19,9 +19,10 @@ class Document {
   /// The history that is kept: so many steps, so much text; the oldest steps go first, the text as it is now never.
   static constexpr std::size_t kMaxSteps = 1000, kMaxBytes = std::size_t{64} << 20;
 
-  /// A scene file as it is; for a data file a new scene that shows it as scene_for_file does, `colors` included (they go with data files
-  /// only, overrides with scene files only).
-  static Result<Document> open(const std::string& path, const std::vector<FieldOverride>& overrides = {}, const NamedColors& colors = {});
+  /// A scene file as it is; for a data file a new scene that shows it as scene_for_file does, of its field `grid` (empty: the one that is
+  /// looked at first), `colors` included (both go with data files only, overrides with scene files only).
+  static Result<Document> open(const std::string& path, const std::vector<FieldOverride>& overrides = {}, const NamedColors& colors = {},
+                               const std::string& grid = {});
 
   /// A scene that is nowhere yet; `path`: where save() without one would put it.
   static Result<Document> make(const std::string& text, const std::string& path);
@@ -31,6 +32,17 @@ class Document {
   const std::string& path() const { return path_; }
   /// The text is another than the one that was opened or saved last.
   bool is_modified() const { return text() != saved_; }
+
+  /// What is at path() now, against the text that was opened or saved last: somebody else may have written or removed it meanwhile.
+  enum class OnDisk {
+    as_known,
+    changed,  ///< another text
+    gone,     ///< nothing is there
+    no_file   ///< a folder, or what cannot be read
+  };
+  OnDisk on_disk() const;
+  /// The text at path() in place of this one, as one step of undo; nothing is modified then. An error (all stays) where it is no scene.
+  Outcome take_from_disk();
 
   /// The scene of the text, as read_scene reads it. The first one of a data file has it loaded already.
   Result<Scene> read() const;

@@ -13,6 +13,7 @@
 #include "engine/scene/color_maps.h"
 #include "engine/scene/data_kind.h"
 #include "engine/scene/flow_kind.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/transfer.h"
 #include "engine/scene/write_values.h"
 
@@ -30,7 +31,10 @@ constexpr double kFlat = 1, kWide = 7;  // cells: a single image has at most so 
 constexpr const char* kQuantityMap = "viridis";
 
 /// A level that a surface can have: within the values.
-bool has_level(const field::ScalarGrid& grid, double level) { return level > grid.min_value() && level < grid.max_value(); }
+bool has_level(const field::ScalarGrid& grid, double level) {
+  const DisplayRange& range = display_range(grid);
+  return level > range.lo && level < range.hi;
+}
 
 /// With as many digits as say it to a thousandth of the range.
 double rounded(double value, const DataFacts& facts) {
@@ -51,22 +55,16 @@ std::string surfaces(const std::vector<std::string>& items) {
   return text + "]";
 }
 
-/// , "color": MAP, "range": [LO, HI]
-std::string color_members(const NamedColors& colors) {
-  std::string text;
-  if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
-  if (colors.range) text += ", \"range\": " + text_of(*colors.range);
-  return text;
-}
-
-std::string bar_of(const std::string& what, const std::string& title, bool box = true) {
-  return ",\n  \"scalar_bars\": [{" + what + ", \"title\": " + title + "}]" + (box ? ",\n  \"bounding_box\": true" : "");
+/// Its title is the name of what is shown, with its unit.
+std::string bar_of(const std::string& what, bool box = true) {
+  return ",\n  \"scalar_bars\": [{" + what + "}]" + (box ? ",\n  \"bounding_box\": true" : "");
 }
 
 /// In the colours that are asked for. A map that is named without a range reaches over the values that the opacity follows, not over all.
 std::string colored_volume(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
   if (!colors.map.empty() && !colors.range) {
     TransferFunction transfer;
+    transfer.named.mapping = colors.mapping;
     complete_transfer(transfer, grid);
     const double lo = transfer.colors.front().value, hi = transfer.colors.back().value;
     if (is_color_range(lo, hi)) colors.range = {lo, hi};
@@ -88,7 +86,7 @@ std::string quantity(const std::string& field, const field::ScalarGrid& grid, co
   for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, most}})
     rows += (share > 0 ? ", [" : "[") + text_of(rounded(lo + share * (hi - lo), facts)) + ", " + text_of(three_digits(depth * clear)) + "]";
   text += rows + "]}]";
-  return text + bar_of("\"volume\": 0", field);
+  return text + bar_of("\"volume\": 0");
 }
 
 std::string computed_tomography(const std::string& field, const field::ScalarGrid& grid, const DataFacts& facts) {
@@ -107,7 +105,7 @@ void show_labels(const std::string& field, FirstLook& look) {
   look.fields = ",\n             " + surface + ": {\"label\": \"*\", \"of\": " + field + "}";
   look.parts =
       surfaces({"{\"field\": " + surface + ", \"level\": " + text_of(field::kLabelLevel) + ", \"color_by\": {\"field\": " + field + "}}"}) +
-      bar_of("\"field\": " + field, field, false);
+      bar_of("\"field\": " + field, false);
 }
 
 std::string angiogram(const std::string& field, const DataFacts& facts) {
@@ -132,12 +130,18 @@ std::string image(const std::string& field, const field::ScalarGrid& grid, int a
     colors.range = {rounded(facts.lo, facts), rounded(facts.hi, facts)};
   const Vec3 normal = direction(grid.mapping().world_gradient(Vec3(axis == 0, axis == 1, axis == 2)));
   return "  \"slices\": [{\"field\": " + field + ", \"point\": " + text_of(middle) + ", \"normal\": " + text_of(normal) +
-         color_members(colors) + "}]" + bar_of("\"slice\": 0", field, false);
+         color_members(colors) + "}]" + bar_of("\"slice\": 0", false);
 }
 
 }  // namespace
 
 std::string soft_background() { return "  \"background\": " + text_of(kBackdrop); }
+
+std::string color_members(const NamedColors& colors) {
+  std::string text;
+  for (const auto& [key, value] : scale_members({}, colors)) text += ", \"" + key + "\": " + value;
+  return text;
+}
 
 FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, const field::Units& units, NamedColors colors) {
   const DataFacts facts = data_facts(grid, units);
@@ -147,9 +151,11 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
   FirstLook look;
   look.whole = facts.masked && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
   look.note = "looks like " + std::string(kind_word(kind)) + ": " + why(kind, facts);
-  if (grid.min_value() == grid.max_value()) look.note = "every value is " + to_text(grid.min_value());
+  const DisplayRange& range = display_range(grid);
+  const bool one_value = !(range.lo < range.hi);
+  if (one_value) look.note = std::string(range.is_cut() ? "every other value is " : "every value is ") + readable(range.lo);
   const auto level = [&](double value) {
-    return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (grid.min_value() + grid.max_value());
+    return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (range.lo + range.hi);
   };
   const auto body = [&](double at) {
     look.shell = surfaces({surface(field, at, kSolid, kShellOpacity)});
@@ -160,8 +166,7 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
     look.parts = image(field, grid, axis, facts, std::move(colors)) + ",\n" + soft_background();
     return look;
   }
-  const bool one_value = !(grid.min_value() < grid.max_value());
-  if (!colors.map.empty() || colors.range || one_value) {
+  if (!colors.is_default() || one_value) {
     look.parts = colored_volume(field, grid, colors);
   } else {
     switch (kind) {
@@ -203,14 +208,14 @@ FirstLook first_look(const std::string& field, const field::VectorGrid& grid, co
   const bool narrow = facts.middle < kStill * facts.fast;
   const double size = narrow ? std::clamp(std::cbrt(facts.moving), kNarrowest, 1.0) : 1;
   const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
-  const bool named = !colors.map.empty() || colors.range, plain = (facts.unit || facts.axes) && !named;
+  const bool named = !colors.is_default(), plain = (facts.unit || facts.axes) && !named;
   FirstLook look;
   look.fibres = facts.unit;
   look.note = facts.unit   ? "looks like fibres: all vectors are as long"
               : facts.axes ? "looks like fibres: neighbours point to either side"
                            : "looks like a flow";
   NamedColors shown = colors;
-  if (!named) shown.map = kQuantityMap;
+  if (colors.map.empty() && !colors.range) shown.map = kQuantityMap;
   const std::array<double, 2> speeds{three_digits(facts.slow), three_digits(facts.fast)};
   if (!shown.range && is_color_range(speeds[0], speeds[1])) shown.range = speeds;
 
@@ -228,7 +233,7 @@ FirstLook first_look(const std::string& field, const field::VectorGrid& grid, co
     for (int axis = 0; axis < 3; ++axis)
       look.parts += std::string(axis > 0 ? ",\n             " : "") + "{\"field\": " + field + ", \"axis\": \"" + "xyz"[axis] +
                     "\", \"at\": " + text_of(middle[axis]) + color_members(shown) + "}";
-    look.parts += "]" + bar_of("\"slice\": 0", field) + ",\n" + soft_background();
+    look.parts += "]" + bar_of("\"slice\": 0") + ",\n" + soft_background();
   } else {
     look.parts = "  \"streamlines\": [{\"field\": " + field;
     if (facts.axes) look.parts += ", \"kind\": \"line\"";
@@ -237,7 +242,7 @@ FirstLook first_look(const std::string& field, const field::VectorGrid& grid, co
     look.parts += ", \"radius\": " + text_of(radius) + ", \"length\": " + text_of(options.length) +
                   ",\n                   \"seeds\": {\"evenly_spaced\": {\"distance\": " + text_of(distance) +
                   ",\n                                               \"start\": " + text_of(facts.fastest) + "}}}]";
-    if (!plain) look.parts += bar_of("\"streamlines\": 0", field);
+    if (!plain) look.parts += bar_of("\"streamlines\": 0");
     look.parts += ",\n" + soft_background();
   }
   return look;

@@ -33,6 +33,8 @@ struct FirstLook {
 /// `field`: its name in the scene, as JSON.
 FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, const field::Units& units, NamedColors colors);
 FirstLook first_look(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors);
+/// , "color": MAP, "range": [LO, HI] and so on: what is stated of them.
+std::string color_members(const NamedColors& colors);
 /// Of a mesh: what goes beside it.
 std::string soft_background();
 

@@ -30,14 +30,15 @@ FlowFacts flow_facts(const field::VectorGrid& grid) {
   std::array<std::pair<double, Vec3>, kParts * kParts * kParts> fastest{};
   const field::Box& box = grid.index_box();
   field::Cursor cursor;
-  each_block(grid.index_box(), kMostVectors, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+  const DisplayRange& range = display_range(grid);
+  field::each_block(grid.index_box(), kMostVectors, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
     block.resize(3 * count);
     grid.read_block(origin, extent, block);
     const auto vector = [&](std::size_t i) { return Vec3(block[3 * i], block[3 * i + 1], block[3 * i + 2]); };
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 v = vector(i);
       const double speed = norm(v);
-      if (!std::isfinite(speed)) continue;
+      if (!range.shows(speed)) continue;
       const field::Index3 at{origin.x + static_cast<int>(i) % extent.x, origin.y + static_cast<int>(i) / extent.x % extent.y,
                              origin.z + static_cast<int>(i) / (extent.x * extent.y)};
       if (grid.has_mask() && !grid.cell(at, cursor).valid) continue;
@@ -49,7 +50,7 @@ FlowFacts flow_facts(const field::VectorGrid& grid) {
       if (speed > fastest[part].first) fastest[part] = {speed, place};
       if (static_cast<int>(i) % extent.x + 1 == extent.x) continue;
       const Vec3 next = vector(i + 1);
-      if (!(speed > 0) || !(norm(next) > 0)) continue;
+      if (!(speed > 0) || !(norm(next) > 0) || !range.shows(norm(next))) continue;
       ++pairs;
       opposite += dot(v, next) < kOpposite * speed * norm(next);
     }

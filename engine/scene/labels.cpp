@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
@@ -128,7 +129,7 @@ Result<field::AnyField> use_label_surface(Scene& scene, Entity field) {
                           in_quotes(label.of) + " is no label map; a file whose voxels hold whole numbers was expected");
   CATENA_TRY(const std::vector<double> values, values_of(label, *map, json::member_or(where, "label")));
   auto made = field::label_surface(*grid, map->counts, values, label.smooth, name);
-  if (!made) return json::error_at(where, made.error().message);
+  if (!made) return caused_by(json::error_at(where, made.error().message), made.error());
   return field::AnyField{*made, nullptr};
 }
 

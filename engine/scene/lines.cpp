@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -54,7 +55,7 @@ Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
     if (traced[n])
       scene.curves.emplace(key(missing[n]), *traced[n]);
     else if (!seeds.widget)
-      return json::error_at(place(at[n]), traced[n].error().message);
+      return caused_by(json::error_at(place(at[n]), traced[n].error().message), traced[n].error());
   }
   Curves curves;
   curves.reserve(points.size());
@@ -144,6 +145,8 @@ field::Box formula_box(const LineRequest& request) {
 }
 
 constexpr std::size_t kFirstBlock = 64, kLargestBlock = 8192;
+constexpr std::size_t kBlockKnots = 400'000;         ///< of lines that are not kept
+constexpr std::size_t kMaxVisited = 10'000'000'000;  ///< knots, none of them kept: hours
 
 /// Seeds whose lines have room if they are as those so far.
 std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
@@ -172,6 +175,56 @@ bool ends_at_box(const Seeds& seeds, std::span<const Vec3> places, const LineReq
   return request.box && !(request.length > 0) && std::any_of(places.begin(), places.end(), within);
 }
 
+/// Handed over together, where they were asked for block by block.
+Result<Curves> all_at_once(Curves curves, const LineRequest& request) {
+  if (request.visit && !curves.empty()) CATENA_CHECK(request.visit({curves, curves.size(), curves.size()}));
+  return curves;
+}
+
+/// The lines of many seeds: a block has as many as the knots that are left allow for.
+Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request,
+                               const flow::BatchOptions& batch, const json::Node& where) {
+  const json::Node& place = seeds.pattern ? seeds.pattern->where : where;
+  flow::TraceOptions exact;
+  exact.length = request.length;
+  const flow::BatchTracer tracer(request.flow, batch);
+  Curves curves;
+  std::string first_error;
+  const std::size_t most = request.visit ? kMaxVisited : request.most_knots;
+  std::size_t knots = 0, lines = 0, block = kFirstBlock;
+  bool kept = true;
+  for (std::size_t begin = 0; begin < places.size(); begin += block) {
+    if (begin > 0) block = next_block(begin, knots, request.visit ? knots + kBlockKnots : most);
+    const std::span<const Vec3> some = places.subspan(begin, std::min(block, places.size() - begin));
+    auto traced = batch.tolerance <= kExact ? flow::trace_each(request.flow, some, exact) : tracer.trace(some);
+    const std::size_t first = curves.size();
+    for (std::size_t i = 0; i < traced.size(); ++i) {
+      if (traced[i]) {
+        curves.push_back(*std::move(traced[i]));
+        knots += curves.back()->knots().size();
+        ++lines;
+        continue;
+      }
+      if (!seeds.pattern && !seeds.widget)
+        return caused_by(json::error_at(begin + i < where.items.size() ? where.items[begin + i] : where, traced[i].error().message),
+                         traced[i].error());
+      if (first_error.empty()) first_error = traced[i].error().message;
+    }
+    if (knots > most) return json::error_at(place, too_many_knots(places.size(), begin + some.size(), most));
+    if (request.visit) {
+      CATENA_CHECK(request.visit({std::span(curves).subspan(first), begin + some.size(), places.size()}));
+      // as many as these let expect
+      const double expected = static_cast<double>(knots) * static_cast<double>(places.size()) / static_cast<double>(begin + some.size());
+      kept = kept && expected <= static_cast<double>(request.most_kept);
+      if (!kept) curves.clear();
+    }
+    if (request.progress) request.progress(begin + some.size(), places.size());
+  }
+  if (lines == 0 && !seeds.widget)
+    return json::error_at(place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + first_error);
+  return curves;
+}
+
 }  // namespace
 
 Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& asked, const json::Node& where) {
@@ -190,7 +243,7 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& a
   if (!many && tolerance <= kExact) {
     CATENA_TRY(Curves curves, exact_lines(scene, seeds, asked, where));
     if (bounded) end_at_box(curves, request.flow);
-    return curves;
+    return all_at_once(std::move(curves), asked);
   }
   flow::BatchOptions batch;
   batch.length = request.length;
@@ -209,39 +262,15 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& a
     if (curves.empty())
       return json::error_at(place, "no line as long as the distance starts at any of the " + std::to_string(spacing.start.size()) +
                                        " places; a \"start\" within the flow was expected");
-    return curves;
+    return all_at_once(std::move(curves), asked);
   }
-  flow::TraceOptions exact;
-  exact.length = request.length;
-  const flow::BatchTracer tracer(request.flow, batch);
-  Curves curves;
-  curves.reserve(places.size());
-  std::string first_error;
-  // in blocks, of as many seeds as the knots that are left allow for
-  std::size_t knots = 0, block = kFirstBlock;
-  for (std::size_t begin = 0; begin < places.size(); begin += block) {
-    if (begin > 0) block = next_block(begin, knots, request.most_knots);
-    const std::span<const Vec3> some = std::span<const Vec3>(places).subspan(begin, std::min(block, places.size() - begin));
-    const auto traced = tolerance <= kExact ? flow::trace_each(request.flow, some, exact) : tracer.trace(some);
-    for (std::size_t i = 0; i < traced.size(); ++i) {
-      if (traced[i]) {
-        curves.push_back(*traced[i]);
-        knots += curves.back()->knots().size();
-        continue;
-      }
-      if (!seeds.pattern && !seeds.widget)
-        return json::error_at(begin + i < where.items.size() ? where.items[begin + i] : where, traced[i].error().message);
-      if (first_error.empty()) first_error = traced[i].error().message;
-    }
-    if (knots > request.most_knots) return json::error_at(place, too_many_knots(places.size(), begin + some.size(), request.most_knots));
-    if (request.progress) request.progress(begin + some.size(), places.size());
-  }
-  if (curves.empty() && !seeds.widget)
-    return json::error_at(place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + first_error);
-  return curves;
+  return lines_in_blocks(seeds, places, request, batch, where);
 }
 
-Result<Curves> use_lines(Scene& scene, Entity entity) {
+namespace {
+
+/// What is remembered of a set's lines; made anew by `visit`, or to be kept, where a widget or another step has changed them.
+Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<Outcome(const LineBlock&)>& visit, std::size_t most_kept) {
   const StreamlineSet& set = scene.world.get<StreamlineSet>(entity);
   CATENA_TRY(const field::AnyField any, use_field(scene, set.field, set.where));
   if (!any.vector)
@@ -249,17 +278,53 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
                                                                    " is a scalar field; expected a vector field for streamlines");
   if (!scene.made.has<MadeLines>(entity)) scene.made.emplace<MadeLines>(entity);
   MadeLines& made = scene.made.get<MadeLines>(entity);
-  if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
+  if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) {
+    if (visit) CATENA_CHECK(visit({made.curves, made.curves.size(), made.curves.size()}));
+    return &made;
+  }
   LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
   request.box = scene.world.get<FieldSource>(set.field).box;
-  CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, json::member_or(set.where, "seeds")));
+  MadeLines fresh{any.vector->version(), set.seeds.points, {}, 0, false, {}};
+  std::size_t knots = 0;
+  const auto count = [&](std::span<const flow::CurvePtr> curves) {
+    for (const flow::CurvePtr& curve : curves) {
+      knots += curve->knots().size();
+      Vec3 lo = curve->knots().front().p, hi = lo;
+      for (const flow::Knot& knot : curve->knots()) {
+        lo = glm::min(lo, knot.p);
+        hi = glm::max(hi, knot.p);
+      }
+      fresh.bounds.add(lo);
+      fresh.bounds.add(hi);
+    }
+  };
+  if (visit) {
+    request.visit = [&](const LineBlock& block) {
+      count(block.curves);
+      return visit(block);
+    };
+    request.most_kept = most_kept;
+  }
+  CATENA_TRY(fresh.curves, make_lines(scene, set.seeds, request, json::member_or(set.where, "seeds")));
+  if (!visit) count(fresh.curves);
+  fresh.released = knots > 0 && fresh.curves.empty();
   static std::atomic<std::uint64_t> versions{0};
-  Bounds bounds;
-  for (const flow::CurvePtr& curve : curves)
-    for (const flow::Knot& knot : curve->knots()) bounds.add(knot.p);
-  made = {any.vector->version(), set.seeds.points, std::move(curves), ++versions, false, bounds};
+  fresh.version = ++versions;
+  made = std::move(fresh);
   if (set.seeds.widget) drop_unused_curves(scene);
-  return made.curves;
+  return &made;
+}
+
+}  // namespace
+
+Result<Curves> use_lines(Scene& scene, Entity set) {
+  CATENA_TRY(const MadeLines* made, made_lines(scene, set, {}, 0));
+  return made->curves;
+}
+
+Outcome visit_lines(Scene& scene, Entity set, const std::function<Outcome(const LineBlock&)>& visit, std::size_t most_kept) {
+  CATENA_CHECK(made_lines(scene, set, visit, most_kept));
+  return Done{};
 }
 
 std::uint64_t lines_version(Scene& scene, Entity entity) {
@@ -272,13 +337,6 @@ std::uint64_t lines_version(Scene& scene, Entity entity) {
 
 Bounds lines_bounds(const Scene& scene, Entity entity) {
   return scene.made.has<MadeLines>(entity) ? scene.made.get<MadeLines>(entity).bounds : Bounds();
-}
-
-void release_lines(Scene& scene, Entity entity) {
-  if (!scene.world.get<StreamlineSet>(entity).seeds.pattern || !scene.made.has<MadeLines>(entity)) return;
-  MadeLines& made = scene.made.get<MadeLines>(entity);
-  made.curves = Curves();
-  made.released = true;
 }
 
 void drop_unused_curves(Scene& scene) {

@@ -9,6 +9,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "engine/geometry/bounds.h"
 #include "engine/scene/scene.h"
@@ -22,6 +23,12 @@ Result<Seeds> read_seeds(const Scene& scene, const json::Node& node);
 /// before they fill the memory.
 std::size_t allowed_knots();
 
+/// Some of the lines of a set, in the order of their seeds.
+struct LineBlock {
+  std::span<const flow::CurvePtr> curves;
+  std::size_t seeds = 0, of = 0;  ///< how many seeds are done with these, of how many
+};
+
 struct LineRequest {
   flow::Flow flow;
   double length = 0;     ///< 0: 10 L each direction, and of a formula no farther than `box`
@@ -30,6 +37,8 @@ struct LineRequest {
   std::size_t most_knots = allowed_knots();
   std::function<void(std::size_t seeds, std::size_t of)> progress{};  ///< told now and then how many seeds of a pattern are done
   std::optional<std::array<double, 2>> box{};                         ///< of a formula: the cube that its picture shows, world
+  std::function<Outcome(const LineBlock&)> visit{};                   ///< gets the lines as they are made
+  std::size_t most_kept = allowed_knots();                            ///< with `visit`: of a set of more knots nothing is returned
 };
 
 /// The sentence that says that the lines of so many seeds have more knots together, and what was expected.
@@ -46,9 +55,14 @@ Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
 std::uint64_t lines_version(Scene& scene, Entity set);
 /// The box of the lines as they were made last, released or not; empty before.
 Bounds lines_bounds(const Scene& scene, Entity set);
-/// The set lets go of the curves of a pattern, for those that need them once: 1e5 lines are a gigabyte. The version stays; use_lines would
-/// make them again.
-void release_lines(Scene& scene, Entity set);
+
+/// Knots of a set that are kept for the next who needs its lines: 72 MB.
+inline constexpr std::size_t kMostKeptKnots = 1'000'000;
+/// Hands the lines of a set over block by block, each once, to those who need them once: 1e5 lines are gigabytes. Where the
+/// first let expect more than `most_kept` knots together they are not kept, and use_lines would make them again; lines_version and
+/// lines_bounds answer as after use_lines.
+Outcome visit_lines(Scene& scene, Entity set, const std::function<Outcome(const LineBlock&)>& visit,
+                    std::size_t most_kept = kMostKeptKnots);
 
 /// Drops the curves that nothing but the scene holds any more (no line that is drawn, no link of a program).
 void drop_unused_curves(Scene& scene);

@@ -40,9 +40,9 @@ Outcome load_meshes(Scene& scene) {
   return Done{};
 }
 
-Outcome trace_lines(Scene& scene) {
+Outcome load_flows(Scene& scene, Streamlines streamlines) {
   for (const Entity e : visible<StreamlineSet>(scene.world)) {
-    if (lines_version(scene, e) == 0) CATENA_CHECK(use_lines(scene, e));
+    if (streamlines == Streamlines::traced && lines_version(scene, e) == 0) CATENA_CHECK(use_lines(scene, e));
     const StreamlineSet& set = scene.world.get<StreamlineSet>(e);
     if (set.color_by && set.color_by->what == ColorBy::What::field) CATENA_CHECK(use_field(scene, set.color_by->field, set.where));
   }
@@ -85,7 +85,7 @@ Outcome load_files(Scene& scene, const Use& use) {
 
 }  // namespace
 
-Outcome prepare(Scene& scene) {
+Outcome prepare(Scene& scene, Streamlines streamlines) {
   CATENA_CHECK(drive_widgets(scene));
   CATENA_CHECK(load_drawn<Volume>(scene));
   CATENA_CHECK(load_drawn<Isosurface>(scene));
@@ -94,7 +94,7 @@ Outcome prepare(Scene& scene) {
     const Slice& slice = scene.world.get<Slice>(e);
     CATENA_CHECK(use_drawn_field(scene, slice.shown.field, slice.where));
   }
-  CATENA_CHECK(trace_lines(scene));
+  CATENA_CHECK(load_flows(scene, streamlines));
   CATENA_CHECK(load_glyphs(scene));
   CATENA_CHECK(load_files<DrawnCurves>(scene, [&](Entity e) { return use_curves(scene, e); }));
   CATENA_CHECK(load_files<DrawnPoints>(scene, [&](Entity e) { return use_points(scene, e); }));

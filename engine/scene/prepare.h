@@ -7,8 +7,11 @@
 
 namespace catena::scene {
 
+/// Whether prepare traces the streamlines, or leaves them to a caller that visits them block by block (lines.h).
+enum class Streamlines { traced, left };
+
 /// Nothing is made twice: a scene in which nothing has changed costs nothing. Errors carry the scene file's name and line.
-Outcome prepare(Scene& scene);
+Outcome prepare(Scene& scene, Streamlines streamlines = Streamlines::traced);
 
 /// The world box of all that is loaded, drawn or felt, and of the lines. Empty before prepare.
 Bounds prepared_bounds(const Scene& scene);

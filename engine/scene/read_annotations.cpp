@@ -96,7 +96,8 @@ const Table<ScalarBar>& scalar_bar_table() {
               CATENA_TRY(bar.shown, read_shown(scene, item));
               return Done{};
             });
-    t.bind(schema::text("title", "Over the bar.").by_default("the name of what is shown"), &ScalarBar::title);
+    t.bind(schema::text("title", "Over the bar; `{time}` and `{step}` as in `title`.").by_default("the name of what is shown"),
+           &ScalarBar::title);
     t.bind(schema::word("position", {"right", "left", "bottom", "top"}, "Where in the picture."), &ScalarBar::side);
     t.bind(schema::integer("ticks", "", "About so many.", 2, 50), &ScalarBar::ticks);
     t.bind(schema::text("format", "One number, such as `%.2f` or `%g K`.").by_default("as needed"), &ScalarBar::format);
@@ -220,7 +221,11 @@ Part scalar_bars_part() {
 Part labels_part() { return {list_of("labels", "Words at places of the scene.", label_table()), read_labels}; }
 
 Part title_part() {
-  return {{"title", "At the top of the picture.", schema::Component::Shape::value, {schema::text("title", "At the top of the picture.")}},
+  return {{"title",
+           "At the top of the picture.",
+           schema::Component::Shape::value,
+           {schema::text("title",
+                         "At the top of the picture; `{time}` and `{step}` stand for those of the [step](#steps-in-time) that is shown.")}},
           read_title};
 }
 

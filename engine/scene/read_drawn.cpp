@@ -3,6 +3,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/foreign.h"
 #include "engine/scene/read_named.h"
 
 namespace catena::scene {
@@ -103,7 +104,7 @@ const Table<MeshItem>& mesh_table() {
            });
     t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(),
            [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
-             CATENA_TRY(mesh.source.path, read_path(scene, item, "mesh", mesh.name, mesh::mesh_endings()));
+             CATENA_TRY(mesh.source.path, read_path(scene, item, "mesh", mesh.name, mesh::mesh_endings(), mesh.source.steps));
              return Done{};
            });
     t.bind(
@@ -194,6 +195,8 @@ std::string file_fault(const std::string& path, bool known, const std::string& w
   namespace fs = std::filesystem;
   std::error_code code;
   const auto fault = [&](const char* what) { return in_quotes(path) + what + "; " + wanted + " was expected"; };
+  if (const std::string conversion = known ? "" : field::conversion_of(path); !conversion.empty())
+    return in_quotes(path) + " is " + conversion;
   if (!known) return fault(" has an unknown kind");
   if (!fs::exists(path, code)) return fault(" does not exist");
   if (!fs::is_regular_file(path, code) && !(folders && fs::is_directory(path, code))) return fault(" is not a file");

@@ -33,7 +33,9 @@ Key file_key(bool with_layout) {
   std::vector<std::string_view> endings;
   for (const std::string_view ending : field::field_endings())
     if (field::needs_layout(ending) == with_layout) endings.push_back(ending);
-  return schema::file("file", "The file with the data: " + alternatives(endings) + ".").required();
+  return schema::file("file",
+                      "The file with the data: " + alternatives(endings) + (with_layout ? "." : "; or a pattern of several, see `time`."))
+      .required();
 }
 
 Keys grid_keys() {
@@ -122,6 +124,7 @@ Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request
     request.step = step;
     return Done{};
   }
+  source.pattern = request.path;
   source.series = files_of_pattern(request.path);
   if (source.series.empty())
     return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": no file is called like " + in_quotes(request.path));

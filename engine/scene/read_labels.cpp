@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/numbers.h"
 #include "engine/field/label_surface.h"
 #include "engine/field/level.h"
@@ -75,8 +76,9 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
   auto table = read_label_table(source.labels_file);
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
   if (!table)
-    return json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
-                                     (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
+    return caused_by(json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
+                                               (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it")),
+                     table.error());
   source.labels_table = std::move(*table);
   return Done{};
 }

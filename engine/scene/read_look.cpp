@@ -16,12 +16,18 @@ Keys color_scale_keys(std::string_view map, const std::string& range) {
           schema::vector("range", 2, "value", "Between which values the named map lies; not beside a table.")
               .ranged("rising")
               .by_default(range),
+          schema::word("mapping", {std::begin(kMappingWords), std::end(kMappingWords)},
+                       "The scale between the points of colours and opacities: by the logarithm, or by it away from 0 on both sides.")
+              .by_default("\"linear\""),
+          schema::number("linear_below", "value", "Of `symlog`: up to this size values are linear.")
+              .positive()
+              .by_default("a thousandth of the greatest"),
           schema::file("transfer", "A file that says all of it: Catena's (`assets/transfer/`) or a ParaView colour map.")};
 }
 
 Keys transfer_keys() {
   return schema::joined(
-      color_scale_keys(kDefaultVolumeMap, "0.5 to 99.8 percentile; with a named map all values"),
+      color_scale_keys(kDefaultVolumeMap, "0.5 to 99.8 percentile; with a named map the display range"),
       {schema::table("opacity", 2, "value, 1", "Rows `[value, alpha]`, alpha per `opacity_unit`.")
            .ranged("0 <= alpha < 1")
            .by_default("from the values"),
@@ -32,7 +38,7 @@ Keys transfer_keys() {
            .by_default("1 everywhere")});
 }
 
-/// How values become colours: the one shape of "color_by", {"field" or "quantity", "color", "range", "transfer"}.
+/// How values become colours: the one shape of "color_by", {"field" or "quantity", "color", "range", "mapping", "transfer"}.
 
 namespace {
 
@@ -152,6 +158,8 @@ schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& c
   if (!colors.empty()) out.emplace_back("color", text_of(colors));
   if (colors.empty() && !named.map.empty()) out.emplace_back("color", text_of(std::string_view(named.map)));
   if (colors.empty() && named.range) out.emplace_back("range", text_of(*named.range));
+  if (named.mapping.kind != ValueMapping::Kind::linear) out.emplace_back("mapping", text_of(word_of(named.mapping.kind)));
+  if (named.mapping.linear_below > 0) out.emplace_back("linear_below", text_of(named.mapping.linear_below));
   return out;
 }
 

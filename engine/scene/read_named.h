@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/scene/hidden.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/steps.h"
 
 namespace catena::scene {
 
@@ -47,11 +48,20 @@ Result<std::string> read_new_name(const Scene& scene, const json::Node& item, co
   return name;
 }
 
-/// "file" of the item called `name`: the path of a file that is there and has one of these endings.
+/// "file" of the item called `name`: the path of a file that is there and has one of these endings, or the file of a pattern for the
+/// scene's step.
 inline Result<std::string> read_path(const Scene& scene, const json::Node& item, const std::string& kind, const std::string& name,
-                                     const std::vector<std::string_view>& endings) {
+                                     const std::vector<std::string_view>& endings, FileSteps& steps) {
   CATENA_TRY(const std::string file, json::require_string(item, "file"));
   std::string path = resolved_path(scene.path, file);
+  if (is_pattern(path)) {
+    steps.pattern = path;
+    steps.series = files_of_pattern(path);
+    if (steps.series.empty())
+      return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": no file is called like " + in_quotes(path));
+    path = steps.series[std::min(static_cast<std::size_t>(scene.time.step), steps.series.size() - 1)];
+  }
+  steps.step = scene.time.step;
   const bool known = std::ranges::any_of(endings, [&](std::string_view ending) { return has_ending(path, ending); });
   if (const std::string fault = file_fault(path, known, "a " + alternatives(endings) + " file"); !fault.empty())
     return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": file " + fault);
@@ -76,7 +86,7 @@ Table<FileItem<T>> file_table(const std::string& kind, const std::string& file, 
          });
   t.hand(schema::file("file", file + ": " + alternatives(endings) + ".").required(),
          [kind, endings](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
-           CATENA_TRY(made.drawn.path, read_path(scene, item, kind, made.name, endings));
+           CATENA_TRY(made.drawn.path, read_path(scene, item, kind, made.name, endings, made.drawn.steps));
            return Done{};
          });
   return t;

@@ -136,7 +136,7 @@ Key opacity_key(const std::string& help);
 /// "point", "normal", "axis", "at", "widget" as read_plane takes them.
 Keys plane_keys();
 schema::Members plane_members(const Scene& scene, const Vec3& point, const Vec3& normal, Entity widget);
-/// "color", "range" and "transfer" where values become colours.
+/// "color", "range", "mapping", "linear_below" and "transfer" where values become colours.
 Keys color_scale_keys(std::string_view map = kDefaultLineMap, const std::string& range = "that of the values");
 /// Those, and a volume's opacities.
 Keys transfer_keys();
@@ -167,7 +167,7 @@ void bind_color_by(Table<T>& table, ColorSubjects subjects, Access access) {
         return by ? text_of(scene, *by) : std::string();
       });
 }
-/// "color" and "range" as members.
+/// "color", "range" and "mapping" as members.
 schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named);
 
 /// A volume's colours and opacities.
@@ -192,7 +192,8 @@ std::string write_seeds(const Scene& scene, const Seeds& seeds);
 /// Colours and opacities of the scene file, inside this room only. An object that colours by values takes
 ///   "color"     a table [[value, r, g, b], ...], or the name of a colour map (color_maps.h)
 ///   "range"     [lo, hi], the values between which a named map lies; without it those of the data
-///   "transfer"  instead of both: a file, relative to the scene's. Either an object with a volume's keys, or ParaView's
+///   "mapping"   "linear", "log" or "symlog", with "linear_below": the scale between the points, of opacities, too
+///   "transfer"  instead of "color": a file, relative to the scene's. Either an object with a volume's keys, or ParaView's
 ///               exported colour map (read_paraview.cpp). "range" beside it lays its tables anew, from their own ends to lo..hi
 /// and a volume, or a transfer file, besides
 ///   "opacity" with "opacity_unit", or "extinction", and "gradient_opacity": [[gradient, factor], ...], field units per world
@@ -200,10 +201,10 @@ std::string write_seeds(const Scene& scene, const Seeds& seeds);
 /// Errors name the file, the scene's or the transfer file, and the line.
 struct ColorScale {
   std::vector<TransferFunction::ColorPoint> colors;
-  NamedColors named;  ///< where `colors` is empty
+  NamedColors named;  ///< where `colors` is empty; its mapping always
 };
 
-/// "color", "range" and "transfer" of an object.
+/// "color", "range", "mapping" and "transfer" of an object.
 Result<ColorScale> read_color_scale(const std::string& scene_path, const json::Node& object);
 /// The keys of a volume.
 Result<TransferFunction> read_transfer(const std::string& scene_path, const json::Node& object);

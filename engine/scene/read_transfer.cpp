@@ -8,6 +8,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/base/value_scale.h"
 #include "engine/scene/color_maps.h"
 
 namespace catena::scene {
@@ -40,9 +41,38 @@ Result<std::optional<Pair>> read_range(const json::Node& object) {
   return std::optional<Pair>({lo, hi});
 }
 
-/// "color" and "range".
+/// "mapping" and "linear_below"; none where they are not stated.
+Result<std::optional<ValueMapping>> read_mapping(const json::Node& object) {
+  const json::Node* below = object.find("linear_below");
+  CATENA_TRY(const int kind, json::get_choice(object, "mapping", 0, {std::begin(kMappingWords), std::end(kMappingWords)}));
+  ValueMapping mapping{static_cast<ValueMapping::Kind>(kind), 0};
+  if (below != nullptr && mapping.kind != ValueMapping::Kind::symlog)
+    return json::error_at(
+        *below, "\"linear_below\" is given, but \"mapping\" is " + in_quotes(word_of(mapping.kind)) + "; \"symlog\" was expected with it");
+  CATENA_TRY(mapping.linear_below, json::get_number(object, "linear_below", 0, json::Range::positive));
+  return object.find("mapping") == nullptr ? std::nullopt : std::optional(mapping);
+}
+
+/// Of stated values; those of the data are looked at where they are known.
+Outcome check_mapping(const json::Node& object, const TransferFunction& transfer) {
+  double least = std::numeric_limits<double>::infinity();
+  std::string what;
+  const auto take = [&](const auto& points, const char* key) {
+    if (!points.empty() && points.front().value < least) least = points.front().value, what = in_quotes(key);
+  };
+  take(transfer.colors, "color");
+  take(transfer.opacities, "opacity");
+  take(transfer.extinctions, "extinction");
+  if (transfer.named.range && (*transfer.named.range)[0] < least) least = (*transfer.named.range)[0], what = "\"range\"";
+  const std::string problem = mapping_problem(transfer.named.mapping, least, what);
+  return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or(object, "mapping"), problem);
+}
+
+/// "color", "range" and "mapping".
 Outcome read_colors(const json::Node& object, std::vector<ColorPoint>& colors, NamedColors& named) {
   CATENA_TRY(named.range, read_range(object));
+  CATENA_TRY(const std::optional<ValueMapping> mapping, read_mapping(object));
+  named.mapping = mapping.value_or(ValueMapping{});
   const json::Node* color = object.find("color");
   if (color == nullptr) return Done{};
   if (color->kind == json::Kind::string) {
@@ -119,14 +149,17 @@ bool rises(const TransferFunction& transfer) {
          std::adjacent_find(transfer.extinctions.begin(), transfer.extinctions.end(), falls) == transfer.extinctions.end();
 }
 
-/// Lays the tables anew, from their own ends to `range`.
-Outcome lay_anew(TransferFunction& transfer, const Pair& range, const json::Node& where) {
+/// Lays the tables anew, from their own ends to `range`: each value at its share of the way, on the scale of the file's mapping before and
+/// on that of `mapping` after.
+Outcome lay_anew(TransferFunction& transfer, const Pair& range, const ValueMapping& mapping, const json::Node& where) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   each_value(transfer, [&](const double& v) { lo = std::min(lo, v), hi = std::max(hi, v); });
+  if (const std::string problem = mapping_problem(mapping, range[0], "\"range\""); !problem.empty()) return json::error_at(where, problem);
   if (lo <= hi) {
+    const double from = linear_below(transfer.named.mapping, lo, hi), to = linear_below(mapping, range[0], range[1]);
     each_value(transfer, [&](double& v) {
-      const double t = (v - lo) / (hi - lo);
-      v = (1 - t) * range[0] + t * range[1];
+      const double t = (scaled(v, from) - scaled(lo, from)) / (scaled(hi, from) - scaled(lo, from));
+      v = value_between(range[0], range[1], t, to);
     });
     // one value alone, or values that fall together
     if (!(lo < hi) || !std::isfinite(hi - lo) || !rises(transfer))
@@ -155,7 +188,11 @@ Result<TransferFunction> read_transfer_file(const std::string& scene_path, const
   CATENA_TRY(TransferFunction transfer, parse_transfer(text, path));
   transfer.file = path;
   CATENA_TRY(const std::optional<Pair> range, read_range(object));
-  if (range) CATENA_CHECK(lay_anew(transfer, *range, *object.find("range")));
+  CATENA_TRY(const std::optional<ValueMapping> stated, read_mapping(object));
+  const ValueMapping mapping = stated.value_or(transfer.named.mapping);
+  if (range) CATENA_CHECK(lay_anew(transfer, *range, mapping, *object.find("range")));
+  transfer.named.mapping = mapping;
+  CATENA_CHECK(check_mapping(object, transfer));
   return transfer;
 }
 
@@ -175,6 +212,10 @@ Result<ColorScale> read_color_scale(const std::string& scene_path, const json::N
   ColorScale scale;
   if (object.find("transfer") == nullptr) {
     CATENA_CHECK(read_colors(object, scale.colors, scale.named));
+    TransferFunction stated;
+    stated.colors = scale.colors;
+    stated.named = scale.named;
+    CATENA_CHECK(check_mapping(object, stated));
     return scale;
   }
   CATENA_TRY(TransferFunction transfer, read_transfer_file(scene_path, object));
@@ -191,6 +232,7 @@ Result<TransferFunction> read_transfer(const std::string& scene_path, const json
     TransferFunction transfer;
     CATENA_CHECK(read_colors(object, transfer.colors, transfer.named));
     CATENA_CHECK(read_opacities(object, transfer));
+    CATENA_CHECK(check_mapping(object, transfer));
     return transfer;
   }
   CATENA_TRY(TransferFunction transfer, read_transfer_file(scene_path, object));
@@ -207,10 +249,12 @@ Result<TransferFunction> parse_transfer(std::string_view text, const std::string
   CATENA_TRY(const json::Node root, json::parse(text, path));
   if (root.kind == json::Kind::array) return read_paraview_map(root);
   CATENA_CHECK(json::expect_object(root, "the transfer function"));
-  CATENA_CHECK(json::only_keys(root, {"color", "range", "opacity", "opacity_unit", "extinction", "gradient_opacity"}));
+  CATENA_CHECK(
+      json::only_keys(root, {"color", "range", "mapping", "linear_below", "opacity", "opacity_unit", "extinction", "gradient_opacity"}));
   TransferFunction transfer;
   CATENA_CHECK(read_colors(root, transfer.colors, transfer.named));
   CATENA_CHECK(read_opacities(root, transfer));
+  CATENA_CHECK(check_mapping(root, transfer));
   if (root.members.empty())
     return json::error_at(root, "the transfer function is empty; \"color\", \"opacity\" or \"extinction\" was expected");
   return transfer;

@@ -80,15 +80,20 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path,
                               {});  ///< The same of a text; `path` is where relative names begin, and what messages call it.
 /// A bare data file: its (first usable) scalar grid as the kind of its data is best shown (first_look.h), a vector grid as streamlines,
 /// a triangle mesh as it is, curves in the colours of their directions, points as balls; the camera is fitted to what can be seen. `colors`
-/// may name a colour map and a range: a scalar grid is then a volume whose opacity follows the range, lines show the speed by them.
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
+/// may name a colour map and a range: a scalar grid is then a volume whose opacity follows the range, lines show the speed by them. `step`:
+/// in time, at which it is looked at and shown.
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {}, int step = 0);
 
 /// The same of a grid that a program gives: the field "field" of the scene. An error where it is no grid, or has no finite value.
 Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
 
-/// What such a file looks like, and why, in one sentence, and what of it is not as it was; nothing of a mesh and of a file that cannot be
-/// shown.
-std::vector<std::string> look_of_file(const std::string& path);
+/// What such a file looks like at a step in time, and its steps.
+struct FileLook {
+  std::vector<std::string> lines;  ///< what it looks like, and why, in one sentence; then what of it is not as it was
+  StepList steps;                  ///< of the file, or of the pattern
+};
+/// Of a file that cannot be shown nothing.
+FileLook look_of_file(const std::string& path, const std::string& grid = {}, int step = 0);
 
 /// What a data file is shown as: by its ending, and where that leaves it open by what it holds: fields before surfaces, lines and points.
 /// Of a pattern: its first file.

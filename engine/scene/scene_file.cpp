@@ -4,6 +4,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/named_files.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/scene_object.h"
 #include "engine/scene/units.h"
 
 namespace catena::scene {
@@ -73,8 +74,21 @@ const std::vector<schema::Component>& scene_components() {
   return all;
 }
 
-Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
-  CATENA_TRY(const json::Node root, json::parse(text, path));
+namespace {
+
+/// "NAME: /volumes/0/opacity" as the place of every value. RFC 6901.
+void place_by_pointer(json::Node& node, const std::string& name, const std::string& pointer) {
+  node.file = std::make_shared<const std::string>(pointer.empty() ? name : name + ": " + pointer);
+  node.line = -1;
+  for (std::size_t i = 0; i < node.items.size(); ++i) place_by_pointer(node.items[i], name, pointer + "/" + std::to_string(i));
+  for (auto& [key, member] : node.members) {
+    std::string escaped;
+    for (const char c : key) escaped += c == '~' ? std::string("~0") : c == '/' ? std::string("~1") : std::string(1, c);
+    place_by_pointer(member, name, pointer + "/" + escaped);
+  }
+}
+
+Result<Scene> scene_of_root(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(check_sizes(root));
   Scene scene;
   scene.path = path;
@@ -83,6 +97,19 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path, const 
   CATENA_CHECK(read_root(scene, root, overrides));
   scene.files = files_of(root, path, overrides);
   return scene;
+}
+
+}  // namespace
+
+Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  return scene_of_root(root, path, overrides);
+}
+
+Result<Scene> parse_scene_object(std::string_view text, const std::string& name, const std::vector<FieldOverride>& overrides) {
+  CATENA_TRY(json::Node root, json::parse(text, name));
+  place_by_pointer(root, name, {});
+  return scene_of_root(root, name, overrides);
 }
 
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides) {

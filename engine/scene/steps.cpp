@@ -1,78 +1,109 @@
 #include "engine/scene/steps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 
 namespace catena::scene {
 namespace {
 
-/// Numbers in names count by their value.
-bool natural_less(const std::string& a, const std::string& b) {
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!digit(a[i]) || !digit(b[j])) {
-      if (a[i] != b[j]) return a[i] < b[j];
-      ++i, ++j;
-      continue;
-    }
-    const auto number = [&](const std::string& s, std::size_t& at) {
-      while (at < s.size() && s[at] == '0') ++at;
-      const std::size_t begin = at;
-      while (at < s.size() && digit(s[at])) ++at;
-      return std::string_view(s).substr(begin, at - begin);
-    };
-    const std::string_view x = number(a, i), y = number(b, j);
-    if (x.size() != y.size()) return x.size() < y.size();
-    if (x != y) return x < y;
-  }
-  const std::size_t left = a.size() - i, right = b.size() - j;
-  return left != right ? left < right : a < b;
+/// Each mesh, each set of curves and each of points.
+template <class S, class Visit>
+void each_shape(S& scene, const Visit& visit) {
+  scene.world.template each<MeshSource>([&](Entity, auto& shape) { visit(shape); });
+  scene.world.template each<DrawnCurves>([&](Entity, auto& shape) { visit(shape); });
+  scene.world.template each<DrawnPoints>([&](Entity, auto& shape) { visit(shape); });
 }
 
 int steps_of(const FieldSource& source) {
   if (source.own_step || !source.file) return 1;
   if (!source.series.empty()) return static_cast<int>(source.series.size());
-  return std::max(1, static_cast<int>(source.loaded.times.size()));
+  return std::max(1, static_cast<int>(times_of(source).size()));
+}
+
+/// The time that each file states; of files that would take long to read the first and the last one's; empty where one states none.
+std::vector<double> times_of_files(const std::vector<std::string>& files) {
+  constexpr std::uint64_t kMostBytes = 64 << 20, kBytesOfStart = 1 << 20;  // starting a reader costs as much as a megabyte
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files) {
+    std::error_code code;
+    const std::uintmax_t size = std::filesystem::file_size(file, code);
+    bytes += kBytesOfStart + (code ? 0 : size);
+  }
+  const std::vector<std::string> asked = bytes <= kMostBytes ? files : std::vector<std::string>{files.front(), files.back()};
+  std::vector<double> times;
+  for (const std::string& file : asked)
+    if (const std::vector<double> stated = field::times_in(file); !stated.empty()) times.push_back(stated.front());
+  return times.size() == asked.size() ? times : std::vector<double>();
 }
 
 }  // namespace
 
-bool is_pattern(const std::string& path) { return std::filesystem::path(path).filename().string().find('*') != std::string::npos; }
-
-std::vector<std::string> files_of_pattern(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path whole(path);
-  const std::string name = whole.filename().string();
-  const std::size_t star = name.find('*');
-  const std::string before = name.substr(0, star), after = name.substr(star + 1);
-  const fs::path folder = whole.has_parent_path() ? whole.parent_path() : fs::path(".");
-  std::vector<std::string> names;
-  std::error_code code;
-  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
-    const std::string one = at->path().filename().string();
-    std::error_code ignored;
-    if (one.size() >= before.size() + after.size() && one.starts_with(before) && one.ends_with(after) && at->is_regular_file(ignored))
-      names.push_back(one);
+StepList steps_of_file(const std::string& path, const field::AnyField& loaded) {
+  StepList list{1, loaded.times, loaded.time_unit};
+  if (is_pattern(path)) {
+    const std::vector<std::string> files = files_of_pattern(path);
+    list.count = static_cast<int>(files.size());
+    list.times = times_of_files(files);
+    return list;
   }
-  std::sort(names.begin(), names.end(), natural_less);
-  for (std::string& one : names) one = (whole.parent_path() / one).string();
-  return names;
+  if (list.times.empty()) list.times = field::times_in(path);
+  list.count = std::max(1, static_cast<int>(list.times.size()));
+  return list;
+}
+
+field::LoadRequest request_at(field::LoadRequest request, int step) {
+  request.step = step;
+  if (!is_pattern(request.path)) return request;
+  const std::vector<std::string> files = files_of_pattern(request.path);
+  request.step = 0;
+  if (!files.empty()) request.path = files[std::min(static_cast<std::size_t>(step), files.size() - 1)];
+  return request;
+}
+
+field::LoadRequest request_at(const std::string& path, int step) {
+  field::LoadRequest request;
+  request.path = path;
+  return request_at(std::move(request), step);
 }
 
 int step_count(const Scene& scene) {
   int most = 1;
   scene.world.each<FieldSource>([&](Entity, const FieldSource& source) { most = std::max(most, steps_of(source)); });
+  each_shape(scene, [&](const auto& shape) {
+    most = std::max(most, static_cast<int>(std::max(shape.steps.series.size(), shape.steps.times.size())));
+  });
   return most;
 }
 
-std::optional<double> time_of_step(const Scene& scene) {
-  std::optional<double> time;
+std::optional<StepTime> time_of_step(const Scene& scene) {
+  std::optional<StepTime> time;
+  const auto step = static_cast<std::size_t>(scene.time.step);
   scene.world.each<FieldSource>([&](Entity, const FieldSource& source) {
-    if (!time && steps_of(source) > 1 && static_cast<std::size_t>(scene.time.step) < source.loaded.times.size())
-      time = source.loaded.times[static_cast<std::size_t>(scene.time.step)];
+    // a file of a pattern states its own
+    const std::span<const double> times = source.series.empty() ? times_of(source) : source.loaded.times;
+    const std::size_t at = source.series.empty() ? step : 0;
+    if (!time && !source.own_step && at < times.size() && step < static_cast<std::size_t>(steps_of(source)))
+      time = {times[at], source.loaded.time_unit};
+  });
+  each_shape(scene, [&](const auto& shape) {
+    if (!time && step < shape.steps.times.size()) time = {shape.steps.times[step], {}};
   });
   return time;
+}
+
+std::span<const double> times_of(const FieldSource& source) {
+  if (!source.known_times.empty()) return source.known_times;
+  const std::span<const double> times(source.loaded.times);
+  return source.follows && times.size() > 1 ? times.first(times.size() - 1) : times;  // the newest may be half written
+}
+
+void find_times(FileSteps& steps, const std::string& path) {
+  if (!steps.times.empty() || !steps.series.empty()) return;
+  steps.times = field::times_in(path);
+  if (steps.follows && steps.times.size() > 1) steps.times.pop_back();  // it may be half written
 }
 
 void put_step(FieldSource& source, int step) {
@@ -83,6 +114,26 @@ void put_step(FieldSource& source, int step) {
     source.file->path = source.series[static_cast<std::size_t>(std::min(step, static_cast<int>(source.series.size()) - 1))];
 }
 
+std::string time_text(const Scene& scene) {
+  if (step_count(scene) < 2) return {};
+  const auto time = time_of_step(scene);
+  if (!time) return fmt::format("step {}", scene.time.step);
+  return fmt::format("{:.6g}{}{}", time->value, time->unit.empty() ? "" : " ", time->unit);
+}
+
+std::string with_time(std::string title, const Scene& scene) {
+  const auto replace = [&](std::string_view mark, const auto& text) {
+    for (std::size_t at = title.find(mark); at != std::string::npos; at = title.find(mark, at)) {
+      const std::string shown = text();
+      title.replace(at, mark.size(), shown);
+      at += shown.size();
+    }
+  };
+  replace("{time}", [&] { return time_text(scene); });
+  replace("{step}", [&] { return std::to_string(std::min(scene.time.step, step_count(scene) - 1)); });
+  return title;
+}
+
 bool set_step(Scene& scene, int step) {
   if (scene.time.step == step) return false;
   scene.time.step = step;
@@ -90,13 +141,18 @@ bool set_step(Scene& scene, int step) {
   scene.world.each<FieldSource>([&](Entity, FieldSource& source) {
     if (!source.file) return;
     const field::LoadRequest before = *source.file;
-    const std::size_t times = source.loaded.times.size();
+    const std::size_t times = times_of(source).size();
     put_step(source, step);
     // a file without steps stays as it is
     const bool same = *source.file == before || (source.series.empty() && source.loaded.get() != nullptr && times < 2);
     if (same) return;
     source.loaded = source.drawn = {};
     source.stepped = true;
+    changed = true;
+  });
+  each_shape(scene, [&](auto& shape) {
+    if (!put_step(shape, step)) return;
+    shape.loaded = {};
     changed = true;
   });
   if (changed) scene.made = World{};

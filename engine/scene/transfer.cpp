@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
+#include "engine/base/value_scale.h"
 #include "engine/scene/color_maps.h"
 
 namespace catena::scene {
@@ -22,7 +24,7 @@ struct Range {
 
 using Given = std::optional<std::array<double, 2>>;
 
-Range range_of(const std::vector<float>& values, bool masked, const Given& given) {
+Range range_of(std::span<const float> values, bool masked, const Given& given) {
   const auto percentile = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
   Range range{percentile(0.005), percentile(0.998), 0};
   if (!(range.lo < range.hi)) range = {values.front(), values.back(), 0};
@@ -52,51 +54,8 @@ double weight(const Range& range, double value) {
 
 }  // namespace
 
-void each_block(const field::Box& box, std::size_t most, const TakeBlock& take) {
-  const field::Index3 lo{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
-  const field::Index3 size{static_cast<int>(box.hi.x - box.lo.x) + 1, static_cast<int>(box.hi.y - box.lo.y) + 1,
-                           static_cast<int>(box.hi.z - box.lo.z) + 1};
-  const double voxels = static_cast<double>(size.x) * size.y * size.z;
-  const int every = std::max(1, static_cast<int>(std::ceil(std::cbrt(voxels / static_cast<double>(most)))));
-
-  for (int z = 0; z < size.z; z += 8 * every)
-    for (int y = 0; y < size.y; y += 8 * every)
-      for (int x = 0; x < size.x; x += 8 * every) {
-        const field::Index3 origin{lo.x + x, lo.y + y, lo.z + z};
-        const field::Index3 extent{std::min(8, size.x - x), std::min(8, size.y - y), std::min(8, size.z - z)};
-        take(origin, extent, static_cast<std::size_t>(extent.x * extent.y * extent.z));
-      }
-}
-
-std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most) {
-  std::vector<float> values, block;
-  std::vector<std::uint8_t> valid;
-  each_block(grid.index_box(), most, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
-    block.resize(count);
-    valid.assign(count, 1);
-    grid.read_block(origin, extent, block);
-    if (grid.has_mask()) grid.read_cell_valid(origin, extent, valid);
-    for (std::size_t i = 0; i < count; ++i)
-      if (valid[i] != 0 && std::isfinite(block[i])) values.push_back(block[i]);
-  });
-  return values;
-}
-
-std::vector<float> sample_magnitudes(const field::VectorGrid& grid, std::size_t most) {
-  std::vector<float> values, block;
-  each_block(grid.index_box(), most, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
-    block.resize(3 * count);
-    grid.read_block(origin, extent, block);
-    for (std::size_t i = 0; i < 3 * count; i += 3) {
-      const float length = std::hypot(block[i], block[i + 1], block[i + 2]);
-      if (std::isfinite(length)) values.push_back(length);
-    }
-  });
-  return values;
-}
-
 std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid) {
-  auto values = std::make_shared<std::vector<float>>(sample_values(grid, kMaxSamples));
+  auto values = std::make_shared<std::vector<float>>(field::sample_values(grid, kMaxSamples));
   std::sort(values->begin(), values->end());
   return values;
 }
@@ -113,19 +72,28 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
   if (is_complete(transfer)) return;
   const bool opaque = transfer.extinctions.empty() && transfer.opacities.empty();
   const std::vector<float> none{0};
-  const std::vector<float>& values = sorted.empty() ? none : sorted;
-  const Range range = range_of(values, grid.has_mask(), transfer.named.range);
+  const DisplayRange& all = display_range(grid);
+  const auto first = std::ranges::lower_bound(sorted, static_cast<float>(all.lo)),
+             end = std::ranges::upper_bound(sorted, static_cast<float>(all.hi));
+  const std::span<const float> values = first < end ? std::span<const float>(first, end) : std::span<const float>(none);
+  Range range = range_of(values, grid.has_mask(), transfer.named.range);
   const bool flat = !(range.lo < range.hi);
 
   if (transfer.colors.empty()) {
-    const bool all = !transfer.named.map.empty();
-    transfer.colors =
-        color_table({}, transfer.named, all ? grid.min_value() : range.lo, all ? grid.max_value() : range.hi, kDefaultVolumeMap);
+    const bool whole = !transfer.named.map.empty();
+    transfer.colors = color_points({}, transfer.named, whole ? all.lo : range.lo, whole ? all.hi : range.hi, kDefaultVolumeMap);
   }
   if (!opaque) return;
 
+  // on the scale of the mapping
+  const double below = linear_below(transfer.named.mapping, range.lo, range.hi);
+  std::vector<float> places(values.begin(), values.end());
+  if (below > 0 && !flat) {
+    for (float& v : places) v = static_cast<float>(scaled(v, below));
+    range = range_of(places, grid.has_mask(), Given({scaled(range.lo, below), scaled(range.hi, below)}));
+  }
   double mean = 0;
-  for (float v : values) mean += weight(range, v);
+  for (float v : places) mean += weight(range, v);
   mean = std::max(mean / static_cast<double>(values.size()), 1e-3);
   const double k = kOpticalDepth / (mean * std::max(grid.length(), 1e-300));
   if (flat) {
@@ -133,8 +101,8 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
     return;
   }
   for (int i = 0; i < kRampPoints; ++i) {
-    const double value = range.lo + (range.hi - range.lo) * i / (kRampPoints - 1);
-    transfer.extinctions.push_back({value, k * weight(range, value)});
+    const double place = range.lo + (range.hi - range.lo) * i / (kRampPoints - 1);
+    transfer.extinctions.push_back({unscaled(place, flat ? 0 : below), k * weight(range, place)});
   }
 }
 

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/kept.h"
 #include "engine/field/units.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_named.h"
+#include "engine/scene/steps.h"
 #include "engine/scene/transfer.h"
 
 namespace catena::scene {
@@ -48,8 +51,11 @@ auto load_once(Scene& scene, Entity entity, const std::string& kind, const Load&
   auto loaded = load(source);
   if (!loaded && source.where.line == 0) return loaded.error();
   if (!loaded)
-    return json::error_at(source.where, kind + " " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message);
+    return caused_by(
+        json::error_at(source.where, kind + " " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message),
+        loaded.error());
   source.loaded = *loaded;
+  find_times(source.steps, source.path);
   return source.loaded;
 }
 
@@ -77,8 +83,15 @@ void note_tiny_values(Scene& scene, const std::string& name, const FieldSource& 
   const double most = std::max(std::fabs(grid->stats().min), std::fabs(grid->stats().max));
   if (most == 0 || most >= kLeastSize) return;
   scene.notes.push_back(fmt::format(
-      "field {}: its values are at most {:g} in size, too little for pictures and forces; from {:g} on were expected: scale the data",
-      in_quotes(name), most, kLeastSize));
+      "field {}: its values are at most {} in size, too little for pictures and forces; from {} on were expected: scale the data",
+      in_quotes(name), readable(most), readable(kLeastSize)));
+}
+
+/// Colours without a stated range leave outliers and fill values out.
+void note_outliers(Scene& scene, const std::string& name, const FieldSource& source) {
+  if (source.stepped) return;
+  const std::string note = beyond_note(field::display_range(source.loaded));
+  if (!note.empty()) scene.notes.push_back("field " + in_quotes(name) + ": " + note);
 }
 
 }  // namespace
@@ -93,10 +106,9 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
   }
   auto loaded = load_source(source);
   if (!loaded) {
-    const json::Node& place = source.where.line > 0 ? source.where : where;
-    Error error = json::error_at(place, "field " + in_quotes(scene.world.get<Name>(field).value) + ": " + loaded.error().message);
-    error.machine = loaded.error().machine;
-    return error;
+    const json::Node& place = source.where.line != 0 ? source.where : where;
+    return caused_by(json::error_at(place, "field " + in_quotes(scene.world.get<Name>(field).value) + ": " + loaded.error().message),
+                     loaded.error());
   }
   source.loaded = *loaded;
   for (const std::string& note : source.stepped ? std::vector<std::string>() : loaded->notes)
@@ -104,6 +116,7 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
   find_labels(source);
   note_mixed_labels(scene, scene.world.get<Name>(field).value, source);
   note_tiny_values(scene, scene.world.get<Name>(field).value, source);
+  note_outliers(scene, scene.world.get<Name>(field).value, source);
   return source.loaded;
 }
 
@@ -126,22 +139,24 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
   if (source.drawn.get() == nullptr) {
     if (loaded.get()->is_grid()) {
       if (const double reach = reach_of(*loaded.get()); reach > kFarthestDrawn)
-        return json::error_at(source.where.line > 0 ? source.where : where,
+        return json::error_at(source.where.line != 0 ? source.where : where,
                               fmt::format("field {}: reaches {:.3g} from the origin, which no picture shows; at most {:g} was expected",
                                           in_quotes(scene.world.get<Name>(field).value), reach, kFarthestDrawn));
       source.drawn = loaded;
     } else {
       const auto drawn = field::try_sample_on_grid(loaded, source.resolution, source.box[0], source.box[1]);
-      if (!drawn) return json::error_at(source.where, drawn.error().message);
+      if (!drawn) return caused_by(json::error_at(source.where, drawn.error().message), drawn.error());
       source.drawn = *drawn;
     }
   }
+  Outcome mapped = Done{};
   if (source.drawn.scalar)
     scene.world.each<Volume>([&](Entity, Volume& volume) {
       if (volume.field != field || is_complete(volume.transfer)) return;
       const field::ScalarGrid& grid = *source.drawn.scalar->grid();
       if (shows_labels(scene, field, volume.transfer.colors, volume.transfer.named)) {
         volume.transfer.colors = label_colors(*source.labels);
+        volume.transfer.named.mapping = {};
         if (volume.transfer.extinctions.empty() && volume.transfer.opacities.empty()) volume.transfer.opacities = {{0.4, 0}, {0.6, 0.9}};
         return;
       }
@@ -149,13 +164,16 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
       ValueSample& sample = scene.made.get<ValueSample>(field);
       if (sample.grid != source.drawn.get()) sample = {source.drawn.get(), sorted_values(grid)};
       complete_transfer(volume.transfer, grid, *sample.sorted);
+      if (Outcome found = check_mapping(volume.where, volume.transfer.named.mapping, volume.transfer.colors.front().value); !found)
+        mapped = std::move(found);
     });
+  CATENA_CHECK(mapped);
   return source.drawn;
 }
 
 Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh) {
   return load_once<MeshSource>(scene, mesh, "mesh",
-                               [](const MeshSource& source) { return mesh::load_mesh(source.path, source.placement); });
+                               [](const MeshSource& source) { return mesh::load_mesh(source.path, source.placement, source.steps.step); });
 }
 
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where) {
@@ -164,7 +182,8 @@ Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json
 }
 
 Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity curves) {
-  return load_once<DrawnCurves>(scene, curves, "curves", [](const DrawnCurves& source) { return curves::load_curves(source.path); });
+  return load_once<DrawnCurves>(scene, curves, "curves",
+                                [](const DrawnCurves& source) { return curves::load_curves(source.path, source.steps.step); });
 }
 
 Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, const json::Node& where) {
@@ -173,7 +192,8 @@ Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, co
 }
 
 Result<curves::PointSetPtr> use_points(Scene& scene, Entity points) {
-  return load_once<DrawnPoints>(scene, points, "points", [](const DrawnPoints& source) { return curves::load_points(source.path); });
+  return load_once<DrawnPoints>(scene, points, "points",
+                                [](const DrawnPoints& source) { return curves::load_points(source.path, source.steps.step); });
 }
 
 Result<curves::PointSetPtr> use_points(Scene& scene, const std::string& name, const json::Node& where) {
@@ -189,7 +209,7 @@ Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec
   flow::TraceOptions options;
   options.length = length;
   auto curve = flow::trace(flow, seed, options);
-  if (!curve) return json::error_at(where, curve.error().message);
+  if (!curve) return caused_by(json::error_at(where, curve.error().message), curve.error());
   if (scene.curves.size() >= kManyCurves) drop_unused_curves(scene);
   scene.curves.emplace(key, *curve);
   return *curve;
@@ -204,7 +224,7 @@ Outcome check_surface(const Scene& scene, Entity field, const json::Node& where)
 Outcome check_level(const field::ScalarField& field, double level, const json::Node& where) {
   const double lo = field.min_value(), hi = field.max_value();
   if (level >= lo && level <= hi) return Done{};
-  return json::error_at(where, "level " + to_text(level) + " lies outside the field's values " + fmt::format("{:.6g}..{:.6g}", lo, hi) +
+  return json::error_at(where, "level " + to_text(level) + " lies outside the field's values " + readable(lo) + ".." + readable(hi) +
                                    "; a level that the field attains was expected");
 }
 

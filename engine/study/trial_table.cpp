@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 
 #include "engine/base/append_file.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
@@ -79,8 +81,6 @@ Result<Row> parse_row(std::string_view line, const std::string& file, int number
                     in_quotes(cells[*bad]) + " is no " + std::string(cells_of(kHeader)[*bad]) + "; a value of that column was expected");
   return row;
 }
-
-Error system_error(const std::string& path, const char* what) { return Error{fmt::format("{}: {}: {}", path, what, std::strerror(errno))}; }
 
 std::string table_of(const std::string& folder) { return (fs::path(folder) / "trials.csv").string(); }
 
@@ -195,7 +195,7 @@ std::string recordings_folder(const std::string& folder) { return (fs::path(fold
 Outcome make_folder(const std::string& path) {
   std::error_code code;
   fs::create_directories(path, code);
-  if (code) return Error{fmt::format("{}: cannot make the folder: {}", path, code.message())};
+  if (code) return system_error(path + ": cannot make the folder", code.value());
   return Done{};
 }
 
@@ -215,8 +215,7 @@ Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std:
     else if (notes != nullptr && entry.path().string().find(".csv.part") == std::string::npos)
       notes->push_back(one_line(entry.path().string()) + ": is no subject's file, and is not read");
   }
-  if (code && code != std::errc::no_such_file_or_directory)
-    return Error{fmt::format("{}: cannot read the folder: {}", folder, code.message())};
+  if (code && code != std::errc::no_such_file_or_directory) return system_error(folder + ": cannot read the folder", code.value());
   std::sort(numbers.begin(), numbers.end());
   return numbers;
 }
@@ -262,7 +261,7 @@ Result<std::vector<Row>> DataFolder::rows(int subject) const {
   CATENA_TRY(std::vector<Row> rows, read_subject(path_, subject, whole, size));
   const std::string path = subject_file(path_, subject);
   if (whole < size && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
-    return system_error(path, "cannot cut off its torn last line");
+    return system_error(path + ": cannot cut off its torn last line", errno);
   return rows;
 }
 
@@ -283,7 +282,7 @@ std::string DataFolder::unfinished_recording(const Trial& trial) const {
 
 Outcome DataFolder::keep_recording(const Trial& trial, const std::string& unfinished) const {
   const std::string place = recording_file(path_, trial);
-  if (std::rename(unfinished.c_str(), place.c_str()) != 0) return system_error(place, "cannot write");
+  if (std::rename(unfinished.c_str(), place.c_str()) != 0) return system_error(place + ": cannot write", errno);
   sync_folder(recordings_folder(path_));
   return Done{};
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <optional>
 
 #include "engine/base/text.h"
 #include "engine/field/crop.h"
@@ -23,6 +24,7 @@ using field::NanoMemory;
 using field::ReadReply;
 using field::ReadRequest;
 using nanovdb::ValueMask;
+using ValueMaskGrid = nanovdb::NanoGrid<ValueMask>;
 
 Result<Mapping> mapping_of(const openvdb::GridBase& grid) {
   const auto map = grid.transform().baseMap();
@@ -172,9 +174,25 @@ class Answer {
     reply.masked = with_mask(grid, [&](const auto& tree) { voxels = to_nano<ValueMask>(tree, name, left(), into(reply.voxels)); });
     if (!reply.masked) return Done{};
     if (!voxels) return voxels.error();
+    CATENA_TRY(const NanoMemory own_cells, cell_mask(reply, *what_.valid_grid));
+    const ValueMaskGrid* by_cells = reply.cells_masked ? &field::nano_grid<ValueMask>(own_cells) : nullptr;
     const auto ask = [&](double bytes) { return ask_for_memory(name, bytes, left()); };
-    CATENA_TRY(const NanoMemory cells, field::erode(field::nano_grid<ValueMask>(*voxels), box, into(reply.cells), ask));
+    CATENA_TRY(const NanoMemory cells, field::erode(field::nano_grid<ValueMask>(*voxels), box, by_cells, into(reply.cells), ask));
     return Done{};
+  }
+
+  /// The mask of cells beside that of voxels; nothing where there is none.
+  Result<NanoMemory> cell_mask(ReadReply& reply, const std::string& of) {
+    const VdbEntry* entry = file_.find(of + "_cells");
+    if (!entry || (type_word(*entry) != "bool" && type_word(*entry) != "mask")) return NanoMemory();
+    const std::string name = fmt::format("{}: the mask \"{}\"", what_.path, entry->name);
+    const auto grid = file_.read(*entry, part());
+    CATENA_TRY(const Mapping own, mapping_of(*grid));
+    if (!same_mapping(reply.mapping, own))
+      return Error{name + " has another transform than the grid, expected the same (\"valid\": null ignores it)"};
+    Result<NanoMemory> cells = NanoMemory();
+    reply.cells_masked = with_mask(grid, [&](const auto& tree) { cells = to_nano<ValueMask>(tree, name, left(), &NanoMemory::reserve); });
+    return cells;
   }
 
   Result<GridInfo> describe(const VdbEntry& entry) {
@@ -192,7 +210,9 @@ class Answer {
       CATENA_TRY(const NanoMemory memory, to_nano<T>(tree, name, left(), &NanoMemory::reserve));
       const auto& nano = field::nano_grid<T>(memory);
       set_box(info, field::active_box(nano));
-      info.stats = field::stats_of(nano, nullptr).stats;
+      CATENA_TRY(const ValueMaskGrid* valid, mask_for(info.mapping));
+      info.stats = field::stats_of(nano, valid).stats;
+      info.shown = field::range_of_grid(nano, valid, info.stats);
       info.bytes = memory.size();
       return Done{};
     };
@@ -222,6 +242,22 @@ class Answer {
     return info;
   }
 
+  /// The mask that goes with a grid when it is loaded; null: the file has none, or of another transform.
+  Result<const ValueMaskGrid*> mask_for(const Mapping& mapping) {
+    const VdbEntry* entry = what_.valid_grid ? file_.find(*what_.valid_grid) : nullptr;
+    if (entry != nullptr && !mask_read_ && (type_word(*entry) == "bool" || type_word(*entry) == "mask")) {
+      const auto grid = file_.read(*entry);
+      const auto own = mapping_of(*grid);
+      const std::string name = fmt::format("{}: the mask \"{}\"", what_.path, entry->name);
+      Result<NanoMemory> voxels = NanoMemory();
+      with_mask(grid, [&](const auto& tree) { voxels = to_nano<ValueMask>(tree, name, left(), &NanoMemory::reserve); });
+      CATENA_TRY(mask_, std::move(voxels));
+      if (own && mask_.size() > 0) mask_mapping_ = *own;
+    }
+    mask_read_ = true;
+    return mask_mapping_ && same_mapping(mapping, *mask_mapping_) ? &field::nano_grid<ValueMask>(mask_) : nullptr;
+  }
+
   void set_box(GridInfo& info, const ActiveBox& box) {
     is_near_ = is_near(box);
     if (box.empty()) return;
@@ -237,6 +273,10 @@ class Answer {
   OpenFile& file_;
   reader::AnswerFile& out_;
   bool is_near_ = true;
+  // of a description
+  bool mask_read_ = false;
+  NanoMemory mask_;
+  std::optional<Mapping> mask_mapping_;
 };
 
 Outcome answer_or_throw(const ReadRequest& request, std::span<const std::byte> bytes, reader::AnswerFile& out, ReadReply& reply) {
@@ -264,6 +304,7 @@ ReadReply answer(const ReadRequest& request, std::span<const std::byte> file, re
                           "allows more)",
                           path, static_cast<double>(request.memory_bytes) / kMegabyte)};
   } catch (const std::exception& e) {
+    out.note(e);
     done = Error{fmt::format("{}: the file is damaged or of an unknown kind ({})", path, one_line(e.what()))};
   } catch (...) {
     done = Error{fmt::format("{}: the file is damaged or of an unknown kind", path)};

@@ -11,12 +11,11 @@
 
 #include "engine/base/text.h"
 #include "engine/reader/confine.h"
+#include "engine/reader/early.h"
 #include "engine/reader/npy.h"
 #include "engine/vdb/read.h"
 
 namespace {
-
-constexpr int kAnswer = 3;
 
 /// The file's bytes, mapped: a file that shrinks meanwhile ends this process, and nothing else.
 catena::Result<std::span<const std::byte>> map_file(const std::string& path) {
@@ -32,10 +31,12 @@ catena::Result<std::span<const std::byte>> map_file(const std::string& path) {
   return std::span<const std::byte>(static_cast<const std::byte*>(start), bytes);
 }
 
+CATENA_BEFORE_LIBRARIES(catena::reader::note_early_failures);
+
 }  // namespace
 
 int main() {
-  catena::reader::AnswerFile out(kAnswer);
+  catena::reader::AnswerFile out(catena::reader::kAnswer);
   const auto request = out.request();
   if (!request) {
     static constexpr char kWho[] = "catena-read: a part of catena, which starts it\n";
@@ -43,7 +44,7 @@ int main() {
   }
   catena::field::ReadReply reply;
   const auto file = map_file(request->what.path);
-  const auto confined = catena::reader::confine({request->memory_bytes, request->cpu_s, true});
+  const auto confined = catena::reader::confine({request->memory_bytes, request->cpu_s, 0, true});
   if (!file)
     reply.error = file.error().message;
   else if (!confined)

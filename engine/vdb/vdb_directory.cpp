@@ -5,6 +5,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "engine/base/text.h"
+
 namespace catena::vdb {
 namespace {
 
@@ -131,9 +133,12 @@ bool is_vector_type(const std::string& word) {
 }
 
 std::string list_of(const std::vector<VdbEntry>& entries) {
-  std::string all;
-  for (const VdbEntry& e : entries) all += fmt::format("{}{} ({})", all.empty() ? "" : ", ", e.name, type_word(e));
-  return all.empty() ? "nothing" : all;
+  std::vector<std::string> each;
+  for (std::size_t i = 0; i < std::min(entries.size(), kListed); ++i)
+    each.push_back(fmt::format("{} ({})", entries[i].name, type_word(entries[i])));
+  std::vector<std::string_view> words(each.begin(), each.end());
+  words.resize(entries.size());  // those beyond are counted only
+  return entries.empty() ? "nothing" : joined(words);
 }
 
 }  // namespace catena::vdb

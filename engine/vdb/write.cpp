@@ -8,6 +8,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "engine/base/machine_failure.h"
+#include "engine/base/threads.h"
 #include "engine/field/vdb_stream.h"
 
 namespace catena::vdb {
@@ -148,19 +150,20 @@ void put_all(const openvdb::GridCPtrVec& grids, int fd, bool seekable) {
 
 }  // namespace
 
-std::string write_grids(const Take& take, int fd, bool seekable) {
+Outcome write_grids(const Take& take, int fd, bool seekable) {
   openvdb::initialize();
   try {
     const openvdb::GridCPtrVec grids = take_grids(take);
     errno = 0;
     put_all(grids, fd, seekable);
-    return {};
+    return Done{};
   } catch (const std::ios_base::failure&) {
-    return errno != 0 ? std::strerror(errno) : "the stream failed";
+    return errno != 0 ? Error{cause_of(errno), is_machine_failure(errno)} : Error{"the stream failed"};
   } catch (const std::bad_alloc&) {
-    return "not enough memory";
+    return Error{"not enough memory", true};
   } catch (const std::exception& e) {
-    return e.what();
+    if (is_thread_refusal(e)) return Error{"no other thread can be started: " + cause_of(thread_refusal()), true};
+    return Error{e.what()};
   }
 }
 

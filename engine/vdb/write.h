@@ -3,12 +3,14 @@
 #include <functional>
 #include <string>
 
+#include "engine/base/result.h"
+
 namespace catena::vdb {
 
 /// Reads so many bytes from the stream; false at its end.
 using Take = std::function<bool(void* to, std::size_t bytes)>;
 
-/// Writes to the descriptor; `seekable`: it is a regular file. Empty, or why it failed.
-std::string write_grids(const Take& take, int fd, bool seekable);
+/// Writes to the descriptor; `seekable`: it is a regular file. An error is a phrase.
+Outcome write_grids(const Take& take, int fd, bool seekable);
 
 }  // namespace catena::vdb

@@ -4,10 +4,19 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
+#include "engine/base/machine_failure.h"
+#include "engine/base/threads.h"
 #include "engine/reader/confine.h"
+#include "engine/reader/early.h"
 #include "engine/vdb/write.h"
 
 namespace {
@@ -45,6 +54,37 @@ class Line {
   std::size_t begin_ = 0, end_ = 0;
 };
 
+void answer_machine(const std::string& why) {
+  const std::string failure = "1" + why;
+  [[maybe_unused]] const auto sent = ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL);
+}
+
+[[noreturn]] void on_no_memory() {
+  char why[256];
+  std::snprintf(why, sizeof why, "1%s", catena::out_of_memory());
+  [[maybe_unused]] const auto sent = ::send(kLine, why, std::strlen(why), MSG_NOSIGNAL);
+  ::_exit(0);
+}
+
+/// Libraries start threads where nothing can be caught.
+[[noreturn]] void on_terminate() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::exception& error) {
+    answer_machine(catena::is_thread_refusal(error) ? "no other thread can be started: " + catena::cause_of(catena::thread_refusal())
+                                                    : std::string(error.what()));
+    ::_exit(0);
+  } catch (...) {
+  }
+  std::abort();
+}
+
+void hear_failures() noexcept {
+  std::set_terminate(on_terminate);
+  std::set_new_handler(on_no_memory);
+}
+CATENA_BEFORE_LIBRARIES(hear_failures);
+
 }  // namespace
 
 int main() {
@@ -54,15 +94,19 @@ int main() {
     static constexpr char kWho[] = "catena-write: a part of catena, which starts it\n";
     return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
   }
+  hear_failures();
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails
   struct stat status {};
   const bool seekable = ::fstat(kFile, &status) == 0 && S_ISREG(status.st_mode);
   catena::reader::ProcessLimits limits;
   limits.only_memory_files = false;
   const auto confined = catena::reader::confine(limits);
   Line line;
-  const std::string failure =
+  const catena::Outcome done =
       confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile, seekable)
-               : confined.error().message;
+               : catena::Outcome(confined.error());
+  // whose failure it is: '1' of the machine, '0' of the data; then why
+  const std::string failure = done ? std::string() : (done.error().machine ? "1" : "0") + done.error().message;
   if (!failure.empty() && ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL) < 0) return 1;
   ::_exit(0);
 }

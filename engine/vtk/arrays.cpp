@@ -1,17 +1,14 @@
 #include "engine/vtk/arrays.h"
 
-#include <vtkAppendFilter.h>
 #include <vtkCellData.h>
-#include <vtkCellDataToPointData.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace catena::vtk {
@@ -38,7 +35,11 @@ void each_array(const Opened& opened, const Visit& visit) {
     }
 }
 
+}  // namespace
+
 std::string name_of(vtkDataArray& array) { return array.GetName() != nullptr && *array.GetName() != 0 ? array.GetName() : "data"; }
+
+namespace {
 
 bool can_be_field(vtkDataArray& array) {
   return array.GetNumberOfComponents() >= 1 && array.GetNumberOfComponents() <= 3 && !is_bookkeeping(name_of(array));
@@ -62,43 +63,6 @@ bool convert_tuple(vtkDataArray& array, vtkIdType tuple, int components, float* 
     exact = exact && (static_cast<double>(out[c]) == v || std::isnan(v));
   }
   return exact;
-}
-
-/// Hidden points, and those of which all cells are hidden; 1: to be seen.
-std::vector<std::uint8_t> seen_tuples(vtkImageData& image, bool of_cells, const int (&n)[3]) {
-  std::vector<std::uint8_t> seen;
-  const auto ghosts = [&](vtkUnsignedCharArray* array, unsigned char bits) {
-    if (array == nullptr) return;
-    seen.resize(static_cast<std::size_t>(array->GetNumberOfTuples()), 1);
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      if ((array->GetValue(static_cast<vtkIdType>(i)) & bits) != 0) seen[i] = 0;
-  };
-  if (of_cells) {
-    ghosts(image.GetCellGhostArray(), vtkDataSetAttributes::HIDDENCELL);
-    return seen;
-  }
-  ghosts(image.GetPointGhostArray(), vtkDataSetAttributes::HIDDENPOINT);
-  vtkUnsignedCharArray* cells = image.GetCellGhostArray();
-  if (cells == nullptr) return seen;
-  seen.resize(static_cast<std::size_t>(image.GetNumberOfPoints()), 1);
-  std::vector<std::uint8_t> touched(seen.size(), 0);
-  int m[3];
-  for (int a = 0; a < 3; ++a) m[a] = std::max(n[a] - 1, 1);
-  for (int k = 0; k < m[2]; ++k)
-    for (int j = 0; j < m[1]; ++j)
-      for (int i = 0; i < m[0]; ++i) {
-        const vtkIdType cell = (static_cast<vtkIdType>(k) * m[1] + j) * m[0] + i;
-        if ((cells->GetValue(cell) & vtkDataSetAttributes::HIDDENCELL) != 0) continue;
-        for (int corner = 0; corner < 8; ++corner) {
-          const int p[3] = {std::min(i + (corner & 1), n[0] - 1), std::min(j + (corner >> 1 & 1), n[1] - 1),
-                            std::min(k + (corner >> 2), n[2] - 1)};
-          touched[(static_cast<std::size_t>(p[2]) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(p[1])) *
-                      static_cast<std::size_t>(n[0]) +
-                  static_cast<std::size_t>(p[0])] = 1;
-        }
-      }
-  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] &= touched[i];
-  return seen;
 }
 
 }  // namespace
@@ -178,23 +142,17 @@ std::optional<ImageGrid> image_grid(const Opened& opened, const Column& column) 
   return grid;
 }
 
-Written write_image(const Opened& opened, const Column& column, const ImageGrid& grid, const std::string& mask, float* values,
-                    std::uint8_t* valid) {
+Written write_image(const Opened& opened, const Column& column, const ImageGrid& grid, const Seen& seen, float* values, std::uint8_t* valid,
+                    std::uint8_t* cells) {
   const Block& block = opened.blocks[column.blocks.front()];
-  auto& image = *vtkImageData::SafeDownCast(block.data);
   vtkDataArray& array = *column.in(block);
   Written written;
-  int points[3];
-  image.GetDimensions(points);
-  const std::vector<std::uint8_t> seen = seen_tuples(image, column.of_cells, points);
-  vtkDataArray* said = nullptr;
-  if (!mask.empty()) {
-    said = attributes(block.data, column.of_cells)->GetArray(mask.c_str());
-    if (said == nullptr && mask == "valid") said = attributes(block.data, column.of_cells)->GetArray("vtkValidPointMask");
-  }
   const int components = column.components == 1 ? 1 : 3;
-  int n[3] = {grid.size.x, grid.size.y, grid.size.z}, own[3];
-  for (int a = 0; a < 3; ++a) own[a] = grid.flat[a] ? 1 : n[a];
+  int n[3] = {grid.size.x, grid.size.y, grid.size.z}, own[3], cells_along[3];
+  for (int a = 0; a < 3; ++a) {
+    own[a] = grid.flat[a] ? 1 : n[a];
+    cells_along[a] = std::max(own[a] - 1, 1);
+  }
   // one number a voxel, as it lies: at once
   const bool plain =
       column.components == components && own[0] == n[0] && own[1] == n[1] && own[2] == n[2] && array.HasStandardMemoryLayout();
@@ -204,75 +162,38 @@ Written write_image(const Opened& opened, const Column& column, const ImageGrid&
       vtkTemplateMacro(written.exact = convert(static_cast<const VTK_TT*>(array.GetVoidPointer(0)), count, values));
     }
   }
+  const auto number = [](int i, int j, int k, const int(&size)[3]) {
+    return (static_cast<vtkIdType>(std::min(k, size[2] - 1)) * size[1] + std::min(j, size[1] - 1)) * size[0] + std::min(i, size[0] - 1);
+  };
   std::size_t at = 0;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0]; ++i, ++at) {
-        const vtkIdType tuple =
-            (static_cast<vtkIdType>(std::min(k, own[2] - 1)) * own[1] + std::min(j, own[1] - 1)) * own[0] + std::min(i, own[0] - 1);
+        const vtkIdType tuple = number(i, j, k, own);
         if (!plain) {
           float* to = values + at * static_cast<std::size_t>(components);
           if (column.components == 2) to[2] = 0;
           written.exact = convert_tuple(array, tuple, column.components, to) && written.exact;
         }
-        const bool good =
-            (seen.empty() || seen[static_cast<std::size_t>(tuple)] != 0) && (said == nullptr || said->GetComponent(tuple, 0) != 0);
+        const bool good = column.of_cells ? seen.cell(tuple) : seen.point(tuple);
         valid[at] = good ? 1 : 0;
         written.all_valid = written.all_valid && good;
+        if (cells == nullptr) continue;
+        const bool has_cell = i + 1 < n[0] && j + 1 < n[1] && k + 1 < n[2];
+        cells[at] = column.of_cells || !has_cell || seen.cell(number(i, j, k, cells_along)) ? 1 : 0;
       }
+  written.cells = cells != nullptr && !column.of_cells && needs_cells(grid.size, valid, cells);
   return written;
 }
 
-namespace {
-
-/// Pieces of one mesh as one, so that cells on both sides of a cut share its points.
-vtkSmartPointer<vtkDataSet> joined_pieces(const Opened& opened, const Column& column) {
-  vtkNew<vtkAppendFilter> join;
-  join->MergePointsOn();
-  for (const std::size_t b : column.blocks) join->AddInputData(opened.blocks[b].data);
-  join->Update();
-  return join->GetOutput();
-}
-
-}  // namespace
-
-std::vector<CellValues> cells_of(const Opened& opened, const Column& column, std::vector<vtkSmartPointer<vtkDataSet>>& keep) {
-  std::vector<CellValues> cells;
-  if (column.of_cells && column.blocks.size() > 1) {
-    Opened whole;
-    whole.blocks.push_back({joined_pieces(opened, column), {}});
-    Column one = column;
-    one.blocks = {0};
-    return cells_of(whole, one, keep);
-  }
-  for (const std::size_t b : column.blocks) {
-    const Block& block = opened.blocks[b];
-    vtkDataArray* values = column.in(block);
-    vtkSmartPointer<vtkDataSet> data = block.data;
-    if (column.of_cells) {
-      vtkNew<vtkCellDataToPointData> average;
-      average->SetInputData(block.data);
-      average->PassCellDataOff();
-      average->ProcessAllArraysOff();
-      average->AddCellDataArray(column.array.c_str());
-      average->Update();
-      data = vtkDataSet::SafeDownCast(average->GetOutput());
-      values = data != nullptr ? data->GetPointData()->GetArray(column.array.c_str()) : nullptr;
-    }
-    if (values == nullptr) continue;
-    keep.push_back(data);
-    cells.push_back({data, values});
-  }
-  return cells;
-}
-
-field::GridStats stats_of(const Opened& opened, const Column& column) {
+field::GridStats stats_of(const Opened& opened, const Column& column, const std::vector<Seen>& seen) {
   field::GridStats stats;
   double lo = 1e300, hi = -1e300;
   Vec3 least(1e300), most(-1e300);
   for (const std::size_t b : column.blocks) {
     vtkDataArray* array = column.in(opened.blocks[b]);
     for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
+      if (!(column.of_cells ? seen[b].cell(i) : seen[b].point(i))) continue;
       Vec3 v(0.0);
       for (int c = 0; c < column.components; ++c) v[c] = array->GetComponent(i, c);
       ++stats.active_voxels;
@@ -292,6 +213,30 @@ field::GridStats stats_of(const Opened& opened, const Column& column) {
   stats.component_min = least;
   stats.component_max = most;
   return stats;
+}
+
+DisplayRange shown_of(const Opened& opened, const Column& column, const std::vector<Seen>& seen, const field::GridStats& stats) {
+  constexpr std::uint64_t kSampled = 1u << 17;
+  // every so many values; not a power of two, as rows may be
+  const auto step = static_cast<vtkIdType>(stats.active_voxels > kSampled ? 1 + 2 * (stats.active_voxels / kSampled) : 1);
+  const auto each = [&](vtkIdType by, const auto& take) {
+    for (const std::size_t b : column.blocks) {
+      vtkDataArray* array = column.in(opened.blocks[b]);
+      for (vtkIdType i = 0; i < array->GetNumberOfTuples(); i += by) {
+        if (!(column.of_cells ? seen[b].cell(i) : seen[b].point(i))) continue;
+        Vec3 v(0.0);
+        for (int c = 0; c < column.components; ++c) v[c] = array->GetComponent(i, c);
+        take(column.components == 1 ? v.x : norm(v));
+      }
+    }
+  };
+  std::vector<float> sample;
+  each(step, [&](double v) { sample.push_back(static_cast<float>(v)); });
+  const DisplayRange rough = display_range(std::move(sample), stats.min, stats.max);
+  if (!rough.is_cut()) return rough;
+  RangeCounter counter(rough);
+  each(1, [&](double v) { counter.add(v); });
+  return counter.range();
 }
 
 }  // namespace catena::vtk

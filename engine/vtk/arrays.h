@@ -10,8 +10,12 @@
 #include "engine/field/reader_exchange.h"
 #include "engine/vtk/open.h"
 #include "engine/vtk/resample.h"
+#include "engine/vtk/seen.h"
 
 namespace catena::vtk {
+
+/// An array's name; "data" where it has none.
+std::string name_of(vtkDataArray& array);
 
 struct Column {
   std::string name;  ///< of the grid: the array's own; "NAME (cells)" where points have an array of the same name
@@ -37,19 +41,24 @@ struct ImageGrid {
 /// nullopt: it is not an image.
 std::optional<ImageGrid> image_grid(const Opened& opened, const Column& column);
 
-/// Writes the voxels of an image; says whether all were 32-bit floats already, and which are valid (1). `mask`: the name of an array of the
-/// same kind that says so, too; empty: none.
+/// Writes the voxels of an image; says whether all were 32-bit floats already, and which are valid (1). `cells`, where it is not null, gets
+/// the same of the cells based at the voxels (values of points).
 struct Written {
   bool exact = true;  ///< no number was rounded
   bool all_valid = true;
+  bool cells = false;  ///< they say more than the voxels
 };
-Written write_image(const Opened& opened, const Column& column, const ImageGrid& grid, const std::string& mask, float* values,
-                    std::uint8_t* valid);
+Written write_image(const Opened& opened, const Column& column, const ImageGrid& grid, const Seen& seen, float* values, std::uint8_t* valid,
+                    std::uint8_t* cells);
 
-/// The blocks of a column as cells with values at their points. `keep` holds what was made for them.
-std::vector<CellValues> cells_of(const Opened& opened, const Column& column, std::vector<vtkSmartPointer<vtkDataSet>>& keep);
+/// The blocks of a column as the cells that are data, with values at their points. `seen`: of each block (seen.h). `keep` holds what was
+/// made for them.
+std::vector<CellValues> cells_of(const Opened& opened, const Column& column, const std::vector<Seen>& seen,
+                                 std::vector<vtkSmartPointer<vtkDataSet>>& keep);
 
-/// Values of the array itself, of all blocks.
-field::GridStats stats_of(const Opened& opened, const Column& column);
+/// Values of the array itself, of all blocks, where they are data.
+field::GridStats stats_of(const Opened& opened, const Column& column, const std::vector<Seen>& seen);
+/// The display range of the same values.
+DisplayRange shown_of(const Opened& opened, const Column& column, const std::vector<Seen>& seen, const field::GridStats& stats);
 
 }  // namespace catena::vtk

@@ -1,12 +1,13 @@
 #include "engine/vtk/cell_places.h"
 
 #include <vtkCell.h>
-#include <vtkCellData.h>
-#include <vtkUnsignedCharArray.h>
+#include <vtkIdList.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "engine/base/display_range.h"
 
 namespace catena::vtk {
 
@@ -14,13 +15,7 @@ std::size_t components_of(const std::vector<CellValues>& blocks) {
   return static_cast<std::size_t>(blocks.front().values->GetNumberOfComponents());
 }
 
-bool is_hidden(vtkDataSet* data, vtkIdType cell) {
-  vtkUnsignedCharArray* ghosts = data->GetCellGhostArray();
-  return ghosts != nullptr && (ghosts->GetValue(cell) & (vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL)) != 0;
-}
-
 bool CellWork::at(vtkIdType id) {
-  if (is_hidden(block_.data, id)) return false;
   block_.data->GetCell(id, cell_);
   const vtkIdType n = cell_->GetNumberOfPoints();
   if (cell_->GetCellDimension() != 3 || n < 4 || n > kMostPoints) return false;
@@ -42,9 +37,12 @@ bool CellWork::at(vtkIdType id) {
 
 bool CellWork::inside(const Vec3& p, double& distance2) {
   const double x[3] = {p.x, p.y, p.z};
-  double closest[3];
+  double closest[3] = {p.x, p.y, p.z};
   const int answer = cell_->EvaluatePosition(x, closest, sub_id_, parametric_, distance2, weights_.data());
   if (answer < 0) distance2 = 1e300;
+  constexpr double kRounding = 1e-6;
+  strictly_inside_ = answer == 1 && cell_->GetRepresentativeCell()->GetParametricDistance(parametric_) <= kRounding;
+  nearest_ = answer < 0 ? Vec3(1e300) : answer == 1 ? p : Vec3(closest[0], closest[1], closest[2]);
   return answer == 1;
 }
 
@@ -61,20 +59,29 @@ void CellWork::value(bool was_inside, double* out) {
 
 namespace {
 
-/// The range of scalars, the largest length of vectors.
-double range_of(const std::vector<CellValues>& blocks) {
+/// The range of scalars, of vectors from 0 to the largest length; at least a little.
+DisplayRange range_of(const std::vector<CellValues>& blocks) {
   const std::size_t components = components_of(blocks);
+  constexpr std::size_t kSampled = 1u << 17;
+  std::size_t all = 0, n = 0;
+  for (const CellValues& block : blocks) all += static_cast<std::size_t>(block.values->GetNumberOfTuples());
+  const std::size_t step = 1 + all / kSampled;
+  std::vector<float> sample;
   double lo = 1e300, hi = -1e300;
   for (const CellValues& block : blocks)
     for (vtkIdType i = 0; i < block.values->GetNumberOfTuples(); ++i) {
       double v = block.values->GetComponent(i, 0);
       if (components == 3) v = std::hypot(v, block.values->GetComponent(i, 1), block.values->GetComponent(i, 2));
+      if (n++ % step == 0) sample.push_back(static_cast<float>(v));
       if (!std::isfinite(v)) continue;
       lo = std::min(lo, v);
       hi = std::max(hi, v);
     }
-  if (components == 3) lo = 0;
-  return std::max(hi - lo, 1e-300);
+  if (lo > hi) return {0, 1e-300};
+  // an error in per cent of an outlier says nothing
+  DisplayRange range = display_range(std::move(sample), lo, hi);
+  if (components == 3) range.lo = 0;
+  return range;
 }
 
 /// Random places inside random cells.
@@ -110,10 +117,126 @@ std::vector<CellPlaces::Place> places_inside(const std::vector<CellValues>& bloc
   return places;
 }
 
+/// At the points of cells with the least and the greatest value.
+std::vector<CellPlaces::Place> places_of_extremes(const std::vector<CellValues>& blocks) {
+  const std::size_t components = components_of(blocks);
+  struct Extreme {
+    double value;
+    std::size_t block = 0;
+    vtkIdType cell = -1, point = -1;
+  };
+  Extreme least{1e300}, most{-1e300};
+  vtkNew<vtkIdList> ids;
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (vtkIdType cell = 0; cell < blocks[b].data->GetNumberOfCells(); ++cell) {
+      blocks[b].data->GetCellPoints(cell, ids);
+      for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i) {
+        const vtkIdType p = ids->GetId(i);
+        double v = blocks[b].values->GetComponent(p, 0);
+        if (components == 3) v = std::hypot(v, blocks[b].values->GetComponent(p, 1), blocks[b].values->GetComponent(p, 2));
+        if (!std::isfinite(v)) continue;
+        if (v < least.value) least = {v, b, cell, p};
+        if (v > most.value) most = {v, b, cell, p};
+      }
+    }
+  std::vector<CellPlaces::Place> places;
+  for (const Extreme* extreme : {&least, &most}) {
+    if (extreme->cell < 0) continue;
+    CellWork work(blocks[extreme->block]);
+    if (!work.at(extreme->cell)) continue;
+    double x[3];
+    blocks[extreme->block].data->GetPoint(extreme->point, x);
+    constexpr double kInward = 1e-6;
+    const Vec3 point(x[0], x[1], x[2]), middle = (work.lowest() + work.highest()) * 0.5;
+    CellPlaces::Place place{extreme->block, extreme->cell, point + (middle - point) * kInward, {}};
+    for (std::size_t c = 0; c < components; ++c)
+      place.value[c] = blocks[extreme->block].values->GetComponent(extreme->point, static_cast<int>(c));
+    places.push_back(place);
+  }
+  return places;
+}
+
 }  // namespace
 
+Within::Within(const std::vector<CellValues>& blocks) {
+  for (const CellValues& block : blocks) {
+    locators_.push_back(vtkSmartPointer<vtkStaticCellLocator>::New());
+    locators_.back()->SetDataSet(block.data);
+    locators_.back()->BuildLocator();
+  }
+}
+
+std::pair<std::size_t, vtkIdType> Within::cell_at(const Vec3& p) {
+  double x[3] = {p.x, p.y, p.z};
+  for (std::size_t b = 0; b < locators_.size(); ++b)
+    if (const vtkIdType cell = locators_[b]->FindCell(x); cell >= 0) return {b, cell};
+  return {0, -1};
+}
+
+BoxPlaces::BoxPlaces(Within& within, const Vec3& lo, const Vec3& hi, std::uint64_t seed) : within_(within) {
+  std::mt19937_64 random(seed);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int i = 0; i < CellPlaces::kSamples; ++i) {
+    const Vec3 at = lo + Vec3(unit(), unit(), unit()) * (hi - lo);
+    places_.push_back({at, within_.has(at)});
+  }
+}
+
+bool BoxPlaces::in_the_middle(const Vec3& p, int axis, double voxel) const {
+  constexpr double kStep = 0.25, kMiddle = 0.4;  // voxels; of the gap's width
+  double way[2] = {0, 0};
+  for (const int side : {0, 1}) {
+    bool hit = false;
+    for (double t = kStep / 2; t + way[0] < kNarrow && !hit; t += kStep) {
+      Vec3 q = p;
+      q[axis] += (side == 0 ? -t : t) * voxel;
+      hit = within_.has(q);
+      way[side] = t;
+    }
+    if (!hit) return false;
+  }
+  return std::min(way[0], way[1]) >= kMiddle * (way[0] + way[1]);
+}
+
+double BoxPlaces::in_gaps(const Lattice& lattice) const {
+  std::size_t found = 0;
+  for (const Place& place : places_) {
+    int base[3];
+    double t[3];
+    if (place.inside || !CellPlaces::locate(lattice, place.at, base, t)) continue;
+    bool gap = false;
+    for (int axis = 0; axis < 3; ++axis) gap = gap || in_the_middle(place.at, axis, lattice.spacing[axis]);
+    if (!gap) continue;
+    // its cell of the lattice meets cells of the data
+    bool meets = false;
+    for (int c = 0; c < 8 && !meets; ++c) {
+      Vec3 corner;
+      for (int a = 0; a < 3; ++a) corner[a] = lattice.origin[a] + lattice.spacing[a] * (base[a] + ((c >> a & 1) != 0 ? 0.99 : 0.01));
+      meets = within_.has(corner);
+    }
+    found += meets ? 1 : 0;
+  }
+  return static_cast<double>(found) / static_cast<double>(places_.size());
+}
+
+ResampleShares BoxPlaces::shares(const Lattice& lattice, const std::vector<std::uint8_t>& cells) const {
+  std::size_t in = 0, out = 0;
+  for (const Place& place : places_) {
+    int base[3];
+    double t[3];
+    const bool now = CellPlaces::locate(lattice, place.at, base, t) && cells[lattice.number(base[0], base[1], base[2])] != 0;
+    in += now && !place.inside ? 1 : 0;
+    out += !now && place.inside ? 1 : 0;
+  }
+  const auto all = static_cast<double>(places_.size());
+  return {static_cast<double>(in) / all, static_cast<double>(out) / all, in_gaps(lattice)};
+}
+
 CellPlaces::CellPlaces(const std::vector<CellValues>& blocks, std::uint64_t seed)
-    : components_(components_of(blocks)), places_(places_inside(blocks, seed)), range_(range_of(blocks)) {}
+    : components_(components_of(blocks)),
+      places_(places_inside(blocks, seed)),
+      extremes_(places_of_extremes(blocks)),
+      range_(range_of(blocks)) {}
 
 bool CellPlaces::locate(const Lattice& lattice, const Vec3& p, int (&base)[3], double (&t)[3]) {
   const int n[3] = {lattice.size.x, lattice.size.y, lattice.size.z};
@@ -135,7 +258,8 @@ double CellPlaces::difference(const double* a, const std::array<double, 3>& b) c
 ResampleError CellPlaces::error_of(std::vector<double>& errors) const {
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end());
-  return {100 * errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))] / range_, 100 * errors.back() / range_};
+  const double whole = std::max(range_.hi - range_.lo, 1e-300);
+  return {100 * errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))] / whole, 100 * errors.back() / whole};
 }
 
 }  // namespace catena::vtk

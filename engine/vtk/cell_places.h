@@ -3,9 +3,13 @@
 #pragma once
 #include <vtkGenericCell.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+#include <vtkStaticCellLocator.h>
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "engine/vtk/resample.h"
@@ -15,15 +19,13 @@ namespace catena::vtk {
 inline constexpr double kInside = 1e-9;  ///< of a voxel: rounding
 
 std::size_t components_of(const std::vector<CellValues>& blocks);
-/// Of a block: blanked, or in another block, too.
-bool is_hidden(vtkDataSet* data, vtkIdType cell);
 
 /// Work on one cell of a block after the other; what a cell needs is allocated once.
 class CellWork {
  public:
   explicit CellWork(const CellValues& block) : block_(block), components_(block.values->GetNumberOfComponents()) {}
 
-  /// False: it is hidden, has no volume, or too many points.
+  /// False: it has no volume, or too many points.
   bool at(vtkIdType id);
 
   const double* bounds() const { return bounds_; }
@@ -32,6 +34,13 @@ class CellWork {
 
   /// Whether p lies inside; sets its distance (squared) from the cell.
   bool inside(const Vec3& p, double& distance2);
+  /// The same without VTK's tolerance, which is a thousandth of the cell.
+  bool strictly_inside() const { return strictly_inside_; }
+  /// A place of the cell, the nearest to what inside() was asked for last as far as VTK finds it.
+  const Vec3& nearest() const { return nearest_; }
+  /// The cell's points, moved a little toward their middle.
+  template <class Visit>
+  void each_corner(const Visit& visit) const;
   /// The cell's interpolation at the place last asked for; outside continued, and held back.
   void value(bool was_inside, double* out);
 
@@ -46,8 +55,60 @@ class CellWork {
   std::vector<double> values_;
   std::array<double, kMostPoints> weights_{};
   double parametric_[3]{};
+  Vec3 nearest_{0.0};
+  bool strictly_inside_ = false;
   int sub_id_ = 0;
   double lo_ = 0, hi_ = 0;  ///< of its values
+};
+
+template <class Visit>
+void CellWork::each_corner(const Visit& visit) const {
+  const vtkIdType n = cell_->GetNumberOfPoints();
+  Vec3 middle(0.0);
+  double p[3];
+  for (vtkIdType i = 0; i < n; ++i) {
+    cell_->GetPoints()->GetPoint(i, p);
+    middle += Vec3(p[0], p[1], p[2]) * (1.0 / static_cast<double>(n));
+  }
+  constexpr double kInward = 0.02;
+  visit(middle);
+  for (vtkIdType i = 0; i < n; ++i) {
+    cell_->GetPoints()->GetPoint(i, p);
+    const Vec3 corner(p[0], p[1], p[2]);
+    visit(corner + (middle - corner) * kInward);
+  }
+}
+
+/// Which places are inside the cells.
+class Within {
+ public:
+  explicit Within(const std::vector<CellValues>& blocks);
+  bool has(const Vec3& p) { return cell_at(p).second >= 0; }
+  /// Block and cell; the cell is -1 where there is none.
+  std::pair<std::size_t, vtkIdType> cell_at(const Vec3& p);
+
+ private:
+  std::vector<vtkSmartPointer<vtkStaticCellLocator>> locators_;
+};
+
+/// Random places of a box, and what becomes of them on a grid.
+class BoxPlaces {
+ public:
+  BoxPlaces(Within& within, const Vec3& lo, const Vec3& hi, std::uint64_t seed);
+  /// The share of the box in the middle of gaps that cells of a lattice fill.
+  double in_gaps(const Lattice& lattice) const;
+  ResampleShares shares(const Lattice& lattice, const std::vector<std::uint8_t>& cells) const;
+
+ private:
+  struct Place {
+    Vec3 at;
+    bool inside;
+  };
+  /// Cells lie on both sides of a place along an axis, kNarrow voxels apart at most, and neither much nearer than the other.
+  bool in_the_middle(const Vec3& p, int axis, double voxel) const;
+
+  Within& within_;
+  std::vector<Place> places_;
 };
 
 /// Random places inside random cells, the same for the same seed, and what errors there are told in.
@@ -63,28 +124,33 @@ class CellPlaces {
 
   CellPlaces(const std::vector<CellValues>& blocks, std::uint64_t seed);
   const std::vector<Place>& places() const { return places_; }
+  /// Where the least and the greatest value are (of vectors the greatest length): at a point of a cell, moved a little into it.
+  const std::vector<Place>& extremes() const { return extremes_; }
+  /// That errors are told in: of scalars; of vectors up to the largest length.
+  const DisplayRange& range() const { return range_; }
+  /// The cell below a place, and where in it; false outside of the lattice.
+  static bool locate(const Lattice& lattice, const Vec3& p, int (&base)[3], double (&t)[3]);
 
   /// Of the trilinear interpolation of eight corners: `corner(place, base, k, value)` gives the k-th of the lattice cell at `base`, false
-  /// where it has none. Every `every`-th place is looked at.
+  /// where it has none. Every `every`-th of the places is looked at.
   template <class Corner>
-  ResampleError error_on(const Lattice& lattice, std::size_t every, const Corner& corner) const;
+  ResampleError error_on(const Lattice& lattice, const std::vector<Place>& places, std::size_t every, const Corner& corner) const;
 
  private:
-  /// The corner below, and where between it and the one above; false outside of the lattice.
-  static bool locate(const Lattice& lattice, const Vec3& p, int (&base)[3], double (&t)[3]);
   double difference(const double* a, const std::array<double, 3>& b) const;
   ResampleError error_of(std::vector<double>& errors) const;
 
   std::size_t components_;
-  std::vector<Place> places_;
-  double range_;  ///< of scalars; of vectors the largest length
+  std::vector<Place> places_, extremes_;
+  DisplayRange range_;
 };
 
 template <class Corner>
-ResampleError CellPlaces::error_on(const Lattice& lattice, std::size_t every, const Corner& corner) const {
+ResampleError CellPlaces::error_on(const Lattice& lattice, const std::vector<Place>& places, std::size_t every,
+                                   const Corner& corner) const {
   std::vector<double> errors;
-  for (std::size_t i = 0; i < places_.size(); i += every) {
-    const Place& place = places_[i];
+  for (std::size_t i = 0; i < places.size(); i += every) {
+    const Place& place = places[i];
     int base[3];
     double t[3], sum[3] = {0, 0, 0};
     bool good = locate(lattice, place.at, base, t);

@@ -13,7 +13,7 @@ std::string first_complaint;
 /// "ERROR: In FILE, line N\nCLASS (ADDRESS): WHAT" is WHAT.
 std::string plain(const std::string& text) {
   const std::size_t at = text.find("): ");
-  const std::string what = one_line(at == std::string::npos ? text : text.substr(at + 3));
+  const std::string what = without_addresses(one_line(at == std::string::npos ? text : text.substr(at + 3)));
   const std::size_t end = what.find_last_not_of(" .\n");
   constexpr std::size_t kLongest = 200;
   return what.substr(0, std::min(end == std::string::npos ? 0 : end + 1, kLongest));

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "engine/base/text.h"
+
 namespace catena::vtk {
 
 using field::Mapping;
@@ -71,9 +73,17 @@ Mapping turned_round(const Mapping& m) {
 }
 
 std::string words_of(const itk::ExceptionObject& error) {
-  const std::string words = error.GetDescription();
-  const auto object = words.find("): ");
-  return (words.starts_with("ITK ERROR: ") || words.starts_with("itk::ERROR: ")) && object != std::string::npos ? words.substr(object + 3)
+  std::string words = without_addresses(error.GetDescription());
+  // NRRD's library tells each function on the way, "[nrrd] FUNCTION: WHAT" a line; the last one says what it is
+  constexpr std::string_view kNrrd = "[nrrd] ";
+  if (const auto last = words.rfind(kNrrd); last != std::string::npos) {
+    words.erase(0, last + kNrrd.size());
+    if (const auto name = words.find(": "); name != std::string::npos) words.erase(0, name + 2);
+    return words;
+  }
+  // "itk::ERROR: CLASS: WHAT"
+  const auto object = words.find(": ", 12);
+  return (words.starts_with("ITK ERROR: ") || words.starts_with("itk::ERROR: ")) && object != std::string::npos ? words.substr(object + 2)
                                                                                                                 : words;
 }
 

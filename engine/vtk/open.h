@@ -3,6 +3,7 @@
 #include <vtkDataSet.h>
 #include <vtkSmartPointer.h>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,25 +26,41 @@ struct Opened {
   std::string unit_length;
   bool patient = false;
   std::vector<double> times;
+  std::string time_unit;           ///< of `times`; empty: not stated
   std::vector<std::string> notes;  ///< what is not as it was in the file: sentences without an end
+
+  // of a folder of several volumes (DICOM)
+  std::vector<field::GridWords> words;                 ///< of all volumes by each of their names, opened or not
+  std::vector<std::function<Result<Opened>()>> later;  ///< volumes in the order of their numbers, opened when they are described
+  std::string name, number;                            ///< of one volume
+  int images = 0;                                      ///< that it was made of; 0: not counted
+  std::string trouble;                                 ///< why it is no field, and there are no blocks: a sentence; empty: it is one
 };
 
 /// What is to be read. `shown` begins every message; `path` is where the file lies for this process.
 struct Source {
   std::string shown, path;
-  std::string grid;  ///< of formats that hold several images: the one wanted; empty: all
+  std::string grid;  ///< of formats that hold several images: the one wanted; empty: all; of DICOM the largest
   int step = 0;
   bool axes_xyz = false;
+  std::string folder;                            ///< where `path` lies, as other processes call it: absolute names in a file begin with it
+  field::ReadMode mode = field::ReadMode::load;  ///< DICOM opens no more than is asked for
 };
 
 /// One function a family of formats. Errors are whole sentences.
 Result<Opened> open_with_vtk(const Source& source);
 Result<Opened> open_with_itk(const Source& source);
-Result<Opened> open_dicom_folder(const Source& source);
-/// Where more images of a DICOM file's series lie beside it: that the folder opens as a volume, a sentence without an end; else empty.
-std::string series_beside(const Source& source);
+/// "DICM" after the preamble.
+bool is_dicom_file(const std::string& path);
+/// A DICOM file, or a folder of them.
+Result<Opened> open_dicom(const Source& source);
 Result<Opened> open_npz(const Source& source);
 Result<Opened> open_gifti(const Source& source);
+Result<Opened> open_ply(const Source& source);
+/// An OpenFOAM case, by its folder or a file NAME.foam in it, which may be empty: all regions; of one that is decomposed only, all pieces.
+Result<Opened> open_foam(const Source& source);
+/// A file of the names and times of others: .pvd, .series.
+Result<Opened> open_collection(const Source& source);
 
 /// By its ending, or because it is a folder.
 Result<Opened> open_any(const Source& source);

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "engine/base/text.h"
+#include "engine/field/parts.h"
 #include "engine/vtk/open.h"
-
 namespace catena::vtk {
 namespace {
 
@@ -14,17 +14,19 @@ struct Family {
   Result<Opened> (*open)(const Source& source);
 };
 constexpr Family kFamilies[] = {
-    {".nrrd", open_with_itk}, {".nhdr", open_with_itk}, {".mha", open_with_itk}, {".mhd", open_with_itk},
-    {".dcm", open_with_itk},  {".npz", open_npz},       {".gii", open_gifti},
+    {".nrrd", open_with_itk},  {".nhdr", open_with_itk},     {".mha", open_with_itk}, {".mhd", open_with_itk},
+    {".dcm", open_dicom},      {".npz", open_npz},           {".gii", open_gifti},    {".ply", open_ply},
+    {".pvd", open_collection}, {".series", open_collection}, {".foam", open_foam},
 };
 
 }  // namespace
 
 Result<Opened> open_any(const Source& source) {
   std::error_code code;
-  if (std::filesystem::is_directory(source.path, code)) return open_dicom_folder(source);
+  if (std::filesystem::is_directory(source.path, code)) return field::is_case_folder(source.path) ? open_foam(source) : open_dicom(source);
   for (const Family& family : kFamilies)
     if (has_ending(source.path, family.ending)) return family.open(source);
+  if (is_dicom_file(source.path)) return open_dicom(source);
   return open_with_vtk(source);
 }
 

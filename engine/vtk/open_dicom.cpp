@@ -1,166 +1,273 @@
-// A folder of DICOM images: its series, each of them a volume. Slices are ordered by their places along the normal. And whether a file
-// belongs to such a series.
+// DICOM: a file, or a folder with everything below it. Headers are read first and brought together to volumes (dicom_volumes.h); then the
+// pixels of the volume that is asked for. The patient's +x to the left and +y to the back become Catena's, to the right and to the front.
 #include <fmt/format.h>
-#include <itkGDCMImageIO.h>
-#include <itkGDCMSeriesFileNames.h>
+#include <gdcmTrace.h>
+#include <vtkPointData.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "engine/base/text.h"
+#include "engine/field/units.h"
+#include "engine/vtk/dicom_lattice.h"
+#include "engine/vtk/dicom_pixels.h"
 #include "engine/vtk/itk_image.h"
 #include "engine/vtk/open.h"
 
 namespace catena::vtk {
 namespace {
 
+namespace fs = std::filesystem;
 using field::Mapping;
 
-/// The slices of one series, in the order of their places along the normal.
-struct Series {
-  std::string uid, name, unit;
-  std::vector<std::string> files;
+struct DicomScan {
+  std::string shown;
+  std::vector<DicomFile> files;
+  std::vector<DicomVolume> volumes;
+  std::map<std::string, int> others;  ///< objects that are no images, by modality
+  std::vector<std::string> damaged;
+};
+using DicomScanPtr = std::shared_ptr<const DicomScan>;
+
+/// At most ten, and how many more.
+std::string cut_list(const std::vector<std::string>& words) {
+  constexpr std::size_t kMax = 10;
+  std::string list =
+      fmt::format("{}", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(std::min(kMax, words.size())), ", "));
+  if (words.size() > kMax) list += fmt::format(" and {} more", words.size() - kMax);
+  return list;
+}
+
+std::vector<std::string> dicom_paths(const std::string& path) {
+  constexpr std::size_t kMaxFiles = 100'000;
+  std::error_code code;
+  if (!fs::is_directory(path, code)) return {path};
+  std::vector<std::string> paths;
+  for (fs::recursive_directory_iterator at(path, fs::directory_options::skip_permission_denied, code), end; !code && at != end;
+       at.increment(code))
+    if (std::error_code ignored; paths.size() < kMaxFiles && at->is_regular_file(ignored)) paths.push_back(at->path().string());
+  std::ranges::sort(paths);
+  return paths;
+}
+
+Result<DicomScanPtr> scan_of(const Source& source) {
+  gdcm::Trace::SetDebug(false);
+  gdcm::Trace::SetWarning(false);
+  gdcm::Trace::SetError(false);
+  const auto scan = std::make_shared<DicomScan>();
+  scan->shown = source.shown;
+  const std::vector<std::string> paths = dicom_paths(source.path);
+  for (const std::string& path : paths) {
+    DicomFile file;
+    switch (read_dicom_header(path, file)) {
+      case DicomKind::image:
+        for (DicomFrame& frame : file.frames) frame.file = scan->files.size();
+        scan->files.push_back(std::move(file));
+        break;
+      case DicomKind::other_object:
+        if (file.modality == "DICOMDIR" && paths.size() > 1) break;  // the table of contents of the folder
+        ++scan->others[file.modality.empty() ? "of no modality" : printable(file.modality)];
+        break;
+      case DicomKind::damaged:
+        scan->damaged.push_back(printable(file.name) + (file.trouble.empty() ? "" : " (" + file.trouble + ")"));
+        break;
+      case DicomKind::no_dicom:
+        break;
+    }
+  }
+  std::error_code code;
+  const bool folder = fs::is_directory(source.path, code);
+  if (!folder && !scan->files.empty()) {  // a file is called by its own name
+    scan->files.front().description = printable(fs::path(source.shown).stem().string());
+    scan->files.front().number.clear();
+  }
+  scan->volumes = dicom_volumes(scan->files);
+  if (!scan->volumes.empty()) return DicomScanPtr(scan);
+  if (!scan->damaged.empty())
+    return Error{fmt::format("{}: no DICOM image can be read, damaged: {}", source.shown, cut_list(scan->damaged))};
+  if (!scan->others.empty())
+    return Error{
+        fmt::format("{}: holds DICOM objects that are no images ({}), expected images", source.shown, scan->others.begin()->first)};
+  return Error{
+      source.shown +
+      (folder
+           ? ": the folder holds no DICOM images, and is no OpenFOAM case (there is no system/controlDict, constant/polyMesh or processor0)"
+           : ": is no DICOM file, expected an image")};
+}
+
+// ---- which volume ----
+
+const DicomVolume* largest_of(const std::vector<DicomVolume>& volumes, const std::function<bool(const DicomVolume&)>& counts) {
+  const auto rank = [](const DicomVolume& v) {
+    const DicomFrame& frame = *v.frames.front();
+    return std::make_tuple(v.is_image, v.frames.size(), std::uint64_t{frame.columns} * frame.rows);
+  };
+  const DicomVolume* best = nullptr;
+  for (const DicomVolume& volume : volumes)
+    if (counts(volume) && (best == nullptr || rank(volume) > rank(*best))) best = &volume;
+  return best;
+}
+
+std::string words_for(const DicomVolume& volume) {
+  return fmt::format("{}{}\"{}\" ({} image{})", volume.number, volume.number.empty() ? "" : " ", volume.name, volume.frames.size(),
+                     volume.frames.size() == 1 ? "" : "s");
+}
+
+std::string list_of_volumes(const std::vector<DicomVolume>& volumes) {
+  std::vector<std::string> words;
+  for (const DicomVolume& volume : volumes) words.push_back(words_for(volume));
+  return cut_list(words);
+}
+
+struct Choice {
+  const DicomVolume* volume = nullptr;
+  std::string note;  ///< what else the word might have meant; empty: nothing
 };
 
-std::vector<Series> series_of(const std::string& folder) {
-  const auto names = itk::GDCMSeriesFileNames::New();
-  names->SetUseSeriesDetails(true);
-  names->SetRecursive(true);
-  names->SetGlobalWarningDisplay(false);
-  names->SetDirectory(folder);
-  std::vector<Series> all;
-  for (const std::string& uid : names->GetSeriesUIDs()) {
-    Series series;
-    series.uid = uid;
-    series.files = names->GetFileNames(uid);
-    if (series.files.empty()) continue;
-    const auto io = itk::GDCMImageIO::New();
-    io->SetFileName(series.files.front());
-    io->ReadImageInformation();
-    const itk::MetaDataDictionary& words = io->GetMetaDataDictionary();
-    const std::string described = text_at(words, "0008|103e");
-    series.name = free_name(described.empty() ? "series" : described, [&](const std::string& name) {
-      return std::any_of(all.begin(), all.end(), [&](const Series& other) { return other.name == name; });
-    });
-    if (text_at(words, "0008|0060") == "CT") series.unit = "HU";
-    all.push_back(std::move(series));
+/// By name, by the series' description, by number; the largest of several volumes of one series. A number of several series is refused.
+Result<Choice> chosen(const DicomScan& scan, const std::string& grid) {
+  const auto& volumes = scan.volumes;
+  if (grid.empty()) return Choice{largest_of(volumes, [](const DicomVolume&) { return true; }), {}};
+  const auto named = [&](const DicomVolume& v) { return v.name == grid || v.series == grid; };
+  const auto numbered = [&](const DicomVolume& v) { return v.series_number == grid || v.number == grid; };
+  const auto several_series = [&](const auto& counts) {
+    std::vector<DicomVolume> found;
+    std::set<std::size_t> series;
+    for (const DicomVolume& volume : volumes)
+      if (counts(volume)) found.push_back(volume), series.insert(volume.series_index);
+    return series.size() > 1 ? list_of_volumes(found) : std::string();
+  };
+  const DicomVolume* volume = largest_of(volumes, [&](const DicomVolume& v) { return v.name == grid; });
+  if (volume == nullptr) volume = largest_of(volumes, named);
+  if (volume != nullptr) {
+    if (const std::string list = several_series([&](const DicomVolume& v) { return named(v) || numbered(v); }); !list.empty())
+      return Choice{volume, fmt::format("{} is taken for a name, and stands for several series: {}", in_quotes(grid), list)};
+    return Choice{volume, {}};
   }
-  return all;
+  if (const DicomVolume* exact = largest_of(volumes, [&](const DicomVolume& v) { return v.number == grid; })) return Choice{exact, {}};
+  if (const std::string list = several_series(numbered); !list.empty())
+    return Error{one_line(fmt::format("{}: {} is the number of several series, expected one of: {}", scan.shown, in_quotes(grid), list))};
+  if ((volume = largest_of(volumes, numbered)) != nullptr) return Choice{volume, {}};
+  return Error{one_line(fmt::format("{}: there is no grid {}, there are: {}", scan.shown, in_quotes(grid), list_of_volumes(volumes)))};
 }
 
-/// Slices at these places along the normal, brought to equal distances by linear interpolation between neighbours.
-void even_out(std::vector<float>& values, std::size_t slice_voxels, const std::vector<double>& at, std::size_t count, double step) {
-  std::vector<float> even(slice_voxels * count);
-  std::size_t k = 0;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double place = std::min(at.front() + step * static_cast<double>(n), at.back());
-    while (k + 2 < at.size() && at[k + 1] < place) ++k;
-    const double t = std::clamp((place - at[k]) / (at[k + 1] - at[k]), 0.0, 1.0);
-    for (std::size_t i = 0; i < slice_voxels; ++i)
-      even[n * slice_voxels + i] = static_cast<float>((1 - t) * static_cast<double>(values[k * slice_voxels + i]) +
-                                                      t * static_cast<double>(values[(k + 1) * slice_voxels + i]));
-  }
-  values = std::move(even);
+void add_scan_notes(const DicomScan& scan, const DicomVolume& volume, const std::string& grid, std::vector<std::string>& notes) {
+  if (scan.volumes.size() > 1 && grid != volume.name && grid != volume.number)
+    notes.push_back(fmt::format("the largest of {} volumes is shown, {}; --grid takes a number or a name: {}", scan.volumes.size(),
+                                words_for(volume), list_of_volumes(scan.volumes)));
+  std::vector<std::string> others;
+  for (const auto& [modality, count] : scan.others) others.push_back(fmt::format("{} {}", count, modality));
+  if (!others.empty()) notes.push_back(fmt::format("DICOM objects that are no images are left out: {}", cut_list(others)));
+  if (!scan.damaged.empty()) notes.push_back(fmt::format("damaged files are left out: {}", cut_list(scan.damaged)));
 }
 
-Result<Opened> open_series(const Series& series, const std::string& shown) {
-  std::vector<float> values;
-  std::vector<double> at;
-  Mapping first, last;
-  int size[3] = {0, 0, 0};
-  Vec3 normal(0.0);
-  for (const std::string& file : series.files) {
-    const auto io = itk::GDCMImageIO::New();
-    io->SetFileName(file);
-    io->ReadImageInformation();
-    const auto shape = shape_of(*io);
-    const std::string name = std::filesystem::path(file).filename().string();
-    if (!shape) return Error{fmt::format("{}: {}: {}", shown, name, shape.error().message)};
-    if (shape->size[2] > 1)
-      return Error{fmt::format("{}: {} holds {} frames, expected a file of its own for it", shown, name, shape->size[2])};
-    if (io->GetNumberOfComponents() != 1) return Error{fmt::format("{}: {} is a picture in colours, expected grey values", shown, name)};
-    const Mapping mapping = mapping_of(*io);
-    if (at.empty()) {
-      std::copy_n(shape->size, 3, size);
-      first = mapping;
-      normal = direction(cross(mapping.world_from_index_linear[0], mapping.world_from_index_linear[1]));
-    } else if (shape->size[0] != size[0] || shape->size[1] != size[1]) {
-      return Error{fmt::format("{}: {} has {} x {} pixels, expected {} x {} as the other slices", shown, name, shape->size[0],
-                               shape->size[1], size[0], size[1])};
-    }
-    const double place = dot(mapping.origin, normal);
-    if (!at.empty() && std::fabs(place - at.back()) < 1e-6) continue;  // the same place again: another time or echo
-    at.push_back(place);
-    last = mapping;
-    const auto slice = read_whole(*io, shape->voxels());
-    for (vtkIdType i = 0; i < slice->GetNumberOfTuples(); ++i) values.push_back(static_cast<float>(slice->GetComponent(i, 0)));
+// ---- its values ----
+
+Outcome read_stack(const DicomScan& scan, const DicomVolume& volume, std::vector<float>& stack, PixelNotes& notes) {
+  const DicomFrame& first = *volume.frames.front();
+  const std::size_t voxels = std::size_t{first.columns} * first.rows;
+  std::map<std::size_t, std::vector<const DicomFrame*>> by_file;
+  std::map<const DicomFrame*, std::size_t> slot;
+  for (const DicomFrame* frame : volume.frames) {
+    slot[frame] = slot.size();
+    by_file[frame->file].push_back(frame);
   }
-  // along the normal
+  // nothing is allocated on the word of a header: plain pixels must be there, and compressed ones are a thousandth at least
+  constexpr double kBestRatio = 2000;
+  double there = 0;
+  for (const auto& [index, frames] : by_file) {
+    std::error_code code;
+    const auto bytes = static_cast<double>(fs::file_size(scan.files[index].path, code));
+    there += code ? 0 : scan.files[index].pixel_offset >= 0 ? 8 * bytes : kBestRatio * bytes;
+  }
+  if (static_cast<double>(voxels) * static_cast<double>(volume.frames.size()) > there)
+    return Error{fmt::format("{}: {}: the files are cut short, expected {} images of {} x {} pixels", scan.shown, volume.name,
+                             volume.frames.size(), first.columns, first.rows)};
+  stack.resize(voxels * volume.frames.size());
+  for (const auto& [index, frames] : by_file) {
+    const DicomFile& file = scan.files[index];
+    const auto take = [&](const DicomFrame& frame, std::span<const float> values) {
+      std::ranges::copy(values, stack.begin() + static_cast<std::ptrdiff_t>(slot.at(&frame) * voxels));
+    };
+    if (const auto done = read_dicom_pixels(file, frames, take, notes); !done)
+      return Error{scan.files.size() == 1 ? fmt::format("{}: {}", scan.shown, done.error().message)
+                                          : fmt::format("{}: {}: {}", scan.shown, file.name, done.error().message)};
+  }
+  return Done{};
+}
+
+Result<Opened> open_volume(const DicomScan& scan, const DicomVolume& volume) {
+  if (!volume.trouble.empty())
+    return Error{fmt::format("{}: {}{}", scan.shown, scan.volumes.size() > 1 ? volume.name + ": " : "", volume.trouble)};
+  const DicomFile& file = scan.files[volume.file];
   Opened opened;
-  const std::size_t slice_voxels = static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
-  if (at.size() != series.files.size())
-    opened.notes.push_back(
-        fmt::format("of {} slices {} lie at places of their own; the first at each is shown", series.files.size(), at.size()));
-  std::size_t count = at.size();
-  Vec3 step = first.world_from_index_linear[2];
-  if (count > 1) {
-    double least = 1e300, most = 0;
-    for (std::size_t k = 1; k < count; ++k)
-      least = std::min(least, std::fabs(at[k] - at[k - 1])), most = std::max(most, std::fabs(at[k] - at[k - 1]));
-    step = (last.origin - first.origin) / static_cast<double>(count - 1);
-    constexpr double kEven = 0.01;
-    if (most - least > kEven * least) {
-      const double span = at.back() - at.front();
-      constexpr double kMostSlices = 4096;
-      const auto finer = static_cast<std::size_t>(std::min(kMostSlices, std::ceil(std::fabs(span) / least))) + 1;
-      even_out(values, slice_voxels, at, finer, span / static_cast<double>(finer - 1));
-      step = (last.origin - first.origin) / static_cast<double>(finer - 1);
-      opened.notes.push_back(fmt::format("slices lie {:.4g} to {:.4g} mm apart: {} were brought to {} at equal distances, linearly", least,
-                                         most, count, finer));
-      count = finer;
-    }
+  opened.notes = volume.notes;
+  std::vector<float> values;
+  PixelNotes pixels;
+  CATENA_CHECK(read_stack(scan, volume, values, pixels));
+  const DicomLattice lattice = dicom_lattice(volume);
+  const DicomFrame& first = *volume.frames.front();
+  const std::size_t voxels = std::size_t{first.columns} * first.rows;
+  if (!lattice.even) {
+    std::vector<float> even = on_lattice(values, voxels, lattice, file.segmentation);
+    opened.notes.push_back(lattice_note(lattice, values, even, voxels, file.segmentation));
+    values = std::move(even);
   }
+  if (pixels.padding > 0)
+    opened.notes.push_back(fmt::format("{} pixels that the header calls padding (PixelPaddingValue) are holes", pixels.padding));
+  if (pixels.rounded > 0) opened.notes.push_back(fmt::format("{} stored numbers are rounded to 32-bit floats", pixels.rounded));
   const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(VTK_FLOAT));
   array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), static_cast<float*>(array->GetVoidPointer(0)));
-  const int all[3] = {size[0], size[1], static_cast<int>(count)};
-  Mat3 linear = first.world_from_index_linear;
-  linear[2] = step;
-  opened.blocks.push_back({image_of(all, array, series.name), turned_round(Mapping::from_linear(linear, first.origin))});
-  opened.patient = true;
-  opened.unit_length = "mm";
-  if (!series.unit.empty()) opened.units[series.name] = series.unit;
+  const int size[3] = {static_cast<int>(first.columns), static_cast<int>(first.rows), static_cast<int>(lattice.count)};
+  const bool scaled = first.column_spacing > 0;
+  const Vec3 x = (scaled ? first.column_spacing : 1) * first.along_row, y = (scaled ? first.row_spacing : 1) * first.along_column;
+  const Mapping mapping = Mapping::from_linear(Mat3(x, y, lattice.step), lattice.origin);
+  opened.patient = first.placed;
+  opened.unit_length = scaled ? "mm" : "";
+  opened.blocks.push_back({image_of(size, array, volume.name), opened.patient ? turned_round(mapping) : mapping});
+  if (field::is_unit(file.unit)) opened.units[volume.name] = file.unit;
+  opened.name = volume.name;
+  if (scan.volumes.size() > 1 || scan.files.size() > 1) opened.number = volume.number;
+  opened.images = static_cast<int>(volume.frames.size());
   return opened;
 }
 
-}  // namespace
-
-std::string series_beside(const Source& source) {
-  namespace fs = std::filesystem;
-  const fs::path file(source.path);
-  const auto series_of_file = [](const fs::path& path) -> std::string {
-    try {
-      const auto io = itk::GDCMImageIO::New();
-      if (!io->CanReadFile(path.c_str())) return {};
-      io->SetFileName(path.string());
-      io->ReadImageInformation();
-      return text_at(io->GetMetaDataDictionary(), "0020|000e");
-    } catch (const itk::ExceptionObject&) {
-      return {};
-    }
+/// Units by every name that a volume may be asked for.
+std::vector<field::GridWords> words_of_volumes(const DicomScan& scan, const std::string& grid) {
+  std::vector<field::GridWords> words;
+  const auto add = [&](const std::string& name, const DicomVolume& volume) {
+    words.push_back({name, scan.files[volume.file].unit, volume.frames.front()->column_spacing > 0 ? "mm" : "", false});
   };
-  const std::string series = series_of_file(file);
-  if (series.empty()) return {};
+  for (const DicomVolume& volume : scan.volumes) {
+    add(volume.name, volume);
+    if (!volume.number.empty()) add(volume.number, volume);
+  }
+  std::set<std::string> others{"", grid};
+  for (const DicomVolume& volume : scan.volumes) others.insert({volume.series, volume.series_number});
+  for (const std::string& name : others)
+    if (const auto choice = chosen(scan, name)) add(name, *choice->volume);
+  return words;
+}
+
+/// One file opens alone: says so where more of its series lie beside it.
+std::string series_beside(const Source& source, const DicomFile& self) {
+  if (self.series.empty()) return {};
   std::error_code code;
   std::vector<fs::path> files;
+  const fs::path file(source.path);
   for (fs::directory_iterator at(file.parent_path(), code), end; !code && at != end; at.increment(code))
     if (std::error_code ignored; at->is_regular_file(ignored)) files.push_back(at->path());
   std::ranges::sort(files);
-  // a series has names in a row: a few on either side tell
-  constexpr std::ptrdiff_t kLooks = 4;
-  const auto self = std::ranges::find(files, file) - files.begin();
-  for (std::ptrdiff_t k = std::max(self - kLooks, std::ptrdiff_t{0}); k <= std::min(self + kLooks, std::ssize(files) - 1); ++k) {
-    if (k == self || series_of_file(files[static_cast<std::size_t>(k)]) != series) continue;
+  constexpr std::ptrdiff_t kLooks = 4;  // a series has names in a row: a few on either side tell
+  const auto own = std::ranges::find(files, file) - files.begin();
+  for (std::ptrdiff_t k = std::max(own - kLooks, std::ptrdiff_t{0}); k <= std::min(own + kLooks, std::ssize(files) - 1); ++k) {
+    DicomFile other;
+    if (k == own || read_dicom_header(files[static_cast<std::size_t>(k)].string(), other) != DicomKind::image ||
+        other.series != self.series)
+      continue;
     const fs::path shown = fs::path(source.shown).parent_path();
     const std::string folder = shown.empty() ? "." : shown.string();
     return "more images of its series lie beside it: the folder opens as a volume (catena render " + folder + ")";
@@ -168,29 +275,38 @@ std::string series_beside(const Source& source) {
   return {};
 }
 
-Result<Opened> open_dicom_folder(const Source& source) {
-  try {
-    const std::vector<Series> all = series_of(source.path);
-    if (all.empty()) return Error{source.shown + ": the folder holds no DICOM images"};
-    Opened opened;
-    for (const Series& series : all) {
-      if (!source.grid.empty() && series.name != source.grid) continue;
-      CATENA_TRY(Opened one, open_series(series, source.shown));
-      opened.blocks.push_back(std::move(one.blocks.front()));
-      opened.units.merge(one.units);
-      for (const std::string& note : one.notes) opened.notes.push_back(all.size() > 1 ? series.name + ": " + note : note);
-    }
-    if (opened.blocks.empty()) {
-      std::vector<std::string_view> names;
-      for (const Series& series : all) names.push_back(series.name);
-      return Error{one_line(fmt::format("{}: there is no grid \"{}\", the folder has: {}", source.shown, source.grid, joined(names)))};
-    }
-    opened.patient = true;
-    opened.unit_length = "mm";
-    return opened;
-  } catch (const itk::ExceptionObject& e) {
-    return Error{one_line(fmt::format("{}: cannot be read ({})", source.shown, words_of(e)))};
+}  // namespace
+
+Result<Opened> open_dicom(const Source& source) {
+  CATENA_TRY(const DicomScanPtr scan, scan_of(source));
+  Opened opened;
+  if (source.mode == field::ReadMode::describe) {
+    for (const DicomVolume& volume : scan->volumes)
+      opened.later.push_back([scan, &volume]() -> Result<Opened> {
+        auto one = open_volume(*scan, volume);
+        if (one) return one;
+        Opened refused;
+        refused.name = volume.name;
+        refused.number = volume.number;
+        refused.images = static_cast<int>(volume.frames.size());
+        refused.trouble = one_line(one.error().message);
+        return refused;
+      });
+  } else if (source.mode != field::ReadMode::words) {
+    CATENA_TRY(const Choice choice, chosen(*scan, source.grid));
+    CATENA_TRY(opened, open_volume(*scan, *choice.volume));
+    add_scan_notes(*scan, *choice.volume, source.grid, opened.notes);
+    if (!choice.note.empty()) opened.notes.push_back(choice.note);
+    std::error_code code;
+    if (!fs::is_directory(source.path, code))
+      if (const std::string beside = series_beside(source, scan->files.front()); !beside.empty()) opened.notes.push_back(beside);
   }
+  opened.words = words_of_volumes(*scan, source.grid);
+  opened.patient = scan->volumes.front().frames.front()->placed;
+  if (opened.unit_length.empty() &&
+      std::ranges::all_of(scan->volumes, [](const DicomVolume& v) { return v.frames.front()->column_spacing > 0; }))
+    opened.unit_length = "mm";
+  return opened;
 }
 
 }  // namespace catena::vtk

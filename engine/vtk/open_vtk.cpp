@@ -7,21 +7,24 @@
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
 #include <vtkDataArraySelection.h>
+#include <vtkFieldData.h>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
-#include <vtkNetCDFCFReader.h>
 #include <vtkNew.h>
-#include <vtkOpenFOAMReader.h>
-#include <vtkPLYReader.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtkStringArray.h>
 #include <vtkXMLGenericDataObjectReader.h>
 
+#include <cmath>
+#include <optional>
+
+#include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/vtk/open.h"
+#include "engine/vtk/open_netcdf.h"
+#include "engine/vtk/open_vtk.h"
 
 namespace catena::vtk {
 namespace {
@@ -35,13 +38,12 @@ Reader named(const Source& source) {
   return reader;
 }
 
-Reader open_foam(const Source& source) {
-  const auto reader = vtkSmartPointer<vtkOpenFOAMReader>::New();
+/// All arrays of a legacy file: of several SCALARS VTK reads the first alone otherwise.
+Reader open_legacy(const Source& source) {
+  const auto reader = vtkSmartPointer<vtkGenericDataObjectReader>::New();
   reader->SetFileName(source.path.c_str());
-  reader->CreateCellToPointOff();  // its own averages would stand for the cells' values
-  reader->DecomposePolyhedraOn();
-  reader->UpdateInformation();
-  reader->EnableAllCellArrays();
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
   return reader;
 }
 
@@ -62,27 +64,13 @@ Reader open_cgns(const Source& source) {
   return reader;
 }
 
-Reader open_netcdf(const Source& source) {
-  const auto reader = vtkSmartPointer<vtkNetCDFCFReader>::New();
-  reader->SetFileName(source.path.c_str());
-  reader->SphericalCoordinatesOff();  // degrees stay degrees: a map, not a globe
-  reader->ReplaceFillValueWithNanOn();
-  return reader;
-}
-
 struct Format {
   std::string_view ending;
   Reader (*open)(const Source& source);
 };
 constexpr Format kFormats[] = {
-    {".vtk", named<vtkGenericDataObjectReader>},
-    {".ply", named<vtkPLYReader>},
-    {".foam", open_foam},
-    {".case", open_ensight},
-    {".encas", open_ensight},
-    {".cgns", open_cgns},
-    {".nc", open_netcdf},
-    {".cdf", open_netcdf},
+    {".vtk", open_legacy}, {".case", open_ensight}, {".encas", open_ensight},
+    {".cgns", open_cgns},  {".nc", open_netcdf},    {".cdf", open_netcdf},
 };
 
 Reader reader_of(const Source& source) {
@@ -99,6 +87,35 @@ void keep_units(vtkDataSetAttributes* arrays, Opened& opened) {
   }
 }
 
+/// The time of a file of one step, where it states one: ParaView's TimeValue, VisIt's TIME.
+std::optional<double> stated_time(vtkDataObject* object) {
+  if (object == nullptr) return std::nullopt;
+  for (const char* name : {"TimeValue", "TIME"}) {
+    vtkDataArray* array = object->GetFieldData()->GetArray(name);
+    if (array != nullptr && array->GetNumberOfValues() == 1 && std::isfinite(array->GetComponent(0, 0))) return array->GetComponent(0, 0);
+  }
+  return std::nullopt;
+}
+
+/// VTK makes a place for every block below the largest index.
+Outcome check_indices(const Source& source) {
+  constexpr std::uint64_t kMostBytes = 16 << 20;
+  constexpr long long kMostBlocks = 1'000'000;
+  const auto text = read_text(source.path, "a collection of blocks", kMostBytes);
+  if (!text) return Done{};  // VTK says what is wrong
+  for (std::size_t at = text->find("index"); at != std::string::npos; at = text->find("index", at + 1)) {
+    const std::size_t open = text->find_first_of("\"'", at),
+                      close = open == std::string::npos ? open : text->find_first_of("\"'", open + 1);
+    if (close == std::string::npos || trim(std::string_view(*text).substr(at + 5, open - at - 5)) != "=") continue;
+    const std::string word = text->substr(open + 1, close - open - 1);
+    const auto index = parse_integer(trim(word));
+    if (!index || *index < 0 || *index >= kMostBlocks)
+      return Error{
+          fmt::format("{}: a block has the index {}, expected 0 to {}", source.shown, printable(word.substr(0, 40)), kMostBlocks - 1)};
+  }
+  return Done{};
+}
+
 void add_block(vtkDataObject* object, Opened& opened) {
   vtkDataSet* data = vtkDataSet::SafeDownCast(object);
   if (data == nullptr || data->GetNumberOfPoints() == 0) return;
@@ -107,40 +124,17 @@ void add_block(vtkDataObject* object, Opened& opened) {
   opened.blocks.push_back({data, {}});
 }
 
-/// The units that a NetCDF file states of its variables.
-void add_netcdf_units(vtkAlgorithm* reader, Opened& opened) {
-  auto* netcdf = vtkNetCDFCFReader::SafeDownCast(reader);
-  if (netcdf == nullptr) return;
-  for (int i = 0; i < netcdf->GetNumberOfVariableArrays(); ++i) {
-    const char* name = netcdf->GetVariableArrayName(i);
-    if (name != nullptr) opened.units[name] = netcdf->QueryArrayUnits(name);
-  }
-}
-
-/// NetCDF: variables over other dimensions than the first one's would be left out; those with most dimensions are chosen.
-void choose_dimensions(vtkAlgorithm* algorithm, Opened& opened) {
-  auto* reader = vtkNetCDFCFReader::SafeDownCast(algorithm);
-  if (reader == nullptr) return;
-  vtkStringArray* all = reader->GetAllDimensions();
-  std::string best;
-  std::ptrdiff_t most = 0;
-  for (vtkIdType i = 0; all != nullptr && i < all->GetNumberOfValues(); ++i) {
-    const std::string words = all->GetValue(i);
-    const std::ptrdiff_t commas = std::count(words.begin(), words.end(), ',');
-    if (best.empty() || commas > most) best = words, most = commas;
-  }
-  if (all != nullptr && all->GetNumberOfValues() > 1) {
-    reader->SetDimensions(best.c_str());
-    opened.notes.push_back(fmt::format("of several sets of dimensions those with most are shown: {}", best));
-  }
-}
-
 }  // namespace
 
 Result<Opened> open_with_vtk(const Source& source) {
+  if (has_ending(source.path, ".vtm") || has_ending(source.path, ".vtmb")) CATENA_CHECK(check_indices(source));
+  return read_with(*reader_of(source), source);
+}
+
+Result<Opened> read_with(vtkAlgorithm& algorithm, const Source& source, const std::set<double>& no_steps) {
   const auto failed = [&](const std::string& what) { return Error{one_line(source.shown + ": " + what)}; };
   Opened opened;
-  const Reader reader = reader_of(source);
+  vtkAlgorithm* const reader = &algorithm;
   // the steps
   reader->UpdateInformation();
   vtkInformation* about = reader->GetOutputInformation(0);
@@ -148,7 +142,9 @@ Result<Opened> open_with_vtk(const Source& source) {
     const double* times = about->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
     opened.times.assign(times, times + about->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()));
   }
-  choose_dimensions(reader, opened);
+  std::erase_if(opened.times, [&](double time) { return !std::isfinite(time) || no_steps.contains(time); });
+  if (has_ending(source.path, ".vtk")) opened.times.clear();  // the legacy reader says 0 of every file
+  choose_netcdf_variables(reader, source, opened);
   // the data
   if (opened.times.empty())
     reader->Update();
@@ -164,7 +160,12 @@ Result<Opened> open_with_vtk(const Source& source) {
   } else {
     add_block(object, opened);
   }
-  add_netcdf_units(reader, opened);
+  if (opened.times.empty()) {
+    auto time = stated_time(object);
+    for (std::size_t b = 0; !time && b < opened.blocks.size(); ++b) time = stated_time(opened.blocks[b].data);
+    if (time) opened.times.push_back(*time);
+  }
+  if (const auto finished = finish_netcdf(reader, opened); !finished) return failed(finished.error().message);
   if (opened.blocks.empty()) return failed("holds nothing, or is not of the kind that its name says");
   return opened;
 }

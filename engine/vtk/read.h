@@ -4,7 +4,8 @@
 
 namespace catena::vtk {
 
-/// `path`: where the file lies for this process. Nothing is thrown: what is wrong is the reply's error, a whole sentence.
-field::ReadReply answer(const field::ReadRequest& request, const std::string& path, reader::AnswerFile& out);
+/// `path`: where the file lies for this process; `folder`: where it lies for others, absolute. Nothing is thrown: what is wrong is the
+/// reply's error, a whole sentence.
+field::ReadReply answer(const field::ReadRequest& request, const std::string& path, const std::string& folder, reader::AnswerFile& out);
 
 }  // namespace catena::vtk

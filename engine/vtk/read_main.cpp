@@ -2,15 +2,18 @@
 // descriptor 3 (engine/field/reader_exchange.h). It is shut in: of all files it can open those of the named one's folder alone.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
+#include "engine/base/text.h"
+#include "engine/field/parts.h"
 #include "engine/reader/confine.h"
+#include "engine/reader/early.h"
+#include "engine/reader/opened.h"
 #include "engine/vtk/read.h"
 
 namespace {
-
-constexpr int kAnswer = 3;
 
 struct Place {
   std::filesystem::path folder, name;  ///< no name: the folder itself is meant
@@ -24,10 +27,23 @@ Place place_of(const std::string& path) {
   return {whole.parent_path(), whole.filename()};
 }
 
+/// A pipe, a socket or a device in a folder of images, at which GDCM's search ends without a word; empty: none.
+std::string strange_in(const std::filesystem::path& folder) {
+  std::error_code code;
+  for (std::filesystem::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    std::error_code ignored;
+    const auto status = at->status(ignored);
+    if (std::filesystem::exists(status) && std::filesystem::is_other(status)) return at->path().filename().string();
+  }
+  return {};
+}
+
+CATENA_BEFORE_LIBRARIES(catena::reader::note_early_failures);
+
 }  // namespace
 
 int main() {
-  catena::reader::AnswerFile out(kAnswer);
+  catena::reader::AnswerFile out(catena::reader::kAnswer);
   const auto request = out.request();
   if (!request) {
     static constexpr char kWho[] = "catena-read-vtk: a part of catena, which starts it\n";
@@ -36,16 +52,29 @@ int main() {
   ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
   catena::field::ReadReply reply;
   const Place place = place_of(request->what.path);
+  const bool images = place.name.empty() && !catena::field::is_case_folder(place.folder.string());
   bool root_changed = false;
-  const auto confined = catena::reader::confine({request->memory_bytes, request->cpu_s, true, place.folder.string()}, &root_changed);
+  const std::uint64_t first_s = std::min(request->cpu_s, catena::reader::seconds_for(0));
+  const auto confined =
+      catena::reader::confine({request->memory_bytes, first_s, request->cpu_s, true, place.folder.string()}, &root_changed);
+  catena::reader::count_opened(request->cpu_s, images || catena::has_ending(place.name.string(), ".dcm"));
   if (place.folder.empty()) {
     reply.error = request->what.path + ": cannot be opened";
   } else if (!confined) {
     reply.error = request->what.path + ": cannot be read safely: " + confined.error().message;
   } else {
     const std::filesystem::path folder = root_changed ? "/" : place.folder;
-    reply = catena::vtk::answer(*request, (place.name.empty() ? folder : folder / place.name).string(), out);
+    reply = catena::vtk::answer(*request, (place.name.empty() ? folder : folder / place.name).string(), place.folder.string(), out);
   }
+  catena::reader::OpenedFiles opened = catena::reader::opened_files();
+  if (images && confined && !place.folder.empty()) opened.refused = strange_in(root_changed ? "/" : place.folder);
+  if (!opened.refused.empty()) {
+    reply = {};
+    reply.error = request->what.path + ": cannot be read: " + catena::in_quotes(opened.refused) +
+                  " is a pipe, a socket or a device; a regular file was expected";
+  }
+  reply.opened = opened.files;
+  reply.newest_ns = opened.newest_ns;
   if (confined) reply.confinement = *confined;
   ::_exit(out.finish(reply) ? 0 : 3);
 }

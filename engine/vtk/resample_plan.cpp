@@ -1,8 +1,6 @@
-#include <vtkSmartPointer.h>
-#include <vtkStaticCellLocator.h>
-
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "engine/vtk/cell_places.h"
@@ -13,23 +11,26 @@ namespace {
 /// What a grid would give that was never made: its corners are asked for one by one, of the blocks themselves.
 class Foresight {
  public:
-  explicit Foresight(const std::vector<CellValues>& blocks) : blocks_(blocks), places_(blocks, 1) {
-    for (const CellValues& block : blocks) {
-      locators_.push_back(vtkSmartPointer<vtkStaticCellLocator>::New());
-      locators_.back()->SetDataSet(block.data);
-      locators_.back()->BuildLocator();
-    }
+  Foresight(const std::vector<CellValues>& blocks, Within& within) : blocks_(blocks), within_(within), places_(blocks, 1) {
+    for (const CellValues& block : blocks) others_.emplace_back(block);
   }
   bool empty() const { return places_.places().empty(); }
+  const std::vector<CellPlaces::Place>& extremes() const { return places_.extremes(); }
 
-  double p99(const Lattice& lattice) {
+  double p99(const Lattice& lattice) { return on(lattice, places_.places(), kEvery).p99; }
+  /// At the least and the greatest value.
+  double at_extremes(const Lattice& lattice) { return on(lattice, places_.extremes(), 1).most; }
+
+ private:
+  static constexpr std::size_t kEvery = 4;
+
+  ResampleError on(const Lattice& lattice, const std::vector<CellPlaces::Place>& places, std::size_t every) {
     std::size_t last_block = blocks_.size();
-    std::optional<CellWork> own, other;
+    std::optional<CellWork> own;
     vtkIdType own_cell = -1;
     const auto corner = [&](const CellPlaces::Place& place, const int(&base)[3], int k, double* value) {
       if (place.block != last_block) {
         own.emplace(blocks_[place.block]);
-        other.emplace(blocks_[place.block]);
         last_block = place.block;
         own_cell = -1;
       }
@@ -37,22 +38,22 @@ class Foresight {
       own_cell = place.cell;
       Vec3 p;
       for (int a = 0; a < 3; ++a) p[a] = lattice.origin[a] + lattice.spacing[a] * (base[a] + (k >> a & 1));
-      double distance2 = 0, x[3] = {p.x, p.y, p.z};
-      const vtkIdType cell = locators_[place.block]->FindCell(x);
-      if (cell >= 0 && other->at(cell) && other->inside(p, distance2))
-        other->value(true, value);
+      double distance2 = 0;
+      const auto [block, cell] = within_.cell_at(p);
+      CellWork& other = others_[block];
+      if (cell >= 0 && other.at(cell) && other.inside(p, distance2))
+        other.value(true, value);
       else
         own->value(own->inside(p, distance2), value);
       return true;
     };
-    return places_.error_on(lattice, kEvery, corner).p99;
+    return places_.error_on(lattice, places, every, corner);
   }
 
- private:
-  static constexpr std::size_t kEvery = 4;
   const std::vector<CellValues>& blocks_;
+  Within& within_;
   CellPlaces places_;
-  std::vector<vtkSmartPointer<vtkStaticCellLocator>> locators_;
+  std::deque<CellWork> others_;  ///< by block
 };
 
 constexpr double kLeastSteps = 72;  ///< along the longest axis
@@ -81,6 +82,7 @@ Lattice lattice_of(const Vec3& lo, const Vec3& hi, const Vec3& edges, double fac
 }
 
 Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double most_voxels) {
+  if (blocks.empty()) return Error{"has no cells with a volume"};
   Vec3 lo(1e300), hi(-1e300);
   std::vector<double> extents[3];
   for (const CellValues& block : blocks) {
@@ -90,7 +92,6 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
     for (vtkIdType i = 0; i < cells; ++i) {
       double b[6];
       block.data->GetCellBounds(i, b);
-      if (is_hidden(block.data, i)) continue;
       for (int a = 0; a < 3; ++a) {
         lo[a] = std::min(lo[a], b[2 * a]);
         hi[a] = std::max(hi[a], b[2 * a + 1]);
@@ -115,7 +116,8 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
     return std::max({size.x, size.y, size.z}) - 1;
   };
   while (steps(factor) < kLeastSteps && voxels(factor / 1.1) <= std::min(most_voxels, kFewVoxels)) factor /= 1.1;
-  Foresight foresight(blocks);
+  Within within(blocks);
+  Foresight foresight(blocks, within);
   if (foresight.empty()) return Error{"has no finite values inside its cells"};
   ResamplePlan plan;
   double before = 1e300;
@@ -124,7 +126,7 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
     plan.lattice = lattice_of(lo, hi, edges, factor);
     plan.p99 = foresight.p99(plan.lattice);
     plan.fine = plan.p99 <= kWantedError * 0.9;  // the final measure has other places
-    if (plan.fine) return plan;
+    if (plan.fine) break;
     // an error of second order, at worst of first
     constexpr double kLeastStep = 1.2, kMostStep = 2;
     // values that jump from cell to cell do not get better with voxels
@@ -136,12 +138,32 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
     if (voxels(finer) > most_voxels) break;
     factor = finer;
   }
-  if (idle == 0) {  // as fine as fits
+  if (!plan.fine && idle == 0) {  // as fine as fits
     while (voxels(factor / 1.1) <= most_voxels) factor /= 1.1;
     plan.lattice = lattice_of(lo, hi, edges, factor);
     plan.p99 = foresight.p99(plan.lattice);
   }
-  plan.fine = plan.p99 <= kWantedError;
+  // cells beside which voxels are large
+  if (foresight.at_extremes(plan.lattice) > kWantedError) {
+    double smallest = 1e300;
+    for (const CellPlaces::Place& place : foresight.extremes()) {
+      double b[6];
+      blocks[place.block].data->GetCellBounds(place.cell, b);
+      for (int a = 0; a < 3; ++a) smallest = std::min(smallest, (b[2 * a + 1] - b[2 * a]) / edges[a]);
+    }
+    for (const double part : {1.0, 2.0, 4.0}) {
+      const double finer = smallest / part;
+      if (!(finer < factor) || voxels(finer) > most_voxels) continue;
+      factor = finer;
+      if (foresight.at_extremes(lattice_of(lo, hi, edges, factor)) <= kWantedError) break;
+    }
+  }
+  // gaps narrower than voxels
+  const BoxPlaces box(within, lo, hi, 3);
+  constexpr double kFinerInGaps = 1.25;
+  while (box.in_gaps(lattice_of(lo, hi, edges, factor)) > kGapShare && voxels(factor / kFinerInGaps) <= most_voxels) factor /= kFinerInGaps;
+  plan.lattice = lattice_of(lo, hi, edges, factor);
+  plan.fine = plan.fine || plan.p99 <= kWantedError;
   plan.jumps = !plan.fine && idle > 0;
   return plan;
 }

@@ -16,6 +16,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/vec.h"
+#include "engine/vtk/seen.h"
 
 namespace catena::vtk {
 namespace {
@@ -126,8 +127,9 @@ field::Shapes shapes_of(const Opened& opened) {
 Outcome answer_shape(const Opened& opened, std::uint64_t memory_bytes, reader::AnswerFile& out, field::ReadReply& reply) {
   Gathered all;
   reply.shape.value_name = value_of(opened);
-  for (const Block& block : opened.blocks) {
-    const vtkSmartPointer<vtkPolyData> poly = poly_of(block.data);
+  const std::vector<Seen> seen = seen_of(opened, {});
+  for (std::size_t b = 0; b < opened.blocks.size(); ++b) {
+    const vtkSmartPointer<vtkPolyData> poly = poly_of(visible_part(opened.blocks[b].data, seen[b]));
     constexpr double kMostPoints = 4e9;
     if (static_cast<double>(all.points.size() / 3) + static_cast<double>(poly->GetNumberOfPoints()) > kMostPoints)
       return Error{"has more than 4e9 points"};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/base/result.h"
 #include "engine/base/vec.h"
 
 namespace catena::haptics {
@@ -81,6 +82,8 @@ class Device {
   /// What is written counts again. Haptic thread: before the servo's first tick, and in the first normal tick after a stop; the
   /// guard starts that tick's force at zero.
   virtual void resume() noexcept {}
+  /// Whether a file that the device itself writes is whole so far; an error says what is lost and why. Any thread but the haptic one.
+  virtual Outcome files_written() const { return Done{}; }
 };
 
 /// No device: the probe rests at the origin, forces go nowhere. Haptic thread.

@@ -31,6 +31,7 @@ class HandMap final : public Device {
   void stop() noexcept override { device_->stop(); }
   bool at_rest() const noexcept override { return device_->at_rest(); }
   void resume() noexcept override { device_->resume(); }
+  Outcome files_written() const override { return device_->files_written(); }
 
  private:
   void map_pose(DeviceInput& input, bool rests) noexcept;

@@ -81,7 +81,8 @@ Result<std::unique_ptr<Device>> open_spacemouse(const std::string&, const Device
 const std::vector<DeviceType>& types() {
   static const std::vector<DeviceType> all = {
       {"falcon", usb::Falcon::nominal_capabilities, usb::list_falcons, usb::open_falcon},
-      {"emulated-falcon", usb::Falcon::nominal_capabilities, list_emulated_falcon, open_emulated_falcon},
+      {"emulated-falcon", usb::Falcon::nominal_capabilities, list_emulated_falcon,
+       [](const std::string& detail, const DeviceSettings& settings) { return open_emulated_falcon(detail, settings, {}); }},
       {"null", [] { return NullDevice().capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});
@@ -138,6 +139,12 @@ bool is_hardware(const std::string& type) { return type == "falcon" || type == "
 
 bool has_place(const std::string& type) {
   return type == "falcon" || type == "emulated-falcon" || type == "simulated" || type == "simulated-6dof";
+}
+
+std::string table_of_device(const std::string& name) {
+  const std::size_t colon = name.find(':');
+  return colon != std::string::npos && device_type_of(name) == "emulated-falcon" ? table_of_emulated_falcon(name.substr(colon + 1))
+                                                                                 : std::string();
 }
 
 bool is_device_type(const std::string& type) { return find(type) != nullptr; }

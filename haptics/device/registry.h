@@ -17,6 +17,8 @@ struct DeviceInfo {
 };
 
 std::string device_type_of(const std::string& name);  ///< TYPE
+/// The file that the device of this name writes; empty: none.
+std::string table_of_device(const std::string& name);
 /// Whether open_device() knows the type.
 bool is_device_type(const std::string& type);
 bool is_hardware(const std::string& type);  ///< a thing on the desk: it may not be plugged in

@@ -39,6 +39,7 @@ class SimulatedTool final : public Device {
   void stop() noexcept override { position_->stop(); }
   bool at_rest() const noexcept override { return position_->at_rest(); }
   void resume() noexcept override { position_->resume(); }
+  Outcome files_written() const override { return position_->files_written(); }
 
   const Quat& orientation() const { return orientation_; }
   const Vec3& rate_rad_per_s() const { return rate_; }

@@ -6,6 +6,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 #include "engine/scene/labels.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/rules/link_keys.h"
@@ -143,9 +144,9 @@ Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildConte
 
 std::string known_names(const LinksOf& links_of) {
   if (links_of.empty()) return "a chain with links";
-  std::string out = links_of.size() > 1 ? "one of " : "";
-  for (std::size_t i = 0; i < links_of.size(); ++i) out += (i > 0 ? ", " : "") + links_of[i].first;
-  return out;
+  std::vector<std::string_view> names;
+  for (const auto& [name, links] : links_of) names.push_back(name);
+  return (names.size() > 1 ? "one of " : "") + joined(names);
 }
 
 Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {

@@ -161,7 +161,7 @@ void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) n
 
   // the tick that finds the watchdog's flag is without force; the one after it may drive the device again
   const bool stalled = watchdog_ && (beat.stalled || stalled_within_);
-  if (stalled) watchdog_->stalled();
+  if (watchdog_ && beat.stalled) watchdog_->stalled();
   const bool tripped = (watchdog_ && watchdog_->take_trip()) || stalled;
   if (stopped_ && !tripped) device_.resume();
   stopped_ = tripped;
@@ -239,6 +239,11 @@ void Servo::loop() noexcept {
 
     const std::int64_t ended = now_ns();
     pace.ends(ended);
+    // the thread may have stood still after the force was computed, too: in the device, or on the way here
+    if (watchdog_ && !stalled_within_ && ended - began > watchdog_->limit_ns()) {
+      stalled_within_ = true;
+      watchdog_->stalled();
+    }
     if (watchdog_) watchdog_->tick_ended(ended);
   }
   device_.write({.live = false});

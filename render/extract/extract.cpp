@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/result.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/prepare.h"
@@ -33,8 +34,11 @@ Result<std::optional<ColorSource>> color_source(const scene::Scene& scene, const
   if (!by) return std::optional<ColorSource>();
   ColorSource source;
   CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));
-  for (const auto& c : scene::shown_table(scene, by->field, by->colors, by->named, source.grid->min_value(), source.grid->max_value()))
+  const DisplayRange& range = display_range(*source.grid);
+  CATENA_CHECK(scene::check_mapping(*by, range.lo));
+  for (const auto& c : scene::shown_table(scene, by->field, by->colors, by->named, range.lo, range.hi))
     source.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
+  source.linear_below = scene::linear_below(by->named.mapping, source.colors.front()[0], source.colors.back()[0]);
   // a surface of labels runs between them and what is none
   const auto& label = scene.world.get<scene::FieldSource>(of).label;
   source.labels = scene::labels_of(scene, by->field) != nullptr;
@@ -227,7 +231,7 @@ void move_cursors(const scene::Scene& scene, FramePacket& packet) {
 }
 
 Outcome prepare_frame(scene::Scene& scene) {
-  CATENA_CHECK(scene::prepare(scene));
+  CATENA_CHECK(scene::prepare(scene, scene::Streamlines::left));
   CATENA_CHECK(prepare_meshes(scene));
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));

@@ -65,6 +65,7 @@ class CurveValue {
     }
     return out;
   }
+  const field::AnyField& shown() const { return shown_; }
 
  private:
   double at(const Vec3& p) {
@@ -123,15 +124,14 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& dr
   }
   const double radius = drawn.radius > 0 ? drawn.radius : fitted_radius(set);
   std::vector<std::vector<double>> values;
-  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  std::vector<double> all;
   flat.tubes.reserve(lines.size());
   for (const std::size_t k : lines) {
     std::vector<Vec3> places(set.points.begin() + set.first[k], set.points.begin() + set.first[k + 1]);
     TubeItem tube{{}, radius, drawn.color.value_or(Color{}), {}};
     if (value) {
       values.push_back(value->of_line(places, set.first[k]));
-      for (const double v : values.back())
-        if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+      all.insert(all.end(), values.back().begin(), values.back().end());
     } else if (!drawn.color) {
       tube.colors = direction_colors(places);
     }
@@ -139,7 +139,9 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& dr
     flat.tubes.push_back(std::move(tube));
   }
   if (value) {
-    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, lo, hi);
+    const DisplayRange range = field::display_range(all, value->shown());
+    CATENA_CHECK(scene::check_mapping(*drawn.color_by, range.lo));
+    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
     for (std::size_t i = 0; i < values.size(); ++i) {
       std::vector<Color> colors;
       colors.reserve(values[i].size());

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/field/grid.h"
@@ -111,7 +112,7 @@ Result<std::vector<Vec3>> places_of(const scene::Scene& scene, const scene::Glyp
     CATENA_TRY(scene::EvenPlaces even, places_at(scene, set, basis, spacing));
     if (even.wanted <= most) {
       const Outcome asked = ask_for_text_memory(to_text(even.wanted) + " glyphs", kGlyphBytes * even.wanted);
-      if (!asked) return json::error_at(set.where, asked.error().message);
+      if (!asked) return caused_by(json::error_at(set.where, asked.error().message), asked.error());
       return std::move(even.places);
     }
     if (follows_hand(scene, set) && std::isfinite(even.wanted)) {
@@ -149,22 +150,18 @@ double value_at(const field::AnyField& shown, const Vec3& p, field::Cursor& curs
 }
 
 /// The table, and every glyph's colour by it.
-ColorTable color_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const std::vector<Vec3>& places,
-                        const std::vector<double>& speeds, std::vector<Glyph>& glyphs) {
+Result<ColorTable> color_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const std::vector<Vec3>& places,
+                                const std::vector<double>& speeds, std::vector<Glyph>& glyphs) {
   std::vector<double> values = speeds;
+  field::AnyField shown = scene::loaded_field(scene, set.field);
   if (set.color_by->what == scene::ColorBy::What::field) {
     field::Cursor cursor;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      values[i] = value_at(scene::loaded_field(scene, set.color_by->field), places[i], cursor);
+    shown = scene::loaded_field(scene, set.color_by->field);
+    for (std::size_t i = 0; i < places.size(); ++i) values[i] = value_at(shown, places[i], cursor);
   }
-  double lo = HUGE_VAL, hi = -HUGE_VAL;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    lo = std::min(lo, value);
-    hi = std::max(hi, value);
-  }
-  if (!(lo <= hi)) lo = hi = 0;
-  ColorTable table = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
+  const DisplayRange range = field::display_range(values, shown);
+  CATENA_CHECK(scene::check_mapping(*set.color_by, range.lo));
+  ColorTable table = scene::color_table(set.color_by->colors, set.color_by->named, range.lo, range.hi);
   for (std::size_t i = 0; i < glyphs.size(); ++i) glyphs[i].color = table_color(table, values[i]);
   return table;
 }
@@ -187,7 +184,6 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
   }
   std::vector<Vec3> places, arrows;
   std::vector<double> speeds;
-  double fastest = 0;
   field::Cursor cursor;
   for (const Vec3& p : all) {
     if (within && !within->box.contains(within->mapping.index_from_world(p), 1e-9)) continue;
@@ -196,21 +192,26 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
     places.push_back(p);
     arrows.push_back(arrow);
     speeds.push_back(norm(arrow));
-    fastest = std::max(fastest, speeds.back());
   }
 
   MadeGlyphs made;
   made.basis = basis;
+  // what lies beyond the field's display range is drawn as long as the longest
+  const DisplayRange range = field::display_range(speeds, any);
+  const double fastest = range.hi;
   const double longest = set.length > 0 ? set.length : spacing, full = set.full_speed > 0 ? set.full_speed : fastest;
   made.shaft = set.radius > 0 ? set.radius / longest : kShaftShare;
   made.head = set.line ? 0 : std::min(kLongestHead, kArrowLength * made.shaft);
   const double before = set.at == scene::GlyphSet::At::tail ? 0 : set.at == scene::GlyphSet::At::head ? 1 : 0.5;
   std::vector<Glyph> glyphs;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Vec3 whole = (set.constant ? longest : longest * (speeds[i] / full)) * direction(arrows[i]), tail = places[i] - before * whole;
+    const Vec3 whole = (set.constant ? longest : longest * (range.shows(speeds[i]) ? speeds[i] / full : 1)) * direction(arrows[i]),
+               tail = places[i] - before * whole;
     glyphs.push_back({tail, tail + whole, set.color});
   }
-  if (set.color_by) made.colors = color_glyphs(scene, set, places, speeds, glyphs);
+  if (set.color_by) {
+    CATENA_TRY(made.colors, color_glyphs(scene, set, places, speeds, glyphs));
+  }
   made.glyphs = std::move(glyphs);
   return made;
 }

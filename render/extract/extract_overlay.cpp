@@ -7,6 +7,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/labels.h"
+#include "engine/scene/steps.h"
 #include "engine/scene/units.h"
 #include "render/extract/extract_parts.h"
 
@@ -40,14 +41,66 @@ std::string superscript(int n) {
 
 }  // namespace
 
-BarScale bar_scale(double lo, double hi, int count, const std::string& format) {
+namespace {
+
+/// 0 and powers of ten of both signs within lo..hi, of sizes from `least` on; every so-many-th power, so that there are about `count`.
+/// Their doubles and fivefolds where there are few.
+std::vector<double> decade_ticks(double lo, double hi, double least, int count) {
+  const double largest = std::max(std::fabs(lo), std::fabs(hi)),
+               smallest = lo > 0 || hi < 0 ? std::min(std::fabs(lo), std::fabs(hi)) : least;
+  const int first = static_cast<int>(std::floor(std::log10(smallest) + kSlack)),
+            last = static_cast<int>(std::floor(std::log10(largest) + kSlack));
+  const bool both = lo < 0 && hi > 0;
+  const int stride = std::max(1, static_cast<int>(std::ceil((both ? 2.0 : 1.0) * (last - first + 1) / std::max(count, 1) - 0.5)));
+  std::vector<double> ticks;
+  const auto add = [&](double value) {
+    if (value >= lo - kSlack * std::fabs(lo) && value <= hi + kSlack * std::fabs(hi)) ticks.push_back(std::clamp(value, lo, hi));
+  };
+  const auto fill = [&](const std::vector<double>& factors) {
+    ticks.clear();
+    if (lo <= 0 && hi >= 0) ticks.push_back(0);
+    for (int power = last; power >= first; power -= stride)
+      for (const double factor : factors) {
+        const double size = factor * std::pow(10.0, power);
+        if (size < smallest * (1 - kSlack)) continue;
+        add(size);
+        add(-size);
+      }
+  };
+  fill({1});
+  if (static_cast<int>(ticks.size()) < 3 && stride == 1) fill({1, 2, 5});
+  std::sort(ticks.begin(), ticks.end());
+  ticks.erase(std::unique(ticks.begin(), ticks.end()), ticks.end());
+  return ticks;
+}
+
+/// "0.01", "200", "10⁻⁶", "2×10⁵"
+std::string decade_text(double value) {
+  const double size = std::fabs(value);
+  if (value == 0 || (size >= 0.999e-3 && size < 0.999e4)) return formatted("%.4g", value);
+  const int power = static_cast<int>(std::floor(std::log10(size) + kSlack));
+  const double factor = value / std::pow(10.0, power);
+  const std::string ten = "10" + superscript(power);
+  if (std::fabs(std::fabs(factor) - 1) < 1e-6) return value < 0 ? typeset("-") + ten : ten;
+  return formatted("%.4g", factor) + "×" + ten;
+}
+
+}  // namespace
+
+BarScale bar_scale(double lo, double hi, int count, const std::string& format, double linear_below) {
   BarScale scale;
   if (!std::isfinite(lo) || !std::isfinite(hi)) return scale;
+  if (linear_below > 0 && lo < hi) {
+    const std::vector<double> values = decade_ticks(lo, hi, linear_below, count);
+    for (const double value : values) scale.ticks.push_back({value, format.empty() ? decade_text(value) : formatted(format, value)});
+    if (scale.ticks.size() > 1) return scale;
+    scale = {};
+  }
   // nice steps are coarse: rather a few ticks more than too few
   std::vector<Tick> ticks = nice_ticks(lo, hi, count);
   for (int about = count + 1; about <= 2 * count && static_cast<int>(ticks.size()) + 1 < count; ++about) ticks = nice_ticks(lo, hi, about);
   if (!format.empty() || ticks.size() < 2) {
-    for (const Tick& tick : ticks) scale.ticks.push_back({tick.value, formatted(format.empty() ? "%.6g" : format, tick.value)});
+    for (const Tick& tick : ticks) scale.ticks.push_back({tick.value, formatted(format.empty() ? "%.6g" : format, tick.value + 0.0)});
     return scale;
   }
   const double step = ticks[1].value - ticks[0].value;
@@ -77,6 +130,7 @@ struct Shown {
   std::vector<std::array<double, 4>> colors;
   std::string name;
   const scene::LabelMap* labels = nullptr;  ///< whose colours they are
+  double linear_below = 0;                  ///< the scale of the values (engine/base/value_scale.h)
 };
 
 std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunction::ColorPoint>& points) {
@@ -99,7 +153,7 @@ const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, con
 /// "velocity (m/s)"
 std::string with_unit(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " (" + unit + ")"; }
 
-Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
+Shown colors_of(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
   const scene::World& world = scene.world;
   if (is_hidden(world, e)) return {};
   const auto named = [&](scene::Entity field) { return with_unit(name_of(scene, field), scene::unit_of(scene, field)); };
@@ -115,8 +169,8 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
     const scene::ColorBy& by = *world.get<scene::Isosurface>(e).color_by;
     const field::AnyField& any = drawn_field(scene, by.field);
     if (!any.scalar) return {};
-    return {rows_of(shown_table(scene, by.field, by.colors, by.named, any.scalar->min_value(), any.scalar->max_value())), named(by.field),
-            labels(by)};
+    const DisplayRange range = field::display_range(*any.scalar);
+    return {rows_of(shown_table(scene, by.field, by.colors, by.named, range.lo, range.hi)), named(by.field), labels(by)};
   }
   if (world.has<scene::Slice>(e)) {
     const SliceItem* slice = slice_item(world, e, packet);
@@ -157,6 +211,29 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
   return {};
 }
 
+/// How the entity's values lie along its colours.
+scene::ValueMapping mapping_of(const scene::World& world, scene::Entity e) {
+  if (world.has<scene::Volume>(e)) return world.get<scene::Volume>(e).transfer.named.mapping;
+  if (world.has<scene::Slice>(e)) return world.get<scene::Slice>(e).shown.named.mapping;
+  const auto of = [&](const auto& item) { return item.color_by ? item.color_by->named.mapping : scene::ValueMapping{}; };
+  if (world.has<scene::Isosurface>(e)) return of(world.get<scene::Isosurface>(e));
+  if (world.has<scene::DrawnPoints>(e)) return of(world.get<scene::DrawnPoints>(e));
+  if (world.has<scene::DrawnCurves>(e)) return of(world.get<scene::DrawnCurves>(e));
+  if (world.has<scene::GlyphSet>(e)) return of(world.get<scene::GlyphSet>(e));
+  return world.has<scene::StreamlineSet>(e) ? of(world.get<scene::StreamlineSet>(e)) : scene::ValueMapping{};
+}
+
+Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
+  Shown shown = colors_of(scene, e, packet);
+  if (shown.colors.empty()) return shown;
+  // a volume's scale follows from its opacities, too
+  const double lo = shown.colors.front()[0], hi = shown.colors.back()[0];
+  shown.linear_below = scene.world.has<scene::Volume>(e) && mapping_of(scene.world, e).kind == scene::ValueMapping::Kind::symlog
+                           ? scene::linear_below(scene.world.get<scene::Volume>(e).transfer)
+                           : scene::linear_below(mapping_of(scene.world, e), lo, hi);
+  return shown;
+}
+
 Anchor anchor_of(scene::PictureCorner corner) {
   constexpr Anchor anchors[] = {Anchor::bottom_left, Anchor::bottom_right, Anchor::top_left, Anchor::top_right};
   return anchors[static_cast<int>(corner)];
@@ -189,13 +266,14 @@ void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, O
     Shown shown = shown_by(scene, bar.shown, packet);
     if (shown.colors.empty()) continue;
     ScalarBarItem item;
-    item.title = bar.title ? *bar.title : shown.name;
+    item.title = bar.title ? scene::with_time(*bar.title, scene) : shown.name;
     item.side = static_cast<Side>(bar.side);
     if (shown.labels != nullptr) {
       set_legend(*shown.labels, item);
     } else {
       item.colors = std::move(shown.colors);
-      BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format);
+      item.linear_below = shown.linear_below;
+      BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format, item.linear_below);
       item.ticks = std::move(scale.ticks);
       item.factor = std::move(scale.factor);
     }
@@ -240,7 +318,7 @@ void extract_overlay(const scene::Scene& scene, FramePacket& packet) {
   }
   if (!from.title.empty()) {
     TextItem title;
-    title.text = from.title;
+    title.text = scene::with_time(from.title, scene);
     title.anchor = Anchor::top;
     title.offset_pt = {0.0, kTitleTopPt};
     title.size_pt = kTitleSizePt;

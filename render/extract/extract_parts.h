@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/field/display_range.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/stereo.h"
@@ -168,13 +169,14 @@ void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket
 void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 
 /// Private to this room: nice values along a scalar bar and how they are written. Pure, any thread.
-///   values   of engine/base/numbers.h, about `count` of them
+///   values   of engine/base/numbers.h, about `count` of them; on a scale that is not linear 0 and powers of ten, with their doubles and
+///            fivefolds where there are few
 ///   texts    with the decimals that the step needs; where numbers are very large or small a common factor "x 10^n" is taken out.
 ///            A format of the user's ("%.2f") is taken as it is, without a factor.
 struct BarScale {
   std::vector<BarTick> ticks;
   std::string factor;
 };
-BarScale bar_scale(double lo, double hi, int count, const std::string& format);
+BarScale bar_scale(double lo, double hi, int count, const std::string& format, double linear_below = 0);
 
 }  // namespace catena::render

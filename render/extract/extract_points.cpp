@@ -79,19 +79,19 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
     radii = &set.find("radius")->values;
   }
   std::vector<float> sampled;
+  field::AnyField shown;
   const std::vector<float>* values = nullptr;
   if (drawn.color_by && drawn.color_by->what == scene::ColorBy::What::value) {
     CATENA_TRY(values, column_of(set, drawn.color_by->where, "value", drawn.color_by->value));
   } else if (drawn.color_by) {
-    CATENA_TRY(const field::AnyField shown, scene::use_field(scene, drawn.color_by->field, drawn.color_by->where));
+    CATENA_TRY(shown, scene::use_field(scene, drawn.color_by->field, drawn.color_by->where));
     sampled = field_values(shown, set);
     values = &sampled;
   }
   if (values != nullptr) {
-    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
-    for (const float v : *values)
-      if (std::isfinite(v)) lo = std::min(lo, double(v)), hi = std::max(hi, double(v));
-    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, lo, hi);
+    const DisplayRange range = field::display_range(std::vector<double>(values->begin(), values->end()), shown);
+    CATENA_CHECK(scene::check_mapping(*drawn.color_by, range.lo));
+    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
   }
 
   // a ball without a radius is not drawn

@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
 #include "engine/base/text.h"
+#include "engine/base/value_scale.h"
 #include "engine/field/magnitude.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/labels.h"
 #include "render/extract/extract.h"
@@ -15,14 +18,18 @@ namespace catena::render {
 
 TransferTable transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field) {
   CATENA_ASSERT(!transfer.colors.empty() && !(transfer.extinctions.empty() && transfer.opacities.empty()));
+  constexpr double kOff = 1.0 / 32768;
   TransferTable table;
+  table.linear_below = scene::linear_below(transfer);
   for (const auto& c : transfer.colors) table.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
   for (const auto& e : transfer.extinctions) table.extinctions.push_back({e.value, e.sigma});
   for (const auto& g : transfer.gradient_factors) table.gradient_factors.push_back({g.gradient, g.factor});
   table.opacity_unit = transfer.opacity_unit;
-  if (!table.extinctions.empty()) return table;
   const double unit = transfer.opacity_unit > 0 ? transfer.opacity_unit : field.mapping().smallest_edge();
-  for (const auto& o : transfer.opacities) table.extinctions.push_back({o.value, -std::log1p(-o.alpha) / unit});
+  if (table.extinctions.empty())
+    for (const auto& o : transfer.opacities) table.extinctions.push_back({o.value, -std::log1p(-o.alpha) / unit});
+  table.colors = refined(table.colors, table.linear_below, kOff);
+  table.extinctions = refined(table.extinctions, table.linear_below, kOff);
   return table;
 }
 
@@ -43,16 +50,15 @@ Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& s
   const std::size_t vertex = sizeof(Vec3) * (surface.smooth ? 3 : 1) + (surface.color_by ? sizeof(Color) + sizeof(double) : 0);
   auto asked = ask_for_text_memory("drawing the mesh " + in_quotes(mesh.name()),
                                    static_cast<double>(mesh.vertices().size() * vertex + mesh.triangles().size() * sizeof(mesh::Triangle)));
-  if (!asked) return json::error_at(surface.where, asked.error().message);
+  if (!asked) return caused_by(json::error_at(surface.where, asked.error().message), asked.error());
   return Done{};
 }
 
-std::vector<Color> vertex_colors(const scene::Scene& scene, const mesh::TriangleMesh& mesh, const field::AnyField& shown,
-                                 const scene::SurfaceMesh& surface) {
+Result<std::vector<Color>> vertex_colors(const scene::Scene& scene, const mesh::TriangleMesh& mesh, const field::AnyField& shown,
+                                         const scene::SurfaceMesh& surface) {
   const scene::ColorBy& by = *surface.color_by;
   std::vector<double> values;
   values.reserve(mesh.vertices().size());
-  double lo = HUGE_VAL, hi = -HUGE_VAL;
   field::Cursor cursor;
   for (const Vec3& p : mesh.vertices()) {
     double value = NAN;
@@ -64,12 +70,10 @@ std::vector<Color> vertex_colors(const scene::Scene& scene, const mesh::Triangle
       if (sample.inside) value = norm(sample.value);
     }
     values.push_back(value);
-    if (!std::isfinite(value)) continue;
-    lo = std::min(lo, value);
-    hi = std::max(hi, value);
   }
-  if (!(lo <= hi)) lo = hi = 0;
-  const auto table = scene::shown_table(scene, by.field, by.colors, by.named, lo, hi);
+  const DisplayRange range = field::display_range(values, shown);
+  CATENA_CHECK(scene::check_mapping(by, range.lo));
+  const auto table = scene::shown_table(scene, by.field, by.colors, by.named, range.lo, range.hi);
   const bool labels = scene::labels_of(scene, by.field) != nullptr;
   std::vector<Color> colors;
   colors.reserve(values.size());
@@ -99,7 +103,7 @@ Outcome prepare_slice(scene::Scene& scene, scene::Entity e) {
     return json::error_at(where, "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
                                      " voxels; a vector field of at most " + to_text(kMaxVoxels) + " was expected for a slice");
   auto made = field::magnitude_grid(grid, "the magnitude of \"" + name_of(scene, field) + "\"");
-  if (!made) return json::error_at(where, made.error().message);
+  if (!made) return caused_by(json::error_at(where, made.error().message), made.error());
   plain = {*made, grid.version()};
   return Done{};
 }
@@ -152,7 +156,9 @@ Outcome prepare_meshes(scene::Scene& scene) {
     geometry->triangles.reserve(3 * mesh->triangles().size());
     for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
     for (std::uint32_t v = 0; surface.smooth && v < geometry->vertices.size(); ++v) geometry->normals.push_back(mesh->vertex_normal(v));
-    if (shown.get()) geometry->colors = vertex_colors(scene, *mesh, shown, surface);
+    if (shown.get()) {
+      CATENA_TRY(geometry->colors, vertex_colors(scene, *mesh, shown, surface));
+    }
     plain = {std::move(geometry), mesh->version(), field_version};
   }
   return Done{};
@@ -203,8 +209,9 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
     item.grid = grid;
     item.point = slice.point;
     item.normal = slice.normal;
-    for (const auto& row :
-         scene::shown_table(scene, slice.shown.field, slice.shown.colors, slice.shown.named, grid->min_value(), grid->max_value()))
+    const DisplayRange& range = display_range(*grid);
+    CATENA_CHECK(scene::check_mapping(slice.shown, range.lo));
+    for (const auto& row : scene::shown_table(scene, slice.shown.field, slice.shown.colors, slice.shown.named, range.lo, range.hi))
       item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
     if (scene::labels_of(scene, slice.shown.field) != nullptr) item.hidden = 0;
     item.over = static_cast<int>(
@@ -214,9 +221,9 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
     if (slice.contours) {
       // between the colours' ends: that is what the eye sees told apart
       const bool spread = item.colors.size() > 1 && item.colors.front()[0] < item.colors.back()[0];
-      const double lo = spread ? item.colors.front()[0] : grid->min_value(), hi = spread ? item.colors.back()[0] : grid->max_value();
+      const double lo = spread ? item.colors.front()[0] : range.lo, hi = spread ? item.colors.back()[0] : range.hi;
       const bool multiples = slice.contours->spacing > 0;
-      CATENA_TRY(item.levels, contour_levels(*slice.contours, multiples ? grid->min_value() : lo, multiples ? grid->max_value() : hi));
+      CATENA_TRY(item.levels, contour_levels(*slice.contours, multiples ? range.lo : lo, multiples ? range.hi : hi));
       item.line_color = slice.contours->color;
       item.line_width = static_cast<float>(slice.contours->width);
     }

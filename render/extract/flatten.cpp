@@ -10,63 +10,130 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kChordShare = 0.02;  // chord error by the radius
-constexpr double kLargestTurn = 0.2;  // radians a segment
+constexpr double kSampledShare = 0.25;  ///< of the error: the chords of the samples; the rest is for leaving samples out
+constexpr double kLargestTurn = 0.8;    ///< radians of a segment
 
-/// The largest |p''| on a Hermite interval: p'' is linear in s, so it is at one of the ends.
-double curvature_bound(const flow::Knot& a, const flow::Knot& b, double radius) {
-  const double h = b.s - a.s;
-  if (!(h > 0)) return 0;
-  // on a tiny interval the positions' rounding would count, the tangents' does not
-  if (h < 1e-3 * radius) return 2 * norm(b.t - a.t) / h;
-  const Vec3 chord = (6 / (h * h)) * (b.p - a.p);
-  return std::max(norm(chord - (1 / h) * (4.0 * a.t + 2.0 * b.t)), norm((1 / h) * (2.0 * a.t + 4.0 * b.t) - chord));
+/// Of vectors in units of the tube's radius: far from either end of the double range.
+double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+
+struct Sample {
+  FlatPoint place;
+  Vec3 tangent{0.0};
+};
+
+/// Into how many parts the interval between two knots is cut so that each part's chord is off by no more than `error`, by the radius, and
+/// does not turn by more than half of what a segment may. The largest |p''| decides: p'' is linear in s, so it is at one of the ends.
+double parts_of(const flow::Knot& a, const flow::Knot& b, const FlattenOptions& options, double error) {
+  const double scale = 1 / options.radius, h = scale * (b.s - a.s);
+  if (!(h > 0)) return 1;
+  // h^2 |p''|; on a tiny interval the positions' rounding would count, the tangents' does not
+  const Vec3 chord = (6 * scale) * (b.p - a.p), start = h * a.t, end = h * b.t, at_start = chord - (4.0 * start + 2.0 * end),
+             at_end = (2.0 * start + 4.0 * end) - chord;
+  const double bend = h < 1e-3 ? 2 * length_of(end - start) : std::sqrt(std::max(dot(at_start, at_start), dot(at_end, at_end)));
+  double parts = std::max(std::sqrt(bend / (8 * error)), bend / (h * 0.5 * kLargestTurn));
+  if (options.longest > 0) parts = std::max(parts, (b.s - a.s) / options.longest);
+  return std::min(std::ceil(parts), static_cast<double>(options.most_points));
 }
 
-/// |chord error| <= d^2 / 8 max|p''|,  turn <= d max|p''|
-double longest_step(double bound, const FlattenOptions& options, double coarsen) {
-  const double longest = options.longest > 0 ? options.longest : std::numeric_limits<double>::infinity();
-  if (!(bound > 0)) return coarsen * longest;
-  return coarsen * std::min(std::min(std::sqrt(8 * kChordShare * options.radius / bound), kLargestTurn / bound), longest);
+/// Calls visit(sample) from the first knot to the last, or until it returns false: every knot, and places between two as their chord's
+/// error asks for.
+template <class Visit>
+void each_sample(const flow::Curve& curve, const FlattenOptions& options, double error, Visit&& visit) {
+  const std::vector<flow::Knot>& knots = curve.knots();
+  if (!visit(Sample{{knots.front().p, knots.front().s}, knots.front().t})) return;
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    const flow::Knot &a = knots[k], &b = knots[k + 1];
+    const double parts = parts_of(a, b, options, error);
+    for (double i = 1; i < parts; ++i) {
+      const double s = a.s + (b.s - a.s) * (i / parts);
+      Vec3 p, derivative;
+      curve.evaluate_in(k, s, p, derivative);
+      if (!visit(Sample{{p, s}, direction(derivative)})) return;
+    }
+    if (!visit(Sample{{curve.closed() && k + 2 == knots.size() ? knots.front().p : b.p, b.s}, b.t})) return;
+  }
 }
+
+/// Whether a segment from one sample may reach another, past those between: each of them allows a cone of directions in which the segment
+/// passes it within the error. The cones' intersection is followed as a cone within it, its size as that of a chord on the unit sphere.
+class Segment {
+ public:
+  /// The error by the radius; the rest in world units.
+  Segment(double error, double radius, double longest) : error_(error), scale_(1 / radius), longest_(longest) {}
+  void begin(const Sample& from) {
+    from_ = from;
+    farthest_ = 0;
+    spread_ = std::numeric_limits<double>::infinity();
+  }
+  /// False: a segment has to end before this sample. True: it is passed.
+  bool reaches(const Sample& to) {
+    const Vec3 way = scale_ * (to.place.p - from_.place.p);
+    const double length = length_of(way);
+    const bool reached = to.place.s - from_.place.s <= longest_ && allows(to, way, length);
+    pass(way, length);
+    return reached;
+  }
+
+ private:
+  bool allows(const Sample& to, const Vec3& way, double length) const {
+    if (farthest_ <= error_ && length <= error_) return true;  // the core of a spiral
+    if (length < farthest_ - error_) return false;
+    const Vec3 aside = (1 / length) * way - axis_;
+    if (spread_ < 2 && !(spread_ >= 0 && dot(aside, aside) <= spread_ * spread_)) return false;
+    // the outer wall of the bend: its radius is larger by the tube's
+    const Vec3 turn = to.tangent - from_.tangent;
+    return dot(turn, turn) <= std::min(kLargestTurn * kLargestTurn, 8 * error_);
+  }
+  void pass(const Vec3& way, double length) {
+    farthest_ = std::max(farthest_, length);
+    if (!(length > error_)) return;
+    const Vec3 axis = (1 / length) * way;
+    const double spread = error_ / length, apart = length_of(axis - axis_);
+    if (!(spread_ < 2) || apart + spread <= spread_) {
+      axis_ = axis;
+      spread_ = spread;
+    } else if (apart + spread_ > spread) {
+      const Vec3 between = axis_ + (0.5 * (apart - spread + spread_) / apart) * (axis - axis_);
+      axis_ = (1 / length_of(between)) * between;
+      spread_ = 0.5 * (spread + spread_ - apart);  // below 0: no direction is left
+    }
+  }
+
+  double error_, scale_, longest_;
+  Sample from_;
+  double farthest_ = 0;  ///< of the samples passed, by the radius
+  Vec3 axis_{0.0};
+  double spread_ = 0;  ///< of the directions allowed about the axis; 2 and more: all
+};
 
 }  // namespace
 
 std::vector<FlatPoint> flatten_places(const flow::Curve& curve, const FlattenOptions& options) {
-  const std::vector<flow::Knot>& knots = curve.knots();
-  CATENA_ASSERT(knots.size() >= 2 && options.radius > 0 && options.most_points >= 2);
-  std::vector<double> bounds(knots.size(), 0.0);
-  for (std::size_t k = 0; k + 1 < knots.size(); ++k) bounds[k] = curvature_bound(knots[k], knots[k + 1], options.radius);
-
+  CATENA_ASSERT(curve.knots().size() >= 2 && options.radius > 0 && options.most_points >= 2);
+  const double longest = options.longest > 0 ? options.longest : std::numeric_limits<double>::infinity();
   std::vector<FlatPoint> points;
   for (double coarsen = 1;; coarsen *= 2) {
-    points.assign(1, {knots.front().p, knots.front().s});
-    double from = knots.front().s, bound = 0;
-    bool fits = true;
-    for (std::size_t k = 0; k + 1 < knots.size() && fits;) {
-      // this interval's curvature joins the segment, or ends it at the knot
-      const bool at_start = from >= knots[k].s;
-      const double with = at_start ? bounds[k] : std::max(bound, bounds[k]);
-      const double reach = from + longest_step(with, options, coarsen);
-      if (!at_start && reach <= knots[k].s) {
-        points.push_back({knots[k].p, knots[k].s});
-        from = knots[k].s;
-      } else if (reach < knots[k + 1].s) {
-        Vec3 p, derivative;
-        curve.evaluate_in(k, reach, p, derivative);
-        points.push_back({p, reach});
-        if (!(reach > from)) return points;  // below the resolution of s
-        from = reach;
-      } else {
-        bound = with;
-        ++k;
+    const double error = coarsen * coarsen * options.error;
+    points.clear();
+    Segment segment((1 - kSampledShare) * error, options.radius, coarsen * longest);
+    Sample last;
+    each_sample(curve, options, kSampledShare * error, [&](const Sample& sample) {
+      if (points.empty()) {
+        points.push_back(sample.place);
+        segment.begin(sample);
+      } else if (!segment.reaches(sample) && last.place.s > points.back().s) {
+        points.push_back(last.place);
+        segment.begin(last);
+        segment.reaches(sample);
       }
-      fits = points.size() < options.most_points;
+      last = sample;
+      return points.size() < options.most_points;
+    });
+    if (points.size() < options.most_points || !std::isfinite(error)) {
+      points.push_back(last.place);
+      return points;
     }
-    if (fits) break;
   }
-  points.push_back({curve.closed() ? points.front().p : knots.back().p, knots.back().s});
-  return points;
 }
 
 std::vector<Vec3> flatten(const flow::Curve& curve, const FlattenOptions& options) {

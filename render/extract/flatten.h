@@ -1,5 +1,6 @@
-/// A curve as a polyline fine enough for a tube: every point lies exactly on the curve's Hermite pieces.
-///   chord error of each segment <= 2 % of the tube's radius, turn of a segment <= 0.2 rad
+/// A curve as a polyline fine enough for a tube: every point lies on the curve's Hermite pieces, and the curve nowhere farther from the
+/// polyline than `error`; nor is the tube's wall outside of a bend. Knots that this allows are left out. Within a spiral's core, which no
+/// picture of the tube shows, a segment may turn as it likes.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -10,7 +11,8 @@ namespace catena::render {
 
 struct FlattenOptions {
   double radius = 0;                 ///< of the tube, world units
-  std::size_t most_points = 200000;  ///< above it the chord error is allowed to grow
+  double error = 0.02;               ///< by the radius
+  std::size_t most_points = 200000;  ///< above it the error is allowed to grow
   double longest = 0;                ///< of a segment, world units, so that colours can follow; 0: any
 };
 

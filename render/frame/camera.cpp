@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/base/result.h"
@@ -74,6 +75,12 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   const double distance = norm(view.position - view.target);
   set_depth_range(camera, bounds, distance > 0 ? distance : 1);
   return camera;
+}
+
+double smallest_pixel(const Camera& c, const Bounds& box) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 8; ++i) nearest = std::min(nearest, -dot(box.corner(i) - c.position, c.back));
+  return pixel_size(c, std::max(0.0, nearest));
 }
 
 Mat4 view_from_world(const Camera& c) {

@@ -60,6 +60,8 @@ std::optional<Vec3> project(const Camera& camera, const Vec3& world);
 Vec3 unproject(const Camera& camera, double x_px, double y_px, double depth);
 /// World units that one pixel covers at the view depth.
 double pixel_size(const Camera& camera, double depth);
+/// The same where a box is nearest to the eye; 0 where it reaches behind the eye of a perspective.
+double smallest_pixel(const Camera& camera, const Bounds& box);
 
 /// From the scene towards the eye: oblique, +z up.
 Vec3 default_direction();

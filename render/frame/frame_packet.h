@@ -83,6 +83,8 @@ struct TransferTable {
   std::vector<std::array<double, 2>> gradient_factors;
   double opacity_unit = 0;  ///< the length whose opacity a projection takes, world units; 0: the smallest voxel edge
   bool labels = false;      ///< values are whole numbers, each with a look of its own
+  /// The scale (engine/base/value_scale.h) on which tables made of it are even: where the points lie close on it, they suffice.
+  double linear_below = 0;
   bool operator==(const TransferTable&) const = default;
 };
 
@@ -97,7 +99,8 @@ struct ColorSource {
   std::shared_ptr<const field::ScalarGrid> grid;  ///< whose values give the colours
   std::vector<std::array<double, 4>> colors;      ///< value, r, g, b
   bool labels = false;                            ///< values are whole numbers, each with a colour of its own; 0 is no label and has none
-  bool spread = false;  ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
+  bool spread = false;      ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
+  double linear_below = 0;  ///< as of a TransferTable
   bool operator==(const ColorSource&) const = default;
 };
 

@@ -63,6 +63,7 @@ struct ScalarBarItem {
   std::vector<BarTick> ticks;                 ///< values rising
   std::string title;                          ///< what it shows
   std::string factor;                         ///< beside the values, for instance "x 10^-5"
+  double linear_below = 0;                    ///< the scale of the values along it (engine/base/value_scale.h)
   Side side = Side::right;                    ///< where it stands
   int steps = 0;     ///< of a legend of labels, upright: so many bands of one colour; values count them from below. 0: a bar
   std::string more;  ///< below a legend: "and 96 more"

@@ -164,6 +164,7 @@ BrickScan scan_bricks(const field::ScalarGrid& grid, const ValueInterval& active
     const std::scoped_lock held(lock);
     scan.range = {std::min(scan.range.least, range.least), std::max(scan.range.greatest, range.greatest)};
   });
+  scan.range = without_outliers(scan.range, grid, active);
   GradientSums sums;
   for (const GradientSums& part : means) sums.add(part);
   scan.gradients = gradients;
@@ -291,8 +292,8 @@ Outcome upload_words(vk::Device& device, const BrickSource& source, const SlotPl
 
 Outcome upload_gradients(vk::Device& device, const BrickSource& source, const SlotPlan& plan, PackedAtlas& atlas) {
   const std::size_t nodes = atlas.gradient_nodes, apart = kBrick / (nodes - 1);
-  CATENA_TRY(atlas.gradients, vk::Image::create(device, vk::volume_info(kGradientFormat, plan.slots[0] * nodes,
-                                                                        plan.slots[1] * nodes, plan.slots[2] * nodes)));
+  CATENA_TRY(atlas.gradients, vk::Image::create(device, vk::volume_info(kGradientFormat, plan.slots[0] * nodes, plan.slots[1] * nodes,
+                                                                        plan.slots[2] * nodes)));
   return plan.upload(device, atlas.gradients, {nodes, nodes, nodes}, kGradientBytes, source, 1,
                      [&](const BrickBlock& brick, std::byte* out, std::size_t line, std::size_t plane) {
                        const VoxelBlock& block = brick.block;

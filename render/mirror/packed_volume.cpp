@@ -30,7 +30,7 @@ ValueInterval range_to_encode(const field::ScalarGrid& grid, const ValueInterval
     const std::scoped_lock held(lock);
     range = {std::min(range.least, part.least), std::max(range.greatest, part.greatest)};
   });
-  return range;
+  return without_outliers(range, grid, active);
 }
 
 std::vector<std::uint8_t> all_codes(const field::ScalarGrid& grid, const CodeScale& scale) {
@@ -100,7 +100,7 @@ bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid) {
   const field::Box& box = grid.index_box();
   const Vec3 n = box.hi - box.lo + Vec3(1.0);
   const double limit = device.info().limits.maxImageDimension3D;
-  return grid.stats().active_voxels > 0 && std::min({n.x, n.y, n.z}) >= 2 && std::max({n.x, n.y, n.z}) <= limit &&
+  return !grid.has_cell_mask() && grid.stats().active_voxels > 0 && std::min({n.x, n.y, n.z}) >= 2 && std::max({n.x, n.y, n.z}) <= limit &&
          n.x * n.y * n.z <= kMaxVoxels;
 }
 

@@ -24,7 +24,8 @@ struct PackedVolume {
   std::vector<CodeRange> ranges;         ///< x fastest
 };
 
-/// Whether a grid can be packed whole on this device: at least a cell thick, and of a size that pays.
+/// Whether a grid can be packed whole on this device: at least a cell thick, of a size that pays, and without a mask of cells, which codes
+/// by voxel cannot hold.
 bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid);
 
 /// Of its words, and of gradients (gradient_volume.h) where they are wanted.

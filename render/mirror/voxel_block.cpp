@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/threads.h"
+#include "engine/field/display_range.h"
 
 namespace catena::render {
 
@@ -40,6 +41,26 @@ void VoxelBlock::read(const field::ScalarGrid& grid, const Index3& origin, const
         const std::uint8_t* c = &valid[std::size_t(z) * plane + std::size_t(y) * row + std::size_t(x)];
         used[i] = c[0] | c[1] | c[row] | c[row + 1] | c[plane] | c[plane + 1] | c[plane + row] | c[plane + row + 1];
       }
+}
+
+std::vector<float> some_values(const field::ScalarGrid& grid) {
+  constexpr int kBlocks = 64;
+  const VoxelExtent extent = voxel_extent(grid);
+  const auto blocks = [](int n) { return (n + 7) / 8; };
+  const double all = double(blocks(extent.size.x)) * blocks(extent.size.y) * blocks(extent.size.z);
+  const int stride = 8 * std::max(1, int(std::ceil(std::cbrt(all / kBlocks))));
+  const bool masked = has_invalid_cells(grid);
+  std::vector<float> values;
+  VoxelBlock block;
+  for (int z = 0; z < extent.size.z; z += stride)
+    for (int y = 0; y < extent.size.y; y += stride)
+      for (int x = 0; x < extent.size.x; x += stride) {
+        const Index3 size{std::min(8, extent.size.x - x), std::min(8, extent.size.y - y), std::min(8, extent.size.z - z)};
+        block.read(grid, {extent.lo.x + x, extent.lo.y + y, extent.lo.z + z}, size, masked);
+        for (std::size_t i = 0; i < block.values.size(); ++i)
+          if (block.is_used(i)) values.push_back(block.values[i]);
+      }
+  return values;
 }
 
 void for_slabs(const field::ScalarGrid& grid, const Slabs& slabs, const std::function<void(const Slab&)>& body) {
@@ -93,6 +114,13 @@ CodeScale::CodeScale(const ValueInterval& range, bool is_masked) : masked(is_mas
   per_code = (range.greatest - range.least) / (255 - least_code());
   if (!(per_code > 0) || !std::isfinite(1 / per_code)) per_code = 0;
   lo = range.least - least_code() * per_code;
+}
+
+ValueInterval without_outliers(ValueInterval range, const field::ScalarGrid& grid, const ValueInterval& active) {
+  const DisplayRange& shown = display_range(grid);
+  if (shown.below.count > 0) range.least = std::max(range.least, std::min(active.least, shown.lo));
+  if (shown.above.count > 0) range.greatest = std::min(range.greatest, std::max(active.greatest, shown.hi));
+  return range;
 }
 
 void CodeScale::encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const {

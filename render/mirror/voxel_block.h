@@ -37,9 +37,14 @@ struct VoxelBlock {
   bool is_used(std::size_t i) const { return used.empty() || used[i] != 0; }
 };
 
+/// Values of voxels in use that stand for all: of about 64 blocks of 8^3, spread evenly.
+std::vector<float> some_values(const field::ScalarGrid& grid);
+
 /// Widens `range` so that every cell of the block that `active` touches is whole within it: beyond `active` the picture is of one colour
 /// and density, so that nothing else is lost by codes of `range` than their rounding.
 void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueInterval& active);
+/// The range without what lies beyond both `active` and the grid's display range: codes are not spent on outliers, which are clamped.
+ValueInterval without_outliers(ValueInterval range, const field::ScalarGrid& grid, const ValueInterval& active);
 
 /// Planes of a grid, kSlab at a time and in parallel, each time with `before` planes more in front of them and `behind` behind, where the
 /// grid has them: no whole copy of a grid is made.

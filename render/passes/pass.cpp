@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/result.h"
+#include "engine/field/display_range.h"
 #include "shaders/shared/frame.h"
 
 namespace catena::render {
@@ -101,7 +102,8 @@ MirrorOptions mirror_options(const FramePacket& packet, const RenderSettings& se
   const bool surface = std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), uses) ||
                        std::any_of(packet.slices.begin(), packet.slices.end(), uses) ||
                        grid.interpolation() == field::Interpolation::nearest;  // a label that is rounded is another one
-  const bool float32 = settings.texels == TexelFormat::r32f || (settings.texels == TexelFormat::automatic && surface);
+  const bool float32 = settings.texels == TexelFormat::r32f || (settings.texels == TexelFormat::automatic && surface) ||
+                       display_range(grid).is_cut();  // halves scaled by an outlier of 1e20 hold nothing of values from 0 to 1
   return {float32, settings.layout};
 }
 

@@ -169,18 +169,17 @@ class CursorPass final : public Pass {
 /// Tubes as rings (tubes.h), and their arrowheads.
 class StreamlinePass final : public Pass {
  public:
-  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
-    CATENA_TRY(TubeDrawer lines, TubeDrawer::create(device));
-    return std::unique_ptr<Pass>(new StreamlinePass(std::move(lines)));
-  }
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) { return std::unique_ptr<Pass>(new StreamlinePass(device)); }
   PassUse use(const Frame&) const override { return {0, target::opaque}; }
 
   Outcome prepare(Frame& frame) override {
     const FramePacket& packet = frame.packet;
     left_out_ = packet.left_out;
-    if (packet.tubes != tubes_) {
+    const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+    if (packet.tubes != tubes_ || !lines_.suits(camera)) {
       tubes_.clear();
-      CATENA_CHECK(lines_.upload(frame.device, packet.tubes));
+      CATENA_CHECK(lines_.upload(frame.device, packet.tubes, camera));
+      CATENA_CHECK(line_drawer_.prepare(lines_));
       tubes_ = packet.tubes;
     }
     if (packet.arrows == arrows_) return Done{};
@@ -201,12 +200,17 @@ class StreamlinePass final : public Pass {
     return all;
   }
   Outcome record(vk::Commands& commands, Frame& frame) override {
-    CATENA_CHECK(line_drawer_.draw(commands, frame.rays, lines_));
+    const auto pause = [&] {
+      commands.end_pass();
+      frame.targets.begin(commands, target::opaque, 0);
+      commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
+    };
+    CATENA_CHECK(line_drawer_.draw(commands, frame.rays, lines_, pause));
     return head_drawer_ ? head_drawer_->draw(commands, frame.rays, heads_) : Outcome(Done{});
   }
 
  private:
-  explicit StreamlinePass(TubeDrawer lines) : line_drawer_(std::move(lines)) {}
+  explicit StreamlinePass(vk::Device& device) : line_drawer_(device) {}
   TubeDrawer line_drawer_;
   std::optional<TriangleDrawer> head_drawer_;  ///< once there are any
   Tubes lines_;

@@ -12,7 +12,8 @@ namespace catena::render {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kJointTurn = 0.35;  // a corner that turns more than this (radians) gets several rings
+constexpr double kJointTurn = 0.35;   // a corner that turns more than this (radians) gets several rings
+constexpr double kRibbonTurn = 0.85;  // the same of a ribbon
 
 std::uint32_t add_vertex(Shape& shape, const Vec3& position, const Vec3& normal, const Color& color) {
   shape.vertices.push_back({position, normal, color, 0});
@@ -110,8 +111,9 @@ std::vector<ColoredPoint> distinct_points(const TubeItem& tube, bool& closed) {
   return points;
 }
 
-/// One ring a point, across the mean of its two segments; a sharp corner gets rings from the one direction to the other.
-std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed) {
+/// One ring a point, across the mean of its two segments; a corner sharper than `joint` (radians) gets rings from the one direction to the
+/// other.
+std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed, double joint = kJointTurn) {
   const std::size_t n = points.size();
   std::vector<Ring> rings;
   rings.reserve(n);
@@ -121,13 +123,13 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed)
     const bool first = !closed && i == 0, last = !closed && i + 1 == n;
     const Vec3 before = first ? segment(0) : segment(i + n - 1), after = last ? before : segment(i);
     const double turn = std::atan2(norm(cross(before, after)), dot(before, after));
-    if (turn <= kJointTurn) {
+    if (turn <= joint) {
       rings.push_back({p, direction(before + after), Vec3(0.0), color, 0, 0});
       continue;
     }
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
-    const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
+    const int steps = static_cast<int>(std::ceil(turn / joint));
     for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(turned(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
   }
   return rings;
@@ -155,10 +157,10 @@ void mark(Shape& shape, std::size_t first, std::uint32_t id, bool clipped) {
   for (std::size_t i = first; i < shape.vertices.size(); ++i) shape.vertices[i].id = id | (clipped ? 0u : UNCLIPPED);
 }
 
-int tube_sides(double radius, double scene_size) {
-  if (!(radius > 0) || !(scene_size > 0)) return 12;
-  const double share = radius / scene_size;
-  return share < 0.002 ? 8 : share < 0.006 ? 12 : 16;
+int tube_sides(double radius, double pixel) {
+  if (!(radius > 0) || !(pixel > 0)) return 16;
+  const double pixels = radius / pixel;
+  return pixels < 3 ? 0 : pixels < 6 ? 12 : 16;
 }
 
 std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed) {
@@ -166,9 +168,13 @@ std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed) 
   if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return {};
   const std::vector<ColoredPoint> points = distinct_points(tube, closed);
   if (points.empty()) return {};
-  std::vector<TubeRing> wall =
-      points.size() > 1 ? framed_rings(points, closed)
-                        : std::vector<TubeRing>{{points.front().p, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, points.front().color, 0, 0}};
+  std::vector<TubeRing> wall;
+  if (points.size() == 1)
+    wall = {{points.front().p, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, points.front().color, 0, 0}};
+  else if (sides > 0)
+    wall = framed_rings(points, closed);
+  else
+    wall = rings_of(points, closed, kRibbonTurn);
   for (TubeRing& ring : wall) ring.radius = tube.radius;
   if (closed) {
     wall.push_back(wall.front());

@@ -28,8 +28,8 @@ struct Shape {
 /// Gives the vertices from `first` on to an object.
 void mark(Shape& shape, std::size_t first, std::uint32_t id, bool clipped);
 
-/// 8 to 16 by the radius' share of the scene's size (0: 12).
-int tube_sides(double radius, double scene_size);
+/// Of a tube where a pixel has that size in the world (0: unknown): 12 or 16; 0 of one so thin that a ribbon shows it.
+int tube_sides(double radius, double pixel);
 
 /// A circle of a tube's surface: its vertices at centre + radius out, with the normals sqrt(1 - lean^2) out + lean tangent.
 struct TubeRing {
@@ -38,7 +38,8 @@ struct TubeRing {
   double radius = 0, lean = 0;
 };
 /// A tube as rings: walls from each to the next are its surface. Of an open one the first and the last have no radius: they are the tips of
-/// the caps; a closed one ends with its first ring. Points as add_tube takes them.
+/// the caps; a closed one ends with its first ring. Points as add_tube takes them. `sides` 0: of a tube that is drawn as a ribbon
+/// (tubes.h): rings without normals.
 std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed);
 
 /// Appends a tube. Points that are not further apart than 1e-9 of the radius are one; a single point gives a ball, none nothing.

@@ -40,12 +40,12 @@ class SurfaceColorPass final : public Pass {
   Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags, const TransferLut& lut);
 
   vk::Sampler linear_;
-  std::map<std::pair<std::uint32_t, bool>, vk::Pipeline> pipelines_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, vk::Pipeline> pipelines_;
   std::vector<Surface> surfaces_;
 };
 
 Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::uint32_t flags, const TransferLut& lut) {
-  vk::Pipeline& pipeline = pipelines_[{flags, lut.uneven()}];
+  vk::Pipeline& pipeline = pipelines_[{flags, table_flags(lut)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kSurfaceColorVertexShader;
@@ -53,7 +53,7 @@ Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}, {kIds, vk::Resource::texture}};
     add_grid_slots(info.slots, 2);
     info.constants = {flags};
-    add_uneven(info.constants, lut);
+    add_table_flags(info.constants, lut);
     info.colors = {kOpaqueFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }

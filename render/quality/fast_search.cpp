@@ -6,19 +6,14 @@
 #include <limits>
 
 #include "render/quality/refinement.h"
+#include "render/quality/search.h"
 
 namespace catena::render {
 namespace {
 
-constexpr double kStepShare = 0.93;  // of the error that ray steps may take
-constexpr double kFacetShare = 0.5;  // the same where the gradient of the cell draws facets, which are seen sooner than grain is
 constexpr int kMaxPictures = 16;
 constexpr double kStepsDone = 0.3;     // of the search, when the steps are known
 constexpr std::size_t kGoodSteps = 5;  // of those that are good enough, the longest
-constexpr double kStill = 0.95;        // of the error of a longer step: hardly less
-// of the error, that a ray may leave out at its end: most of that is told from what it has met
-constexpr double kEndShare = 2, kSoonestEnd = 1.0 / 32;
-constexpr double kSteps[] = {8, 6, 4, 3, 2, 1.5, 1.2, 1, 0.85, 0.7, 0.6, 0.5, 0.42, 0.35, 0.25, 0.18, 0.125};
 
 // Rays that leap go to what is seen by short steps, and begin there with shorter ones: unlit, longer ones than this gain nothing.
 constexpr double kLongestLeaping = 3, kSameCost = 1e-6;
@@ -52,7 +47,7 @@ Result<std::optional<QualityChoice>> FastSearch::find() {
 /// Rays of a step with a plan, which end when they may leave out no more than the error says.
 RenderSettings FastSearch::planned(const Plan& plan, double step, bool smooth) const {
   RenderSettings s = fast_rung(step, plan.spacing, plan.refine_half * error_, plan.refine_full * error_, smooth);
-  s.fast->termination = std::min(kSoonestEnd, kEndShare * error_ / 255);
+  end_rays_for(error_, s);
   return s;
 }
 
@@ -62,7 +57,7 @@ Outcome FastSearch::add_candidates(bool smooth) {
   const bool facets = !smooth && lattice_.shaded();
   const std::size_t most = candidates_.size() + kGoodSteps * std::size(kPlans);
   double before = std::numeric_limits<double>::infinity();
-  for (const double step : kSteps) {
+  for (const double step : kFastSteps) {
     if (candidates_.size() == most) break;
     const RenderSettings every_ray = planned(kPlans[std::size(kPlans) - 1], step, smooth);
     CATENA_TRY(const LatticeError error, lattice_.of_rays(every_ray));

@@ -13,18 +13,20 @@
 namespace catena::render {
 namespace {
 
-constexpr double kDeviations = 3;                               // of the lattice's mean, that an estimate lies above it
-constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
-constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
-constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
-constexpr double kLookedAt = 4000;                              // pixels, where half a step is tried
-constexpr double kSamples = 6000;                               // covered pixels on the lattice
-constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
-constexpr std::uint32_t kSparser = 3;                           // the lattice that shows at which step rays have converged,
-constexpr double kSparseSamples = 500;                          // if it has so many covered pixels
+constexpr double kDeviations = 3;                                       // of the lattice's mean, that an estimate lies above it
+constexpr double kThinGoal = 6;                                         // a thin part may lose that share of the error
+constexpr double kFlickerGoal = 0.5;                                    // the flicker, in errors, or in what the picture itself changes by
+constexpr double kTurn = 0.2;                                           // degrees a frame, which flicker is measured at
+constexpr double kLookedAt = 4000;                                      // pixels, where half a step is tried
+constexpr double kSamples = 6000, kFewSamples = 1000;                   // covered pixels on the lattice
+constexpr std::uint32_t kSpacings[] = {25, 19, 13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
+constexpr std::uint32_t kSeenSpacing = 13;                              // where it is found what is covered
+constexpr std::uint32_t kSparser = 3;                                   // the lattice that shows at which step rays have converged,
+constexpr double kSparseSamples = 500;                                  // if it has so many covered pixels
 // steps, voxels: of what is seen, of the fast raycast's rays that what is thin is measured by, and those of the converged picture, which
 // are halved until what is left of its error is less than a share of the goal, or what rounding to 8 bits makes of nothing
-constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3;
+constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3,
+                 kRoughTruthShare = 0.5;
 
 LatticeError compare_over_ground(const Picture& a, const Picture& b) {
   PixelErrors errors = covered_errors(a, b);
@@ -68,7 +70,7 @@ Picture on_lattice(const Picture& picture, std::uint32_t spacing) {
 
 }  // namespace
 
-Lattice::Lattice(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) {
+Lattice::Lattice(Renderer& renderer, const FramePacket& packet, LatticeSize size) : renderer_(renderer), packet_(packet), size_(size) {
   if (packet_.background[3] < 1) packet_.background = {};
   grounds_.push_back({packet_.background[0], packet_.background[1], packet_.background[2]});
   if (packet_.background[3] < 1) grounds_.push_back({1, 1, 1});
@@ -78,26 +80,31 @@ Lattice::Lattice(Renderer& renderer, const FramePacket& packet) : renderer_(rend
 
 Outcome Lattice::begin(double goal, bool moves) {
   // exact rays come first: what a large grid needs for them and for the fast raycast is not held at once
-  CATENA_TRY(const Picture seen, renderer_.probe(packet_, exact_rung(kSeenStep), kSpacings[0]));
+  CATENA_TRY(const Picture seen, renderer_.probe(packet_, exact_rung(kSeenStep), kSeenSpacing));
   double covered = 0;
   for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
   covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);
   covered_ = std::max(1.0, covered);
+  const double samples = size_ == LatticeSize::whole ? kSamples : kFewSamples;
   for (const std::uint32_t spacing : kSpacings) {
     spacing_ = spacing;
-    if (covered / (spacing * spacing) >= kSamples) break;
+    if (covered / (spacing * spacing) >= samples) break;
   }
-  CATENA_CHECK(find_truth(renderer_.draws_fast(packet_) ? goal : 0));
+  CATENA_CHECK(find_truth(size_ == LatticeSize::small || renderer_.draws_fast(packet_) ? goal : 0));
   if (moves && renderer_.draws_fast(packet_)) {
     CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
     const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
     for (const double change : flicker(none, truth_, none, next_truth_)) most_flicker_.push_back(kFlickerGoal * std::max(goal, change));
   }
-  if (!renderer_.draws_fast(packet_)) return Done{};
-  // it may have no memory for the grid
-  CATENA_CHECK(renderer_.probe(packet_, fast_rung(kSeenStep, 1, 0, -1), kSpacings[0]));
-  fast_ = renderer_.draws_fast(packet_);
+  if (size_ == LatticeSize::whole) CATENA_CHECK(begin_fast());
   return Done{};
+}
+
+Result<bool> Lattice::begin_fast() {
+  if (!renderer_.draws_fast(packet_)) return false;
+  // it may have no memory for the grid
+  CATENA_CHECK(renderer_.probe(packet_, fast_rung(kSeenStep, 1, 0, -1), kSeenSpacing));
+  return fast_ = renderer_.draws_fast(packet_);
 }
 
 /// Opaque things of steep transfer functions want far shorter steps than haze does.
@@ -116,7 +123,8 @@ Outcome Lattice::find_truth(double goal) {
     truth_error_ = change / (std::clamp(before > 0 ? before / std::max(change, 1e-30) : 2.0, std::numbers::sqrt2, 4.0) - 1);
     before = change;
     truth_ = std::move(finer);
-  } while (truth_error_ > std::max(kLeastTold, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
+  } while (truth_error_ > std::max(kLeastTold, (size_ == LatticeSize::small ? kRoughTruthShare : kTruthShare) * goal) &&
+           converged.step_voxels > kLeastTruthStep);
   truth_step_ = converged.step_voxels;
   if (!sparser) return Done{};
   CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
@@ -130,6 +138,13 @@ Result<double> Lattice::change_of_half_step(const RenderSettings& settings) cons
   CATENA_TRY(const Picture picture, renderer_.probe(packet_, settings, spacing));
   CATENA_TRY(const Picture finer, renderer_.probe(packet_, half, spacing));
   return compare(picture, finer).rmse;
+}
+
+double Lattice::opaque_share() const {
+  constexpr int kOpaque = 250;
+  double covered = 0, opaque = 0;
+  for (std::size_t i = 3; i < truth_.rgba.size(); i += 4) covered += truth_.rgba[i] > 0, opaque += truth_.rgba[i] >= kOpaque;
+  return opaque / std::max(covered, 1.0);
 }
 
 bool Lattice::shaded() const { return std::ranges::any_of(packet_.volumes, &VolumeItem::shade); }
@@ -192,6 +207,12 @@ Result<bool> Lattice::keeps_what_is_thin(double e) {
     const PictureError error = measure_error(picture, fine_, ground);
     if (error.least_kept < 1 - e / kThinGoal || error.p999 > kFarthest * e) return false;
   }
+  return true;
+}
+
+bool Lattice::lattice_keeps_what_is_thin(double e) const {
+  for (std::size_t ground = 0; ground < grounds_.size(); ++ground)
+    if (measure_error(over_ground(last_, ground), over_ground(truth_, ground)).least_kept < 1 - e / kThinGoal) return false;
   return true;
 }
 

@@ -37,18 +37,19 @@ Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& pack
                                      const DrawTimer& timer) {
   if (!packet.eyes.empty()) {
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
-    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, progress, timer);
+    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share, goal.once}, progress, timer);
   }
   if (!draws_rays(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
-  Lattice lattice(renderer, packet);
-  const bool has_error = goal.kind == QualityGoal::Kind::error;
-  CATENA_CHECK(lattice.begin(has_error ? goal.value : 0, has_error));
+  const bool has_error = goal.kind == QualityGoal::Kind::error, once = has_error && goal.once;
+  Lattice lattice(renderer, packet, once ? LatticeSize::small : LatticeSize::whole);
+  CATENA_CHECK(lattice.begin(has_error ? goal.value : 0, has_error && !once));
   const SearchProgress told = [&progress](double done) {
     if (progress) progress(kBegun + (1 - kBegun) * done);
   };
   told(0);
-  CATENA_TRY(QualityChoice chosen,
-             has_error ? settings_for_error(lattice, goal.value, told) : settings_for_time(lattice, goal.value, told, timer));
+  CATENA_TRY(QualityChoice chosen, once        ? settings_for_one(lattice, goal.value)
+                                   : has_error ? settings_for_error(lattice, goal.value, told)
+                                               : settings_for_time(lattice, goal.value, told, timer));
   chosen.empty = lattice.empty();
   return chosen;
 }

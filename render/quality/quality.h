@@ -22,7 +22,8 @@ namespace catena::render {
 
 struct QualityGoal {
   enum class Kind { error, time } kind = Kind::error;
-  double value = 0;  ///< 1/255, or ms
+  double value = 0;   ///< 1/255, or ms
+  bool once = false;  ///< of an error: one picture is drawn, once (one_picture.h)
 };
 
 struct QualityChoice {

@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "render/quality/fast_search.h"
+#include "render/quality/one_picture.h"
 #include "render/quality/refinement.h"
 
 namespace catena::render {
 namespace {
-
-constexpr double kExactSteps[] = {4, 2.8, 2, 1.4, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.09, 0.06, 0.04, 0.03};
 
 constexpr double kAbout = 1.6;  // of a time that is wanted, and by it
 
@@ -16,14 +15,6 @@ constexpr double kAbout = 1.6;  // of a time that is wanted, and by it
 /// time.
 constexpr double kUnused = 0.6;
 constexpr double kEveryPixel[] = {2, 1.4, 1, 0.7, 0.5};
-
-/// Of the error: exact rays of long steps draw rings on what is lit, which are seen sooner than grain is, and shorter steps cost them
-/// little.
-constexpr double kRingShare = 0.5;
-
-QualityChoice choice(const Lattice& lattice, const RenderSettings& settings, double error, bool reached) {
-  return {settings, error, 0, reached, lattice.pictures()};
-}
 
 /// The quicker of two, where it is about the time that is wanted; else one says enough.
 Result<double> time_of(const Lattice& lattice, const RenderSettings& settings, double wanted_ms) {
@@ -33,7 +24,29 @@ Result<double> time_of(const Lattice& lattice, const RenderSettings& settings, d
   return std::min(first, second);
 }
 
+/// The nearest to what cannot be reached.
+QualityChoice finest(const Lattice& lattice, double e) {
+  RenderSettings settings = reference_settings();
+  settings.step_voxels = std::min(lattice.truth_step(), settings.step_voxels);
+  return choice_of(lattice, settings, lattice.truth_error(), lattice.truth_error() <= e);
+}
+
 }  // namespace
+
+void end_rays_for(double error, RenderSettings& settings) {
+  // most of what a ray leaves out at its end is told from what it has met
+  constexpr double kEndShare = 2, kSoonestEnd = 1.0 / 32;
+  settings.fast->termination = std::min(kSoonestEnd, kEndShare * error / 255);
+}
+
+QualityChoice choice_of(const Lattice& lattice, const RenderSettings& settings, double error, bool reached) {
+  return {settings, error, 0, reached, lattice.pictures()};
+}
+
+Result<QualityChoice> settings_for_one(Lattice& lattice, double e) {
+  CATENA_TRY(const std::optional<QualityChoice> chosen, OnePicture(lattice, e).find());
+  return chosen ? *chosen : finest(lattice, e);
+}
 
 Result<QualityChoice> settings_for_error(Lattice& lattice, double e, const SearchProgress& progress) {
   if (lattice.fast()) {
@@ -45,13 +58,10 @@ Result<QualityChoice> settings_for_error(Lattice& lattice, double e, const Searc
     // they are judged by what is finer than they are
     if (step < 2 * lattice.truth_step()) break;
     CATENA_TRY(const LatticeError rays, lattice.of_rays(exact_rung(step)));
-    if (rays.good_for(e)) good = choice(lattice, exact_rung(step), rays.above, true);
+    if (rays.good_for(e)) good = choice_of(lattice, exact_rung(step), rays.above, true);
     if (good && rays.above <= (lattice.shaded() ? kRingShare : 1) * e) break;
   }
-  if (good) return *good;
-  RenderSettings finest = reference_settings();
-  finest.step_voxels = std::min(lattice.truth_step(), finest.step_voxels);
-  return choice(lattice, finest, lattice.truth_error(), lattice.truth_error() <= e);
+  return good ? *good : finest(lattice, e);
 }
 
 Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const SearchProgress& progress, const DrawTimer& timer) {
@@ -78,7 +88,7 @@ Result<QualityChoice> settings_for_time(Lattice& lattice, double ms, const Searc
       if (!goes_on) break;
     }
   const std::size_t best = best_within(tried, ms);
-  QualityChoice chosen = choice(lattice, settings[best], tried[best].rmse, tried[best].ms <= ms);
+  QualityChoice chosen = choice_of(lattice, settings[best], tried[best].rmse, tried[best].ms <= ms);
   chosen.expected_ms = tried[best].ms;
   return chosen;
 }

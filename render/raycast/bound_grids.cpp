@@ -84,26 +84,31 @@ BrickRange range_of(const GridMirror& mirror) {
   return all.empty() ? BrickRange{0, 0} : all;
 }
 
-void add_uneven(std::vector<std::uint32_t>& constants, const TransferLut& lut) {
+std::uint32_t table_flags(const TransferLut& lut) { return (lut.has_points() ? 1u : 0u) | (lut.is_scaled() ? 2u : 0u); }
+
+void add_table_flags(std::vector<std::uint32_t>& constants, const TransferLut& lut) {
   constants.resize(11);
-  constants.push_back(lut.uneven());
+  constants.push_back(table_flags(lut));
 }
 
-void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t start) {
-  data.table_start = start;
-  data.table_last = lut.last();
-  data.table_lo = lut.lo;
-  data.table_per_value = lut.per_value;
+shared::TableData table_data(const TransferLut& lut, std::uint32_t start) {
+  const float first = lut.has_points() ? lut.values.front() : 0, last = lut.has_points() ? lut.values.back() : 1;
+  const float per_linear = lut.is_scaled() ? float(1 / lut.linear_below) : 0.0f;
+  return {start, lut.last(), std::uint32_t(lut.points.size()), per_linear, lut.lo, lut.per_unit, first, last};
 }
 
 Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, const ColorSource& next) {
   const bool same_grid = mirror == next_mirror && map.image;
-  if (same_grid && source.colors == next.colors && source.labels == next.labels) return false;
+  if (same_grid && source.colors == next.colors && source.labels == next.labels && source.linear_below == next.linear_below) return false;
   mirror = std::move(next_mirror);
   source = next;
-  lut = make_transfer_lut({next.colors, {}, {}, 0, next.labels}, range_of(*mirror));
-  for (std::size_t i = 0; i < lut.entries.size(); ++i)
-    lut.entries[i].a = next.labels && std::lround(lut.lo + (lut.per_value > 0 ? float(i) / lut.per_value : 0)) == 0 ? 0 : 1;
+  // alpha says where there is a colour: of labels everywhere but at 0
+  TransferTable table{next.colors, {}, {}, 0, next.labels, next.linear_below};
+  if (next.labels) table.extinctions = {{-0.5, 1}, {-0.5, 0}, {0.5, 0}, {0.5, 1}};
+  lut = make_transfer_lut(table, range_of(*mirror), 1);
+  if (!next.labels)
+    for (std::vector<glm::vec4>* looks : {&lut.entries, &lut.points})
+      for (glm::vec4& look : *looks) look.a = std::copysign(1.0f, look.a);
   if (!same_grid) {
     CATENA_TRY(map, make_word_map(device, *mirror, std::vector<std::uint8_t>(mirror->ranges.size())));
   }
@@ -112,7 +117,7 @@ Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const GridMir
 
 shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std::uint32_t start) {
   shared::GridData data = rays.grid(*colors.mirror, colors.source.grid->mapping());
-  set_table(data, colors.lut, start);
+  data.look = table_data(colors.lut, start);
   data.spread = colors.source.spread ? 0.5f : 0;
   return data;
 }

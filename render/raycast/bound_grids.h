@@ -60,9 +60,10 @@ shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std
 
 /// The least and the greatest value of a mirrored grid.
 BrickRange range_of(const GridMirror& mirror);
-/// To the constants of a pipeline with one table (shaders/lib/tables.glsl): whether it is an uneven one.
-void add_uneven(std::vector<std::uint32_t>& constants, const TransferLut& lut);
-/// Tells the shader where in the buffer of tables that of a grid begins.
-void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t start);
+/// The constant TABLES (shaders/lib/tables.glsl) of one table; of several, all bits. To the constants of a pipeline with one table.
+std::uint32_t table_flags(const TransferLut& lut);
+void add_table_flags(std::vector<std::uint32_t>& constants, const TransferLut& lut);
+/// Where in the buffer of tables one begins, and how it is read.
+shared::TableData table_data(const TransferLut& lut, std::uint32_t start);
 
 }  // namespace catena::render

@@ -112,6 +112,7 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
   m.offset_depth = float(dot(from_eye, forward) - reference_depth);
   m.scale = {float(1 / camera.half_width), float(1 / camera.half_height)};
   m.shift = {float(-camera.centre_x / camera.half_width), float(camera.centre_y / camera.half_height)};
+  m.pixel = {float(2 / camera.width), float(2 / camera.height)};
   m.depth_near = float(depth_near);
   m.depth_far = float(depth_far);
   m.orthographic = camera.orthographic;

@@ -1,9 +1,11 @@
 #include "render/raycast/packed_look.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "engine/base/clock.h"
+#include "engine/field/display_range.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -16,8 +18,35 @@ bool same_look(const VolumeItem& a, const VolumeItem& b) {
 
 ValueInterval active_values(const VolumeItem& item) {
   const double background = item.grid->background();
-  const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
+  const field::GridStats& stats = item.grid->stats();
+  ValueInterval values{std::min(stats.min, background), std::max(stats.max, background)};
+  // outliers look as the end of the display range does, unless the function has points among them
+  const DisplayRange& shown = display_range(*item.grid);
+  const auto changing = [&](double from, double to) { return active_interval(item.transfer, {from, to}, false); };
+  if (shown.below.count > 0) {
+    const ValueInterval part = changing(values.least, shown.lo);
+    values.least = part.least < part.greatest ? part.least : shown.lo;
+  }
+  if (shown.above.count > 0) {
+    const ValueInterval part = changing(shown.hi, values.greatest);
+    values.greatest = part.least < part.greatest ? part.greatest : shown.hi;
+  }
   return active_interval(item.transfer, values, item.shade);
+}
+
+constexpr double kMostChanged = 0.03;  // by rounding to codes (changed_by_codes)
+
+bool shows_values(const VolumeItem& item) {
+  struct Answer {
+    std::uint64_t version = 0;
+    TransferTable transfer;
+    bool shade = false, shows = false;
+  };
+  thread_local Answer last;
+  if (last.version == item.grid->version() && last.transfer == item.transfer && last.shade == item.shade) return last.shows;
+  const double changed = changed_by_codes(item.transfer, active_values(item), some_values(*item.grid), item.grid->length());
+  last = {item.grid->version(), item.transfer, item.shade, changed <= kMostChanged};
+  return last.shows;
 }
 
 }  // namespace
@@ -26,7 +55,7 @@ bool PackedLook::can_pack(const vk::Device& device, const field::ScalarGrid& gri
   return can_be_packed(device, grid) || can_be_packed_as_bricks(grid);
 }
 
-bool PackedLook::can_show(const VolumeItem& item) { return is_packed_whole(item.transfer, active_values(item)); }
+bool PackedLook::can_show(const VolumeItem& item) { return is_packed_whole(item.transfer, active_values(item)) && shows_values(item); }
 
 Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
   const std::int64_t start = now_ns();

@@ -8,8 +8,8 @@
 #include "render/mirror/gradient_volume.h"
 #include "render/mirror/packed_atlas.h"
 #include "render/mirror/packed_volume.h"
+#include "render/raycast/preintegrated.h"
 #include "render/raycast/render_settings.h"
-#include "render/raycast/transfer_tables.h"
 
 namespace catena::render {
 
@@ -18,7 +18,8 @@ class PackedLook {
   explicit PackedLook(vk::Device& device) : device_(&device) {}
   /// Whether the grid of a volume can be packed in one of the two ways.
   static bool can_pack(const vk::Device& device, const field::ScalarGrid& grid);
-  /// Whether 256 codes of the values take all that there is in the transfer function.
+  /// Whether 256 codes of the values take all that there is in the transfer function, and show the values that there are. Remembers the
+  /// last answer of the thread.
   static bool can_show(const VolumeItem& item);
   /// An error where it takes more than `settings.most_bytes`, or than `left` bytes beside what it has; nothing here counts then.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left);

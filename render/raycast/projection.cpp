@@ -44,17 +44,14 @@ Result<ProjectionRaycast> ProjectionRaycast::create(vk::Device& device) {
 }
 
 Outcome ProjectionRaycast::prepare(const VolumeItem& item, std::shared_ptr<const GridMirror> mirror) {
-  const TransferTable &have = item_.transfer, &next = item.transfer;
   const bool same_bounds = map_.image && mirror_ == mirror && item_.projection == item.projection;
-  const bool same =
-      same_bounds && have.colors == next.colors && have.extinctions == next.extinctions && have.opacity_unit == next.opacity_unit;
+  const bool same = same_bounds && item_.transfer == item.transfer;
   item_ = item;
   mirror_ = std::move(mirror);
   if (same) return Done{};
   const BrickRange range = range_of(*mirror_);
-  lut_ = make_transfer_lut(next, range);
-  const double unit = next.opacity_unit > 0 ? next.opacity_unit : item.grid->mapping().smallest_edge();
-  for (glm::vec4& entry : lut_.entries) entry.a = float(-std::expm1(-double(entry.a) * unit));
+  opacity_unit_ = item.transfer.opacity_unit > 0 ? item.transfer.opacity_unit : item.grid->mapping().smallest_edge();
+  lut_ = make_transfer_lut(item.transfer, range, opacity_unit_);
   const std::vector<glm::vec4> words = lut_.words();
   CATENA_TRY(table_, vk::upload_buffer(*device_, std::as_bytes(std::span(words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   if (same_bounds) return Done{};
@@ -71,14 +68,15 @@ Outcome ProjectionRaycast::record(vk::Commands& commands, const CameraRays& rays
   shared::GridData& grid = data.grids[0];
   grid = rays.grid(*mirror_, mapping);
   grid.clipped = item_.clipped;
-  set_table(grid, lut_, 0);
-  grid.factor_lo = bounds_.least;
-  grid.factor_per_gradient = (bounds_.greatest - bounds_.least) / kBoundCodes;
+  grid.look = table_data(lut_, 0);
+  grid.opacity = float(opacity_unit_);
+  grid.bound_lo = bounds_.least;
+  grid.bound_per_code = (bounds_.greatest - bounds_.least) / kBoundCodes;
   CATENA_CHECK(vk::write_uniform(*device_, uniform_, data));
 
   const BoundGrid bound{mirror_, &map_, false, false};
   const std::uint32_t kind = item_.projection == Projection::maximum ? 1 : item_.projection == Projection::minimum ? 2 : 3;
-  vk::Pipeline& pipeline = pipelines_[{grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind + 4 * lut_.uneven()}];
+  vk::Pipeline& pipeline = pipelines_[{grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind + 4 * table_flags(lut_)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kProjectionVertexShader;
@@ -86,7 +84,7 @@ Outcome ProjectionRaycast::record(vk::Commands& commands, const CameraRays& rays
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
     info.constants = {grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind};
-    add_uneven(info.constants, lut_);
+    add_table_flags(info.constants, lut_);
     info.colors = {kVolumeFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }

@@ -26,6 +26,7 @@ class ProjectionRaycast {
   std::shared_ptr<const GridMirror> mirror_;
   VolumeItem item_;
   TransferLut lut_;
+  double opacity_unit_ = 0;
   BrickRange bounds_;  ///< of signed values
   BrickMap map_;
   vk::Buffer table_, uniform_;

@@ -36,9 +36,10 @@ enum class TexelFormat { automatic, r16f, r32f };
 
 /// How one picture is drawn; the packet says what.
 struct RenderSettings {
-  double step_voxels = 1;                         ///< in smallest voxel edges
-  double termination = 1.0 / 512;                 ///< a ray ends when less than this gets through
-  TexelFormat texels = TexelFormat::automatic;    ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere
+  double step_voxels = 1;          ///< in smallest voxel edges
+  double termination = 1.0 / 512;  ///< a ray ends when less than this gets through
+  TexelFormat texels =
+      TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere; outliers: r32f
   MirrorLayout layout = MirrorLayout::automatic;  ///< how texels lie on the device
   bool skip = true;                               ///< leap over bricks that the transfer function leaves empty
   /// The picture target holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). What is opaque has 11 bits of mantissa.

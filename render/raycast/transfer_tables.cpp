@@ -1,19 +1,109 @@
 #include "render/raycast/transfer_tables.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/result.h"
+#include "engine/base/value_scale.h"
 
 namespace catena::render {
 
 namespace {
 
 constexpr std::uint32_t kEntries = 4096;
-/// Of labels, with extinctions (whose looks are numbered) and without.
-constexpr double kMostLooks = 7000, kMostLabelColors = 1 << 18;
-constexpr double kMissed = 0.1;  // of what samples may miss of a peak or a gap
+constexpr double kMostLooks = 7000;      // that are numbered, so that rays leap over plain parts
+constexpr double kMostLabels = 1 << 18;  // with an entry each
+/// Of an interval: how far from its ends rounding may put a value into the next one.
+constexpr double kRoundedPlace = 1.0 / 256;
+
+float nearest_below(double value) {
+  const auto f = float(value);
+  return double(f) > value ? std::nextafter(f, -HUGE_VALF) : f;
+}
+float nearest_above(double value) {
+  const auto f = float(value);
+  return double(f) < value ? std::nextafter(f, HUGE_VALF) : f;
+}
+
+/// The floats between which the function is linear at every float: its points, or their neighbours where they are no floats.
+std::vector<float> float_points(const TransferTable& table, double lo, double hi) {
+  std::vector<float> values;
+  for (const double value : points_between(table, lo, hi))
+    for (const float f : {nearest_below(value), nearest_above(value)}) values.push_back(f);
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+glm::vec4 look_of(const TransferTable& table, double value) {
+  glm::vec4 look;
+  for (int c = 0; c < 4; ++c) look[c] = float(table_value(table, value, c));
+  return look;
+}
+
+/// How many times the allowed error of frequent values rare ones may have.
+struct Allowance {
+  double sigma = 1, color = 1;
+};
+
+bool errs(const glm::vec4& exact, const glm::vec4& read, bool colors_alone, double length, const Allowance& allowed) {
+  const double depth = double(exact.a) * length, share = colors_alone ? 1 : std::min(1.0, depth);
+  if (std::fabs(double(exact.a) - read.a) * length > kTableError * allowed.sigma * (1 + depth)) return true;
+  for (int c = 0; c < 3; ++c)
+    if (std::fabs(double(exact[c]) - read[c]) * share > kTableError * allowed.color) return true;
+  return false;
+}
+
+/// The place of a value among the samples, in double precision.
+double place_of(const TransferLut& lut, double value) {
+  return std::clamp((scaled(value, lut.linear_below) - double(lut.lo)) * double(lut.per_unit), 0.0, double(lut.last()));
+}
+
+std::size_t interval_of(const TransferLut& lut, double place) {
+  return std::size_t(std::clamp(std::floor(place), 0.0, double(lut.last()) - 1));
+}
+
+/// Of each interval, by how many of the values lie in it.
+std::vector<Allowance> allowances(const TransferLut& lut, std::span<const float> values) {
+  constexpr double kMostSigma = 16, kMostColor = 4;
+  std::vector<Allowance> all(lut.last());
+  if (values.empty()) return all;
+  std::vector<std::uint32_t> counts(lut.last(), 1);
+  for (const float value : values)
+    if (std::isfinite(value)) ++counts[interval_of(lut, place_of(lut, value))];
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double rare = kRareShare * double(values.size()) / counts[i];
+    all[i] = {std::clamp(rare, 1.0, kMostSigma), std::clamp(rare, 1.0, kMostColor)};
+  }
+  return all;
+}
+
+/// Marks the intervals in which the samples err at a point.
+bool mark_intervals(TransferLut& lut, bool colors_alone, double length, std::span<const float> values) {
+  std::vector<std::uint8_t> marked(lut.last());
+  const std::vector<Allowance> allowed = allowances(lut, values);
+  for (std::size_t i = 0; i < lut.values.size(); ++i) {
+    const double place = place_of(lut, lut.values[i]);
+    const std::size_t cell = interval_of(lut, place);
+    const auto f = float(place - double(cell));
+    const glm::vec4 read = lut.entries[cell] * (1 - f) + lut.entries[cell + 1] * f;
+    if (!errs(lut.points[i], read, colors_alone, length, allowed[cell])) continue;
+    for (const double side : {-kRoundedPlace, kRoundedPlace}) marked[interval_of(lut, place + side)] = 1;
+  }
+  for (std::size_t i = 0; i < marked.size(); ++i)
+    if (marked[i] != 0) lut.entries[i].a = -lut.entries[i].a;
+  return std::ranges::find(marked, 1) != marked.end();
+}
+
+/// Counts what is visible and what is equal, among the points or the samples.
+void number_looks(TransferLut& lut) {
+  const std::vector<glm::vec4>& all = lut.has_points() ? lut.points : lut.entries;
+  lut.visible_before.resize(all.size() + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) lut.visible_before[i + 1] = lut.visible_before[i] + (all[i].a > 0);
+  lut.run.resize(all.size());
+  for (std::size_t i = 1; i < all.size(); ++i) lut.run[i] = lut.run[i - 1] + (all[i] != all[i - 1]);
+}
 
 }  // namespace
 
@@ -21,9 +111,6 @@ double table_value(const TransferTable& table, double value, int channel) {
   return channel == 3 ? piecewise(table.extinctions, value, 1) : piecewise(table.colors, value, std::size_t(channel) + 1);
 }
 
-namespace {
-
-/// The values of the function's points from lo to hi, and these two; where the function leaps, the one just before, too.
 std::vector<double> points_between(const TransferTable& table, double lo, double hi) {
   std::vector<double> values{lo, hi};
   const auto add = [&](const auto& points) {
@@ -41,32 +128,7 @@ std::vector<double> points_between(const TransferTable& table, double lo, double
   return values;
 }
 
-}  // namespace
-
-bool is_sampled(const TransferTable& table, double lo, double hi, std::size_t samples) {
-  const double width = (hi - lo) / double(samples - 1);
-  const auto takes = [&](const auto& points, std::size_t i, int channel, std::size_t component) {
-    const double own = points[i][component], before = std::floor((points[i][0] - lo) / width) - 1;
-    double least = HUGE_VAL, greatest = -HUGE_VAL;
-    for (int k = 0; k < 4; ++k) {
-      const double sample = table_value(table, std::clamp(lo + (before + k) * width, lo, hi), channel);
-      least = std::min(least, sample);
-      greatest = std::max(greatest, sample);
-    }
-    const double beside = std::max(points[i > 0 ? i - 1 : i][component], points[std::min(i + 1, points.size() - 1)][component]);
-    const double near = kMissed * std::max(own, beside);
-    return own >= least - near && own <= greatest + near;
-  };
-  const auto takes_all = [&](const auto& points, int first_channel) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      for (std::size_t c = 1; c < points[i].size() && points[i][0] > lo && points[i][0] < hi; ++c)
-        if (!takes(points, i, first_channel + int(c) - 1, c)) return false;
-    return true;
-  };
-  return takes_all(table.colors, 0) && takes_all(table.extinctions, 3);
-}
-
-TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range) {
+TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range, double length, std::span<const float> values) {
   // the values where anything changes
   double lo = range.least, hi = range.greatest, first = HUGE_VAL, last = -HUGE_VAL;
   for (const auto& p : table.colors) first = std::min(first, p[0]), last = std::max(last, p[0]);
@@ -77,46 +139,62 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   }
   std::uint32_t count = kEntries;
   const double first_label = std::floor(lo + 0.5), labels = std::ceil(hi - 0.5) - first_label + 1;
-  if (table.labels && labels >= 2 && labels <= (table.extinctions.empty() ? kMostLabelColors : kMostLooks)) {
+  const bool each_label = table.labels && labels >= 2 && labels <= kMostLabels;
+  if (each_label) {
     count = std::uint32_t(labels);
     lo = first_label;
     hi = first_label + labels - 1;
   }
   TransferLut lut;
-  lut.lo = float(lo);
-  lut.per_value = hi > lo ? float((count - 1) / (hi - lo)) : 0;
-  if (!std::isfinite(lut.per_value)) lut.per_value = 0;
-  std::vector<double> points;
-  if (count == kEntries && hi > lo && !is_sampled(table, lo, hi, kEntries)) points = points_between(table, lo, hi);
-  if (!points.empty() && points.size() <= kEntries) {
-    lut.per_value = -1;
-    lut.values.assign(points.begin(), points.end());
-  } else {
-    points.resize(lut.per_value > 0 ? count : 2);
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = lut.per_value > 0 ? lo + (hi - lo) * double(i) / (count - 1) : lo;
+  lut.linear_below = each_label ? 0 : table.linear_below;
+  // of one sign the scale is the same but for a constant, whose digits a float would lack for the rest
+  if (lut.linear_below > 0 && (lo > 0 || hi < 0)) lut.linear_below = std::max(lut.linear_below, std::min(std::fabs(lo), std::fabs(hi)));
+  // over less than a factor of about 1.6 a logarithm in floats tells fewer values apart than the values themselves
+  if (lut.is_scaled() && scaled(hi, lut.linear_below) - scaled(lo, lut.linear_below) < 0.5) lut.linear_below = 0;
+  const double from = scaled(lo, lut.linear_below), to = scaled(hi, lut.linear_below);
+  lut.lo = float(from);
+  lut.per_unit = to > from ? float((count - 1) / (to - from)) : 0;
+  if (!std::isfinite(lut.per_unit)) lut.per_unit = 0;
+  if (!(lut.per_unit > 0)) count = 2;
+  for (std::uint32_t i = 0; i < count; ++i)
+    lut.entries.push_back(look_of(table, lut.per_unit > 0 ? unscaled(double(lut.lo) + i / double(lut.per_unit), lut.linear_below) : lo));
+  if (!each_label && hi > lo) {
+    lut.values = float_points(table, lo, hi);
+    for (const float value : lut.values) lut.points.push_back(look_of(table, value));
+    if (!mark_intervals(lut, table.extinctions.empty(), length, values)) {
+      lut.values.clear();
+      lut.points.clear();
+    }
   }
-  lut.entries.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (int c = 0; c < 4; ++c) lut.entries[i][c] = float(table_value(table, points[i], c));
-  lut.visible_before.resize(lut.entries.size() + 1);
-  for (std::size_t i = 0; i < lut.entries.size(); ++i) lut.visible_before[i + 1] = lut.visible_before[i] + (lut.entries[i].a > 0);
-  lut.run.resize(lut.entries.size());
-  for (std::size_t i = 1; i < lut.entries.size(); ++i) lut.run[i] = std::uint16_t(lut.run[i - 1] + (lut.entries[i] != lut.entries[i - 1]));
+  number_looks(lut);
   return lut;
+}
+
+TransferLut make_factor_lut(const std::vector<std::array<double, 2>>& factors) {
+  CATENA_ASSERT(!factors.empty());
+  TransferTable table;
+  for (const auto& [gradient, factor] : factors) table.colors.push_back({gradient, factor, 0, 0});
+  return make_transfer_lut(table, {float(factors.front()[0]), float(factors.back()[0])}, 0);
 }
 
 std::vector<glm::vec4> TransferLut::words() const {
   std::vector<glm::vec4> all = entries;
-  all.resize(entries.size() + (values.size() + 3) / 4);
-  for (std::size_t i = 0; i < values.size(); ++i) all[entries.size() + i / 4][int(i % 4)] = values[i];
+  all.insert(all.end(), points.begin(), points.end());
+  const std::size_t start = all.size();
+  all.resize(start + (values.size() + 3) / 4);
+  for (std::size_t i = 0; i < values.size(); ++i) all[start + i / 4][int(i % 4)] = values[i];
   return all;
 }
 
+float TransferLut::sample_index(float value) const {
+  return std::clamp((float(scaled(value, linear_below)) - lo) * per_unit, 0.0f, float(last()));
+}
+
 float TransferLut::index(float value) const {
-  if (!uneven()) return std::clamp((value - lo) * per_value, 0.0f, float(last()));
+  if (!has_points()) return sample_index(value);
   const auto after = std::clamp(std::ranges::upper_bound(values, value), values.begin() + 1, values.end() - 1);
   const float a = after[-1], b = *after;
-  return float(after - values.begin() - 1) + (b > a ? std::clamp((value - a) / (b - a), 0.0f, 1.0f) : 1.0f);
+  return float(after - values.begin() - 1) + std::clamp((value - a) / (b - a), 0.0f, 1.0f);
 }
 
 bool TransferLut::visible(const BrickRange& range) const {
@@ -126,102 +204,16 @@ bool TransferLut::visible(const BrickRange& range) const {
 
 std::uint16_t TransferLut::look(const BrickRange& range) const {
   if (!visible(range)) return 1;
-  const float least = index(range.least), greatest = index(range.greatest);
-  const auto from = std::size_t(std::floor(least)), to = std::size_t(std::ceil(greatest));
+  if (double(run.size()) > kMostLooks) return 0;
+  const auto from = std::size_t(std::floor(index(range.least))), to = std::size_t(std::ceil(index(range.greatest)));
   if (run[from] == run[to]) return std::uint16_t(2 + run[from]);
   // one value between two different entries
   constexpr float parts = 8;
   static_assert(2 + kMostLooks + parts * kMostLooks < 65536 && kEntries < kMostLooks);
-  return range.least == range.greatest ? std::uint16_t(2 + entries.size() + std::size_t(std::lround(parts * least))) : 0;
-}
-
-FactorLut make_factor_lut(const std::vector<std::array<double, 2>>& factors) {
-  constexpr std::size_t entries = 1024;
-  CATENA_ASSERT(!factors.empty());
-  const double lo = factors.front()[0], hi = factors.back()[0];
-  FactorLut lut;
-  lut.lo = float(lo);
-  lut.per_gradient = hi > lo ? float((entries - 1) / (hi - lo)) : 0;
-  for (std::size_t i = 0; i < entries; ++i)
-    lut.entries.emplace_back(float(piecewise(factors, lo + (hi - lo) * double(i) / (entries - 1), 1)), 0, 0, 0);
-  return lut;
-}
-
-namespace {
-
-constexpr int kCodes = 256, kFine = 16;  // samples a code
-constexpr int kSamples = (kCodes - 1) * kFine + 1;
-
-/// sigma, and sigma times red, green, blue.
-using Look = std::array<double, 4>;
-
-Look look_at(const TransferTable& table, double value) {
-  const double sigma = table_value(table, value, 3);
-  if (!(sigma > 0)) return {};
-  return {sigma, sigma * table_value(table, value, 0), sigma * table_value(table, value, 1), sigma * table_value(table, value, 2)};
-}
-
-std::uint32_t quantised(double share, double greatest) { return std::uint32_t(std::lround(std::clamp(share, 0.0, 1.0) * greatest)); }
-
-std::array<std::uint32_t, 2> entry(const Look& mean) {
-  if (!(mean[0] > 0)) return {};
-  return {std::bit_cast<std::uint32_t>(float(mean[0])),
-          quantised(mean[1] / mean[0], 2047) | quantised(mean[2] / mean[0], 2047) << 11 | quantised(mean[3] / mean[0], 1023) << 22};
-}
-
-}  // namespace
-
-ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded) {
-  if (!(values.least < values.greatest)) return values;
-  const std::vector<double> points = points_between(table, values.least, values.greatest);
-  std::vector<Look> looks;
-  for (const double value : points) looks.push_back(look_at(table, value));
-  std::size_t first = 0, final = points.size() - 1;
-  const auto trims = [&](const Look& end) { return !shaded || !(end[0] > 0); };
-  while (trims(looks.front()) && first < final && looks[first + 1] == looks.front()) ++first;
-  while (trims(looks.back()) && final > first && looks[final - 1] == looks.back()) --final;
-  return {points[first], points[final]};
-}
-
-bool is_packed_whole(const TransferTable& table, const ValueInterval& active) {
-  return !(active.least < active.greatest) || is_sampled(table, active.least, active.greatest, kSamples);
-}
-
-PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded) {
-  // running integrals by the trapezium rule
-  std::vector<Look> looks(kSamples), integral(kSamples);
-  PreintegratedTable out;
-  for (int k = 0; k < kSamples; ++k) {
-    looks[k] = look_at(table, lo + per_code * k / kFine);
-    out.greatest_sigma = std::max(out.greatest_sigma, looks[k][0]);
-    if (k > 0)
-      for (int c = 0; c < 4; ++c) integral[k][c] = integral[k - 1][c] + 0.5 * (looks[k - 1][c] + looks[k][c]);
-  }
-  const auto mean = [&](int a, int b) {
-    Look m;
-    for (int c = 0; c < 4; ++c) m[c] = std::max(0.0, (integral[b][c] - integral[a][c]) / (b - a));
-    return m;
-  };
-
-  // runs of codes between which nothing changes
-  std::array<bool, kCodes> alike{};  // code and the next
-  for (int a = 0; a + 1 < kCodes; ++a) {
-    alike[a] = !shaded || !(looks[a * kFine][0] > 0);
-    for (int k = a * kFine; k < (a + 1) * kFine && alike[a]; ++k) alike[a] = looks[k] == looks[k + 1];
-    out.looks.look[a + 1] = std::uint16_t(out.looks.look[a] + (alike[a] ? 0 : 1));
-  }
-
-  out.entries.resize(std::size_t(kCodes) * kCodes);
-  for (int a = 0; a < kCodes; ++a) {
-    out.looks.invisible[a] = !(looks[a * kFine][0] > 0);
-    out.entries[std::size_t(a) * kCodes + a] = entry(looks[a * kFine]);
-    for (int b = a + 1; b < kCodes; ++b) {
-      const bool same = out.looks.look[a] == out.looks.look[b];
-      out.entries[std::size_t(a) * kCodes + b] = out.entries[std::size_t(b) * kCodes + a] =
-          entry(same ? looks[a * kFine] : mean(a * kFine, b * kFine));
-    }
-  }
-  return out;
+  const float place = sample_index(range.least);
+  const bool marked = std::signbit(entries[std::min(std::size_t(place), std::size_t(last()) - 1)].a);
+  if (range.least != range.greatest || marked) return 0;
+  return std::uint16_t(2 + run.size() + std::size_t(std::lround(parts * place)));
 }
 
 }  // namespace catena::render

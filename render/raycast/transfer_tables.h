@@ -1,30 +1,34 @@
-/// Transfer functions as tables for shaders: of values for the exact raycast, of pairs of codes for the fast one. Plain CPU code.
+/// Transfer functions as tables for the exact raycast and for colours by another field. Plain CPU code.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "render/frame/frame_packet.h"
 #include "render/mirror/grid_mirror.h"
-#include "render/mirror/voxel_block.h"
 
 namespace catena::render {
 
-/// A transfer function as the shader reads it: of labels one entry for each whole number, where they are not too many; else 4096 samples
-/// (r, g, b, sigma) over the values that it and the grid share, read with linear interpolation; beyond its ends the end values hold. Points
-/// of the table are kept to a sample's width. Where samples would miss what is narrower (is_sampled), the entries are the function's own
-/// points, and exact.
+/// A transfer function as the shader reads it (shaders/lib/tables.glsl): 4096 samples (r, g, b, sigma), evenly spaced on the function's
+/// scale over the values that it and the grid share, read with linear interpolation; beyond the ends the end values hold. Of labels one
+/// entry for each whole number, where they are not too many.
+/// Where interpolation between two samples errs by more than is allowed at a point of the function, the interval is marked by the sign of
+/// its first sample's sigma, and values in it are looked up among the function's own points: exact at every float.
 struct TransferLut {
-  std::vector<glm::vec4> entries;
-  std::vector<float> values;                  ///< of the entries, rising; empty: they are evenly spaced
-  float lo = 0, per_value = 0;                ///< index = (value - lo) * per_value, clamped to 0..last; per_value < 0: by `values`
-  std::vector<std::uint32_t> visible_before;  ///< how many entries before i have sigma > 0
-  std::vector<std::uint16_t> run;             ///< equal for neighbours that are equal throughout
+  std::vector<glm::vec4> entries;             ///< the samples; sigma with a minus (or -0): the interval after it is marked
+  std::vector<glm::vec4> points;              ///< the function's own; empty: no interval is marked
+  std::vector<float> values;                  ///< of the points, rising
+  float lo = 0, per_unit = 0;                 ///< index = (s(value) - lo) * per_unit, clamped to 0..last
+  double linear_below = 0;                    ///< of the scale s (engine/base/value_scale.h)
+  std::vector<std::uint32_t> visible_before;  ///< how many points (samples, where there are none) before i have sigma > 0
+  std::vector<std::uint32_t> run;             ///< equal for neighbours that are equal throughout
 
-  /// What the shader gets: the entries, then their own values, four in a word.
+  /// What the shader gets: samples, points, values four in a word.
   std::vector<glm::vec4> words() const;
-  bool uneven() const { return !values.empty(); }
+  bool has_points() const { return !points.empty(); }
+  bool is_scaled() const { return linear_below > 0; }
   std::uint32_t last() const { return std::uint32_t(entries.size()) - 1; }
   /// Whether some value of the range has sigma > 0.
   bool visible(const BrickRange& range) const;
@@ -33,44 +37,28 @@ struct TransferLut {
   std::uint16_t look(const BrickRange& range) const;
 
  private:
-  float index(float value) const;
+  float sample_index(float value) const;
+  float index(float value) const;  ///< among the points, where there are some
 };
 
-/// Whether even samples, so many from lo to hi and read with linear interpolation, take every peak and every gap of the function: near each
-/// of its points, a sample's width either side, they come within a tenth of what it is there and at the points beside.
-bool is_sampled(const TransferTable& table, double lo, double hi, std::size_t samples);
+/// The error that is allowed: of sigma as a share of sigma + 1 / length, `length` being that of a ray's way; of a colour's component, times
+/// the share of light that the way takes where that is less than all. The picture then errs by less than kTableError * 255 levels even
+/// where all of a volume has the value that errs most. Where few of the values lie in an interval, their share of a ray's way is small, and
+/// so is what their error makes of it: sigma may err by kTableError * kRareShare / share there, up to 16 times, colours up to 4 times
+/// kTableError.
+inline constexpr double kTableError = 1.0 / 1024, kRareShare = 0.02;
 
-/// `range`: of the grid's values.
-TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range);
+/// `range`: of the grid's values; `values`: some that stand for all (empty: any value may be that of all). `length`: of the grid's domain,
+/// world units; without extinctions it does not count.
+TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range, double length, std::span<const float> values = {});
 
-/// 1024 samples of a factor over its points, in the first component. index = (gradient - lo) * per_gradient, clamped.
-struct FactorLut {
-  std::vector<glm::vec4> entries;
-  float lo = 0, per_gradient = 0;
-};
-FactorLut make_factor_lut(const std::vector<std::array<double, 2>>& factors);
+/// A factor by the length of the gradient, in the first component.
+TransferLut make_factor_lut(const std::vector<std::array<double, 2>>& factors);
 
 /// Piecewise linear with held ends; points in rising order of value. `channel` of 1, 2, ..
 double table_value(const TransferTable& table, double value, int channel);  ///< 0..2: r, g, b; 3: sigma
 
-/// Where the picture depends on the value: the transfer function is one colour and density (or nothing) below and above.
-/// Within `values`. `shaded`: what is visible depends on the gradient too, so that only what is invisible
-/// is left out, and no two codes look alike unless they are.
-ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded);
-
-/// A transfer function, integrated beforehand over pairs of codes of a packed volume (a at one end of a segment, b at the other):
-///   sigma(a, b) = mean over values from a to b of sigma(v)      colour(a, b) = mean of sigma(v) colour(v) / sigma(a, b)
-/// so that a segment of length L has the optical depth sigma L: the table does not depend on the step. Engel et al. 2001, without
-/// the attenuation within a segment. 256 x 256 entries: sigma as float bits | red 11 bits, green 11, blue 10.
-struct PreintegratedTable {
-  std::vector<std::array<std::uint32_t, 2>> entries;  ///< a + 256 b
-  CodeLooks looks;
-  double greatest_sigma = 0;
-};
-
-/// Whether that takes all that there is in the function where codes lie from one end to the other of `active`.
-bool is_packed_whole(const TransferTable& table, const ValueInterval& active);
-/// `lo`, `per_code`: of the packed volume.
-PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded);
+/// The values of the function's points from lo to hi, and these two; where the function leaps, the one just before, too. Rising.
+std::vector<double> points_between(const TransferTable& table, double lo, double hi);
 
 }  // namespace catena::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/mirror/voxel_block.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -38,7 +39,8 @@ constexpr std::uint32_t kChanged = kLayers + 2 * MAX_LAYERS;  // as in still_til
 constexpr double kSkipBelow = 0.95;
 
 bool same(const TransferTable& a, const TransferTable& b) {
-  return a.colors == b.colors && a.extinctions == b.extinctions && a.gradient_factors == b.gradient_factors && a.labels == b.labels;
+  return a.colors == b.colors && a.extinctions == b.extinctions && a.gradient_factors == b.gradient_factors && a.labels == b.labels &&
+         a.linear_below == b.linear_below;
 }
 
 /// The colour and sigma of a volume follow from its value alone.
@@ -75,7 +77,7 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
                     : cubic ? vk::Spirv(kVolumeBlendCubicShader)
                                       : vk::Spirv(kVolumeBlendShader);
     info.constants = {kind.flags,       kind.opaque, kind.volumes, kind.surfaces, kind.layers,     kind.modes,
-                      kind.color_grids, kind.jitter, kind.colors,  kind.fog,      kind.half_depth, kind.uneven};
+                      kind.color_grids, kind.jitter, kind.colors,  kind.fog,      kind.half_depth, kind.tables};
   }
   CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   return &pipeline;
@@ -88,8 +90,8 @@ Result<bool> VolumeRaycast::update_volume(Volume& volume, const Mirrored<VolumeI
   volume.item = *next.item;
   volume.mirror = next.mirror;
   if (!fresh) return false;
-  volume.lut = make_transfer_lut(next.item->transfer, range_of(*next.mirror));
-  volume.factors = next.item->transfer.gradient_factors.empty() ? FactorLut{} : make_factor_lut(next.item->transfer.gradient_factors);
+  volume.lut = make_transfer_lut(next.item->transfer, range_of(*next.mirror), next.item->grid->length(), some_values(*next.item->grid));
+  volume.factors = next.item->transfer.gradient_factors.empty() ? TransferLut{} : make_factor_lut(next.item->transfer.gradient_factors);
   CATENA_TRY(volume.map, make_leap_map(*device_, *next.mirror, [&](const BrickRange& r) -> std::uint16_t {
                return plain ? volume.lut.look(r) : volume.lut.visible(r) ? 0 : 1;
              }));
@@ -125,7 +127,7 @@ Outcome VolumeRaycast::upload_tables() {
   };
   for (Volume& volume : volumes_) {
     volume.table_start = append(volume.lut.words());
-    volume.factor_start = append(volume.factors.entries);
+    volume.factor_start = append(volume.factors.words());
   }
   for (Colors& colors : colors_) colors.table_start = append(colors.grid.lut.words());
   if (entries.empty()) entries.resize(2);
@@ -158,13 +160,8 @@ shared::GridData VolumeRaycast::volume_data(const CameraRays& rays, const Volume
   shared::GridData grid = rays.grid(*volume.mirror, volume.item.grid->mapping());
   grid.id = volume.item.id;
   grid.clipped = volume.item.clipped;
-  set_table(grid, volume.lut, volume.table_start);
-  if (!volume.factors.entries.empty()) {
-    grid.factor_start = volume.factor_start;
-    grid.factor_last = std::uint32_t(volume.factors.entries.size()) - 1;
-    grid.factor_lo = volume.factors.lo;
-    grid.factor_per_gradient = volume.factors.per_gradient;
-  }
+  grid.look = table_data(volume.lut, volume.table_start);
+  if (!volume.factors.entries.empty()) grid.factors = table_data(volume.factors, volume.factor_start);
   return grid;
 }
 
@@ -202,7 +199,7 @@ VolumeRaycast::Ready VolumeRaycast::ready(const CameraRays& rays, const RaySetti
   for (const Volume& volume : volumes_) {
     data.grids[bound.size()] = volume_data(rays, volume);
     if (!volume.factors.entries.empty()) kind.modes |= 1u << (2 * bound.size());
-    kind.uneven |= volume.lut.uneven();
+    kind.tables |= table_flags(volume.lut) | table_flags(volume.factors);
     const double own = volume.item.grid->mapping().smallest_edge();
     edge = edge > 0 ? std::min(edge, own) : own;
     const bool skips = settings.skip && double(volume.map.active) < kSkipBelow * double(volume.map.total);
@@ -216,7 +213,7 @@ VolumeRaycast::Ready VolumeRaycast::ready(const CameraRays& rays, const RaySetti
     kind.modes |= 2u << (2 * colors.owner);
     kind.color_grids |= std::uint32_t(bound.size()) << (4 * colors.owner);
     data.grids[bound.size()] = color_data(rays, colors.grid, colors.table_start);
-    kind.uneven |= colors.grid.lut.uneven();
+    kind.tables |= table_flags(colors.grid.lut);
     bound.push_back(colors.grid.bound());
   }
   data.step_world = float(settings.step_voxels * edge);

@@ -44,7 +44,7 @@ class VolumeRaycast {
     std::shared_ptr<const GridMirror> mirror;
     VolumeItem item;
     TransferLut lut;
-    FactorLut factors;
+    TransferLut factors;  ///< without entries: 1 everywhere
     BrickMap map;
     std::uint32_t table_start = 0, factor_start = 0;
   };
@@ -60,7 +60,7 @@ class VolumeRaycast {
   /// What a pipeline is made for.
   struct Kind {
     std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0,
-                  uneven = 0;
+                  tables = 0;
     bool tiles = false;  ///< only those that have changed
     bool half_depth = false;
     auto operator<=>(const Kind&) const = default;

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <thread>
+#include <vector>
 
+#include "engine/base/threads.h"
 #include "render/vk/instance.h"
 #include "render/vk/stopwatch.h"
 
@@ -138,6 +142,32 @@ Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
   return devices;
 }
 
+/// lavapipe starts a thread for its queue and one a core for drawing when the device is made. Where one that draws cannot be started it
+/// waits for it for ever; so as many are started here, at once, and ended. It does without its other threads, for compute shaders and for
+/// its cache (Mesa 22.3: each thread refused in turn).
+Outcome driver_threads(const std::string& name) {
+  constexpr std::size_t kMostCores = 32, kQueue = 1;
+  const char* stated = std::getenv("LP_NUM_THREADS");
+  const std::size_t cores = std::min<std::size_t>(kMostCores, std::max(1u, std::thread::hardware_concurrency()));
+  const long wanted = stated != nullptr ? std::strtol(stated, nullptr, 10) : -1;
+  const std::size_t count = kQueue + (wanted >= 0 ? std::min<std::size_t>(kMostCores, static_cast<std::size_t>(wanted)) : cores);
+  std::atomic<bool> end{false};
+  std::vector<std::thread> threads;
+  threads.reserve(count);
+  Outcome done = Done{};
+  while (done && threads.size() < count) {
+    auto started = start_thread(fmt::format("{} needs {} threads", name, count), [&] { end.wait(false); });
+    if (started)
+      threads.push_back(std::move(*started));
+    else
+      done = started.error();
+  }
+  end = true;
+  end.notify_all();
+  for (std::thread& thread : threads) thread.join();
+  return done;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
@@ -151,6 +181,7 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
     CATENA_CHECK(self->choose_physical(!options.choose.empty() ? options.choose : environment ? environment : ""));
   }
   self->describe_physical();
+  if (self->info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU) CATENA_CHECK(driver_threads(self->info_.name));
   CATENA_CHECK(self->create_device());
   self->info_.memory_budget = options.memory_budget_bytes > 0 ? options.memory_budget_bytes : self->default_budget();
   self->fail_ = options.fail;

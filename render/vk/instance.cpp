@@ -1,8 +1,13 @@
 #include "render/vk/instance.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+
+#include "engine/base/machine_failure.h"
 
 namespace catena::render::vk {
 
@@ -51,7 +56,14 @@ const char* result_name(VkResult result) {
   }
 }
 
-Error vulkan_error(VkResult result, const std::string& what) { return Error{"Vulkan could not " + what + ": " + result_name(result)}; }
+Error vulkan_error(VkResult result, const std::string& what) {
+  Error error{"Vulkan could not " + what + ": " + result_name(result)};
+  // drivers and their libraries that get no memory are not told apart
+  const bool may_lack_memory =
+      result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_INITIALIZATION_FAILED;
+  if (may_lack_memory && limit_in_force(RLIMIT_AS)) error.message += " (" + cause_of(ENOMEM) + ")";
+  return error;
+}
 
 namespace {
 

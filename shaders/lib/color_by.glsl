@@ -2,11 +2,10 @@
 
 // Alpha: 0 where the value has no colour, as what is no label; else 1.
 vec4 table_color(int j, float value) {
-  float x = table_place(j, value);
-  x = mix(x, floor(x + 0.5), frame.grids[j].nearest);
-  const uint cell = min(uint(x), frame.grids[j].table_last - 1u);
-  const uint at = frame.grids[j].table_start + cell;
-  return mix(table[at], table[at + 1u], x - float(cell));
+  uint at;
+  float way;
+  find_place(frame.grids[j].look, value, at, way);
+  return entry_between(at, way);
 }
 
 // The colour of the nearest corner of the cell that has one.

@@ -2,7 +2,7 @@
 // In a trilinear cell the value along a ray is a cubic: its greatest value lies at an end of the segment or at a root of the derivative.
 // In a cubic cell it is of ninth degree: a cubic through each four of ten places says where to look, and the cell itself is asked there.
 // Bricks of which no value can be better than the best so far are passed over: bits 24..31 of a brick's word are 0 where it has no
-// valid cell, else 1 + n, and no value in it is better than factor_lo + n factor_per_gradient. A minimum is the maximum of -value.
+// valid cell, else 1 + n, and no value in it is better than bound_lo + n bound_per_code. A minimum is the maximum of -value.
 float signed_value(float v) { return KIND == 2u ? -v : v; }
 
 float in_cell(vec4 lo, vec4 hi, vec3 place) {
@@ -59,7 +59,7 @@ float extreme(LocalRay ray, vec2 interval) {
   while (!done && t < interval.y) {
     const ivec3 brick = cell >> 3;
     const uint code = brick_word(0, brick) >> 24;
-    const bool pass = code == 0u || frame.grids[0].factor_lo + float(code - 1u) * frame.grids[0].factor_per_gradient <= best;
+    const bool pass = code == 0u || frame.grids[0].bound_lo + float(code - 1u) * frame.grids[0].bound_per_code <= best;
     const ivec3 lo = pass ? brick * BRICK : cell, hi = lo + (pass ? BRICK : 1);
     const vec3 leave = (mix(vec3(lo), vec3(hi), forward) - ray.origin) * inverse;
     const float out_at = min(min(leave.x, leave.y), leave.z);

@@ -28,21 +28,20 @@ bool has_factor(int i) { return (GRID_MODES >> (2 * i) & 1u) != 0u; }
 bool has_other_color(int i) { return (GRID_MODES >> (2 * i) & 2u) != 0u; }
 
 vec4 transfer(int i, float value) {
-  const float x = table_place(i, value);
-  const uint cell = min(uint(x), frame.grids[i].table_last - 1u);
-  const uint at = frame.grids[i].table_start + cell;
-  const float f = x - float(cell);
-  const float sigma = mix(table[at].a, table[at + 1u].a, f);
+  uint at;
+  float way;
+  find_place(frame.grids[i].look, value, at, way);
+  const float sigma = mix(entry_sigma(at), entry_sigma(at + 1u), way);
   if (sigma == 0.0) return vec4(0.0);
-  return vec4(mix(table[at].rgb, table[at + 1u].rgb, f), sigma);
+  return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), sigma);
 }
 
 // By the length of the gradient, field units per world unit.
 float gradient_factor(int i, float gradient) {
-  const float x = clamp((gradient - frame.grids[i].factor_lo) * frame.grids[i].factor_per_gradient, 0.0, float(frame.grids[i].factor_last));
-  const uint cell = min(uint(x), frame.grids[i].factor_last - 1u);
-  const uint at = frame.grids[i].factor_start + cell;
-  return mix(table[at].r, table[at + 1u].r, x - float(cell));
+  uint at;
+  float way;
+  find_place(frame.grids[i].factors, gradient, at, way);
+  return mix(table[at].r, table[at + 1u].r, way);
 }
 
 #if GRID_COUNT > 1

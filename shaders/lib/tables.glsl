@@ -1,23 +1,44 @@
-// Transfer functions: r, g, b, sigma (per world unit), or in the first component a factor; piecewise linear.
+// Transfer functions: r, g, b, sigma (per world unit), or in the first component a factor; piecewise linear. Samples, even on the table's
+// scale; after them the function's own points, and the points' values four in a word (render/raycast/transfer_tables.h). Where interpolation
+// between two samples would err the first one's sigma has a minus, and the points count.
 layout(scalar, binding = 1) readonly buffer Tables { vec4 table[]; };
 
-layout(constant_id = 11) const uint UNEVEN = 0;  // there is a table whose entries lie at values of their own, which follow them
+layout(constant_id = 11) const uint TABLES = 0;  // 1: there are points, 2: there are scales that are not linear
 
-float own_value(int i, uint entry) { return table[frame.grids[i].table_start + frame.grids[i].table_last + 1u + entry / 4u][entry % 4u]; }
+float point_value(TableData of, uint point) { return table[of.start + of.last + 1u + of.points + point / 4u][point % 4u]; }
 
-// The value's place in the table of grid i: the entry, and the way to the next one.
-float table_place(int i, float value) {
-  if (UNEVEN != 0u && frame.grids[i].table_per_value < 0.0) {
-    uint before = 0u, after = frame.grids[i].table_last;
+// The place on the table's scale.
+float scaled(TableData of, float value) {
+  const float ratio = abs(value) * of.per_linear;
+  const float place = sign(value) * (min(ratio, 1.0) + log(max(ratio, 1.0)));
+  return of.per_linear > 0.0 ? place : value;
+}
+
+// The entry before the value, and the way to the next one.
+void find_place(TableData of, float value, out uint at, out float way) {
+  const float place = (TABLES & 2u) != 0u ? scaled(of, value) : value;
+  const float x = clamp((place - of.lo) * of.per_unit, 0.0, float(of.last));
+  const uint cell = min(uint(x), of.last - 1u);
+  at = of.start + cell;
+  way = x - float(cell);
+  if ((TABLES & 1u) != 0u) {
+    const bool marked = floatBitsToUint(table[at].a) >> 31 != 0u;
+    uint before = 0u, after = marked ? of.points - 1u : 1u;
+    float a = of.first_value, b = of.last_value;
     while (after - before > 1u) {
       const uint middle = (before + after) / 2u;
-      if (own_value(i, middle) <= value)
-        before = middle;
-      else
-        after = middle;
+      const float at_middle = point_value(of, middle);
+      const bool above = at_middle <= value;
+      before = above ? middle : before;
+      after = above ? after : middle;
+      a = above ? at_middle : a;
+      b = above ? b : at_middle;
     }
-    const float a = own_value(i, before), b = own_value(i, after);
-    return float(before) + (b > a ? clamp((value - a) / (b - a), 0.0, 1.0) : 1.0);
+    at = marked ? of.start + of.last + 1u + before : at;
+    way = marked ? clamp((value - a) / (b - a), 0.0, 1.0) : way;
   }
-  return clamp((value - frame.grids[i].table_lo) * frame.grids[i].table_per_value, 0.0, float(frame.grids[i].table_last));
 }
+
+// Without the mark.
+float entry_sigma(uint at) { return (TABLES & 1u) != 0u ? abs(table[at].a) : table[at].a; }
+vec4 entry_between(uint at, float way) { return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), mix(entry_sigma(at), entry_sigma(at + 1u), way)); }

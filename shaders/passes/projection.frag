@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// One value a ray: the greatest or least that it meets, exactly, or the mean at the middles of its segments. The table holds opacities.
+// One value a ray: the greatest or least that it meets, exactly, or the mean at the middles of its segments.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT 1
 #include "shaders/lib/grids.glsl"
@@ -25,10 +25,11 @@ void main() {
   if (interval.x < interval.y) value = KIND == 3u ? average(ray, interval, frame.step_world / length(world_direction(q))) : extreme(ray, interval);
   out_color = vec4(0.0);
   if (value < NO_DEPTH) {
-    const float x = table_place(0, value);
-    const uint cell = min(uint(x), frame.grids[0].table_last - 1u);
-    const uint at = frame.grids[0].table_start + cell;
-    const vec4 c = mix(table[at], table[at + 1u], x - float(cell));
+    uint at;
+    float way;
+    find_place(frame.grids[0].look, value, at, way);
+    vec4 c = entry_between(at, way);
+    c.a = 1.0 - exp(-c.a * frame.grids[0].opacity);
     out_color = vec4(c.a * c.rgb, c.a);
   }
 }

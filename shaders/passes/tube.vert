@@ -7,23 +7,17 @@
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
 layout(scalar, binding = 1) readonly buffer Rings { TubeRingData rings[]; };
 #include "shaders/lib/mesh_vertex.glsl"
-
-// The unit vector of octahedral coordinates.
-vec3 direction_of(uint packed) {
-  const vec2 e = unpackSnorm2x16(packed);
-  const float z = 1.0 - abs(e.x) - abs(e.y), fold = max(-z, 0.0);
-  return normalize(vec3(e.x - (e.x >= 0.0 ? fold : -fold), e.y - (e.y >= 0.0 ? fold : -fold), z));
-}
+#include "shaders/lib/rings.glsl"
 
 void main() {
   const TubeRingData ring = rings[gl_VertexIndex >> RING_SHIFT];
   const uint side = uint(gl_VertexIndex) & ((1u << RING_SHIFT) - 1u), sides = ring.color >> RING_SIDES_SHIFT;
   const vec3 tangent = direction_of(ring.tangent);
   const vec3 given = direction_of(ring.normal), first = normalize(given - dot(given, tangent) * tangent);
-  const float angle = 6.28318530717958647692 * float(side) / float(8u + 4u * min(sides, 2u));
+  const float angle = 6.28318530717958647692 * float(side) / float(12u + 4u * min(sides, 1u));
   const vec3 outward = cos(angle) * first + sin(angle) * cross(tangent, first);
-  const vec3 color = vec3(ring.color & 1023u, ring.color >> 10 & 1023u, ring.color >> 20 & 1023u) / float(RING_COLOR_MOST);
-  place_vertex(ring.centre + ring.radius * outward, sqrt(max(0.0, 1.0 - ring.lean * ring.lean)) * outward + ring.lean * tangent, color, ring.id);
+  place_vertex(ring.centre + ring.radius * outward, sqrt(max(0.0, 1.0 - ring.lean * ring.lean)) * outward + ring.lean * tangent,
+               ring_color(ring.color), ring.id);
   // the clip cuts what leads to a gap off where it begins
   if (sides == RING_GAP) gl_ClipDistance[0] = -1.0e30;
 }

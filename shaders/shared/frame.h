@@ -16,6 +16,14 @@
 
 CATENA_SHARED_BEGIN
 
+// A table of shaders/lib/tables.glsl: its first entry, its last index, how many points follow the entries, the scale on which entries are
+// even (1 / linear_below of engine/base/value_scale.h, 0: linear), the first entry's place on it, entries a unit, and the values of the
+// first and last point.
+struct TableData {
+  uint start, last, points;
+  float per_linear, lo, per_unit, first_value, last_value;
+};
+
 // One grid as a ray meets it. Local position on the ray of pixel q at depth t:
 //   (origin + origin_x q.x + origin_y q.y) + t (direction + direction_x q.x + direction_y q.y)
 struct GridData {
@@ -26,17 +34,15 @@ struct GridData {
   vec3 texel;                 // 1 / size of the value image
   mat3 world_gradient;        // world = world_gradient * local gradient
   float value_offset, value_scale;
-  // volumes: the table's first entry, its last index, and the value range it spans; per_value < 0: entries have values of their own
-  uint table_start, table_last;
-  float table_lo, table_per_value;
-  // volumes: the same of the factor by the length of the gradient
-  uint factor_start, factor_last;
-  float factor_lo, factor_per_gradient;
-  // isosurfaces
+  TableData look;     // of volumes and colours: by the value
+  TableData factors;  // of volumes: by the length of the gradient
+  // projections: what the words of the brick map count (shaders/lib/projection.glsl)
+  float bound_lo, bound_per_code;
+  // isosurfaces; projections: opacity, the length that it is of
   float level, opacity;
   vec3 color;
-  uint clipped;  // the clip planes count for it
-  uint id;       // of the object
+  uint clipped;   // the clip planes count for it
+  uint id;        // of the object
   float nearest;  // 1: the value of the nearest voxel centre; 0: trilinear
   float spread;   // colours by labels, 0.5: what lies nearest to a voxel without a label takes the nearest label of its cell; else 0
 };
@@ -90,6 +96,7 @@ struct MeshFrameData {
   float offset_depth;    // the same along the axis, from the reference depth
   vec2 scale;            // clip units per world unit (per slope, if perspective)
   vec2 shift;            // clip units from the picture's centre to the view axis
+  vec2 pixel;            // its size in clip units
   float depth_near, depth_far;
   uint orthographic;
   uint clip_count;

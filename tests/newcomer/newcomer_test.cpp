@@ -44,7 +44,7 @@ ConstraintType shell_constraint() {
 
 // ---- the format: eight numbers as text, the corners of a cube of edge 1 ----
 
-Result<std::vector<field::GridInfo>> describe_corners(const std::string&) {
+Result<std::vector<field::GridInfo>> describe_corners(const std::string&, int /*step*/) {
   field::GridInfo info;
   info.name = "corners";
   return std::vector<field::GridInfo>{info};

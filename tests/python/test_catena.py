@@ -14,6 +14,7 @@ import unittest
 import unittest.mock
 import urllib.error
 import urllib.request
+import warnings
 
 import numpy as np
 
@@ -51,6 +52,39 @@ class Fields(unittest.TestCase):
         np.testing.assert_array_equal(catena.field(np.asfortranarray(a)).sample(places), a.ravel())
         np.testing.assert_array_equal(catena.field(a[::-1, :, ::2]).sample([[1, 2, 0]]), [a[3, 2, 2]])
         np.testing.assert_array_equal(a, np.arange(120).reshape(4, 5, 6))
+
+    def test_vectors_are_what_is_said(self):
+        rng = np.random.default_rng(2)
+        flat, line, full = rng.random((8, 9, 2)), rng.random((7, 3)), rng.random((4, 5, 6, 2))
+        at = [[3, 4, 0], [3, 4, 1]]
+        with self.assertWarnsRegex(UserWarning, r"shape \(8, 9, 2\) is read as scalars; vectors=True reads 2 components"):
+            thin = catena.field(flat)
+        self.assertFalse(thin.is_vector)
+        np.testing.assert_allclose(thin.sample([[1, 3, 4]]), [flat[4, 3, 1]], rtol=1e-6)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for f, value in ((catena.field(flat, vectors=True), [*flat[4, 3], 0]), (catena.field(flat[None]), [*flat[4, 3], 0]),
+                             (catena.field(flat.swapaxes(0, 1), axes="xyz", vectors=True), [*flat[4, 3], 0])):
+                self.assertTrue(f.is_vector)
+                np.testing.assert_allclose(f.sample(at), [value, value], rtol=1e-6)
+            np.testing.assert_allclose(catena.field(line, vectors=True).sample([[5, 0, 0]]), [line[5]], rtol=1e-6)
+            np.testing.assert_allclose(catena.field(full).sample([[5, 4, 3]]), [[*full[3, 4, 5], 0]], rtol=1e-6)
+            self.assertFalse(catena.field(flat, vectors=False).is_vector)
+            np.testing.assert_allclose(catena.field(flat[:, :, 0]).sample(at), [flat[4, 3, 0]] * 2, rtol=1e-6)
+        for wrong, chosen in ((full, False), (rng.random((4, 5, 6, 4)), None), (flat[:, :, :1], True), (np.float32(1), None)):
+            with self.assertRaisesRegex(catena.Error, "the array has the shape"):
+                catena.field(wrong, vectors=chosen)
+
+    def test_an_error_of_a_dict_names_its_place(self):
+        scene = {"fields": {"a": {"analytic": "hill"}}, "volumes": [{"field": "a", "opacity": "much"}]}
+        with self.assertRaisesRegex(catena.Error, "^scene: /volumes/0/opacity: "):
+            catena.render(scene, 32, 24)
+        scene["volumes"] = [{"field": "a"}, {"field": "b"}]
+        with self.assertRaisesRegex(catena.Error, "^scene: /volumes/1/field: "):
+            catena.render(scene, 32, 24)
+        # of what is found out when it is used, too
+        with self.assertRaisesRegex(catena.Error, "^scene: /fields/a~1b: "):
+            catena.render({"fields": {"a/b": {"file": "none.vdb"}}, "volumes": [{"field": "a/b"}]}, 32, 24)
 
     def test_memory_has_a_limit(self):
         a = np.zeros((80, 80, 80), np.float32)  # 2 MB
@@ -121,7 +155,7 @@ class Errors(unittest.TestCase):
             self.assertEqual("catena: " + str(caught.exception) + "\n", told)
 
     def test_what_cannot_be_used_is_named(self):
-        self.says("the shape (3, 3)", lambda: catena.field(np.zeros((3, 3))))
+        self.says("the shape (2, 2, 2, 2, 2)", lambda: catena.field(np.zeros((2,) * 5)))
         self.says("axes is \"3\"", lambda: catena.field(np.zeros((3, 3, 3)), axes=3))
         self.says("last row", lambda: catena.field(np.zeros((3, 3, 3)), affine=np.ones((4, 4)) + np.eye(4)))
         with self.assertRaisesRegex(TypeError, "^'float' object"):
@@ -129,7 +163,7 @@ class Errors(unittest.TestCase):
         self.says("from 1 to 16384", lambda: catena.render({}, 2 ** 70, 10))
         self.says("no finite value", lambda: catena.field(np.full((3, 3, 3), np.nan)))
         self.says("complex", lambda: catena.field(np.zeros((3, 3, 3), complex)))
-        self.says("from 2 to", lambda: catena.field(np.zeros((1, 3, 3))))
+        self.says("from 2 to", lambda: catena.field(np.zeros((0, 3, 3))))
         self.says("cannot be inverted", lambda: catena.field(np.zeros((3, 3, 3)), affine=np.diag([0, 0, 0, 1])))
         self.says("(N, 3)", lambda: catena.analytic("sphere").sample([[1, 2]]))
         self.says("unknown field", lambda: catena.render({"isosurfaces": [{"field": "b", "level": 1}]}))
@@ -142,7 +176,7 @@ class Errors(unittest.TestCase):
         self.says("complex128", lambda: field.sample(np.zeros((2, 3), complex)))
         for bad in -1, np.nan, np.inf:
             self.says("length is", lambda bad=bad: catena.trace(field, [1, 0, 0], length=bad))
-        self.says("a?b", lambda: catena.field(np.zeros((3, 3)), name="a\nb"))
+        self.says("a?b", lambda: catena.field(np.zeros((2,) * 5), name="a\nb"))
         self.says("/a?b.vdb: there is no such file", lambda: catena.field("/a\0b.vdb"))
         self.says("there is no such file", lambda: catena.field("/a\udcffb.vdb"))
         self.says("fields: 1 is no name", lambda: catena.Chain({}, fields={1: np.zeros((3, 3, 3))}))
@@ -350,6 +384,8 @@ class Pages(unittest.TestCase):
                 urllib.request.urlopen(address, timeout=20).close()
             except urllib.error.URLError:
                 return True
+            except ConnectionError:
+                pass  # the server ended while it answered: the next attempt finds nobody
             time.sleep(0.05)
         return False
 

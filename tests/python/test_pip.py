@@ -20,7 +20,7 @@ def stand_in(arguments):
         return subprocess.run([CMAKE, *arguments, *(["-DCMAKE_BUILD_RPATH_USE_ORIGIN=ON"] if "-S" in arguments else [])], check=False).returncode
     made = pathlib.Path(arguments[1])
     for path in BUILD.iterdir():
-        if path.is_file() and (path.name == "catena" or re.match(r"catena-(read|write|watchdog)|libcatena\.so", path.name)):
+        if path.is_file() and (path.name == "catena" or re.match(r"catena-(read|write|watchdog|device)|libcatena\.so", path.name)):
             shutil.copy(path, made / path.name, follow_symlinks=False)
     for folder in "python", "manual":
         shutil.copytree(BUILD / folder, made / folder, dirs_exist_ok=True)

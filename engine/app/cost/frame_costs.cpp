@@ -113,7 +113,7 @@ Outcome add_frame_costs(const render::FramePacket& packet, bool measure, CostTab
     add(expected.ms, row.expected.ms);
   }
   table.push_back({"mirror", "all", fmt::format("{} mirrors", made.mirrors), expected, mirrors});
-  table.push_back({"create", "passes", joined({made.passes.begin(), made.passes.end()}), {}, {}});
+  table.push_back({"create", "passes", joined({made.passes.begin(), made.passes.end()}, made.passes.size()), {}, {}});
   table.push_back({"create", "pipelines", std::to_string(made.pipelines), {}, {}});
   CostRow frame{"frame",
                 "all",

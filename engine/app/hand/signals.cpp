@@ -1,12 +1,15 @@
 #include "engine/app/hand/signals.h"
 
 #include <fmt/core.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+
+#include "engine/base/tell.h"
 
 namespace catena::app {
 
@@ -19,10 +22,31 @@ std::atomic<bool> asked_to_end{false};
 std::atomic<int> first_signal{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free, "a signal handler sets them");
 
+constexpr unsigned kGraceS = 30;
+std::atomic<bool> grace_runs{false};
+
+void say(const char* words) { [[maybe_unused]] const auto written = write(STDERR_FILENO, words, std::strlen(words)); }
+
+/// What was asked to end looks at nothing any more, as within a graphics driver that waits for ever: it ends as by the first signal.
+void end_by_first_signal() {
+  let_go();
+  say("catena: asked to end, and it did not within 30 s: ended at once\n");
+  std::signal(first_signal, SIG_DFL);
+  std::raise(first_signal);
+}
+
+void on_crash(int signal_number);
+
 void on_signal(int signal_number) {
+  const int error = errno;
+  if (signal_number == SIGALRM && grace_runs) end_by_first_signal();
   int none = 0;
-  first_signal.compare_exchange_strong(none, signal_number);
+  if (first_signal.compare_exchange_strong(none, signal_number)) {
+    grace_runs = true;
+    alarm(kGraceS);
+  }
   asked_to_end.store(true);
+  errno = error;
 }
 
 void forget_signals() {
@@ -48,6 +72,7 @@ Interrupt::Interrupt() {
 Interrupt::Interrupt(const std::vector<int>& asking) {
   forget_signals();
   for (const int signal_number : asking) take(signal_number, false, static_cast<int>(SA_RESETHAND));
+  take(SIGALRM, true, 0);
 }
 
 void Interrupt::take(int signal_number, bool only_default, int flags) {
@@ -57,12 +82,15 @@ void Interrupt::take(int signal_number, bool only_default, int flags) {
   sigemptyset(&action.sa_mask);
   Before before{signal_number, {}};
   if (sigaction(signal_number, nullptr, &before.action) != 0) return;
-  if (only_default && ((before.action.sa_flags & SA_SIGINFO) != 0 || before.action.sa_handler != SIG_DFL)) return;
+  if (only_default &&
+      ((before.action.sa_flags & SA_SIGINFO) != 0 || (before.action.sa_handler != SIG_DFL && before.action.sa_handler != on_crash)))
+    return;
   sigaction(signal_number, &action, nullptr);
   before_.push_back(before);
 }
 
 Interrupt::~Interrupt() {
+  if (grace_runs.exchange(false)) alarm(0);
   for (const Before& before : before_) sigaction(before.signal_number, &before.action, nullptr);
 }
 
@@ -98,25 +126,33 @@ const char* line_of(int signal_number) {
       return "catena: ended by SIGSYS (a system call that is not allowed here)";
     case SIGTRAP:
       return "catena: ended by SIGTRAP";
+    case SIGXCPU:
+      return "catena: ended by SIGXCPU (the limit on processor time: ulimit -t)";
     case SIGQUIT:
       return "catena: ended by SIGQUIT";
     default:
-      return "";  // SIGABRT: who aborts has said why
+      return assertion_has_spoken() ? "" : "catena: ended by SIGABRT (a library gave up, or somebody sent it)";
   }
 }
 
-void say(const char* words) { [[maybe_unused]] const auto written = write(STDERR_FILENO, words, std::strlen(words)); }
+/// Libraries, graphics drivers among them, crash where an allocation fails: under a limit on addresses that is taken for the cause.
+bool lacks_memory(int signal_number) {
+  rlimit limit{};
+  return (signal_number == SIGSEGV || signal_number == SIGBUS || (signal_number == SIGABRT && !assertion_has_spoken())) &&
+         ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
 
 void on_crash(int signal_number) {
   const int error = errno;
-  if (const LetGo done = let_go(); done != LetGo::nobody) {
-    const char* line = line_of(signal_number);
-    say(line);
-    if (done == LetGo::unconfirmed)
-      say(*line == 0 ? "catena: the device has not confirmed that it is off\n" : "; the device has not confirmed that it is off\n");
-    else if (*line != 0)
-      say("; the device is off\n");
-  }
+  const LetGo done = let_go();
+  const bool limited = lacks_memory(signal_number);
+  const char* line = limited ? "catena: ended by a crash: too little memory (ulimit -v), or a bug" : line_of(signal_number);
+  say(line);
+  if (done == LetGo::unconfirmed)
+    say(*line == 0 ? "catena: the device has not confirmed that it is off\n" : "; the device has not confirmed that it is off\n");
+  else if (*line != 0)
+    say(done == LetGo::off ? "; the device is off\n" : "\n");
+  if (signal_number == SIGXCPU || limited) _exit(1);  // a limit, not a crash
   std::signal(signal_number, SIG_DFL);
   std::raise(signal_number);  // as soon as this handler returns
   errno = error;
@@ -134,6 +170,24 @@ LetGo let_go() noexcept {
     nanosleep(&nap, nullptr);
   }
   return LetGo::unconfirmed;
+}
+
+void tell_of_crashes() {
+  static std::array<char, kStackBytes> stack_of_first_thread;
+  stack_t stack{};
+  stack.ss_sp = stack_of_first_thread.data();
+  stack.ss_size = stack_of_first_thread.size();
+  sigaltstack(&stack, nullptr);
+  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGABRT, SIGXCPU}) {
+    struct sigaction before {};
+    // a sanitizer, or somebody before this program, has one of its own
+    if (sigaction(signal_number, nullptr, &before) != 0 || (before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler != SIG_DFL) continue;
+    struct sigaction action {};
+    action.sa_handler = on_crash;
+    action.sa_flags = SA_ONSTACK;
+    sigemptyset(&action.sa_mask);
+    sigaction(signal_number, &action, nullptr);
+  }
 }
 
 CrashGuard::CrashGuard(haptics::Device& device) : stack_(kStackBytes) {

@@ -1,6 +1,7 @@
 /// Ctrl-C, Ctrl-Z, a closed terminal or pipe and `kill` as a flag to look at: work that holds a device ends by its own way out, for a
 /// process that is killed or suspended leaves the last force at the device. So do the signals that would end the program otherwise:
 /// user signals, timers, limits on processor time, real-time signals; these are an error of the machine. Crashes: below.
+/// What does not end within 30 s of the first signal, as within a graphics driver that waits for ever, is ended by it.
 /// One at a time.
 #pragma once
 #include <array>
@@ -58,6 +59,11 @@ class CrashGuard {
   std::vector<char> stack_;
   stack_t stack_before_{};
 };
+
+/// The signals of a crash end the program with one line on stderr, also where no device is held: "catena: ended by SIGSEGV (..)". For
+/// the start of the program, on its first thread. Those that somebody handles or ignores are left alone. The limit on
+/// processor time (SIGXCPU) is an error of the machine: exit code 1.
+void tell_of_crashes();
 
 enum class LetGo : unsigned char {
   nobody,      ///< no guard holds a device

@@ -112,8 +112,8 @@ render::BandWants wanted_bands(const RenderOptions& o) {
   return {!floats, floats, !o.depth.empty(), !o.ids.empty()};
 }
 
-bool Outputs::takes_all_frames() const {
-  return video_kind(options_.output) || is_numbered(options_.output) || is_numbered(options_.depth) || is_numbered(options_.ids);
+bool takes_all_frames(const RenderOptions& o) {
+  return video_kind(o.output) || is_numbered(o.output) || is_numbered(o.depth) || is_numbered(o.ids);
 }
 
 Outcome Outputs::open(const std::string& path, int frame,

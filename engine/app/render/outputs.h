@@ -28,11 +28,12 @@ bool uses_standard_output(const RenderOptions& options);
 /// What the bands must hold for them.
 render::BandWants wanted_bands(const RenderOptions& options);
 
+/// Whether frames after the first are written.
+bool takes_all_frames(const RenderOptions& options);
+
 class Outputs {
  public:
   Outputs(const RenderOptions& options, const PictureShape& shape) : options_(options), shape_(shape) {}
-  /// Whether frames after the first are written.
-  bool takes_all_frames() const;
   Outcome begin(int frame);
   Outcome take(const render::Band& band);
   /// Finishes the frame; numbered files are committed.

@@ -26,7 +26,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kUnreportedFrames = 3;
+constexpr int kUnreportedFrames = 3;    // of one planned picture
 constexpr int kMaxTiledPixels = 65536;  // each way
 
 template <class T>
@@ -152,7 +152,8 @@ Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const s
   CATENA_TRY(const std::string text, plan::text_of(scene));
   const Sample sample = sample_of(frames, packet);
   std::vector<std::string> options = o.fields;
-  options.insert(options.end(), {o.grid, o.colors.map, fmt::format("{}", fmt::join(o.colors.range, " ")), o.annotate.title});
+  options.insert(options.end(), {o.grid, o.colors.map, fmt::format("{}", fmt::join(o.colors.range, " ")), o.colors.mapping,
+                                 o.colors.linear_below, o.annotate.title});
   frames.goal = machine(plan::make_eye_plan(*frames.renderer, sample.packet, wanted, {scene, text, options, sample.share},
                                             [&](const std::string& line) { say(words, line); }));
   frames.settings = frames.goal->settings();
@@ -179,6 +180,22 @@ Result<Size> picture_size(const RenderOptions& o, const scene::Stereo& stereo, c
   return Size{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
 }
 
+/// Every step of --steps has its frame, and a place where it is kept.
+Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
+  const int count = static_cast<int>(steps.size());
+  if (count < 2) return Done{};
+  if (o.frames < count) return Error{fmt::format("--frames {}: fewer than the {} steps of --steps {}", o.frames, count, o.steps)};
+  if (!takes_all_frames(o) && !o.output.starts_with("/dev/"))
+    return Error{fmt::format("{}: one picture for {} steps; %03d in its name, or a video, was expected", o.output, count)};
+  return Done{};
+}
+
+/// Steps beyond the last one of the longest field are refused. Those within files are known once the fields are loaded.
+Outcome check_steps(const scene::Scene& scene, const RenderOptions& o, const std::vector<int>& steps) {
+  const std::string option = steps.empty() ? fmt::format("--step {}", o.step) : "--steps " + o.steps;
+  return check_step(steps.empty() ? o.step : steps.back(), scene::step_count(scene) - 1, option, o.source);
+}
+
 }  // namespace
 
 Outcome render_pictures(const RenderOptions& given) {
@@ -186,6 +203,7 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const std::vector<int> steps, parse_steps(o.steps));
   if (!steps.empty() && o.step >= 0) return Error{"--step: goes without --steps"};
   if (!steps.empty() && o.frames == 0) o.frames = static_cast<int>(steps.size());
+  CATENA_CHECK(check_frames(o, steps));
   CATENA_TRY(const Size size, parse_size(o.size, kMaxTiledPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   if (o.play && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
@@ -196,7 +214,7 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const CameraMotion motion, CameraMotion::make(o, o.play ? path.back().t_s - path.front().t_s : 0));
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
-  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors, o.grid));
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors, o.grid, steps.empty() ? o.step : steps.front()));
   const std::size_t told = scene.notes.size();
   if (o.step >= 0 || !steps.empty()) scene::set_step(scene, steps.empty() ? o.step : steps.front());
   CATENA_CHECK(annotate(scene, o.annotate));
@@ -231,6 +249,7 @@ Outcome render_pictures(const RenderOptions& given) {
   FeltPath hand(program, std::move(path));
   Frames frames(scene, o, motion, hand, size, steps);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  CATENA_CHECK(check_steps(scene, o, steps));
   if (is_scene_file(o.source)) tell_new_notes(scene, told);
   if (const Outcome drawable = render::check_rays(packet); !drawable) return Error{o.source + ": " + drawable.error().message};
   if (!o.ids.empty() && packet.objects.size() > 65535)
@@ -259,7 +278,10 @@ Outcome render_pictures(const RenderOptions& given) {
     CATENA_CHECK(plan_pictures(frames, packet, plan, o, scene, words));
     stats.estimated_rmse = frames.goal->expected_error();
   } else if (wanted.goal) {
+    wanted.goal->once = motion.frames() == 1;
+    const std::int64_t start = now_ns();
     const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
+    stats.choose_ms = ms_since(start);
     if (choice.empty)
       tell_from_catena(
           "note: nothing of the scene is in the picture: it is transparent where the camera looks, or the camera looks elsewhere");
@@ -280,9 +302,8 @@ Outcome render_pictures(const RenderOptions& given) {
   stats.tiles = frames.plan.count();
   stats.device = frames.renderer->stats().device;
 
-  // the first frame; the reported ones come after a few unreported ones
   Outputs outputs(o, shape);
-  const bool more = motion.frames() > 1 && (outputs.takes_all_frames() || o.stats.empty());
+  const bool more = motion.frames() > 1 && (takes_all_frames(o) || o.stats.empty());
   {
     const double parts = frames.plan.count() * (more ? double(motion.frames()) : 1.0);
     Progress progress("render", parts);
@@ -297,19 +318,15 @@ Outcome render_pictures(const RenderOptions& given) {
       for (const std::string& note : scene.notes) tell_from_catena("note: " + note);
     say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, what_is_drawn(packet),
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
-    // a frame of many tiles has warmed up by itself
-    const bool timed = !o.stats.empty() && stats.tiles == 1;
-    for (int k = 1; k < kUnreportedFrames && (timed || (planned && motion.frames() == 1)); ++k) {
+    // what a plan expects holds for pictures whose pipelines and mirrors are there
+    for (int k = 1; k < kUnreportedFrames && planned && motion.frames() == 1; ++k) {
       CATENA_CHECK(frames.draw(0, nullptr));
       took.push_back(frames.drawing_ms);
     }
-    for (int k = 0; k < motion.frames(); ++k) {
-      if (k == 0 && !timed) {
-        stats.frame_ms.push_back(first);
-        continue;
-      }
+    stats.frame_ms.push_back(first);
+    for (int k = 1; k < motion.frames(); ++k) {
       last = frames.settings;
-      CATENA_TRY(const double ms, frames.draw(k, k > 0 && outputs.takes_all_frames() ? &outputs : nullptr));
+      CATENA_TRY(const double ms, frames.draw(k, takes_all_frames(o) ? &outputs : nullptr));
       stats.frame_ms.push_back(ms);
       took.push_back(frames.drawing_ms);
     }

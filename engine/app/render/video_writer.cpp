@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/machine_failure.h"
+
 namespace catena::app {
 namespace {
 
@@ -62,9 +64,7 @@ std::string last_line(std::FILE* file) {
   return start == std::string::npos ? text : text.substr(start + 1);
 }
 
-Error cannot(const std::string& path, const char* what, int code) {
-  return Error{fmt::format("{}: cannot {}: {}", path, what, std::strerror(code))};
-}
+Error cannot(const std::string& path, const char* what, int code) { return system_error(fmt::format("{}: cannot {}", path, what), code); }
 
 }  // namespace
 

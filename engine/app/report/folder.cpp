@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "engine/base/input_files.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -86,11 +88,11 @@ Outcome ResultFolder::stage() {
   if (!staging_.empty()) return Done{};
   std::error_code code;
   const bool created = !fs::exists(path_, code);
-  if (created && !fs::create_directories(path_, code) && code) return Error{path_ + ": cannot create the folder: " + code.message()};
+  if (created && !fs::create_directories(path_, code) && code) return system_error(path_ + ": cannot create the folder", code.value());
   created_ = created;
   const std::string staged = path_ + "/tables", staging = part_name(staged);
   remove_stale_parts(staged);
-  if (::mkdir(staging.c_str(), 0777) != 0) return Error{path_ + ": cannot write into the folder: " + std::strerror(errno)};
+  if (::mkdir(staging.c_str(), 0777) != 0) return system_error(path_ + ": cannot write into the folder", errno);
   staging_ = staging;
   if (auto lock = FolderLock::take(staging)) lock_.emplace(std::move(*lock));
   return Done{};
@@ -108,9 +110,17 @@ Result<ResultFolder> ResultFolder::open(const std::string& path) {
 
 Outcome ResultFolder::add(const std::string& name, std::string_view text) {
   CATENA_CHECK(stage());
-  CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/" + name));
-  file.write(text);
-  CATENA_CHECK(file.commit());
+  const auto write = [&]() -> Outcome {
+    CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/" + name));
+    file.write(text);
+    return file.commit();
+  };
+  if (const Outcome written = write(); !written) {
+    // by the name that it was to have: the folder of unfinished files goes
+    Error error = written.error();
+    if (error.message.starts_with(staging_)) error.message.replace(0, staging_.size(), path_);
+    return error;
+  }
   names_.push_back(name);
   return Done{};
 }
@@ -149,12 +159,13 @@ Result<std::vector<std::string>> ResultFolder::draw(const std::string& script, c
 Outcome ResultFolder::commit() {
   for (const std::string& name : names_) {
     std::error_code code;
+    CATENA_CHECK(check_no_input(path_ + "/" + name));
     if (fs::is_directory(path_ + "/" + name, code)) return Error{path_ + "/" + name + ": is a folder: expected a file name to write to"};
   }
   for (const std::string& name : names_) {
     std::error_code code;
     fs::rename(staging_ + "/" + name, path_ + "/" + name, code);
-    if (code) return Error{path_ + "/" + name + ": cannot write: " + code.message()};
+    if (code) return system_error(path_ + "/" + name + ": cannot write", code.value());
   }
   created_ = false;
   return Done{};

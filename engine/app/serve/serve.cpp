@@ -27,7 +27,7 @@ void tell_exposure(const web::ServerOptions& server) {
 
 Outcome serve(ServeOptions options) {
   options.server.page = kServePage;
-  CATENA_TRY(scene::Document document, scene::Document::open(options.source, options.overrides));
+  CATENA_TRY(scene::Document document, scene::Document::open(options.source, options.overrides, {}, options.grid));
   CATENA_TRY(SceneHost scene, SceneHost::open(std::move(document), options.adjust));
   HandHost hand(options.hand);
   CATENA_CHECK(hand.open_device(scene.scene()));

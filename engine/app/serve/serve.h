@@ -17,6 +17,7 @@ namespace catena::app {
 
 struct ServeOptions {
   std::string source;  ///< a scene or a data file
+  std::string grid;    ///< of a data file that holds several; empty: the one that is looked at first
   std::vector<scene::FieldOverride> overrides;
   std::function<Outcome(scene::Scene&)> adjust;  ///< what the command line wants otherwise than the scene
   HandHost::Options hand;                        ///< its device is the mouse
@@ -27,6 +28,7 @@ struct ServeOptions {
   std::uint64_t gpu_memory = 0;  ///< bytes; 0: what the driver offers
   double seconds = 0;            ///< ends after so long; 0: by Ctrl-C
   bool until_stdin_ends = false;
+  bool follow = false;  ///< steps in time that are added are shown (`adjust` marks the scene)
 };
 
 /// Until Ctrl-C, or the time is over. Errors are one line: the scene's (bad input), or the machine's.

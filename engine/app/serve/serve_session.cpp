@@ -34,6 +34,7 @@ ServeSession::ServeSession(const ServeOptions& options, const LoadedScene& loade
       pacing_(options.quality),
       drawing_(scene, controls_, pacing_),
       eye_(controls_, scene, hand),
+      follower_(options.follow),
       width_(options.width),
       height_(options.height) {
   scene_.bounds = loaded.bounds;
@@ -70,6 +71,7 @@ Outcome ServeSession::run() {
   while (goes_on()) {
     for (const web::News& news : server_.take(viewers_.empty() ? kNobodyWaitS : busy ? 0 : kLookWaitS)) hear(news);
     for (const WidgetEdits::Ended& ended : widget_edits_.take(scene_.scene())) note_if_wrong(scene_.apply(ended.edits, ended.what));
+    if (const auto more = follower_.run(scene_, steps_); !more) note(more.error().message);
     if (!viewers_.empty()) note_if_wrong(steps_.run(scene_));
     if (recording_.is_over(hand_)) end_recording();
     if (scene_.take_changed()) {

@@ -13,6 +13,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/shell/eye.h"
 #include "engine/app/viewer/shell/live_plan.h"
+#include "engine/app/viewer/shell/step_follower.h"
 #include "engine/app/viewer/shell/step_player.h"
 
 namespace catena::app {
@@ -69,6 +70,7 @@ class ServeSession {
   FieldValues values_;
   WidgetEdits widget_edits_;
   StepPlayer steps_;
+  StepFollower follower_;
   LivePlan plan_;
   ServedRecording recording_;
   std::vector<web::ViewerId> viewers_;  ///< in the order in which they came

@@ -8,6 +8,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/edit/transfer_edit.h"
 #include "engine/base/json_text.h"
+#include "engine/field/display_range.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/steps.h"
@@ -20,11 +21,11 @@ namespace {
 constexpr int kBars = 64;
 
 /// A slider of finite numbers, or nothing.
-std::string range_words(const field::AnyField& field, const SortedValues& values) {
-  const auto range = plot_range(field.scalar->min_value(), field.scalar->max_value());
+std::string range_words(const std::array<double, 2>& range, const SortedValues& values, double linear_below = 0) {
   std::string bars = "[]";
   if (values)
-    bars = json_list(histogram_bars(*values, range[0], range[1], kBars), [](float height) { return fmt::format("{:.3f}", height); });
+    bars = json_list(histogram_bars(*values, range[0], range[1], kBars, linear_below),
+                     [](float height) { return fmt::format("{:.3f}", height); });
   return fmt::format(R"("lo": {}, "hi": {}, "bars": {})", json_number(range[0]), json_number(range[1]), bars);
 }
 
@@ -36,9 +37,10 @@ std::string surfaces_words(scene::Scene& scene, FieldValues& values) {
     const json::Node* stated = surface.where.find("level");
     const bool is_number = stated != nullptr && stated->kind == json::Kind::number;
     if (is_hidden(scene.world, e) || !field.scalar || !is_number || pointer_of(surface.where).empty()) return;
+    const DisplayRange shown = field::display_range(field);
     text += fmt::format(R"({}{{"item": {}, "name": {}, "level": {}, {}}})", text.empty() ? "" : ", ", json_string(surface.where.label),
                         json_string(name_of(scene, surface.field)), json_number(surface.level),
-                        range_words(field, values.of(scene, surface.field)));
+                        range_words(plot_range(shown.lo, shown.hi), values.of(scene, surface.field)));
   });
   return "[" + text + "]";
 }
@@ -50,14 +52,15 @@ std::string volumes_words(scene::Scene& scene, FieldValues& values) {
     if (is_hidden(scene.world, e) || !source.drawn.scalar || pointer_of(volume.where).empty()) return;
     const auto edit = transfer_edit(volume, source.drawn.scalar->mapping().smallest_edge());
     if (!edit || edit->opacities.size() > 64 || edit->colors.size() > 512) return;
+    const DisplayRange shown = field::display_range(source.drawn);
     const auto point = [](const auto& p) { return fmt::format("[{}, {}]", json_number(p.value), json_number(p.alpha)); };
     const auto color = [](const auto& p) {
       return fmt::format("[{}, {:.3f}, {:.3f}, {:.3f}]", json_number(p.value), p.color.r, p.color.g, p.color.b);
     };
-    text += fmt::format(R"({}{{"item": {}, "name": {}, "map": {}, "opacity": {}, "color": {}, {}}})", text.empty() ? "" : ", ",
+    text += fmt::format(R"({}{{"item": {}, "name": {}, "map": {}, "opacity": {}, "color": {}, "below": {}, {}}})", text.empty() ? "" : ", ",
                         json_string(volume.where.label), json_string(name_of(scene, volume.field)), json_string(edit->map),
-                        json_list(edit->opacities, point), json_list(edit->colors, color),
-                        range_words(source.drawn, values.of(scene, volume.field)));
+                        json_list(edit->opacities, point), json_list(edit->colors, color), json_number(edit->linear_below),
+                        range_words(plotted_range(*edit, shown.lo, shown.hi), values.of(scene, volume.field), edit->linear_below));
   });
   return "[" + text + "]";
 }
@@ -86,7 +89,7 @@ std::string step_words(const scene::Scene& scene, bool plays) {
   const auto time = scene::time_of_step(scene);
   const int count = scene::step_count(scene);
   return fmt::format(R"({{"now": {}, "count": {}, "time": {}, "plays": {}}})", std::min(scene.time.step, count - 1), count,
-                     time ? json_number(*time) : "null", plays);
+                     time ? json_string(scene::time_text(scene)) : "null", plays);
 }
 
 std::string recording_words(const Recording& recording, const std::string& recorded) {

@@ -131,7 +131,7 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
   for (std::size_t i = session.done; i < session.trials.size(); ++i) {
     const study::Trial& trial = session.trials[i];
     const auto ran = simulator.run(trial);
-    if (!ran) return Error{fmt::format("{} (subject {}, trial {})", ran.error().message, trial.subject, trial.index)};
+    if (!ran) return Error{fmt::format("{} (subject {}, trial {})", ran.error().message, trial.subject, trial.index), ran.error().machine};
     const study::Measured& measured = *ran;
     if (!std::isfinite(measured.error_mm) || !std::isfinite(measured.travelled_mm) || !is_finite(measured.end_mm))
       return Error{fmt::format("{}: subject {}, trial {}: the model left all numbers; milder ones in \"operator\" were expected",

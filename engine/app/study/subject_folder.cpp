@@ -11,6 +11,7 @@
 
 #include "engine/base/append_file.h"
 #include "engine/base/json_text.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/output_file.h"
 #include "engine/study/answers.h"
 #include "engine/study/departures.h"
@@ -19,7 +20,7 @@ namespace catena::app {
 
 namespace {
 
-Error cannot(const std::string& path, const char* what) { return Error{path + ": cannot " + what + ": " + std::strerror(errno)}; }
+Error cannot(const std::string& path, const char* what) { return system_error(path + ": cannot " + what, errno); }
 
 }  // namespace
 

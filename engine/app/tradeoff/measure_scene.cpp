@@ -29,8 +29,8 @@ using tradeoff::Subject;
 Outcome check_files(const MeasureOptions& options, RunFiles files) {
   files.reads(options.compare);
   files.reads(options.probe);
-  for (const char* name : {"report.html", "tradeoff.json"}) files.writes("-o", options.output + "/" + name);
-  if (!std::filesystem::is_directory(options.output)) return Done{};
+  if (std::filesystem::is_directory(options.output))
+    for (const char* name : {"report.html", "tradeoff.json"}) files.writes("-o", options.output + "/" + name);
   return files.check();
 }
 

@@ -18,7 +18,7 @@ Result<SceneHost> read_scene(const ViewOptions& options) {
   std::error_code code;
   CATENA_TRY(scene::Document document,
              options.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
-                                    : scene::Document::open(options.source, options.overrides));
+                                    : scene::Document::open(options.source, options.overrides, {}, options.grid));
   return SceneHost::open(std::move(document), options.adjust);
 }
 
@@ -28,7 +28,7 @@ Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHos
       options.window_screenshot.empty() && options.servo_stats.empty() && options.frame_stats.empty() && options.hand.record.empty();
   if (options.screenshot.empty() || !picture_only) return {1, why};
   const auto loaded = load_first(host, hand, options.width, options.height);
-  if (!loaded) return {2, loaded.error().message};
+  if (!loaded) return failure_of(loaded.error());
   const auto draw = [&]() -> Outcome {
     scene::Scene& scene = host.scene();
     scene.camera = camera_of(loaded->packet.view);
@@ -50,7 +50,7 @@ Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHos
 std::optional<Failure> plan_hand(LivePlan& live, SceneHost& scene, const HandHost& hand) {
   if (!live.wanted.of_hand()) return std::nullopt;
   const Outcome planned = measure_hand(live, scene, hand, [](const std::string& line) { tell_from_catena(line); });
-  if (!planned) return Failure{2, planned.error().message};
+  if (!planned) return failure_of(planned.error());
   if (!live.hand) return std::nullopt;
   tell_from_catena(live.hand->sentence());
   scene.take_changed();
@@ -60,10 +60,10 @@ std::optional<Failure> plan_hand(LivePlan& live, SceneHost& scene, const HandHos
 /// What is wrong with the scene, the device or the shaders is said before any window opens.
 std::optional<Failure> show(const ViewOptions& options) {
   auto scene = read_scene(options);
-  if (!scene) return Failure{2, scene.error().message};
+  if (!scene) return failure_of(scene.error());
   std::optional<Interrupt> interrupt;
   HandHost hand(options.hand);
-  if (auto opened = hand.open_device(scene->scene()); !opened) return Failure{2, opened.error().message};
+  if (auto opened = hand.open_device(scene->scene()); !opened) return failure_of(opened.error());
   // before anything is felt
   ViewOptions planned = options;
   if (auto failure = plan_hand(planned.plan, *scene, hand)) return failure;
@@ -76,7 +76,7 @@ std::optional<Failure> show(const ViewOptions& options) {
   std::unique_ptr<TrackedHead> head;
   if (!options.head.empty()) {
     auto opened = TrackedHead::open(options.head, scene->scene());
-    if (!opened) return Failure{2, opened.error().message};
+    if (!opened) return failure_of(opened.error());
     head = std::move(*opened);
   }
   auto window = Window::create(options.width, options.height, "catena");

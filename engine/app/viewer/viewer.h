@@ -17,6 +17,7 @@ namespace catena::app {
 
 struct ViewOptions {
   std::string source;                            ///< a scene or a data file; empty: the window begins with nothing
+  std::string grid;                              ///< of a data file that holds several; empty: the one that is looked at first
   std::vector<scene::FieldOverride> overrides;   ///< --field
   std::function<Outcome(scene::Scene&)> adjust;  ///< what the command line wants otherwise than the scene, whenever it is read
   HandHost::Options hand;
@@ -31,6 +32,7 @@ struct ViewOptions {
   std::string device_file;       ///< settings of the device in place of the scene's; a registration is written there. Empty: none
   std::string head;              ///< what tells where the head is before a screen of the scene (tracked_head.h); empty: the mouse
   bool panels = true;
+  bool follow = false;                                     ///< steps in time that are added are shown (`adjust` marks the scene)
   bool headset = false;                                    ///< draw for a headset; the window mirrors one eye
   std::string screenshot;                                  ///< .png of the last picture, written at the end; empty: none
   std::string window_screenshot;                           ///< the same with the interface

@@ -22,6 +22,7 @@ import subprocess as _subprocess
 import tempfile as _tempfile
 import time as _time
 import urllib.parse as _urls
+import warnings as _warnings
 import weakref as _weakref
 import zlib as _zlib
 
@@ -36,10 +37,12 @@ __all__ = ["Chain", "Curve", "Error", "Field", "MachineError", "Picture", "STATU
            "field", "memory_limit", "recording", "render", "serve", "show", "study_table", "trace", "trade_report"]
 
 
-def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear", grid="", step=0):
+def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear", grid="", step=0, vectors=None):
     """A field of an array, or of any data file that catena reads.
 
-    data: an array of three dimensions, or of four with 3 components last (vectors along the world's axes), of any real type; or a path.
+    data: an array of one to four dimensions, of any real type; or a path. Missing dimensions have one voxel, which is written twice.
+    vectors: True: the last dimension holds 2 or 3 components along the world's axes (two get a third, 0); False: scalars. None: vectors if
+    there are four dimensions, else scalars, with a warning where the last dimension of two or three has the size 2 or 3.
     axes: "zyx": data[k, j, i], the last index is x (as a C-ordered volume); "xyz": data[i, j, k] (as nibabel has it).
     affine: (4, 4), from voxel (i, j, k, 1) to world; None: voxel (i, j, k) lies at world (i, j, k).
     interpolation: between voxels: "linear", "nearest" (label maps) or "cubic".
@@ -51,7 +54,13 @@ def field(data, *, axes="zyx", affine=None, name="field", interpolation="linear"
         return _from_file(data, str(grid), _operator.index(step), str(interpolation))
     if isinstance(data, _np.ma.MaskedArray):  # what is masked has no value
         data = data.astype(_np.float32).filled(_np.nan)
-    return _from_array(_np.asarray(data), str(axes), affine, str(name), str(interpolation))
+    data = _np.asarray(data)
+    if vectors is None:
+        vectors = data.ndim == 4
+        if data.ndim in (2, 3) and data.shape[-1] in (2, 3):
+            _warnings.warn(f"{name}: the array of shape {data.shape} is read as scalars; vectors=True reads {data.shape[-1]} components, "
+                           "vectors=False says that scalars are meant", stacklevel=2)
+    return _from_array(data, str(axes), affine, str(name), str(interpolation), bool(vectors))
 
 
 class Picture:

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/numbers.h"
+#include "engine/field/display_range.h"
 #include "engine/field/magnitude.h"
 #include "engine/schema/table.h"
 
@@ -39,7 +41,7 @@ Result<double> require_level(const json::Node& link, std::string_view key, const
   const double least = field.min_value(), most = field.max_value();
   if (!(level >= least && level <= most))
     return json::error_at(*link.find("level"), fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}",
-                                                           level, link.find(key)->string, least, most));
+                                                           level, link.find(key)->string, readable(least), readable(most)));
   return level;
 }
 
@@ -48,8 +50,9 @@ namespace {
 /// What `normalise` maps to 0 and 1.
 Outcome set_scale(const json::Node& node, const std::string& name, ParameterMap& map) {
   if (map.by == ParameterMap::By::value) {
-    map.lo = map.field.scalar->min_value();
-    map.hi = map.field.scalar->max_value();
+    const DisplayRange range = field::display_range(*map.field.scalar);
+    map.lo = range.lo;
+    map.hi = range.hi;
     if (!std::isfinite(map.lo) || !std::isfinite(map.hi))
       return json::error_at(*node.find("normalise"),
                             fmt::format("field \"{}\" has no finite range to normalise by; \"map\" over its values, "

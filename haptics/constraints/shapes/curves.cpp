@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/base/machine_failure.h"
 #include "haptics/constraints/rules/morton.h"
 #include "haptics/constraints/rules/shared_tree.h"
 #include "haptics/constraints/shapes/along_pieces.h"
@@ -103,7 +104,7 @@ Result<std::shared_ptr<const Constraint>> build_curves(const json::Node& link, c
   }
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
   if (const auto enough = ask_for_memory(fmt::format("feeling curves \"{}\"", name), LineTree::bytes_for(*set)); !enough)
-    return json::error_at(*link.find("curves"), enough.error().message);
+    return caused_by(json::error_at(*link.find("curves"), enough.error().message), enough.error());
   FileLines shape{shared_tree<LineTree>(set->version, line, [&] { return std::make_shared<const LineTree>(set, line); })};
   if (!(shape.extent() >= kLeastLength))
     return json::error_at(*link.find("curves"),

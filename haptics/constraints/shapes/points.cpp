@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/base/machine_failure.h"
 #include "haptics/constraints/rules/closest_search.h"
 #include "haptics/constraints/rules/morton.h"
 #include "haptics/constraints/rules/shared_tree.h"
@@ -98,7 +99,7 @@ Result<std::shared_ptr<const Constraint>> build_points(const json::Node& link, c
   CATENA_TRY(const curves::PointSetPtr set, context.points(*link.find("points"), name));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
   if (const auto enough = ask_for_memory(fmt::format("feeling points \"{}\"", name), PointTree::bytes_for(*set)); !enough)
-    return json::error_at(*link.find("points"), enough.error().message);
+    return caused_by(json::error_at(*link.find("points"), enough.error().message), enough.error());
   return make_closed_form<NearestPoint>(shared_tree<PointTree>(set->version, 0, [&] { return std::make_shared<const PointTree>(*set); }),
                                         rules);
 }

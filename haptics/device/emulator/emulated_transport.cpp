@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "engine/base/clock.h"
+#include "haptics/device/process/process_device.h"
 #include "haptics/device/usb/falcon.h"
 #include "haptics/device/usb/falcon_boot.h"
 
@@ -102,18 +103,53 @@ EmulatedHand still_hand() {
 void list_emulated_falcon(std::vector<DeviceInfo>& to) {
   to.push_back({"emulated-falcon", true, "the Falcon's driver on an emulated device in a moving hand: no hardware"});
   to.push_back({"emulated-falcon:still", true, "the same in a hand that rests once it has homed: for devices test --forces"});
+  to.push_back({"emulated-falcon:process", true,
+                "the same in a process of its own; emulated-falcon:process:FILE.csv, emulated-falcon:still:process:FILE.csv: it writes the "
+                "forces of its motors"});
 }
 
-Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, const DeviceSettings& settings) {
-  if (!detail.empty() && detail != "still")
-    return Error{"\"emulated-falcon:" + detail + "\" is not known; \"emulated-falcon\" or \"emulated-falcon:still\" was expected"};
+namespace {
+
+/// "still:process:FILE.csv" and its parts.
+struct EmulatedDetail {
+  bool still = false, process = false, known = false;
+  std::string table;
+};
+
+EmulatedDetail parse_detail(std::string_view text) {
+  EmulatedDetail detail;
+  const auto take = [&](std::string_view word) {
+    if (!text.starts_with(word) || (text.size() > word.size() && text[word.size()] != ':')) return false;
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    return true;
+  };
+  detail.still = take("still");
+  detail.process = take("process");
+  detail.known = text.empty() || detail.process;
+  if (detail.process) detail.table = text;
+  return detail;
+}
+
+}  // namespace
+
+std::string table_of_emulated_falcon(const std::string& detail) { return parse_detail(detail).table; }
+
+Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& text, const DeviceSettings& settings,
+                                                     std::function<void(const EmulatedFalcon::Exchange&)> observer) {
+  const EmulatedDetail detail = parse_detail(text);
+  if (!detail.known)
+    return Error{"\"emulated-falcon:" + text +
+                 "\" is not known; \"emulated-falcon\", \"emulated-falcon:still\", \"emulated-falcon:process\" or "
+                 "\"emulated-falcon:still:process\" was expected"};
+  if (detail.process) return open_in_process(detail.still ? "emulated-falcon:still" : "emulated-falcon", detail.table, settings);
   usb::FalconOptions options;
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, usb::read_falcon_image(settings.firmware));
   }
   options.boot.progress = usb::boot_progress_lines(settings.tell);
   auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.firmware = settings.firmware.empty()});
-  shared->device.mechanism().carry(detail == "still" ? still_hand() : gentle_hand());
+  shared->device.mechanism().carry(detail.still ? still_hand() : gentle_hand());
+  if (observer) shared->device.on_exchange(std::move(observer));
   options.force_gain = settings.force_gain;
   options.command_timeout_s = usb::falcon_command_timeout_s(settings.rate_hz);
   CATENA_TRY(std::unique_ptr<Device> device,

@@ -2,6 +2,7 @@
 /// real driver over it on any machine. Each read brings what waits, or after the latency time the chip's idle packet.
 /// `paced`: a reply comes no earlier than a millisecond after the last one, as over the bus. Any thread; the lock is its own.
 #pragma once
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -60,6 +61,13 @@ EmulatedHand gentle_hand();
 EmulatedHand still_hand();
 
 void list_emulated_falcon(std::vector<DeviceInfo>& to);
-Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, const DeviceSettings& settings);
+/// `detail`: empty or "still"; then, or alone, "process" or "process:FILE.csv": the emulated device is in a process of its own
+/// (haptics/device/process), which writes what its motors push to FILE. `observer`, which may be empty, hears every exchange, on the
+/// driver's thread; not of a process.
+Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, const DeviceSettings& settings,
+                                                     std::function<void(const EmulatedFalcon::Exchange&)> observer);
+
+/// The FILE of such a detail; empty: none.
+std::string table_of_emulated_falcon(const std::string& detail);
 
 }  // namespace catena::haptics

@@ -9,6 +9,8 @@
 #include <cstring>
 
 #include "engine/base/hash.h"
+#include "engine/base/input_files.h"
+#include "engine/base/machine_failure.h"
 
 namespace catena::haptics::log {
 
@@ -56,9 +58,14 @@ class Memory final : public Source {
 }  // namespace
 
 Result<std::unique_ptr<Source>> open_file(const std::string& path) {
-  const auto cannot = [&](const char* why) { return Error{path + ": cannot read: " + why + "; a recording (.catlog) was expected"}; };
+  const auto cannot = [&](const std::string& why, int code = 0) {
+    return Error{path + ": cannot read: " + why + "; a recording (.catlog) was expected", is_machine_failure(code)};
+  };
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return cannot(std::strerror(errno));
+  if (descriptor < 0) {
+    const int why = errno;
+    return cannot(cause_of(why), why);
+  }
   struct stat about {};
   if (::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode)) {
     ::close(descriptor);
@@ -76,19 +83,22 @@ bool is_regular(int descriptor) {
   return fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode);
 }
 
-std::string cannot_write(const std::string& path, int code) { return path + ": cannot write: " + std::strerror(code); }
+Error cannot_write(const std::string& path, int code) { return system_error(path + ": cannot write", code); }
 
 }  // namespace
 
 Result<BlockFile> BlockFile::create(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) return Error{cannot_write(path, errno)};
+  CATENA_CHECK(check_no_input(path));
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
+  if (descriptor < 0 && errno == ENXIO) return Error{path + ": nothing reads from this pipe or socket: expected a file, or a reader first"};
+  if (descriptor < 0) return cannot_write(path, errno);
+  static_cast<void>(::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK));
   BlockFile file(path, descriptor);
   if (is_regular(descriptor)) {
     // two recordings into one file would destroy each other
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       return Error{path + ": another program is recording into this file: expected another name"};
-    if (::ftruncate(descriptor, 0) != 0) return Error{cannot_write(path, errno)};
+    if (::ftruncate(descriptor, 0) != 0) return cannot_write(path, errno);
   }
   unsigned char preamble[kPreambleBytes];
   std::memcpy(preamble, kMagic, 8);
@@ -96,7 +106,7 @@ Result<BlockFile> BlockFile::create(const std::string& path) {
   std::memcpy(preamble + 12, &kByteOrder, 4);
   if (!file.write_all(preamble, sizeof preamble)) {
     file.discard();
-    return Error{file.error()};
+    return file.error();
   }
   return file;
 }
@@ -165,7 +175,7 @@ void BlockFile::discard() {
   descriptor_ = -1;
 }
 
-std::string BlockFile::error() const { return error_ == 0 ? std::string() : cannot_write(path_, error_); }
+Error BlockFile::error() const { return error_ == 0 ? Error{} : cannot_write(path_, error_); }
 
 namespace {
 

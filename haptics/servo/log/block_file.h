@@ -43,7 +43,7 @@ class BlockFile {
   void discard();  ///< closes and removes it: not even its header could be written
   /// Whether something could not be written.
   bool failed() const { return error_ != 0; }
-  std::string error() const;  ///< "FILE: cannot write: No space left on device"
+  Error error() const;  ///< "FILE: cannot write: No space left on device"
   /// Written so far.
   std::uint64_t bytes() const { return bytes_; }
 

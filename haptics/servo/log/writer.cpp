@@ -137,7 +137,7 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
   CATENA_TRY(BlockFile file, BlockFile::create(path));
   if (!file.write(BlockType::header, to_bytes(header)) || !file.sync()) {
     file.discard();
-    return Error{file.error()};
+    return file.error();
   }
   auto parts = std::make_unique<Parts>(std::move(file), path, options);
   auto thread = start_thread("the recording", [p = parts.get()] { p->loop(); });
@@ -211,8 +211,10 @@ Outcome LogWriter::finish() {
   p.wake.notify_one();
   p.thread.join();
   if (!p.blocks.file().failed()) return Done{};
-  return Error{fmt::format("{}; the recording ends with tick {} of {}", p.blocks.file().error(), p.blocks.last_tick(),
-                           p.newest_tick.load(std::memory_order_relaxed))};
+  Error error = p.blocks.file().error();
+  error.message +=
+      fmt::format("; the recording ends with tick {} of {}", p.blocks.last_tick(), p.newest_tick.load(std::memory_order_relaxed));
+  return error;
 }
 
 }  // namespace catena::haptics::log

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/base/result.h"
+#include "engine/base/value_scale.h"
 #include "render/passes/overlay/canvas.h"
 
 namespace catena::render {
@@ -37,6 +38,13 @@ TextExtent values_extent(const Canvas& canvas, const ScalarBarItem& bar) {
 std::pair<double, double> range(const ScalarBarItem& bar) {
   CATENA_ASSERT(!bar.colors.empty());
   return {bar.colors.front()[0], bar.colors.back()[0]};
+}
+
+/// Where a value lies on the way from the low to the high end.
+double share_of(const ScalarBarItem& bar, double value) {
+  const auto [lo, hi] = range(bar);
+  const auto place = [&](double v) { return scaled(v, bar.linear_below); };
+  return hi > lo ? (place(value) - place(lo)) / (place(hi) - place(lo)) : 0.5;
 }
 
 double title_thickness(const Canvas& canvas, const ScalarBarItem& bar, bool upright) {
@@ -107,8 +115,7 @@ std::vector<BarPlace> place_scalar_bars(const Canvas& canvas, const Overlay& ove
 }
 
 double tick_place(const BarPlace& place, const ScalarBarItem& bar, double value) {
-  const auto [lo, hi] = range(bar);
-  const double share = hi > lo ? (value - lo) / (hi - lo) : 0.5;
+  const double share = share_of(bar, value);
   return place.upright ? place.ramp.y + (1 - share) * place.ramp.height : place.ramp.x + share * place.ramp.width;
 }
 
@@ -121,10 +128,8 @@ void draw_scalar_bars(Canvas& canvas, const Overlay& overlay) {
     const Rect& r = place.ramp;
 
     // colours within a border
-    const auto [lo, hi] = range(bar);
     std::vector<shared::OverlayStop> stops;
-    for (const auto& c : bar.colors)
-      stops.push_back({hi > lo ? float((c[0] - lo) / (hi - lo)) : 0.5f, {float(c[1]), float(c[2]), float(c[3])}});
+    for (const auto& c : bar.colors) stops.push_back({float(share_of(bar, c[0])), {float(c[1]), float(c[2]), float(c[3])}});
     canvas.box({r.x - hair, r.y - hair, r.width + 2 * hair, r.height + 2 * hair}, {canvas.ink(), kBorderAlpha}, 0, hair);
     canvas.ramp(r, place.upright, stops);
 

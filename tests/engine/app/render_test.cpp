@@ -1,9 +1,11 @@
 /// `catena render` from the outside: pictures with a known answer, statistics, and one scene for both senses.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "engine/base/json.h"
 #include "engine/base/vec.h"
@@ -43,6 +45,117 @@ double chord(const Vec3& origin, const Vec3& unit, double lo, double hi) {
     far = std::min(far, std::max(t0, t1));
   }
   return std::max(0.0, far - near);
+}
+
+TEST(Import, APipeIsWrittenToByEveryFormat) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(program({"generate", "torus", "-o", folder / "g.vdb", "--resolution", "8"}).exit_code, 0);
+  for (const char* ending : {".vdb", ".vti", ".nrrd", ".nii", ".nii.gz"}) {
+    const std::string pipe = folder / (std::string("p") + ending), plain = folder / (std::string("f") + ending);
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const auto unread = program({"import", folder / "g.vdb", "-o", pipe});
+    EXPECT_EQ(unread.exit_code, 2) << ending;
+    EXPECT_NE(unread.err.find("nothing reads from this pipe"), std::string::npos) << unread.err;
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe)) << ending;
+    const auto read =
+        test::run_program("/bin/sh", {"-c", "cat " + pipe + " > " + folder.path() + "/got & sleep 0.2; " + test::program_path() +
+                                                " import " + folder.path() + "/g.vdb -o " + pipe + " && wait"});
+    EXPECT_EQ(read.exit_code, 0) << ending << read.err;
+    ASSERT_EQ(program({"import", folder / "g.vdb", "-o", plain}).exit_code, 0);
+    EXPECT_EQ(test::read_file(folder / "got").size(), test::read_file(plain).size()) << ending;
+  }
+}
+
+TEST(Render, FilesOfASeriesAreItsStepsInEveryCommand) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> files;
+  for (const char* step : {"10", "2", "1"}) {
+    files.push_back(folder / ("w_" + std::string(step) + ".vdb"));
+    const auto made = program({"generate", "abc", "-o", files.back(), "--resolution", "8", "--scale", step});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  const auto with_files = [&](const std::string& command, const std::vector<std::string>& more) {
+    std::vector<std::string> words{command};
+    words.insert(words.end(), files.begin(), files.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return program(words);
+  };
+  const auto info = with_files("info", {"--json"});
+  EXPECT_NE(info.out.find("\"steps\":3"), std::string::npos) << info.out << info.err;
+  EXPECT_NE(with_files("info", {}).out.find("3: " + folder.path() + "/w_1.vdb .. " + folder.path() + "/w_10.vdb"), std::string::npos);
+  EXPECT_EQ(with_files("render", {"-o", folder / "o%d.png", "--size", "16x16", "--quality", "draft", "--steps", "0:2"}).exit_code, 0);
+  EXPECT_TRUE(test::exists(folder / "o2.png"));
+  for (const std::vector<std::string>& lost :
+       {std::vector<std::string>{"-o", folder / "one.png"}, {"-o", folder / "f%d.png", "--frames", "2"}}) {
+    std::vector<std::string> words{"--size", "16x16", "--steps", "0:2"};
+    words.insert(words.end(), lost.begin(), lost.end());
+    EXPECT_EQ(with_files("render", words).exit_code, 2) << lost[1];
+  }
+  // the values of a step
+  const auto speed_in = [](const std::string& path) {
+    const std::string text = program({"info", path, "--json"}).out;
+    const std::size_t at = text.find("\"range\":[");
+    return at == std::string::npos ? 0.0 : std::stod(text.substr(text.find(',', at) + 1));
+  };
+  const auto text_of_range = [](const std::string& path) {
+    const std::string text = program({"info", path, "--json"}).out;
+    const std::size_t at = text.find("\"range\":[");
+    return at == std::string::npos ? "none" : text.substr(at, text.find(']', at) - at);
+  };
+  EXPECT_EQ(with_files("import", {"-o", folder / "i%02d.vti"}).exit_code, 0);
+  EXPECT_NE(with_files("info", {"--step", "2", "--json"}).out.find(text_of_range(folder / "w_10.vdb")), std::string::npos);
+  EXPECT_EQ(with_files("info", {"--step", "3"}).exit_code, 2);
+  EXPECT_NEAR(speed_in(folder / "i02.vti") / speed_in(folder / "i00.vti"), 10, 1e-5);
+  EXPECT_EQ(with_files("import", {"-o", folder / "one.vti", "--step", "1"}).exit_code, 0);
+  EXPECT_NEAR(speed_in(folder / "one.vti") / speed_in(folder / "i00.vti"), 2, 1e-5);
+  EXPECT_EQ(with_files("import", {"-o", folder / "none.vti"}).exit_code, 2);
+  EXPECT_EQ(with_files("import", {"-o", folder / "none.vti", "--step", "3"}).exit_code, 2);
+  // a file of another step, by another name
+  const std::string later = test::read_file(folder / "w_10.vdb");
+  std::filesystem::create_symlink("w_10.vdb", folder / "link.vdb");
+  for (const std::string& other :
+       {"/../" + std::filesystem::path(folder.path()).filename().string() + "/w_10.vdb", std::string("/link.vdb")}) {
+    EXPECT_EQ(with_files("import", {"-o", folder.path() + other, "--step", "0"}).exit_code, 2) << other;
+    EXPECT_EQ(test::read_file(folder / "w_10.vdb"), later) << other;
+  }
+  // nor is any step written where a later one would be
+  std::filesystem::create_symlink("w_10.vdb", folder / "s_002.vdb");
+  EXPECT_EQ(with_files("import", {"-o", folder / "s_%03d.vdb"}).exit_code, 2);
+  EXPECT_FALSE(test::exists(folder / "s_000.vdb"));
+  EXPECT_EQ(test::read_file(folder / "w_10.vdb"), later);
+  EXPECT_EQ(with_files("export", {"--field", "abc", "-o", folder / "e.vti", "--step", "2"}).exit_code, 0);
+  EXPECT_NEAR(speed_in(folder / "e.vti") / speed_in(folder / "i00.vti"), 10, 1e-5);
+  test::write_file(folder / "seeds.csv", "x,y,z\n0.1,0.2,0.3\n");
+  const std::vector<std::string> trace{"--field", "abc", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"};
+  EXPECT_EQ(with_files("trace", trace).exit_code, 0);
+  EXPECT_FALSE(test::exists(folder / "none.vti"));
+  // no series, or no data
+  files.push_back(folder / "i00.vti");
+  const auto mixed = with_files("info", {});
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_NE(mixed.err.find("are no series"), std::string::npos) << mixed.err;
+  EXPECT_EQ(program({"render", folder / "a.json", folder / "b.json", "-o", folder / "o.png"}).exit_code, 2);
+}
+
+TEST(Render, StepsBeyondTheLastAreRefused) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"f_0.001", "f_0.01", "f_0.0015"}) {
+    const auto made = program({"generate", "sphere", "-o", folder / (std::string(name) + ".vdb"), "--resolution", "6"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  test::write_file(folder / "s.json", R"({"fields": {"d": {"file": "f_*.vdb"}}, "isosurfaces": [{"field": "d", "level": 1}]})");
+  const auto drawn = [&](const std::vector<std::string>& steps) {
+    std::vector<std::string> words{"render", folder / "s.json", "-o", folder / "o%03d.png", "--size", "16x16", "--quality", "draft"};
+    words.insert(words.end(), steps.begin(), steps.end());
+    return program(words);
+  };
+  EXPECT_EQ(drawn({"--steps", "0:2"}).exit_code, 0);
+  EXPECT_EQ(drawn({"--step", "2", "--frames", "1"}).exit_code, 0);
+  for (const std::vector<std::string>& steps : {std::vector<std::string>{"--steps", "0:3"}, {"--steps", "0:99"}, {"--step", "3"}}) {
+    const auto run = drawn(steps);
+    EXPECT_EQ(run.exit_code, 2) << steps[1];
+    EXPECT_NE(run.err.find("the last step of"), std::string::npos) << run.err;
+  }
 }
 
 TEST(Render, AHomogeneousBoxSeenObliquelyIsExactAtEveryStep) {
@@ -120,8 +233,8 @@ TEST(Render, StatsHaveTheKeysOfTheContract) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto stats = json::read(folder / "o.json");
   ASSERT_TRUE(stats) << stats.error().message;
-  for (const char* key : {"device", "driver", "frames", "frame_ms", "first_frame_ms", "load_ms", "mirror_ms", "encode_ms", "cpu_bytes",
-                          "gpu_bytes", "validation_messages"})
+  for (const char* key : {"device", "driver", "frames", "frame_ms", "first_frame_ms", "load_ms", "mirror_ms", "choose_ms", "encode_ms",
+                          "cpu_bytes", "gpu_bytes", "validation_messages"})
     EXPECT_NE(stats->find(key), nullptr) << key;
   EXPECT_EQ(stats->find("frames")->number, 4);
   for (const char* key : {"median", "p99", "max"}) EXPECT_GT(stats->find("frame_ms")->find(key)->number, 0) << key;

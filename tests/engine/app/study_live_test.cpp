@@ -134,11 +134,17 @@ TEST(StudySession, DISABLED_IsGoneThrough) {
   go_through(folder);
 }
 
-std::size_t unfinished_recordings(const std::string& folder) {
+/// Whether a recording that was written to since `start` is unfinished.
+bool is_recording(const std::string& folder, fs::file_time_type start) {
   std::error_code code;
-  std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(folder + "/data/recordings", code)) count += entry.path().extension() != ".catlog";
-  return count;
+  for (const auto& entry : fs::directory_iterator(folder + "/data/recordings", code))
+    if (entry.path().extension() != ".catlog" && entry.last_write_time(code) >= start && !code) return true;
+  return false;
+}
+
+bool has_exited(pid_t child) {
+  siginfo_t info = {};
+  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == child;
 }
 
 TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
@@ -151,14 +157,17 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
   std::size_t in_a_trial = 0;
   const auto child = [&] { return test::start_case("StudySession.DISABLED_IsGoneThrough", {{"CATENA_TEST_STUDY=" + folder.path()}}); };
   for (int k = 0; k < 20; ++k) {
+    const auto start = fs::file_time_type::clock::now();
     const pid_t pid = child();
-    // some time of its life; longer on a machine on which it has not come to a trial yet
-    const auto pause = std::chrono::milliseconds(std::uniform_int_distribution<int>(100, 350)(random) * (in_a_trial > 0 ? 1 : 1 + k / 4));
-    std::this_thread::sleep_for(pause);
+    // every other time within a trial, however slow the machine is; else at some time of its life
+    const bool within = k % 2 == 1;
+    while (within && !is_recording(folder.path(), start) && !has_exited(pid)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(within ? std::uniform_int_distribution<int>(0, 20)(random)
+                                                                 : std::uniform_int_distribution<int>(100, 350)(random)));
     kill(pid, SIGKILL);
     int status = 0;
     waitpid(pid, &status, 0);
-    in_a_trial += unfinished_recordings(folder.path()) > 0 ? 1 : 0;
+    in_a_trial += is_recording(folder.path(), start) ? 1 : 0;
     const std::string now = test::exists(rows_file) ? test::read_file(rows_file) : "";
     // all that was whole is there as it was
     const std::string whole = before.substr(0, before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1);
@@ -196,7 +205,7 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
     EXPECT_GE(last_s - *first_s, (*rows)[i].time_s - 1e-9) << i;
     EXPECT_EQ(log->ending().find("ends cleanly"), 0u) << log->ending();
   }
-  EXPECT_EQ(unfinished_recordings(folder.path()), 0u);
+  EXPECT_FALSE(is_recording(folder.path(), fs::file_time_type::min()));
   EXPECT_EQ(test::read_file(folder / "data/questionnaire/007.csv"), "question,answer\nhard,yes\n");
 }
 

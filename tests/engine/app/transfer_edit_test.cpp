@@ -61,6 +61,39 @@ TEST(PlotFrame, RoundedNumbersAreShortAndNear) {
   EXPECT_EQ(rounded_in(1e300, 0, 1e-300), 1e300);
 }
 
+TEST(PlotFrame, PlacesLieOnItsScale) {
+  const PlotFrame frame{10, 0, 210, 100, 0.01, 100, 0.01};
+  EXPECT_NEAR(frame.x_of(1), 110, 1e-9);
+  EXPECT_NEAR(frame.value_at(60), 0.1, 1e-12);
+  for (const double x : {10.0, 37.0, 110.0, 210.0}) EXPECT_NEAR(frame.x_of(frame.value_at(x)), x, 1e-9);
+  EXPECT_NEAR(frame.rounded_at(12) / frame.value_at(12), 1, 0.01) << "small values are not rounded away";
+  OpacityPoints points{{0.01, 0}, {0.011, 0.1}, {100, 0.5}};
+  move_point(points, frame, 1, 0.02, 0.1);
+  EXPECT_EQ(points[1].value, 0.02);
+  EXPECT_NEAR(std::log1p(-alpha_at({{0.01, 0}, {100, 0.5}}, 1, 0.01)), 0.5 * std::log1p(-0.5), 1e-12);
+  EXPECT_EQ(histogram_bars({0.15f, 0.2f, 1.5f, 50}, 0.01, 100, 4, 0.01),
+            (std::vector<float>{0, 1, std::log1p(1.0f) / std::log1p(2.0f), std::log1p(1.0f) / std::log1p(2.0f)}));
+}
+
+TEST(TransferEdits, AMappingIsStatedWithAllThatTheVolumeShows) {
+  scene::Volume volume;
+  volume.where.label = "volumes[0]";
+  volume.transfer.colors = {{1, {0, 0, 0}}, {100, {1, 1, 1}}};
+  volume.transfer.opacities = {{1, 0}, {100, 0.5}};
+  const auto edit = transfer_edit(volume, 1);
+  ASSERT_TRUE(edit);
+  const auto find = [](const TextEdits& edits, const std::string& end) -> std::string {
+    for (const auto& e : edits)
+      if (e.pointer.ends_with(end)) return e.value.value_or("removed");
+    return "none";
+  };
+  EXPECT_EQ(find(mapping_edits(volume, *edit, {scene::ValueMapping::Kind::log, 0}), "/mapping"), "\"log\"");
+  EXPECT_EQ(find(mapping_edits(volume, *edit, {scene::ValueMapping::Kind::symlog, 2}), "/linear_below"), "2");
+  EXPECT_EQ(find(mapping_edits(volume, *edit, {}), "/mapping"), "removed");
+  volume.transfer.opacities.front().value = 0;
+  EXPECT_TRUE(mapping_edits(volume, *transfer_edit(volume, 1), {scene::ValueMapping::Kind::log, 0}).empty());
+}
+
 TEST(TransferPoints, TheNearestHandleWithinReachIsFound) {
   const OpacityPoints points{{0, 0}, {0.5, 0.25}, {0.52, 0.25}, {1, 0.5}};
   EXPECT_EQ(point_at(points, kFrame, kFrame.x_of(0.5) - 2, kFrame.y_of(0.25), 8), 1u);

@@ -205,6 +205,23 @@ TEST_F(ViewerDraft, IsKeptWhereAnInterruptEndsTheWindowAndGoesWhereThePersonDisc
   for (const char* bad : {"never", "lost", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
 }
 
+// before: "saved", and what somebody else had written was gone
+TEST_F(ViewerDraft, WhatAnotherProgramHasWrittenIsNotReplacedUnasked) {
+  const int code = test::drive_windows(
+      folder_,
+      "view flow.json --size 900x600\nkeys o\n"
+      "sed 's/circle/saddle/' flow.json > theirs.json; cp theirs.json flow.json\n"
+      "keys ctrl+s; sleep 0.5; keys Escape; sleep 0.3; cmp flow.json theirs.json || echo 'replaced'\n"
+      // Save as is what Enter does
+      "keys ctrl+s; sleep 0.5; keys Return; sleep 0.5; keys ctrl+a; xdotool type --delay 60 'mine'; keys Return; written mine.json\n"
+      "cmp flow.json theirs.json || echo 'replaced'\n"
+      // a scene that is removed is not made again unasked
+      "titled 'mine.json'; rm mine.json; keys ctrl+s; sleep 0.5; ls mine.json 2> /dev/null && echo 'made again'\n"
+      "kill -TERM $V; wait $V; exit 0\n");
+  EXPECT_EQ(code, 0) << log();
+  for (const char* bad : {"never", "replaced", "made again"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
+}
+
 TEST_F(ViewerDraft, QuitAsksWhileItRecordsAndNoOtherKeyQuits) {
   ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600 --record run.catlog",
                                "titled 'recording'\n"

@@ -8,11 +8,11 @@ class ViewerHeadsetLoss : public viewer_headset_rig::ViewerHeadset {};
 
 /// The session is lost, then the whole runtime: said once each, the window goes on, and the headset comes back with a new device.
 TEST_F(ViewerHeadsetLoss, WhatIsLostComesBack) {
-  ASSERT_EQ(view("--seconds 5", "size=32x32 fail=xrEndFrame:6:-17 fail=xrWaitFrame:20:-13"), 0) << log();
+  ASSERT_EQ(view("--seconds 5", "size=32x32 fail=xrEndFrame:4:-17 fail=xrWaitFrame:12:-13"), 0) << log();
   EXPECT_NE(log().find("XR_ERROR_SESSION_LOST"), std::string::npos) << log();
   EXPECT_NE(log().find("XR_ERROR_INSTANCE_LOST"), std::string::npos) << log();
   EXPECT_EQ(lost_lines(), 2) << log();
-  EXPECT_GT(seen("pictures"), 20);
+  EXPECT_GT(seen("pictures"), 12);
   EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(seen("objects"), 0);
 }

@@ -193,7 +193,7 @@ TEST(CurveFiles, ByTheirEnding) {
   EXPECT_TRUE(is_curve_file("x.trk"));
   EXPECT_FALSE(is_curve_file("x.obj"));
   const auto none = load_curves(folder / "none.trk");
-  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtp, .vtk or .vtu) was expected"), std::string::npos)
+  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtp, .vtk, .vtu, .pvd or .series) was expected"), std::string::npos)
       << none.error().message;
 }
 

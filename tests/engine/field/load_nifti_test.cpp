@@ -100,6 +100,39 @@ TEST(LoadNifti, TheSformWinsOverTheQform) {
   EXPECT_EQ(m.world_from_index(Vec3(1, 10, 100)), Vec3(88, 174, -62));
 }
 
+TEST(LoadNifti, ASingularSformLeavesTheQformAndADifferenceIsSaid) {
+  TemporaryFolder folder;
+  Nifti n = numbers<float>(16);
+  n.put<std::int16_t>(252, 1);
+  n.put(80, 2.f), n.put(84, 3.f), n.put(88, 4.f);
+  n.put(268, 5.f), n.put(272, 6.f), n.put(276, 7.f);
+  const auto at_one = [&](const Nifti& file) {
+    const auto field = load_path(file.save(folder / "a.nii"));
+    EXPECT_TRUE(field) << field.error().message;
+    return field ? std::pair(field->scalar->mapping().world_from_index(Vec3(1.0)), field->notes.empty() ? "" : field->notes[0])
+                 : std::pair(Vec3(0.0), field.error().message);
+  };
+  // singular, not finite, and all zero: the qform
+  for (const float x : {0.f, std::numeric_limits<float>::quiet_NaN()}) {
+    n.sform({x, 0, 0, 1, 0, 3, 0, 1, 0, 0, 4, 1});
+    EXPECT_EQ(at_one(n), std::pair(Vec3(7, 9, 11), std::string("the sform cannot be inverted: the qform is used")));
+  }
+  n.sform({2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 7});
+  EXPECT_EQ(at_one(n), std::pair(Vec3(7, 9, 11), std::string()));
+  n.sform({2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 19});
+  EXPECT_EQ(at_one(n).first, Vec3(7, 9, 23));
+  EXPECT_NE(at_one(n).second.find("differ, by up to 12 at the corners: the sform is used"), std::string::npos) << at_one(n).second;
+  // the library makes 1 of a size of 0
+  n.put<std::int16_t>(254, 0), n.put(84, 0.f);
+  EXPECT_EQ(at_one(n), std::pair(Vec3(7, 7, 11), std::string("pixdim[2], the size of a voxel, is 0: 1 is taken for it")));
+  // without a qform there is nothing left
+  n.put<std::int16_t>(252, 0);
+  n.sform({0, 0, 0, 1, 0, 3, 0, 1, 0, 0, 4, 1});
+  const auto refused = load_path(n.save(folder / "a.nii"));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("(sform) cannot be inverted"), std::string::npos) << refused.error().message;
+}
+
 TEST(LoadNifti, TheQformThenTheVoxelSizes) {
   TemporaryFolder folder;
   Nifti n = numbers<float>(16);
@@ -171,8 +204,14 @@ TEST(LoadNifti, TheFourthAxisIsTimeOnlyWhereTheHeaderSaysSo) {
   ASSERT_TRUE(series) << series.error().message;
   EXPECT_EQ(series->times, (std::vector<double>{0, 0.5, 1}));
   EXPECT_EQ(series->scalar->min_value(), 24);
+  EXPECT_EQ(describe(request.path).value()[0].type, "float32, first of 3 volumes, 0.5 s apart from 0 s on");
   request.step = 99;
   EXPECT_EQ(load(request).value().scalar->max_value(), 71);
+  n.put(92, 0.f);
+  request.path = n.save(folder / "still.nii");
+  const auto still = load(request);
+  EXPECT_TRUE(still.value().times.empty());
+  EXPECT_NE(still.value().notes.at(0).find("pixdim[4], the time between them, is 0"), std::string::npos) << still.value().notes[0];
 }
 
 TEST(LoadNifti, BadFilesHaveTheirSentence) {

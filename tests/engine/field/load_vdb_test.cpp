@@ -154,7 +154,8 @@ TEST(LoadVdb, VectorsAndTheVentricleRoundTrip) {
   for (const GridInfo& i : info) names.push_back(i.name + " " + i.type);
   EXPECT_EQ(names, (std::vector<std::string>{"density float", "transmural float", "fibre vec3s", "valid bool"}));
   EXPECT_FALSE(info[3].usable);
-  EXPECT_EQ(info[0].stats.active_voxels, 33u * 33 * 33);
+  EXPECT_EQ(info[0].stats.active_voxels, load(request(folder / "lv.vdb", "density")).value().scalar->grid()->stats().active_voxels);
+  EXPECT_LT(info[0].stats.active_voxels, 33u * 33 * 33) << "outside the wall nothing is valid";
   const auto fibre = load(request(folder / "lv.vdb", "fibre")).value().vector;
   const VectorGrid& sampled = *items[2].field.vector->grid();
   std::vector<float> a(3 * 33 * 33 * 33), b(a.size());
@@ -196,6 +197,12 @@ TEST(LoadVdb, MaskByValueAndOnDemand) {
   EXPECT_TRUE(masked->sample(Vec3(-0.5, 4, 2), cursor).inside);
   EXPECT_FALSE(masked->sample(Vec3(0.5, 4, 2), cursor).inside);
   EXPECT_EQ(masked->max_value(), 570);
+  // what is described is what is loaded
+  for (const GridStats& stats : {masked->grid()->stats(), describe(folder / "m.vdb").value().at(0).stats}) {
+    EXPECT_EQ(stats.active_voxels, 90u);
+    EXPECT_EQ(stats.max, 570);
+  }
+  EXPECT_EQ(describe(folder / "m.vdb").value().at(0).shown.hi, 570);
   LoadRequest r = request(folder / "m.vdb");
   r.valid_grid = std::nullopt;
   const auto bare = load(r).value().scalar;
@@ -282,6 +289,19 @@ TEST(LoadVdb, TilesOfAnyExtentCostNothing) {
   Cursor cursor;
   EXPECT_EQ(field->scalar->sample(Vec3(20000.5, 2000, 2000), cursor).value, 7);
   EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120 + 8 * (std::uint64_t{1} << 36));
+  // a mask of tiles and single voxels
+  auto valid = openvdb::BoolGrid::create(false);
+  valid->setName("valid");
+  valid->tree().addTile(3, {4096, 0, 0}, true, true);
+  valid->tree().addTile(2, {2 * 4096 + 128, 0, 0}, true, true);
+  valid->tree().addTile(1, {2 * 4096 + 8, 0, 0}, true, true);
+  for (int x = 0; x < 5; ++x) valid->tree().setValue({3 * 4096 + x, 0, 0}, true);
+  save(folder / "masked.vdb", {wide, valid});
+  const auto described = describe(folder / "masked.vdb");
+  ASSERT_TRUE(described) << described.error().message;
+  const GridInfo& info = described->at(0);
+  EXPECT_EQ(info.stats.active_voxels, (std::uint64_t{1} << 36) + (std::uint64_t{1} << 21) + 512 + 5);
+  EXPECT_EQ(info.stats.min, 7);
 }
 
 /// A grid that has the tree of another one.

@@ -139,6 +139,31 @@ TEST(ColorMaps, ATableComesBeforeAName) {
   EXPECT_EQ(color_table({}, {}, 3, 2).back().value, 1) << "no values at all: 0 to 1";
 }
 
+/// Colours at values by hand: a logarithm's decades are as long, symlog is odd and linear about 0.
+TEST(ColorMaps, LieOnTheirScale) {
+  using Kind = ValueMapping::Kind;
+  const auto grey_at = [](const std::vector<ColorPoint>& table, double value) {
+    std::size_t i = 1;
+    while (i + 1 < table.size() && table[i].value < value) ++i;
+    const ColorPoint &a = table[i - 1], &b = table[i];
+    return a.color.r + (value - a.value) / (b.value - a.value) * (b.color.r - a.color.r);
+  };
+  const NamedColors log{"grey", {{0.001, 1000}}, {Kind::log, 0}}, symlog{"grey", {{-100, 100}}, {Kind::symlog, 1}};
+  const auto decades = color_table({}, log, 0, 0), both = color_table({}, symlog, 0, 0);
+  for (int power = -3; power <= 3; ++power) EXPECT_NEAR(grey_at(decades, std::pow(10.0, power)), (power + 3) / 6.0, 1e-3) << power;
+  EXPECT_NEAR(grey_at(decades, std::sqrt(10.0)), 3.5 / 6, 1e-3) << "between the points, too";
+  const double far = 1 + std::log(100.0);
+  for (const auto& [value, place] :
+       {std::pair{-100.0, -far}, {-10.0, -1 - std::log(10.0)}, {-0.5, -0.5}, {0.0, 0.0}, {1.0, 1.0}, {100.0, far}})
+    EXPECT_NEAR(grey_at(both, value), 0.5 + 0.5 * place / far, 1e-3) << value;
+  // a table of values alike; without linear_below a thousandth of the greatest
+  const std::vector<ColorPoint> rows{{0.01, {0, 0, 0}}, {100, {1, 0, 0}}};
+  EXPECT_NEAR(grey_at(color_table(rows, {"", {}, {Kind::log, 0}}, 0, 0), 1), 0.5, 1e-3);
+  EXPECT_EQ(linear_below({Kind::symlog, 0}, -7, 2), 7e-3);
+  EXPECT_FALSE(mapping_problem({Kind::log, 0}, 0, "x").empty());
+  EXPECT_TRUE(mapping_problem({Kind::symlog, 0}, 0, "x").empty());
+}
+
 TEST(ColorSpaces, LabAndMshOfKnownColours) {
   const Vec3 white = lab_from_srgb({1, 1, 1}), red = lab_from_srgb({1, 0, 0});
   EXPECT_LT(norm(white - Vec3(100, 0, 0)), 0.02);

@@ -474,5 +474,30 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   EXPECT_EQ(i, files.size());
 }
 
+TEST(Document, WhatIsOnTheDiskIsComparedAndTakenOver) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "a.json", mine = R"({"fields": {"a": {"analytic": "circle"}}})",
+                    theirs = R"({"fields": {"b": {"analytic": "saddle"}}})";
+  test::write_file(path, mine);
+  Document document = open(path);
+  EXPECT_EQ(document.on_disk(), Document::OnDisk::as_known);
+  test::write_file(path, theirs);
+  EXPECT_EQ(document.on_disk(), Document::OnDisk::changed);
+  expect_done(document.take_from_disk());
+  EXPECT_EQ(document.text(), theirs);
+  EXPECT_FALSE(document.is_modified());
+  EXPECT_EQ(document.on_disk(), Document::OnDisk::as_known);
+  document.undo();
+  EXPECT_EQ(document.text(), mine);
+  EXPECT_TRUE(document.is_modified());
+  test::write_file(path, "{");
+  EXPECT_FALSE(document.take_from_disk());
+  EXPECT_EQ(document.text(), mine) << "all stays";
+  std::filesystem::remove(path);
+  EXPECT_EQ(document.on_disk(), Document::OnDisk::gone);
+  std::filesystem::create_directory(path);
+  EXPECT_EQ(document.on_disk(), Document::OnDisk::no_file);
+}
+
 }  // namespace document_test
 }  // namespace catena::scene

@@ -187,23 +187,42 @@ TEST(ColoredLines, TheIndicatorNamesAField) {
   expect_error(parse_scene(text("\"feld\": \"swirl\""), "s.json"), 2, {"feld", "field"});
 }
 
-TEST(Lines, ReleasedOnesAreThoseThatWereMadeUntilSomebodyAsksAgain) {
-  auto scene = parse_scene(scene_text(R"("seeds": {"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 5}})"), "s.json");
-  ASSERT_TRUE(scene) << scene.error().message;
+TEST(Lines, VisitedOnesAreTheLinesAndAreKeptOnlyWhileTheyAreFew) {
+  const std::string seeds = R"("seeds": {"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})";
+  auto all = parse_scene(scene_text(seeds), "s.json"), scene = parse_scene(scene_text(seeds), "s.json");
+  ASSERT_TRUE(all && scene);
+  const auto lines = use_lines(*all, set_of(*all));
+  ASSERT_TRUE(lines) << lines.error().message;
   const Entity set = set_of(*scene);
   EXPECT_EQ(lines_version(*scene, set), 0u) << "not made";
-  const auto first = use_lines(*scene, set);
-  ASSERT_TRUE(first) << first.error().message;
+  for (const std::size_t most : {std::size_t(1000), kMostKeptKnots}) {
+    std::size_t visited = 0, blocks = 0;
+    std::weak_ptr<const flow::Curve> one;
+    ASSERT_TRUE(visit_lines(
+        *scene, set,
+        [&](const LineBlock& block) -> Outcome {
+          EXPECT_EQ(block.of, 300u);
+          for (const flow::CurvePtr& curve : block.curves) {
+            const std::vector<flow::Knot>&a = curve->knots(), &b = lines->at(visited)->knots();
+            EXPECT_EQ(a.size(), b.size());
+            EXPECT_EQ(a.back().p, b.back().p);
+            ++visited;
+          }
+          EXPECT_EQ(block.seeds, visited);
+          one = block.curves.front();
+          ++blocks;
+          return Done{};
+        },
+        most));
+    EXPECT_EQ(visited, 300u);
+    EXPECT_GT(blocks, 1u);
+    EXPECT_EQ(one.expired(), most < kMostKeptKnots) << "nobody else holds them";
+    EXPECT_NE(lines_version(*scene, set), 0u);
+    EXPECT_EQ(lines_bounds(*scene, set).hi, lines_bounds(*all, set_of(*all)).hi);
+  }
   const std::uint64_t version = lines_version(*scene, set);
-  EXPECT_NE(version, 0u);
-  release_lines(*scene, set);
-  EXPECT_EQ(first->at(0).use_count(), 1) << "nobody else holds them";
-  EXPECT_EQ(lines_version(*scene, set), version);
-  const auto again = use_lines(*scene, set);
-  ASSERT_TRUE(again);
-  EXPECT_NE(lines_version(*scene, set), version);
-  ASSERT_EQ(again->size(), first->size());
-  for (std::size_t i = 0; i < first->size(); ++i) EXPECT_EQ(again->at(i)->knots().size(), first->at(i)->knots().size());
+  ASSERT_TRUE(use_lines(*scene, set));
+  EXPECT_EQ(lines_version(*scene, set), version) << "they were kept";
 }
 
 TEST(Lines, MoreKnotsThanAllowedAreSaidAndEveryBlockIsTold) {

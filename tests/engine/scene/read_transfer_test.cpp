@@ -61,6 +61,45 @@ TEST_F(ReadTransfer, MapsByName) {
   refused("\"color\": [[0, 0, 0, 0]],\n\"range\": [0, 1]", "s.json:3", {"beside a table", "expected"});
 }
 
+TEST_F(ReadTransfer, MappingsAreReadAndWrittenAndALogarithmNeedsValuesAboveZero) {
+  const TransferFunction log = transfer_of("\"color\": \"grey\", \"range\": [0.01, 10], \"mapping\": \"log\"");
+  EXPECT_EQ(log.named.mapping.kind, ValueMapping::Kind::log);
+  const TransferFunction symlog = transfer_of("\"mapping\": \"symlog\", \"linear_below\": 0.5");
+  EXPECT_EQ(symlog.named.mapping, (ValueMapping{ValueMapping::Kind::symlog, 0.5}));
+  refused("\"mapping\": \"logarithm\"", "s.json:2", {"linear", "symlog", "expected"});
+  refused("\"mapping\": \"log\",\n\"linear_below\": 1", "s.json:3", {"\"log\"", "\"symlog\" was expected"});
+  refused("\"mapping\": \"symlog\", \"linear_below\": -1", "s.json:2", {"-1", "expected"});
+  for (const char* what : {"\"color\": \"grey\", \"range\": [0, 1]", "\"extinction\": [[0, 1], [2, 3]]", "\"opacity\": [[-2, 0], [1, 0.5]]",
+                           "\"color\": [[-1, 0, 0, 0], [1, 1, 1, 1]]"})
+    refused(std::string(what) + ",\n\"mapping\": \"log\"", "s.json:3", {"\"log\"", "begins at", "values above 0", "symlog"});
+  // of a file: its own, the scene's instead, and a range that lays its points anew on the scale
+  const std::string file = R"({"mapping": "log", "extinction": [[0.1, 0], [1, 1], [100, 2]]})";
+  EXPECT_EQ(file_of(file).named.mapping.kind, ValueMapping::Kind::log);
+  EXPECT_EQ(file_of(file, ", \"mapping\": \"linear\"").named.mapping.kind, ValueMapping::Kind::linear);
+  EXPECT_NEAR(file_of(file, ", \"range\": [1, 1000000]").extinctions.at(1).value, 100, 1e-9);
+  EXPECT_NEAR(
+      file_of(R"({"extinction": [[0, 0], [0.5, 1], [1, 2]]})", ", \"mapping\": \"log\", \"range\": [1, 100]").extinctions.at(1).value, 10,
+      1e-9);
+}
+
+/// The automatic opacity lies on the scale; data that reach to 0 and below are refused once they are known.
+TEST_F(ReadTransfer, AutomaticOpacityFollowsTheMapping) {
+  auto scene = volume("\"color\": \"grey\", \"range\": [0.1, 10], \"mapping\": \"log\"");
+  ASSERT_TRUE(scene);
+  ASSERT_TRUE(use_drawn_field(*scene, find_field(*scene, "ball"), {}));
+  scene->world.each<Volume>([](Entity, const Volume& v) {
+    const auto& rows = v.transfer.extinctions;
+    ASSERT_GT(rows.size(), 8u);
+    EXPECT_NEAR(rows[rows.size() / 2].value, 1, 1e-6) << "halfway by the logarithm";
+  });
+  scene = volume("\"color\": \"grey\",\n\"mapping\": \"log\"");
+  ASSERT_TRUE(scene);
+  const auto refused = use_drawn_field(*scene, find_field(*scene, "ball"), {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("s.json:3: "), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("begins at"), std::string::npos) << refused.error().message;
+}
+
 TEST_F(ReadTransfer, GradientOpacity) {
   const TransferFunction transfer = transfer_of("\"gradient_opacity\": [[0, 0], [2, 0.5], [4, 1]]");
   ASSERT_EQ(transfer.gradient_factors.size(), 3u);

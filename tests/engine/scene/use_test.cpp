@@ -191,8 +191,8 @@ TEST(UseMesh, BadMeshesAreRefusedWithTheirLine) {
     EXPECT_TRUE(message.starts_with((folder / "s.json") + ":2: ")) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  refused(R"({"name": "a", "file": "none.stl"})", "does not exist; a .stl, .obj, .ply, .gii, .vtp, .vtk, .vtu or .vtm file was expected");
-  refused(R"({"name": "a", "file": "quad.x3d"})", "unknown kind");
+  refused(R"({"name": "a", "file": "none.stl"})", "does not exist; a .stl, .obj, .ply, .gii, .vtp, .vtk, .vtu, .vtm, .pvd or .series file was expected");
+  refused(R"({"name": "a", "file": "quad.x3q"})", "unknown kind");
   refused(R"({"name": "A", "file": "quad.obj"})", "is not allowed");
   refused(R"({"name": "a", "file": "quad.obj", "opacity": 1.5})", "\"opacity\" is 1.5; a number from 0 to 1 was expected");
   refused(R"({"name": "a", "file": "quad.obj", "scale": 0})", "scale");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "tests/engine/vtk/dicom_files.h"
 
 namespace catena::test::vtk_files {
 
@@ -188,46 +189,36 @@ inline std::string mhd(const std::string& data) {
   return "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_FLOAT\nElementDataFile = " + data + "\n";
 }
 
-/// One slice of 3 x 2 stored numbers as explicit little-endian DICOM: value = 2 stored - 1000. `at`: the first pixel's place; rows run
-/// along x, columns along y; a number of the slice so that series are told apart.
-inline std::string dicom(int number, const Vec3& at, const std::vector<int>& stored, const std::string& series = "1.2.3") {
-  std::string bytes(128, '\0');
-  bytes += "DICM";
-  const auto two = [](int v) { return std::string{static_cast<char>(v & 255), static_cast<char>(v >> 8 & 255)}; };
-  const auto element = [&](int group, int tag, const char* kind, std::string value) {
-    if (value.size() % 2 != 0) value += kind[0] == 'U' && kind[1] == 'I' ? '\0' : ' ';
-    std::string out = two(group) + two(tag) + kind;
-    const auto n = static_cast<int>(value.size());
-    if (std::string(kind) == "OB" || std::string(kind) == "OW")
-      out += two(0) + two(n) + two(n >> 16);
-    else
-      out += two(n);
-    return out + value;
-  };
-  std::string meta = element(2, 1, "OB", std::string("\0\1", 2)) + element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2") +
-                     element(2, 3, "UI", series + "." + std::to_string(number)) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1") +
-                     element(2, 0x12, "UI", "1.2.3.4");
-  std::string length = two(static_cast<int>(meta.size())) + two(0);
-  bytes += element(2, 0, "UL", length) + meta;
-  std::string pixels;
-  for (const int v : stored) pixels += two(v);
-  bytes += element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(8, 0x18, "UI", series + "." + std::to_string(number)) +
-           element(8, 0x60, "CS", "CT") + element(8, 0x103e, "LO", "Chest " + series) + element(0x20, 0xd, "UI", "1.2") +
-           element(0x20, 0xe, "UI", series) + element(0x20, 0x13, "IS", std::to_string(number)) +
-           element(0x20, 0x32, "DS", fmt::format("{}\\{}\\{}", at.x, at.y, at.z)) + element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0") +
-           element(0x20, 0x52, "UI", "1.2.9") + element(0x28, 2, "US", two(1)) + element(0x28, 4, "CS", "MONOCHROME2") +
-           element(0x28, 0x10, "US", two(2)) + element(0x28, 0x11, "US", two(3)) + element(0x28, 0x30, "DS", "0.5\\0.25") +
-           element(0x28, 0x100, "US", two(16)) + element(0x28, 0x101, "US", two(16)) + element(0x28, 0x102, "US", two(15)) +
-           element(0x28, 0x103, "US", two(0)) + element(0x28, 0x1052, "DS", "-1000") + element(0x28, 0x1053, "DS", "2") +
-           element(0x7fe0, 0x10, "OW", pixels);
-  return bytes;
-}
-
 /// A tetrahedron with corners 0, x, y, z at 1, 2, 3.
 inline std::string ply() {
   return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list "
          "uchar int "
          "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+}
+/// A box of 12 triangles with edges of 0.25 at (615850.125, 5846925.0625, 758.03), in doubles. `said`: the format in the header.
+inline std::string ply_doubles(const std::string& format, const std::string& said) {
+  std::string bytes =
+      "ply\nformat " + said +
+      " 1.0\nelement vertex 8\nproperty double x\nproperty double y\nproperty double z\nelement face 12\nproperty list uchar int "
+      "vertex_indices\nend_header\n";
+  const auto put = [&](auto v, const char* end) {
+    std::string raw(sizeof v, '\0');
+    std::memcpy(raw.data(), &v, sizeof v);
+    if (format == "binary_big_endian") std::reverse(raw.begin(), raw.end());
+    bytes += format == "ascii" ? fmt::format("{}{}", v, end) : raw;
+  };
+  for (int n = 0; n < 8; ++n) {
+    put(615850.125 + 0.25 * (n & 1), " ");
+    put(5846925.0625 + 0.25 * (n >> 1 & 1), " ");
+    put(758.03 + 0.25 * (n >> 2), "\n");
+  }
+  constexpr int kFaces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  for (const auto& face : kFaces) {
+    put(std::uint8_t{3}, " ");
+    for (const int corner : face) put(corner, " ");
+  }
+  return bytes;
 }
 inline std::string gifti() {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GIFTI Version=\"1.0\" NumberOfDataArrays=\"2\">\n<DataArray "

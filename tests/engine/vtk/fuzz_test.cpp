@@ -23,6 +23,14 @@ struct Seed {
   bool mesh = false;
 };
 
+/// Functional groups and a vector of offsets, so that both ways to place frames are met.
+std::string dicom_frames() {
+  using files::Dicom;
+  Dicom d = files::dicom_image({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}).decimals(files::kFrames, {2}, "IS").decimals(0x3004000c, {0, 3});
+  const Dicom rescale = Dicom().sequence(0x00289145, {Dicom().decimals(files::kSlope, {2}).decimals(files::kIntercept, {-1})});
+  return d.sequence(0x52009229, {rescale}).sequence(0x52009230, {Dicom().decimals(0x00200012, {1}, "IS"), rescale}).file();
+}
+
 std::vector<Seed> seeds() {
   const auto linear = [](const Vec3& p) { return p.x + 2 * p.y; };
   const auto counted = [](int k, int j, int i) { return 100 * k + 10 * j + i; };
@@ -34,7 +42,10 @@ std::vector<Seed> seeds() {
           {"a.npy", files::npy({2, 3, 4}, "<f8", false, counted)},
           {"a.nrrd", files::nrrd("left-posterior-superior")},
           {"a.mha", files::mha("RAI")},
+          {"a.dcm", dicom_frames()},
           {"a.ply", files::ply(), true},
+          {"b.ply", files::ply_doubles("binary_big_endian", "binary_big_endian"), true},
+          {"b.nrrd", files::nrrd_vectors("las", "measurement frame: (0,1,0) (0,0,1) (1,0,0)\n")},
           {"a.gii", files::gifti(), true},
           {"a.vtp", files::vtp(), true}};
 }

@@ -61,7 +61,7 @@ ReadReply reply_of(const std::string& answer) {
 /// Answers come from the forger, with limits that a test can wait for.
 class AnswerFuzz : public testing::Test {
  protected:
-  AnswerFuzz() { reader_settings() = {helper_path("test_forger"), 2, 1}; }
+  AnswerFuzz() { reader_settings() = {helper_path("test_forger"), 5, 3}; }
   ~AnswerFuzz() override { reader_settings() = {}; }
 
   Result<AnyField> load_forged(const std::string& answer) {
@@ -153,7 +153,7 @@ void walk(const nanovdb::NanoGrid<T>& grid, Random& random) {
   if constexpr (std::is_same_v<T, nanovdb::ValueMask>) {
     EXPECT_GT(count_of(grid), 0u);
     const auto modest = [](double bytes) { return ask_for_memory("it", bytes, std::uint64_t{64} << 20); };
-    (void)erode(grid, box, &NanoMemory::reserve, modest);
+    (void)erode(grid, box, &grid, &NanoMemory::reserve, modest);
   } else {
     EXPECT_GT(stats_of(grid, nullptr).stats.active_voxels, 0u);
   }

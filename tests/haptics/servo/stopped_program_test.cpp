@@ -45,12 +45,16 @@ class Plain final : public Device {
   DeviceInput read() noexcept override { return {.position_m = {0, 0, 0.13}}; }
   void write(const DeviceOutput& output) noexcept override {
     if (packets_.size() < kMaxPackets) packets_.push_back({now_ns(), stopped_ ? 0 : norm(output.force_n)});
+    if (stops_left_ > 0 && packets_.size() % 200 == 0 && --stops_left_ >= 0) kill(getpid(), SIGSTOP);
   }
   void stop() noexcept override { stopped_ = true; }
   void resume() noexcept override { stopped_ = false; }
+  /// From now on it stops the program itself so many times, at the end of a write.
+  void stop_the_program(int times) { stops_left_ = times; }
 
  private:
   std::vector<Packet>& packets_;
+  std::atomic<int> stops_left_{0};
   DeviceCapabilities capabilities_;
   std::atomic<bool> stopped_{false};
 };
@@ -76,8 +80,11 @@ TEST(StoppedProgram, DISABLED_HoldsAHandAndIsStopped) {
   std::vector<Packet> packets;
   packets.reserve(kMaxPackets);
   auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.homed = true});
-  const bool plain = test::child_variable("CATENA_DEVICE_OF_THE_CHILD") == "plain";
-  std::unique_ptr<Device> device = plain ? std::make_unique<Plain>(packets) : emulated_falcon(shared, packets);
+  const std::string kind = test::child_variable("CATENA_DEVICE_OF_THE_CHILD");
+  auto plain = std::make_unique<Plain>(packets);
+  Plain* stops = kind == "stops in write" ? plain.get() : nullptr;
+  std::unique_ptr<Device> device = std::move(plain);
+  if (kind == "falcon") device = emulated_falcon(shared, packets);
   auto program = std::make_shared<Program>(*tests::ball_link_program());
   program->limits.ramp_in_s = kRampS;
   Servo servo(*device, program, {});
@@ -88,6 +95,7 @@ TEST(StoppedProgram, DISABLED_HoldsAHandAndIsStopped) {
   }
   nap_ms(200);
   std::ofstream(path + ".ready") << "1";
+  if (stops != nullptr) stops->stop_the_program(kStops);
   for (int i = 0; i < 100000 && !test::exists(path + ".enough"); ++i) nap_ms(1);
   servo.stop();
   device.reset();
@@ -112,7 +120,7 @@ void stop_and_go(const std::string& device, std::vector<Packet>& packets, std::v
   while (!test::exists(path + ".ready") && waitpid(child, &status, WNOHANG) == 0) nap_ms(1);
   for (int i = 0; i < kStops; ++i) {
     Stop stop;
-    kill(child, SIGSTOP);
+    if (device != "stops in write") kill(child, SIGSTOP);
     ASSERT_EQ(waitpid(child, &status, WUNTRACED), child);
     stop.from_ns = now_ns();
     nap_ms(kStopMs);
@@ -164,6 +172,13 @@ void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, s
     }
   }
   EXPECT_GE(with_force, kStops / 4);
+}
+
+TEST(StoppedProgram, AStopWithinTheWriteIsSeenToo) {
+  std::vector<Packet> packets;
+  std::vector<Stop> stops;
+  stop_and_go("stops in write", packets, stops);
+  check(packets, stops, 0);
 }
 
 TEST(StoppedProgram, TheFirstTickAfterAStopIsZeroAndThenTheRamp) {

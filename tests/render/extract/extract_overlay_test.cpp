@@ -37,6 +37,16 @@ TEST(BarTicks, AreNiceAndSayWhatTheyAre) {
   EXPECT_TRUE(bar_scale(0, INFINITY, 5, "").ticks.empty());
 }
 
+TEST(BarTicks, OfALogarithmArePowersOfTen) {
+  EXPECT_EQ(texts(bar_scale(1e-3, 1e3, 7, "", 1e-3)), "0.001 0.01 0.1 1 10 100 1000");
+  EXPECT_EQ(texts(bar_scale(2e-7, 3e5, 5, "", 2e-7)), "10⁻⁴ 0.1 100 10⁵") << "every third";
+  EXPECT_EQ(texts(bar_scale(2, 60, 5, "", 2)), "2 5 10 20 50") << "few decades";
+  EXPECT_EQ(texts(bar_scale(1, 1e6, 3, "%.0e", 1)), "1e+00 1e+02 1e+04 1e+06");
+  EXPECT_EQ(texts(bar_scale(-100, 100, 7, "", 1)), "−100 −10 −1 0 1 10 100");
+  EXPECT_EQ(texts(bar_scale(-1e6, 10, 5, "", 1)), "−10⁶ −1000 −1 0 1");
+  EXPECT_EQ(texts(bar_scale(2, 2.9, 3, "", 2)), "2.0 2.5") << "less than a decade";
+}
+
 TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
   for (const double lo : {-7.3e5, -1.0, 0.0, 1e-9, 3.3, 1e6})
     for (const double width : {1e-8, 0.37, 1.0, 86.0, 2.2e7})

@@ -72,7 +72,7 @@ TEST(Flatten, AStraightLineNeedsTwoPoints) {
 }
 
 TEST(Flatten, TheNumberOfPointsIsCapped) {
-  const auto points = flatten(circle(1, 1000, false), {1e-9, 500});
+  const auto points = flatten(circle(1, 1000, false), {1e-9, 0.02, 500});
   EXPECT_LE(points.size(), 501u);
   EXPECT_GE(points.size(), 100u);
 }

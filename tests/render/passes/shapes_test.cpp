@@ -143,9 +143,10 @@ TEST(Shapes, TriangleCountIsBounded) {
     const Shape shape = tube(helix(500), 0.01, sides);
     EXPECT_LE(shape.triangles.size() / 3, std::size_t(2 * sides * (500 + sides)));
   }
-  EXPECT_EQ(tube_sides(0.001, 1), 8);
-  EXPECT_EQ(tube_sides(0.003, 1), 12);
-  EXPECT_EQ(tube_sides(0.05, 1), 16);
+  EXPECT_EQ(tube_sides(1, 1), 0) << "a pixel: a ribbon";
+  EXPECT_EQ(tube_sides(4, 1), 12);
+  EXPECT_EQ(tube_sides(50, 1), 16);
+  EXPECT_EQ(tube_sides(0.001, 0), 16) << "the eye is among them";
 }
 
 TEST(Shapes, DegenerateTubes) {

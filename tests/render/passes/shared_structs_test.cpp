@@ -42,14 +42,10 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, world_gradient);
       EXPECT_OFFSET(GridData, value_offset);
       EXPECT_OFFSET(GridData, value_scale);
-      EXPECT_OFFSET(GridData, table_start);
-      EXPECT_OFFSET(GridData, table_last);
-      EXPECT_OFFSET(GridData, table_lo);
-      EXPECT_OFFSET(GridData, table_per_value);
-      EXPECT_OFFSET(GridData, factor_start);
-      EXPECT_OFFSET(GridData, factor_last);
-      EXPECT_OFFSET(GridData, factor_lo);
-      EXPECT_OFFSET(GridData, factor_per_gradient);
+      EXPECT_OFFSET(GridData, look);
+      EXPECT_OFFSET(GridData, factors);
+      EXPECT_OFFSET(GridData, bound_lo);
+      EXPECT_OFFSET(GridData, bound_per_code);
       EXPECT_OFFSET(GridData, level);
       EXPECT_OFFSET(GridData, opacity);
       EXPECT_OFFSET(GridData, color);
@@ -59,6 +55,19 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, spread);
       EXPECT_EQ(found.at("[]"), sizeof(GridData));
       EXPECT_EQ(found.size(), compared + 1);
+    }
+    if (all.contains("TableData")) {
+      compared = 0;
+      const auto& found = all["TableData"];
+      EXPECT_OFFSET(TableData, start);
+      EXPECT_OFFSET(TableData, last);
+      EXPECT_OFFSET(TableData, points);
+      EXPECT_OFFSET(TableData, per_linear);
+      EXPECT_OFFSET(TableData, lo);
+      EXPECT_OFFSET(TableData, per_unit);
+      EXPECT_OFFSET(TableData, first_value);
+      EXPECT_OFFSET(TableData, last_value);
+      EXPECT_EQ(found.size(), compared);
     }
     compared = 0;
     const auto& found = all["FrameData"];
@@ -114,6 +123,19 @@ TEST(SharedStructs, TubeRingData) {
   EXPECT_EQ(found.size(), compared + 1);
 }
 
+TEST(SharedStructs, RibbonRingData) {
+  auto all = struct_offsets(shader_words("ribbon.vert"));
+  const auto& found = all["RibbonRingData"];
+  std::size_t compared = 0;
+  EXPECT_OFFSET(RibbonRingData, centre);
+  EXPECT_OFFSET(RibbonRingData, radius);
+  EXPECT_OFFSET(RibbonRingData, tangent);
+  EXPECT_OFFSET(RibbonRingData, color);
+  EXPECT_OFFSET(RibbonRingData, id);
+  EXPECT_EQ(found.at("[]"), sizeof(RibbonRingData)) << "the stride of the array";
+  EXPECT_EQ(found.size(), compared + 1);
+}
+
 TEST(SharedStructs, MeshFrameData) {
   auto all = struct_offsets(shader_words("mesh.vert"));
   const auto& found = all["MeshFrameData"];
@@ -123,6 +145,7 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_OFFSET(MeshFrameData, offset_depth);
   EXPECT_OFFSET(MeshFrameData, scale);
   EXPECT_OFFSET(MeshFrameData, shift);
+  EXPECT_OFFSET(MeshFrameData, pixel);
   EXPECT_OFFSET(MeshFrameData, clip_count);
   EXPECT_OFFSET(MeshFrameData, light_count);
   EXPECT_OFFSET(MeshFrameData, lights);

@@ -42,15 +42,12 @@ std::vector<TubeItem> some_tubes() {
           bent(0.05, {0, 0, 0}, 0.7, 30)};
 }
 
-/// The same as meshes.
+/// The same as meshes, round ones.
 std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
-  Bounds bounds;
-  for (const TubeItem& tube : tubes)
-    for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
   std::vector<MeshItem> meshes;
   for (const TubeItem& tube : tubes) {
     Shape shape;
-    add_tube(shape, tube, tube_sides(tube.radius, bounds.diagonal()));
+    add_tube(shape, tube, 24);
     MeshGeometry geometry;
     for (const MeshVertex& v : shape.vertices) {
       geometry.vertices.push_back(v.position);
@@ -67,32 +64,40 @@ std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
   return meshes;
 }
 
-TEST_F(TubesTest, ThePictureIsThatOfTheirTriangles) {
-  for (const bool clipped : {false, true}) {
-    FramePacket packet;
-    packet.width = 192;
-    packet.height = 144;
-    packet.view.position = {3, -30, 12};
-    packet.view.target = {0, 0, 0};
-    packet.background = {0.1f, 0.1f, 0.15f, 1};
-    // cut open: into the tubes can be seen
-    if (clipped) packet.clip = {{Vec3(0, 0.1, 0), Vec3(0.1, 1, 0)}};
-    FramePacket meshes = packet;
-    packet.tubes = some_tubes();
-    meshes.meshes = as_meshes(packet.tubes);
-    const std::string name = clipped ? "clipped" : "whole";
-    const Picture a = draw(packet, {}, name), b = draw(meshes, {}, name + "-triangles");
-    int other = 0, drawn = 0;
-    for (std::uint32_t y = 0; y < a.height; ++y)
-      for (std::uint32_t x = 0; x < a.width; ++x) {
-        int most = 0;
-        for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
-        other += most > 3;
-        drawn += std::abs(b.pixel(x, y)[0] - 26) > 3;
+/// Ribbons in a small picture, sides in a large one.
+TEST_F(TubesTest, ThePictureIsThatOfRoundTubes) {
+  for (const std::uint32_t width : {192u, 1536u})
+    for (const bool clipped : {false, true}) {
+      FramePacket packet;
+      packet.width = width;
+      packet.height = width * 3 / 4;
+      packet.view.position = {3, -30, 12};
+      packet.view.target = {0, 0, 0};
+      packet.background = {0.1f, 0.1f, 0.15f, 1};
+      // cut open: into the tubes can be seen; lit from the side
+      if (clipped) {
+        packet.clip = {{Vec3(0, 0.1, 0), Vec3(0.1, 1, 0)}};
+        packet.lights = {{.direction = {1, -0.5, 0.3}, .color = {1, 1, 1}, .with_camera = true}};
       }
-    EXPECT_GT(drawn, 1500) << name;
-    EXPECT_LE(other, drawn / 200) << name << ": at outlines a pixel may fall to the other side";
-  }
+      FramePacket meshes = packet;
+      packet.tubes = some_tubes();
+      meshes.meshes = as_meshes(packet.tubes);
+      const std::string name = (clipped ? "clipped-" : "whole-") + std::to_string(width);
+      const Picture a = draw(packet, {}, name), b = draw(meshes, {}, name + "-triangles");
+      double sum = 0;
+      int other = 0, drawn = 0;
+      for (std::uint32_t y = 0; y < a.height; ++y)
+        for (std::uint32_t x = 0; x < a.width; ++x) {
+          int most = 0;
+          for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
+          sum += most;
+          other += most > 50;
+          drawn += std::abs(b.pixel(x, y)[0] - 26) > 3;
+        }
+      EXPECT_GT(drawn, width * width / 40) << name;
+      EXPECT_LE(other, drawn / 50) << name << ": at outlines a pixel may fall to the other side";
+      EXPECT_LE(sum / drawn, width < 1000 ? 4 : 2) << name;
+    }
 }
 
 TEST_F(TubesTest, APointOfALineTakesLessThanAHundredBytesOfTheDevice) {

@@ -1,8 +1,9 @@
-#include "render/raycast/transfer_tables.h"
+#include "render/raycast/preintegrated.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 
 namespace catena::test {
 namespace preintegrated_test {
@@ -39,6 +40,26 @@ TEST(Preintegrated, AnEmptyCodeIsEmptyAndASpikeBetweenIsSeen) {
   EXPECT_EQ(t.looks.look[0], t.looks.look[127]);
   EXPECT_EQ(t.looks.look[133], t.looks.look[255]);
   EXPECT_NE(t.looks.look[127], t.looks.look[133]);
+}
+
+TEST(Preintegrated, WhatIsNarrowerThanACodeCountsByItsArea) {
+  const auto t = make_preintegrated(table_of({{0, 0}, {0.5, 0}, {0.500001, 4e5}, {0.500002, 0}, {1, 0}}), 0, 1 / 255.0, false);
+  EXPECT_NEAR(sigma(t, 0, 255), 0.4, 1e-6);
+  EXPECT_NEAR(sigma(t, 120, 135), 0.4 * 255 / 15, 1e-5);
+  EXPECT_EQ(sigma(t, 130, 255), 0);
+  EXPECT_EQ(t.greatest_sigma, 4e5);
+}
+
+TEST(Preintegrated, CodesDoNotShowARiseBesideWhichTheValuesLie) {
+  const TransferTable rise = table_of({{0.01, 0}, {0.05, 2}, {1000, 2}});
+  std::vector<float> decades, even;
+  for (int i = 0; i < 600; ++i) {
+    decades.push_back(float(std::pow(10, i / 100.0 - 3)));
+    even.push_back(float(i) * 1000 / 599);
+  }
+  EXPECT_GT(changed_by_codes(rise, {0.01, 1000}, decades, 1), 0.1);
+  EXPECT_LT(changed_by_codes(rise, {0.01, 1000}, even, 1), 0.01);
+  EXPECT_EQ(changed_by_codes(rise, {3, 3}, even, 1), 0);
 }
 
 TEST(Preintegrated, ActiveIsWhereThePictureDependsOnTheValue) {

@@ -112,6 +112,22 @@ class Sampling : public DeviceFixture {
 
 double wavy(const Vec3& p) { return 40 * std::sin(0.31 * p.x + 0.2 * p.y) * std::cos(0.23 * p.z) + 0.37 * p.y - 20; }
 
+TEST_F(Sampling, ALayerOfMaskedCellsBetweenValidVoxelsIsAHole) {
+  const field::Index3 n{20, 18, 17};
+  std::vector<float> values;
+  std::vector<std::uint8_t> cells;
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x) {
+        values.push_back(float(wavy(Vec3(x, y, z))));
+        cells.push_back(x != 9 && (x + y) % 7 != 3);
+      }
+  const auto grid = field::make_scalar_grid("g", {}, n, values, std::vector<std::uint8_t>(values.size(), 1), cells);
+  ASSERT_TRUE(grid->has_cell_mask());
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * 80; });
+}
+
 TEST_F(Sampling, Float32) {
   const auto grid = make_grid({64, 64, 64}, wavy);
   const double range = grid->max_value() - grid->min_value();

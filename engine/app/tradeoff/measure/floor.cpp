@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/app/tradeoff/measure/number.h"
+#include "engine/field/display_range.h"
 #include "engine/field/level.h"
 
 namespace catena::app::tradeoff {
@@ -133,8 +134,8 @@ std::optional<Levels<field::VectorGrid>> make_levels(const field::VectorGrid& gr
 
 std::optional<InterpolationFloor> interpolation_floor(const field::AnyField& field) {
   if (field.scalar && field.scalar->grid() && field.scalar->interpolation() != field::Interpolation::nearest)
-    return floor_of(*field.scalar->grid(), field.scalar->max_value() - field.scalar->min_value());
-  if (field.vector && field.vector->grid()) return floor_of(*field.vector->grid(), 2 * field.vector->grid()->stats().max);
+    return floor_of(*field.scalar->grid(), field::display_range(field).hi - field::display_range(field).lo);
+  if (field.vector && field.vector->grid()) return floor_of(*field.vector->grid(), 2 * field::display_range(field).hi);
   return std::nullopt;
 }
 

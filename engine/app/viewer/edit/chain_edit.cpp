@@ -7,6 +7,7 @@
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/display_range.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/presets/modes.h"
@@ -27,7 +28,8 @@ field::AnyField use(scene::Scene& scene, const std::string& name, bool vectors) 
 
 std::string level_at(const field::ScalarField& field, const Vec3& probe) {
   field::Cursor cursor;
-  const double lo = field.min_value(), hi = field.max_value(), here = field.sample(probe, cursor).value;
+  const DisplayRange range = field::display_range(field);
+  const double lo = range.lo, hi = range.hi, here = field.sample(probe, cursor).value;
   const double middle = std::isfinite(lo + hi) ? 0.5 * (lo + hi) : std::isfinite(lo) ? lo + 1 : std::isfinite(hi) ? hi - 1 : 0;
   // six digits: a level is a choice, not a measurement
   const double level = std::isfinite(here) && here > lo && here < hi ? here : middle;

@@ -5,6 +5,7 @@
 #include <set>
 #include <system_error>
 
+#include "engine/base/value_scale.h"
 #include "engine/scene/transfer.h"
 
 namespace catena::app {
@@ -13,14 +14,14 @@ namespace {
 constexpr std::size_t kMaxMagnitudes = 1u << 20;
 }
 
-std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, double hi, int bars) {
+std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, double hi, int bars, double linear_below) {
   std::vector<float> heights(static_cast<std::size_t>(std::max(bars, 0)), 0.0f);
   if (heights.empty() || !(lo < hi) || !std::isfinite(hi - lo)) return heights;
   auto from = std::lower_bound(sorted.begin(), sorted.end(), lo, [](float v, double edge) { return v < edge; });
   float most = 0;
   for (int i = 0; i < bars; ++i) {
     // the last one holds its upper edge
-    const double edge = i + 1 == bars ? std::nextafter(hi, HUGE_VAL) : lo + (hi - lo) * (i + 1) / bars;
+    const double edge = i + 1 == bars ? std::nextafter(hi, HUGE_VAL) : value_between(lo, hi, (i + 1.0) / bars, linear_below);
     const auto to = std::lower_bound(from, sorted.end(), edge, [](float v, double e) { return v < e; });
     heights[static_cast<std::size_t>(i)] = std::log1p(static_cast<float>(to - from));
     most = std::max(most, heights[static_cast<std::size_t>(i)]);
@@ -61,7 +62,7 @@ SortedValues FieldValues::of(scene::Scene& scene, scene::Entity field) {
     if (any.scalar) {
       job->values = scene::sorted_values(*any.scalar->grid());
     } else {
-      auto values = std::make_shared<std::vector<float>>(scene::sample_magnitudes(*any.vector->grid(), kMaxMagnitudes));
+      auto values = std::make_shared<std::vector<float>>(field::sample_magnitudes(*any.vector->grid(), kMaxMagnitudes));
       std::sort(values->begin(), values->end());
       job->values = std::move(values);
     }
@@ -90,13 +91,19 @@ constexpr double kWidest = 1e300;
 }  // namespace
 
 double PlotFrame::x_of(double value) const {
-  const double share = (value - lo) / (hi - lo);
+  const auto place = [&](double v) { return scaled(v, linear_below); };
+  const double share = (place(value) - place(lo)) / (place(hi) - place(lo));
   return left + (std::isfinite(share) ? share : 0) * (right - left);
 }
 
 double PlotFrame::value_at(double x) const {
   const double share = right > left ? std::clamp((x - left) / (right - left), 0.0, 1.0) : 0;
-  return share >= 1 ? hi : std::clamp(lo + share * (hi - lo), lo, hi);
+  return std::clamp(value_between(lo, hi, share, linear_below), lo, hi);
+}
+
+double PlotFrame::rounded_at(double x) const {
+  const double width = right - left;
+  return rounded_in(value_at(x), 0, width * (value_at(x + 0.5) - value_at(x - 0.5)));
 }
 
 double PlotFrame::y_of(double alpha) const { return bottom + std::sqrt(std::clamp(alpha, 0.0, 1.0)) * (top - bottom); }

@@ -14,8 +14,9 @@ namespace catena::app {
 
 using SortedValues = std::shared_ptr<const std::vector<float>>;
 
-/// Heights 0..1 by the logarithm of the count in `bars` equal parts of lo..hi; all 0 where there is nothing to show.
-std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, double hi, int bars);
+/// Heights 0..1 by the logarithm of the count in `bars` parts of lo..hi, equal on a scale (engine/base/value_scale.h); all 0 where there is
+/// nothing to show.
+std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, double hi, int bars, double linear_below = 0);
 /// The value below which `share` of the values lie; 0 of none.
 double quantile_of(const std::vector<float>& sorted, double share);
 
@@ -44,10 +45,12 @@ class FieldValues {
 /// square roots, because those of a volume are mostly small. Pure, any thread.
 struct PlotFrame {
   double left = 0, top = 0, right = 1, bottom = 1;
-  double lo = 0, hi = 1;  ///< values at the left and right edges, lo < hi
+  double lo = 0, hi = 1;    ///< values at the left and right edges, lo < hi
+  double linear_below = 0;  ///< the scale between them (engine/base/value_scale.h)
 
   double x_of(double value) const;
-  double value_at(double x) const;  ///< within lo..hi
+  double value_at(double x) const;    ///< within lo..hi
+  double rounded_at(double x) const;  ///< the same, rounded to a part of a pixel
   double y_of(double alpha) const;
   double alpha_at(double y) const;  ///< within 0..1
 };

@@ -11,6 +11,7 @@
 #include "engine/base/json.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/text.h"
+#include "engine/field/display_range.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/widgets.h"
 #include "engine/scene/write_values.h"
@@ -41,9 +42,10 @@ Domain domain_of(const field::Field& field) {
 }
 
 double default_level(const field::ScalarField& field, const std::vector<float>& sorted) {
-  double lo = field.min_value(), hi = field.max_value();
-  if (!sorted.empty()) lo = quantile_of(sorted, 0.02), hi = quantile_of(sorted, 0.98);
-  if (!(lo < hi)) lo = field.min_value(), hi = field.max_value();
+  const DisplayRange range = field::display_range(field);
+  double lo = range.lo, hi = range.hi;
+  if (!sorted.empty()) lo = std::max(lo, quantile_of(sorted, 0.02)), hi = std::min(hi, quantile_of(sorted, 0.98));
+  if (!(lo < hi)) lo = range.lo, hi = range.hi;
   if (!std::isfinite(lo) || !std::isfinite(hi)) return std::isfinite(lo) ? lo + 1 : std::isfinite(hi) ? hi - 1 : 0;
   const double middle = 0.5 * lo + 0.5 * hi, level = rounded_in(middle, lo, hi, 200);
   return level >= field.min_value() && level <= field.max_value() ? level : middle;

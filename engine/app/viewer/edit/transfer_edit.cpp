@@ -5,6 +5,7 @@
 
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/base/result.h"
+#include "engine/base/value_scale.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/write_values.h"
 
@@ -23,18 +24,14 @@ bool rises(const Points& points) {
 /// Where a point between `below` and `above` (either may lack) goes if it is wanted at `value`; none: no room.
 std::optional<double> between(const double* below, const double* above, const PlotFrame& frame, double value) {
   if (!std::isfinite(value)) return std::nullopt;
-  const double gap = kGap * (frame.hi - frame.lo);
-  double least = below ? *below + gap : frame.lo, most = above ? *above - gap : frame.hi;
-  if (!(least <= most)) {
-    if (!below || !above) {
-      // the only neighbour lies beyond the plot
-      value = below ? *below + gap : *above - gap;
-    } else {
-      value = 0.5 * *below + 0.5 * *above;
-    }
-  } else {
-    value = std::clamp(value, least, most);
-  }
+  // on the plot's scale
+  const auto place = [&](double v) { return scaled(v, frame.linear_below); };
+  const double lo = place(frame.lo), hi = place(frame.hi), gap = kGap * (hi - lo);
+  const double least = below ? place(*below) + gap : lo, most = above ? place(*above) - gap : hi;
+  double to = std::clamp(place(value), least, std::max(least, most));
+  // where there is no room: the only neighbour lies beyond the plot, or two are close
+  if (!(least <= most)) to = !above ? least : !below ? most : 0.5 * place(*below) + 0.5 * place(*above);
+  if (to != place(value)) value = unscaled(to, frame.linear_below);
   if ((below && !(*below < value)) || (above && !(value < *above)) || !std::isfinite(value)) return std::nullopt;
   return value;
 }
@@ -69,9 +66,9 @@ bool take_out(Points& points, std::size_t index) {
 
 double usable(double alpha) { return std::isfinite(alpha) ? std::clamp(alpha, 0.0, kMaxAlpha) : 0.0; }
 
-/// The points to either side of a value and how far it is between them.
+/// The points to either side of a value and how far it is between them on their scale.
 template <class Points>
-auto around(const Points& points, double value) {
+auto around(const Points& points, double value, double linear_below) {
   struct Pieces {
     const typename Points::value_type *a, *b;
     double t;
@@ -79,7 +76,9 @@ auto around(const Points& points, double value) {
   if (!(value > points.front().value)) return Pieces{&points.front(), &points.front(), 0};
   if (value >= points.back().value) return Pieces{&points.back(), &points.back(), 0};
   const auto next = std::upper_bound(points.begin(), points.end(), value, [](double v, const auto& p) { return v < p.value; });
-  return Pieces{&*(next - 1), &*next, (value - (next - 1)->value) / (next->value - (next - 1)->value)};
+  const auto place = [&](double v) { return scaled(v, linear_below); };
+  const double from = place((next - 1)->value), to = place(next->value);
+  return Pieces{&*(next - 1), &*next, (place(value) - from) / (to - from)};
 }
 
 }  // namespace
@@ -109,7 +108,7 @@ std::optional<std::size_t> add_point(OpacityPoints& points, const PlotFrame& fra
 }
 
 std::optional<std::size_t> add_point(ColorPoints& points, const PlotFrame& frame, double value) {
-  return insert(points, frame, {value, color_at(points, value)});
+  return insert(points, frame, {value, color_at(points, value, frame.linear_below)});
 }
 
 void move_point(OpacityPoints& points, const PlotFrame& frame, std::size_t index, double value, double alpha) {
@@ -126,16 +125,16 @@ void move_point(ColorPoints& points, const PlotFrame& frame, std::size_t index, 
 bool remove_point(OpacityPoints& points, std::size_t index) { return take_out(points, index); }
 bool remove_point(ColorPoints& points, std::size_t index) { return take_out(points, index); }
 
-double alpha_at(const OpacityPoints& points, double value) {
+double alpha_at(const OpacityPoints& points, double value, double linear_below) {
   if (points.empty()) return 0;
-  const auto [a, b, t] = around(points, value);
+  const auto [a, b, t] = around(points, value, linear_below);
   const double low = std::log1p(-a->alpha), high = std::log1p(-b->alpha);
   return -std::expm1(low + t * (high - low));
 }
 
-Color color_at(const ColorPoints& points, double value) {
+Color color_at(const ColorPoints& points, double value, double linear_below) {
   if (points.empty()) return {0.5f, 0.5f, 0.5f};
-  const auto [a, b, share] = around(points, value);
+  const auto [a, b, share] = around(points, value, linear_below);
   const auto t = static_cast<float>(share);
   const Color &p = a->color, &q = b->color;
   return {p.r + t * (q.r - p.r), p.g + t * (q.g - p.g), p.b + t * (q.b - p.b)};
@@ -152,12 +151,13 @@ std::optional<std::array<double, 2>> reach_of(const ColorPoints& colors, const O
   return reach;
 }
 
-bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi) {
+bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi, double linear_below) {
   const auto from = reach_of(colors, opacities);
   if (!from || !(lo < hi) || !std::isfinite(hi - lo) || !((*from)[0] < (*from)[1])) return false;
   const auto laid = [&](double value) {
-    const double t = (value - (*from)[0]) / ((*from)[1] - (*from)[0]);
-    return (1 - t) * lo + t * hi;
+    const auto place = [&](double v) { return scaled(v, linear_below); };
+    const double t = (place(value) - place((*from)[0])) / (place((*from)[1]) - place((*from)[0]));
+    return value_between(lo, hi, t, linear_below);
   };
   ColorPoints new_colors = colors;
   OpacityPoints new_opacities = opacities;
@@ -177,6 +177,12 @@ bool is_stated(const scene::Volume& volume) {
   return volume.where.find("transfer") == nullptr && volume.where.find("color") != nullptr && volume.where.find("opacity") != nullptr;
 }
 
+void add_mapping(const std::string& at, const scene::ValueMapping& mapping, TextEdits& edits) {
+  const bool linear = mapping.kind == scene::ValueMapping::Kind::linear;
+  edits.push_back({at + "/mapping", linear ? std::nullopt : std::optional(scene::text_of(scene::word_of(mapping.kind)))});
+  edits.push_back({at + "/linear_below", mapping.linear_below > 0 ? std::optional(scene::text_of(mapping.linear_below)) : std::nullopt});
+}
+
 void add_colors(const std::string& at, const TransferEdit& edit, TextEdits& edits) {
   edits.push_back({at + "/color", edit.map.empty() ? scene::text_of(edit.colors) : scene::text_of(std::string_view(edit.map))});
   // a range beside a table is an error of the scene's
@@ -193,6 +199,7 @@ TextEdits all_of(const scene::Volume& volume, const TransferEdit& edit) {
   add_colors(at, edit, edits);
   edits.push_back({at + "/opacity", scene::text_of(edit.opacities)});
   edits.push_back({at + "/opacity_unit", scene::text_of(edit.unit)});
+  add_mapping(at, edit.mapping, edits);
   if (const auto& factors = volume.transfer.gradient_factors; !factors.empty() && volume.where.find("gradient_opacity") == nullptr)
     edits.push_back({at + "/gradient_opacity", scene::text_of(factors)});
   return edits;
@@ -207,6 +214,8 @@ std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double sm
   edit.colors = transfer.colors;
   edit.map = transfer.named.map;
   edit.has_range = transfer.named.range.has_value();
+  edit.mapping = transfer.named.mapping;
+  edit.linear_below = scene::linear_below(transfer);
   if (!transfer.opacities.empty()) {
     edit.opacities = transfer.opacities;
     edit.unit = transfer.opacity_unit > 0 ? transfer.opacity_unit : smallest_edge;
@@ -218,6 +227,12 @@ std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double sm
   edit.unit = rounded_in(edit.unit, 0, edit.unit, 100);
   for (const auto& e : transfer.extinctions) edit.opacities.push_back({e.value, std::min(-std::expm1(-e.sigma * edit.unit), kMaxAlpha)});
   return edit;
+}
+
+std::array<double, 2> plotted_range(const TransferEdit& edit, double lo, double hi) {
+  if (edit.mapping.kind != scene::ValueMapping::Kind::log || lo > 0) return plot_range(lo, hi);
+  const auto reach = *reach_of(edit.colors, edit.opacities);
+  return plot_range(reach[0], std::max(reach[1], hi));
 }
 
 TextEdits opacity_edits(const scene::Volume& volume, TransferEdit edit) {
@@ -248,8 +263,18 @@ TextEdits map_edits(const scene::Volume& volume, TransferEdit edit, const std::s
   return edits;
 }
 
+TextEdits mapping_edits(const scene::Volume& volume, TransferEdit edit, const scene::ValueMapping& mapping) {
+  const auto reach = reach_of(edit.colors, edit.opacities);
+  if (!reach || !scene::mapping_problem(mapping, (*reach)[0], "range").empty()) return {};
+  // a named map lies on the new scale between the same ends
+  edit.has_range = edit.has_range || (!edit.map.empty() && scene::is_color_range(edit.colors.front().value, edit.colors.back().value));
+  edit.mapping = mapping;
+  return all_of(volume, edit);
+}
+
 TextEdits range_edits(const scene::Volume& volume, TransferEdit edit, double lo, double hi) {
-  if (!lay_over(edit.colors, edit.opacities, lo, hi)) return {};
+  if (!scene::mapping_problem(edit.mapping, lo, "range").empty()) return {};
+  if (!lay_over(edit.colors, edit.opacities, lo, hi, edit.linear_below)) return {};
   edit.has_range = !edit.map.empty();
   if (edit.has_range && !scene::is_color_range(edit.colors.front().value, edit.colors.back().value)) return {};
   return all_of(volume, edit);

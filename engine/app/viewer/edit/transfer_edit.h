@@ -34,12 +34,12 @@ void move_point(ColorPoints& points, const PlotFrame& frame, std::size_t index, 
 bool remove_point(OpacityPoints& points, std::size_t index);
 bool remove_point(ColorPoints& points, std::size_t index);
 
-/// What is drawn at a value: sigma linear between the points, constant beyond them. Of no points 0, or grey.
-double alpha_at(const OpacityPoints& points, double value);
-Color color_at(const ColorPoints& points, double value);
+/// What is drawn at a value: sigma linear between the points on their scale, constant beyond them. Of no points 0, or grey.
+double alpha_at(const OpacityPoints& points, double value, double linear_below = 0);
+Color color_at(const ColorPoints& points, double value, double linear_below = 0);
 
-/// Lays the points anew, from where they reach to lo..hi. False (and nothing is changed) where they would fall together.
-bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi);
+/// Lays the points anew on their scale, from where they reach to lo..hi. False (and nothing is changed) where they would fall together.
+bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi, double linear_below = 0);
 /// From the least to the greatest value of both; none of no points.
 std::optional<std::array<double, 2>> reach_of(const ColorPoints& colors, const OpacityPoints& opacities);
 
@@ -53,13 +53,18 @@ std::optional<std::array<double, 2>> reach_of(const ColorPoints& colors, const O
 struct TransferEdit {
   ColorPoints colors;
   OpacityPoints opacities;
-  double unit = 0;         ///< world length, > 0
-  std::string map;         ///< the colours' name, if they have one; `colors` are its points
-  bool has_range = false;  ///< the named map's range is stated
+  double unit = 0;              ///< world length, > 0
+  std::string map;              ///< the colours' name, if they have one; `colors` are its points
+  bool has_range = false;       ///< the named map's range is stated
+  scene::ValueMapping mapping;  ///< as stated
+  double linear_below = 0;      ///< and what it comes to
 };
 
 /// `volume.transfer` as drawn: complete_transfer has filled it in. Empty where it has not.
 std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double smallest_edge);
+
+/// Where values from lo to hi can be plotted: a logarithm has no place for what is not above 0.
+std::array<double, 2> plotted_range(const TransferEdit& edit, double lo, double hi);
 
 /// What makes the text's volume look like the edit.
 TextEdits opacity_edits(const scene::Volume& volume, TransferEdit edit);
@@ -68,6 +73,8 @@ TextEdits unit_edits(const scene::Volume& volume, const TransferEdit& edit);
 TextEdits color_edits(const scene::Volume& volume, TransferEdit edit);
 /// Another name over the range that the colours have.
 TextEdits map_edits(const scene::Volume& volume, TransferEdit edit, const std::string& map);
+/// Another scale between the same points; empty where they cannot lie on it.
+TextEdits mapping_edits(const scene::Volume& volume, TransferEdit edit, const scene::ValueMapping& mapping);
 /// All points over another range; empty where they cannot lie in it.
 TextEdits range_edits(const scene::Volume& volume, TransferEdit edit, double lo, double hi);
 

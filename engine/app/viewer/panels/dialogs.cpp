@@ -110,6 +110,35 @@ void draw_left(PanelContext& context, bool wanted) {
   ImGui::EndPopup();
 }
 
+void draw_changed(PanelContext& context, bool wanted) {
+  using OnDisk = scene::Document::OnDisk;
+  const std::optional<OnDisk> changed = context.state.ask.changed;
+  if (!begin_question("The file is not as it was read", wanted)) return;
+  if (!changed) {
+    ImGui::CloseCurrentPopup();
+    return ImGui::EndPopup();
+  }
+  const std::string name = file_name_of(context.scene.document().path());
+  const char* const what = *changed == OnDisk::changed ? "%s was changed by another program."
+                           : *changed == OnDisk::gone  ? "%s was removed, or renamed, by another program."
+                                                       : "%s is no file any more that can be read.";
+  ImGui::Text(what, name.c_str());
+  ImGui::Spacing();
+  if (*changed != OnDisk::no_file) {
+    answer(context, *changed == OnDisk::changed ? "Keep mine" : "Write it again", kNoKey, AnswerToChanged::keep_mine);
+    ImGui::SameLine();
+  }
+  if (*changed == OnDisk::changed) {
+    answer(context, "Take theirs", kNoKey, AnswerToChanged::take_theirs);
+    ImGui::SameLine();
+  }
+  answer(context, "Save as ..", ImGuiKey_Enter, AnswerToChanged::save_as);
+  ImGui::SetItemDefaultFocus();
+  ImGui::SameLine();
+  answer(context, "Cancel", ImGuiKey_Escape, AnswerToChanged::cancel);
+  ImGui::EndPopup();
+}
+
 void draw_dropped(PanelContext& context, bool wanted) {
   const std::optional<std::string>& dropped = context.state.ask.dropped;
   if (!begin_question("A file was dropped", wanted)) return;
@@ -135,8 +164,9 @@ void draw_dialogs(PanelContext& context) {
   // one question at a time
   const ViewState& state = context.state;
   draw_unsaved(context);
-  draw_dropped(context, state.ask.dropped && !state.ask.unsaved);
-  draw_left(context, state.ask.left && !state.ask.unsaved && !state.ask.dropped);
+  draw_changed(context, state.ask.changed && !state.ask.unsaved);
+  draw_dropped(context, state.ask.dropped && !state.ask.unsaved && !state.ask.changed);
+  draw_left(context, state.ask.left && !state.ask.unsaved && !state.ask.dropped && !state.ask.changed);
 }
 
 }  // namespace catena::app

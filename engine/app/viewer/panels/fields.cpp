@@ -7,6 +7,7 @@
 #include "engine/app/viewer/edit/new_items.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/field/display_range.h"
 
 namespace catena::app {
 
@@ -20,10 +21,8 @@ std::string bytes_text(std::size_t bytes) {
 }
 
 std::string range_text(const field::AnyField& field) {
-  if (field.scalar) return fmt::format("{:.5g} .. {:.5g}", field.scalar->min_value(), field.scalar->max_value());
-  if (const field::VectorGrid* grid = field.vector->grid())
-    return fmt::format("|v| {:.5g} .. {:.5g}", grid->stats().min, grid->stats().max);
-  return {};
+  if (field.vector && field.vector->grid() == nullptr) return {};
+  return (field.vector ? "|v| " : "") + catena::range_text(field::display_range(field));
 }
 
 void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) {
@@ -52,13 +51,14 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
 }
 
 /// Its place is kept while the values are being sorted.
-void draw_histogram(const SortedValues& values) {
+void draw_histogram(const SortedValues& values, const field::AnyField& shown) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
   ImGui::Dummy(size);
   short_tip("how often values occur, logarithmic");
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
   if (!values || values->empty()) return;
-  const auto range = plot_range(values->front(), values->back());
+  const DisplayRange values_range = field::display_range(shown);
+  const auto range = plot_range(values_range.lo, values_range.hi);
   draw_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
 }
 
@@ -110,7 +110,7 @@ void draw_fields(PanelContext& context) {
         if (ImGui::SmallButton("load"))
           if (auto loaded = scene::use_drawn_field(scene, e, source.where); !loaded) context.state.say(loaded.error().message, true);
       } else {
-        if (shown.get()->is_grid()) draw_histogram(look.values.of(scene, e));
+        if (shown.get()->is_grid()) draw_histogram(look.values.of(scene, e), shown);
         draw_buttons(context, e, shown);
       }
       ImGui::TreePop();

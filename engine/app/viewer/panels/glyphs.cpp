@@ -1,6 +1,7 @@
 // Arrows of vectors: of which field, where they stand, how far apart, how long, their colours.
 #include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/field/display_range.h"
 #include "engine/field/grid.h"
 #include "engine/scene/hidden.h"
 
@@ -94,7 +95,7 @@ void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
 /// A speed of the field, for the step of a drag.
 double fastest(const scene::Scene& scene, const scene::GlyphSet& set) {
   const auto& vector = scene.world.get<scene::FieldSource>(set.field).loaded.vector;
-  return vector && vector->grid() != nullptr ? vector->grid()->stats().max : 1;
+  return vector && vector->grid() != nullptr ? field::display_range(*vector->grid()).hi : 1;
 }
 
 void draw_glyphs(PanelContext& context) {

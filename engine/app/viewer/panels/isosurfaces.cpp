@@ -1,6 +1,7 @@
 // Isosurfaces: the level on the field's histogram, colour, opacity. The hand's surface follows the one that is seen.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/field/display_range.h"
 #include "engine/scene/hidden.h"
 
 namespace catena::app {
@@ -18,9 +19,11 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
   const field::AnyField& field = source.drawn.get() != nullptr ? source.drawn : source.loaded;
   double level = surface.level;
   bool moved = false;
-  if (field.scalar)
-    moved = histogram_slider(context, "##level", context.state.look.values.of(scene, surface.field), field.scalar->min_value(),
-                             field.scalar->max_value(), surface.color, level);
+  if (field.scalar) {
+    const DisplayRange range = field::display_range(*field.scalar);
+    moved =
+        histogram_slider(context, "##level", context.state.look.values.of(scene, surface.field), range.lo, range.hi, surface.color, level);
+  }
   moved = typed_number("level", level, "the field's value on the surface; Enter") || moved;
   const std::vector<std::string> felt = felt_levels(scene, name_of(scene, surface.field), surface.level);
   if (!felt.empty()) {

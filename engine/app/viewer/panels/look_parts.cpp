@@ -43,6 +43,21 @@ std::optional<std::string> choose_map(const std::string& now, const char* otherw
   return chosen;
 }
 
+std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now, double linear_below) {
+  std::optional<scene::ValueMapping> chosen;
+  int kind = static_cast<int>(now.kind);
+  ImGui::SetNextItemWidth(78);
+  if (ImGui::Combo("mapping", &kind, "linear\0log\0symlog\0") && kind != static_cast<int>(now.kind))
+    chosen = {static_cast<scene::ValueMapping::Kind>(kind), 0};
+  short_tip("the scale between the points: by the logarithm, or by it away from 0 on both sides");
+  if (now.kind != scene::ValueMapping::Kind::symlog) return chosen;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(78);
+  double size = now.linear_below > 0 ? now.linear_below : linear_below;
+  if (typed_number("linear below", size, "up to this size values are linear; Enter") && size > 0) chosen = {now.kind, size};
+  return chosen;
+}
+
 void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by) {
   const auto& table = by.colors;
   const scene::NamedColors& named = by.named;
@@ -72,6 +87,13 @@ void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy
     } else if (ImGui::Checkbox("own range", &own)) {
       edits.set(pointer + "/range", "[0, 1]", "range");
     }
+  }
+  if (const auto mapping = choose_mapping(named.mapping, 0)) {
+    const auto stated = [](bool is, const std::string& text) { return is ? std::optional(text) : std::nullopt; };
+    edits.set(
+        {{pointer + "/mapping", stated(mapping->kind != scene::ValueMapping::Kind::linear, scene::text_of(scene::word_of(mapping->kind)))},
+         {pointer + "/linear_below", stated(mapping->linear_below > 0, scene::text_of(mapping->linear_below))}},
+        "mapping");
   }
   ImGui::PopID();
 }
@@ -131,7 +153,7 @@ void edit_fitted(Edits& edits, const char* key, const json::Node& item, double v
 void draw_bars(const PlotFrame& frame, const SortedValues& values, ImU32 color) {
   if (!values) return;
   const int bars = std::clamp(static_cast<int>((frame.right - frame.left) / 2), 1, 400);
-  const std::vector<float> heights = histogram_bars(*values, frame.lo, frame.hi, bars);
+  const std::vector<float> heights = histogram_bars(*values, frame.lo, frame.hi, bars, frame.linear_below);
   ImDrawList* list = ImGui::GetWindowDrawList();
   const double width = (frame.right - frame.left) / bars;
   for (int i = 0; i < bars; ++i) {

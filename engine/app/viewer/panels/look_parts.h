@@ -15,7 +15,7 @@
 
 namespace catena::app {
 
-/// The colours of an item that colours by values: a map's name, reversed or not, its range.
+/// The colours of an item that colours by values: a map's name, reversed or not, its range, its scale.
 void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by);
 /// Those of an item that has one colour ("color") or the colours of values ("color_by"): a field's, or one of the `quantities` that it
 /// knows itself.
@@ -23,6 +23,8 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
                  const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities);
 /// A combo of the maps' names. The name chosen, "_r" with it.
 std::optional<std::string> choose_map(const std::string& now, const char* otherwise);
+/// A combo of the scales between points, and what is linear of symlog (`linear_below`: as it is drawn). What was chosen.
+std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now, double linear_below);
 
 /// The length `key` of an item, from 0, which takes it out of the text, to `most`.
 void edit_fitted(Edits& edits, const char* key, const json::Node& item, double value, double most, const char* hint);

@@ -64,7 +64,9 @@ struct Questions {
   bool open = false, save_as = false;  ///< the dialogs shall come up
   std::optional<Leaving> unsaved;      ///< what becomes of unsaved changes before that
   std::optional<std::string> dropped;  ///< a data file on an open scene: open it, or add it
-  std::optional<LeftDraft> left;       ///< unsaved work of an earlier run
+  /// The scene's file was changed or removed by somebody else, and is to be saved.
+  std::optional<scene::Document::OnDisk> changed;
+  std::optional<LeftDraft> left;  ///< unsaved work of an earlier run
 };
 
 /// What the window shows beside the scene: set by the session, read by the panels.

@@ -1,5 +1,4 @@
 // Steps in time: which one is shown, and how fast they go by.
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include "engine/app/viewer/panels/edit_items.h"
@@ -24,7 +23,7 @@ void draw_time(PanelContext& context) {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
   if (ImGui::SliderFloat("a second", &rate, 0.1f, 60, "%.3g", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
     context.edits.drag("/time/per_second", scene::text_of(static_cast<double>(rate)), "steps a second");
-  if (const auto time = scene::time_of_step(scene)) ImGui::Text("t = %s", fmt::format("{:.6g}", *time).c_str());
+  if (scene::time_of_step(scene)) ImGui::Text("t = %s", scene::time_text(scene).c_str());
 }
 
 bool has_steps(const PanelContext& context) { return scene::step_count(context.scene.scene()) > 1; }

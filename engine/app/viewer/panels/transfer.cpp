@@ -6,6 +6,7 @@
 
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/field/display_range.h"
 #include "engine/scene/hidden.h"
 
 namespace catena::app {
@@ -32,13 +33,14 @@ struct Editor {
 
 /// All points, and the values but for the rarest.
 std::array<double, 2> shown_range(const Editor& editor, const field::ScalarField& field) {
-  if (editor.state.whole_range) return plot_range(field.min_value(), field.max_value());
+  if (editor.state.whole_range) return plotted_range(editor.edit, field.min_value(), field.max_value());
   auto range = *reach_of(editor.edit.colors, editor.edit.opacities);
   if (editor.values && !editor.values->empty()) {
-    range[0] = std::min(range[0], quantile_of(*editor.values, 0.002));
-    range[1] = std::max(range[1], quantile_of(*editor.values, 0.998));
+    const DisplayRange all = field::display_range(field);
+    range[0] = std::min(range[0], std::max(all.lo, quantile_of(*editor.values, 0.002)));
+    range[1] = std::max(range[1], std::min(all.hi, quantile_of(*editor.values, 0.998)));
   }
-  return plot_range(range[0], range[1]);
+  return plotted_range(editor.edit, range[0], range[1]);
 }
 
 void draw_curve(const Editor& editor) {
@@ -59,8 +61,8 @@ void draw_curve(const Editor& editor) {
   ImVec2 last;
   for (float x = lo.x; x <= hi.x; x += kStep) {
     const double value = plot.value_at(x);
-    const auto y = static_cast<float>(plot.y_of(alpha_at(editor.edit.opacities, value)));
-    list->AddRectFilled({x, y}, {x + kStep, hi.y}, packed(color_at(editor.edit.colors, value), 0.55f));
+    const auto y = static_cast<float>(plot.y_of(alpha_at(editor.edit.opacities, value, editor.edit.linear_below)));
+    list->AddRectFilled({x, y}, {x + kStep, hi.y}, packed(color_at(editor.edit.colors, value, editor.edit.linear_below), 0.55f));
     if (x > lo.x) list->AddLine(last, {x, y}, ImGui::GetColorU32(ImGuiCol_Text), 1.5f);
     last = {x, y};
   }
@@ -79,7 +81,7 @@ void draw_bar(const Editor& editor, bool handles) {
   const auto top = static_cast<float>(bar.top), bottom = static_cast<float>(bar.bottom);
   for (auto x = static_cast<float>(bar.left); x < static_cast<float>(bar.right); x += 2)
     list->AddRectFilled({x, top}, {std::min(x + 2, static_cast<float>(bar.right)), bottom},
-                        packed(color_at(editor.edit.colors, bar.value_at(x + 1))));
+                        packed(color_at(editor.edit.colors, bar.value_at(x + 1), editor.edit.linear_below)));
   if (!handles) return;
   for (std::size_t i = 0; i < editor.edit.colors.size(); ++i) {
     const auto x = static_cast<float>(bar.x_of(editor.edit.colors[i].value));
@@ -107,7 +109,7 @@ void dragged(Editor& editor, Points TransferEdit::*points, Select selected, cons
   TransferEdit now = *editor.state.before;
   const bool off = io.MousePos.y < frame.top - kOff || io.MousePos.y > frame.bottom + kOff;
   if (!off || !remove_point(now.*points, *(editor.state.*selected)))
-    move(now.*points, *(editor.state.*selected), rounded_in(frame.value_at(look.at_x), frame.lo, frame.hi));
+    move(now.*points, *(editor.state.*selected), frame.rounded_at(look.at_x));
   editor.edits.drag(writes(editor.volume, now), what);
 }
 
@@ -146,8 +148,7 @@ void move_opacities(Editor& editor) {
     pressed<OpacityPoints>(
         editor, &TransferEdit::opacities, &LookState::Transfer::opacity, there,
         [&](OpacityPoints& points) {
-          return add_point(points, plot, rounded_in(plot.value_at(io.MousePos.x), plot.lo, plot.hi),
-                           rounded_alpha(plot.alpha_at(io.MousePos.y)));
+          return add_point(points, plot, plot.rounded_at(io.MousePos.x), rounded_alpha(plot.alpha_at(io.MousePos.y)));
         },
         opacity_edits, "opacity");
     look.at_x = there ? plot.x_of(editor.edit.opacities[*there].value) : io.MousePos.x;
@@ -178,8 +179,7 @@ void move_colors(Editor& editor) {
   if (ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     pressed<ColorPoints>(
         editor, &TransferEdit::colors, &LookState::Transfer::color, there,
-        [&](ColorPoints& points) { return add_point(points, bar, rounded_in(bar.value_at(io.MousePos.x), bar.lo, bar.hi)); }, color_edits,
-        "colours");
+        [&](ColorPoints& points) { return add_point(points, bar, bar.rounded_at(io.MousePos.x)); }, color_edits, "colours");
     look.at_x = there ? bar.x_of(editor.edit.colors[*there].value) : io.MousePos.x;
   } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     dragged(
@@ -236,6 +236,13 @@ void draw_choices(Editor& editor) {
     if (ImGui::SmallButton("points")) editor.edits.drag(color_edits(editor.volume, editor.edit), "colours");
     short_tip("makes the map's colours points that can be moved");
   }
+  if (const auto mapping = choose_mapping(editor.edit.mapping, editor.edit.linear_below)) {
+    const auto writes = mapping_edits(editor.volume, editor.edit, *mapping);
+    if (writes.empty())
+      editor.context.state.say("the points reach down to 0 or below, where there is no logarithm; symlog shows them", true);
+    else
+      editor.edits.set(writes, "mapping");
+  }
   auto reach = *reach_of(editor.edit.colors, editor.edit.opacities);
   ImGui::SetNextItemWidth(78);
   bool typed = typed_number("##from", reach[0], "the least value with a point; moving it moves all; Enter");
@@ -287,7 +294,7 @@ void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volum
   const float width = ImGui::GetContentRegionAvail().x - kHandle;
   const bool mine = state.volume == pointer_of(volume.where);
   const auto range = shown_range(editor, *source.drawn.scalar);
-  editor.plot = {at.x + kHandle, at.y + kHandle, at.x + width, at.y + kPlotHeight, range[0], range[1]};
+  editor.plot = {at.x + kHandle, at.y + kHandle, at.x + width, at.y + kPlotHeight, range[0], range[1], edit->linear_below};
   if (mine && state.before && state.frame) editor.plot.lo = state.frame->lo, editor.plot.hi = state.frame->hi;
   ImGui::InvisibleButton("##plot", {width + kHandle, kPlotHeight + 4});
   const auto claim = [&] {
@@ -301,7 +308,7 @@ void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volum
   draw_curve(editor);
 
   const ImVec2 below = ImGui::GetCursorScreenPos();
-  editor.bar = {editor.plot.left, below.y, editor.plot.right, below.y + kBarHeight, editor.plot.lo, editor.plot.hi};
+  editor.bar = {editor.plot.left, below.y, editor.plot.right, below.y + kBarHeight, editor.plot.lo, editor.plot.hi, edit->linear_below};
   ImGui::InvisibleButton("##bar", {width + kHandle, kBarHeight + 2});
   claim();
   move_colors(editor);

@@ -76,6 +76,8 @@ struct SaveAs {
 struct GiveUpSaving {};
 /// To "Before this scene is left".
 enum class AnswerToUnsaved : std::uint8_t { save, discard, cancel };
+/// To "The file is not as it was read".
+enum class AnswerToChanged : std::uint8_t { keep_mine, take_theirs, save_as, cancel };
 /// To "Unsaved changes of an earlier run".
 enum class AnswerToLeft : std::uint8_t { restore, discard, later };
 struct ChooseStereo {
@@ -112,8 +114,8 @@ struct Record {
 };
 
 using Command =
-    std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToLeft, ChooseStereo,
-                 ChooseQuality, EstimateError, MeasurePlan, ObserveHand, Feel, RemoveItem, ChooseDevice, ShowStep, Record>;
+    std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToChanged, AnswerToLeft,
+                 ChooseStereo, ChooseQuality, EstimateError, MeasurePlan, ObserveHand, Feel, RemoveItem, ChooseDevice, ShowStep, Record>;
 using Commands = std::vector<Command>;
 
 /// What a stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and ask for nothing.

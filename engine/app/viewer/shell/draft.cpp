@@ -17,6 +17,7 @@
 
 #include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/hash.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 
@@ -68,7 +69,7 @@ Outcome write_all(int descriptor, std::string_view text, const std::string& path
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return Error{path + ": cannot write: " + std::strerror(errno)};
+    if (written < 0) return system_error(path + ": cannot write", errno);
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return Done{};

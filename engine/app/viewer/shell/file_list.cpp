@@ -7,12 +7,15 @@
 
 #include "engine/app/run_files.h"
 #include "engine/base/json_edit.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/curves/load.h"
 #include "engine/curves/points.h"
 #include "engine/field/formats.h"
+#include "engine/field/parts.h"
 #include "engine/mesh/load.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -46,34 +49,24 @@ bool is_openable(const std::string& path) {
 }
 
 std::string opened_for_folder(const std::string& folder) {
+  if (field::is_case_folder(folder)) return folder;
   const auto entries = list_folder(folder);
   std::vector<std::string> names;
   for (std::size_t k = 0; entries && k < entries->size(); ++k)
     if (const FileEntry& entry = (*entries)[k]; !entry.is_folder && !is_scene_name(entry.name)) names.push_back(entry.name);
   if (names.empty() || std::ranges::any_of(names, [](const std::string& name) { return has_ending(name, ".dcm"); })) return folder;
   if (names.size() == 1) return (fs::path(folder) / names.front()).string();
-  // what all begin and end with
-  std::string before = names.front(), after = names.front();
-  for (const std::string& name : names) {
-    before.erase(std::ranges::mismatch(before, name).in1, before.end());
-    after.erase(after.begin(), std::mismatch(after.rbegin(), after.rend(), name.rbegin(), name.rend()).first.base());
-  }
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  while (!before.empty() && digit(before.back())) before.pop_back();
-  while (!after.empty() && digit(after.front())) after.erase(after.begin());
-  for (const std::string& name : names) {
-    const std::size_t ends = before.size() + after.size();
-    if (name.size() <= ends || !std::all_of(name.begin() + static_cast<std::ptrdiff_t>(before.size()),
-                                            name.end() - static_cast<std::ptrdiff_t>(after.size()), digit))
-      return folder;
-  }
-  return (fs::path(folder) / (before + "*" + after)).string();
+  for (std::string& name : names) name = (fs::path(folder) / name).string();
+  const auto series = scene::pattern_of(names);
+  return series ? *series : folder;
 }
 
 Result<std::vector<FileEntry>> list_folder(const std::string& folder, bool scenes_only) {
   std::error_code code;
   fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, code);
-  if (code) return Error{one_line(folder + ": " + code.message() + "; a folder that can be read was expected")};
+  if (code)
+    return Error{one_line(folder + ": " + cause_of(code.value()) + "; a folder that can be read was expected"),
+                 is_machine_failure(code.value())};
   std::vector<FileEntry> entries;
   for (; it != fs::directory_iterator(); it.increment(code)) {
     if (code || entries.size() >= kMaxEntries) break;

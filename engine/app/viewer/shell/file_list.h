@@ -17,7 +17,7 @@ struct FileEntry {
 /// .json .vdb .nii .nii.gz .stl .obj (what `catena view` opens), whatever the case.
 bool is_openable(const std::string& path);
 /// What a dropped folder opens as: its only data file, or the files of a row that differ in a number alone ("FOLDER/flow_*.vti"); else,
-/// and where DICOM images (.dcm) lie in it, the folder itself.
+/// and where DICOM images (.dcm) lie in it, or it is an OpenFOAM case, the folder itself.
 std::string opened_for_folder(const std::string& folder);
 /// A scene, by its name.
 bool is_scene_name(const std::string& path);

@@ -205,6 +205,7 @@ void HandHost::stop() {
 Outcome HandHost::finish(const std::string& servo_stats) {
   stop();
   CATENA_CHECK(recording_.finish());
+  CATENA_CHECK(hand_.device->files_written());
   return write_servo_stats(servo_stats, *servo_, *hand_.device);
 }
 

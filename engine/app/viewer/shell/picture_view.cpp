@@ -199,7 +199,7 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   auto packet = drawing_.packet(next, width, height);
   if (!packet) {
     // at the start it is the scene's fault; later an edit's, and the last picture stands
-    if (shared_.times.count() == 0) return Failure{2, packet.error().message};
+    if (shared_.times.count() == 0) return failure_of(packet.error());
     shared_.state.say(packet.error().message, true);
     return std::nullopt;
   }
@@ -260,7 +260,7 @@ std::optional<Failure> PictureView::plan() {
   if (is_minimised()) return std::nullopt;
   lay_out();
   auto packet = this->packet();
-  if (!packet) return Failure{2, packet.error().message};
+  if (!packet) return failure_of(packet.error());
   const Outcome made = measure_eye(shared_.plan, shared_.pacing, screen_->renderer(), *packet, shared_.scene, shared_.hand,
                                    [this](const std::string& line) { shared_.state.say(line); });
   if (!made) return Failure{1, made.error().message};
@@ -392,7 +392,7 @@ std::optional<Failure> PictureView::write_last(const std::function<void()>& make
     if (auto failure = show(make_panels)) return failure;
     auto picture = screen_->window_picture();
     if (!picture) return Failure{1, picture.error().message};
-    if (auto written = render::write_png(options.window_screenshot, *picture, false); !written) return Failure{2, written.error().message};
+    if (auto written = render::write_png(options.window_screenshot, *picture, false); !written) return failure_of(written.error());
   }
   if (options.screenshot.empty()) return std::nullopt;
   std::uint32_t width = 0, height = 0;
@@ -405,7 +405,7 @@ std::optional<Failure> PictureView::write_last(const std::function<void()>& make
   auto picture = screen_->renderer().read_back();
   if (!picture) return Failure{1, picture.error().message};
   const bool transparent = shared_.scene.scene().background.transparent;
-  if (auto written = render::write_png(options.screenshot, *picture, transparent); !written) return Failure{2, written.error().message};
+  if (auto written = render::write_png(options.screenshot, *picture, transparent); !written) return failure_of(written.error());
   return std::nullopt;
 }
 

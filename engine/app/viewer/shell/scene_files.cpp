@@ -9,6 +9,7 @@
 #include "engine/app/viewer/edit/new_items.h"
 #include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/clock.h"
+#include "engine/base/output_file.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {
@@ -89,7 +90,33 @@ void SceneFiles::save() {
     save_as(shared_.scene.document().path());
 }
 
+/// What somebody else has written to the scene's own file since it was read is not replaced unasked.
 void SceneFiles::save_as(const std::string& path) {
+  const scene::Document& document = shared_.scene.document();
+  const bool own = shared_.state.owns_file && !shared_.state.untitled && same_file(path, document.path());
+  if (const auto there = own ? document.on_disk() : scene::Document::OnDisk::as_known; there != scene::Document::OnDisk::as_known)
+    shared_.state.ask.changed = there;
+  else
+    write_and_go_on(path);
+}
+
+void SceneFiles::answer(AnswerToChanged given) {
+  ViewState& state = shared_.state;
+  if (!std::exchange(state.ask.changed, std::nullopt)) return;
+  if (given == AnswerToChanged::keep_mine) return write_and_go_on(shared_.scene.document().path());
+  if (given == AnswerToChanged::save_as) {
+    state.ask.save_as = true;
+    return;
+  }
+  const auto next = std::exchange(after_save_, std::nullopt);
+  if (given != AnswerToChanged::take_theirs) return;
+  if (const Outcome taken = shared_.scene.take_from_disk(); !taken) return state.say(taken.error().message, true);
+  draft_.remove();
+  state.say("the scene is as the file says; undo brings back yours");
+  if (next) leave(*next);
+}
+
+void SceneFiles::write_and_go_on(const std::string& path) {
   const bool written = write(path);
   if (const auto next = std::exchange(after_save_, std::nullopt); next && written) leave(*next);
 }

@@ -36,6 +36,7 @@ class SceneFiles {
   void quit() { leave_or_ask({}); }
   void answer(AnswerToUnsaved given);
   void answer(AnswerToDropped given);
+  void answer(AnswerToChanged given);
   void answer(AnswerToLeft given);
 
   /// What was being opened is there; true: the picture has to be made again.
@@ -49,6 +50,7 @@ class SceneFiles {
  private:
   void leave_or_ask(const Leaving& leaving);
   void leave(const Leaving& leaving);
+  void write_and_go_on(const std::string& path);
   bool write(const std::string& path);
   void start_loading(const std::string& path, bool adds);
   void replace_scene(LoadedScene loaded, const std::string& path);

@@ -154,6 +154,10 @@ Outcome SceneHost::redo() {
   });
 }
 
+Outcome SceneHost::take_from_disk() {
+  return change([](scene::Document& document) { return document.take_from_disk(); });
+}
+
 Outcome SceneHost::save(const std::string& path) { return document_.save(path); }
 
 }  // namespace catena::app

@@ -36,6 +36,7 @@ class SceneHost {
   Outcome apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
   /// Another text, as one step of undo.
   Outcome replace(const std::string& text, const std::string& what);
+  Outcome take_from_disk();
   Outcome undo();
   Outcome redo();
   Outcome save(const std::string& path);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -32,6 +34,7 @@ Session::Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, W
       head_(std::move(head)),
       picture_(shared_, std::move(reload)),
       files_(shared_, eye_, picture_),
+      follower_(options.follow),
       interrupt_(interrupt) {}
 
 Session::~Session() { shared_.hand.stop(); }
@@ -54,7 +57,7 @@ std::optional<Failure> Session::open() {
 
   const auto loaded =
       load_first(shared_.scene, hand, static_cast<std::uint32_t>(state.area.width), static_cast<std::uint32_t>(state.area.height));
-  if (!loaded) return Failure{2, loaded.error().message};
+  if (!loaded) return failure_of(loaded.error());
   files_.show(*loaded);
   look_for_pulses();
   before_screen_ = shared_.controls.view;
@@ -64,8 +67,11 @@ std::optional<Failure> Session::open() {
     if (auto failure = picture_.plan()) return failure;
   observe_hand_anew();
   files_.begin();
-  // a device that pushes is let go by its own way out, Ctrl-C or not
-  if (!hand.is_mouse()) interrupt_.emplace();
+  // a device that pushes is let go by its own way out, whatever signal comes; beside the mouse the outputs are finished
+  if (hand.is_mouse())
+    interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
+  else
+    interrupt_.emplace();
   if (const Outcome started = hand.start(); !started) return Failure{1, started.error().message};
   if (!hand.note().empty()) state.say(hand.note());
   return std::nullopt;
@@ -142,6 +148,14 @@ bool Session::follow_head() {
   return moved;
 }
 
+void Session::follow_steps() {
+  const auto more = follower_.run(shared_.scene, shared_.state.steps);
+  if (!more)
+    shared_.state.say(more.error().message, true);
+  else if (*more)
+    shared_.state.say(fmt::format("{} steps in time by now", scene::step_count(std::as_const(shared_.scene).scene())));
+}
+
 void Session::show_step(int step) { shared_.state.say_if_wrong(shared_.state.steps.show(shared_.scene, step)); }
 
 void Session::update_title() {
@@ -201,6 +215,7 @@ std::optional<Failure> Session::run() {
       changed_ = true;
     }
     // what has changed since the last picture
+    follow_steps();
     shared_.state.say_if_wrong(shared_.state.steps.run(scene));
     const bool opened = files_.take_loaded();
     if (opened) {
@@ -257,13 +272,13 @@ std::optional<Failure> Session::run() {
 
 std::optional<Failure> Session::finish() {
   const ViewOptions& options = shared_.options;
-  if (auto finished = shared_.hand.finish(options.servo_stats); !finished) return Failure{2, finished.error().message};
+  if (auto finished = shared_.hand.finish(options.servo_stats); !finished) return failure_of(finished.error());
   shared_.hand.take(shared_.scene.scene());
   if (!options.frame_stats.empty()) {
     auto file = OutputFile::open(options.frame_stats);
-    if (!file) return Failure{2, file.error().message};
+    if (!file) return failure_of(file.error());
     file->write(shared_.times.json());
-    if (auto written = file->commit(); !written) return Failure{2, written.error().message};
+    if (auto written = file->commit(); !written) return failure_of(written.error());
   }
   if (auto failure = picture_.write_last(interface_frame().make_panels)) return failure;
   tell_figures();

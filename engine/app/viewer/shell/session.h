@@ -11,6 +11,7 @@
 #include "engine/app/viewer/shell/picture_view.h"
 #include "engine/app/viewer/shell/scene_files.h"
 #include "engine/app/viewer/shell/shared.h"
+#include "engine/app/viewer/shell/step_follower.h"
 #include "engine/app/viewer/shell/tracked_head.h"
 
 namespace catena::app {
@@ -41,6 +42,7 @@ class Session {
   std::optional<Failure> measure_plan();
   bool run_pulses();
   bool follow_head();
+  void follow_steps();
   void show_step(int step);
   void update_title();
   PanelContext context();
@@ -70,6 +72,7 @@ class Session {
   render::View before_screen_;         ///< but for where the head is
   PictureView picture_;
   SceneFiles files_;
+  StepFollower follower_;
   std::optional<Interrupt>& interrupt_;
   WidgetEdits widget_edits_;
   PulseClock pulses_;

@@ -5,6 +5,7 @@
 #include "engine/app/viewer/edit/removal.h"
 #include "engine/app/viewer/shell/session.h"
 #include "engine/base/clock.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -28,7 +29,8 @@ void Session::carry_out(const Command& command) {
   ViewState& state = shared_.state;
   const auto choose_device = [&](const ChooseDevice& asked) {
     const Outcome done = hand.switch_device(scene.scene(), asked.name, scene.bounds);
-    if (done && !hand.is_mouse() && !interrupt_) interrupt_.emplace();
+    // what pushes hears every signal, and a second one, too, only as a wish to end
+    if (done && !hand.is_mouse() && !(interrupt_ && interrupt_->asked())) interrupt_.emplace();
     shared_.controls.hand = hand.felt().tick > 0 ? hand.felt().probe : hand.first_probe();
     state.say(done ? hand.hand().device->capabilities().name + " holds the probe" : done.error().message, !done);
   };
@@ -43,15 +45,24 @@ void Session::carry_out(const Command& command) {
   };
   std::visit(Overloaded{[&](Action action) { act(action); },
                         [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
-                        [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
-                        [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
-                        [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
+                        [&](const OpenFile& file) { files_.open(file.path); },
+                        [&](const DropFile& file) { files_.drop(file.path); },
+                        [&](const SaveAs& file) { files_.save_as(file.path); },
+                        [&](GiveUpSaving) { files_.give_up_saving(); },
+                        [&](AnswerToUnsaved answer) { files_.answer(answer); },
+                        [&](AnswerToDropped answer) { files_.answer(answer); },
+                        [&](AnswerToChanged answer) { files_.answer(answer); },
                         [&](AnswerToLeft answer) { files_.answer(answer); },
                         [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); },
-                        [&](EstimateError) { wants_error_ = true; }, [&](MeasurePlan) { measure_ = true; },
-                        [&](ObserveHand) { observe_hand(); }, [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); },
-                        [&](const RemoveItem& asked) { remove(asked.item, asked.what); }, choose_stereo, choose_device,
-                        [&](ShowStep asked) { show_step(asked.step); }, record},
+                        [&](EstimateError) { wants_error_ = true; },
+                        [&](MeasurePlan) { measure_ = true; },
+                        [&](ObserveHand) { observe_hand(); },
+                        [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); },
+                        [&](const RemoveItem& asked) { remove(asked.item, asked.what); },
+                        choose_stereo,
+                        choose_device,
+                        [&](ShowStep asked) { show_step(asked.step); },
+                        record},
              command);
 }
 
@@ -254,8 +265,11 @@ Changed Session::take_piece(Input piece) {
       commands.push_back(*action);
       gui_.expect_change();
     }
-  if (piece.dropped.size() > 1) shared_.state.say("several files were dropped: the last one counts");
-  if (!piece.dropped.empty()) commands.push_back(DropFile{piece.dropped.back()});
+  if (!piece.dropped.empty()) {
+    const auto series = scene::pattern_of(piece.dropped);
+    if (!series) shared_.state.say("several files that are no series were dropped: the last one counts");
+    commands.push_back(DropFile{series ? *series : piece.dropped.back()});
+  }
   carry_out();
   Controls& controls = shared_.controls;
   if (takes_hold(piece)) controls.turntable = false;

@@ -6,6 +6,7 @@
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/app/viewer/shell/gui.h"
 #include "engine/app/viewer/viewer.h"
+#include "engine/base/machine_failure.h"
 
 namespace catena::app {
 
@@ -14,6 +15,8 @@ struct Failure {
   int exit_code;
   std::string message;
 };
+/// With the exit code of the error.
+inline Failure failure_of(const Error& error) { return {exit_code_of(error), error.message}; }
 
 // what a window's loop goes by, seconds
 inline constexpr double kIdleWaitS = 0.004;  ///< between looks at the servo's news when nothing else happens

@@ -16,8 +16,6 @@ namespace {
 
 using Stage = Procedure::Stage;
 
-Failure failure_of(const Error& error) { return {error.machine ? 1 : 2, error.message}; }
-
 std::optional<Stroke> stroke_of(const KeyEvent& event) {
   using What = KeyEvent::What;
   if (event.what == What::character) return Stroke{Stroke::What::character, event.character};

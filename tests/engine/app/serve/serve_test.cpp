@@ -210,6 +210,29 @@ TEST(Serve, StepsUndoAndRecordings) {
   EXPECT_EQ(served.err(), "");
 }
 
+TEST(Serve, StepsThatAreAddedAreShownOnceTheyAreWhole) {
+  const test::TemporaryFolder folder;
+  const auto file = [&](int step) { return folder / ("a_" + std::to_string(step) + ".vdb"); };
+  const test::ProgramResult made = test::run_catena({"generate", "sphere", "--resolution", "12", "-o", file(1)});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  test::Served served(file(1), {"--follow"});
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  EXPECT_EQ(number_of(*test::told(*page, "state").find("step"), "count"), 1);
+  const std::string bytes = test::read_file(file(1));
+  test::write_file(file(2), bytes.substr(0, bytes.size() / 2));
+  test::write_file(file(10), bytes);
+  const auto newest_is = [](int count) {
+    return
+        [count](const Node& s) { return number_of(*s.find("step"), "count") == count && number_of(*s.find("step"), "now") == count - 1; };
+  };
+  test::told(*page, "state", newest_is(2));
+  test::write_file(file(2), bytes);
+  test::told(*page, "state", newest_is(3));
+  EXPECT_EQ(served.interrupt(), 0);
+  EXPECT_EQ(served.err(), "");
+}
+
 TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "line.json", R"({"fields": {"flow": {"analytic": "circle"}},

@@ -9,6 +9,7 @@
 #include "engine/app/tradeoff/measure/floor.h"
 #include "engine/app/tradeoff/measure/hand/replay_link.h"
 #include "engine/app/tradeoff/measure/registry.h"
+#include "engine/field/display_range.h"
 #include "render/mirror/half.h"
 
 namespace catena::app::tradeoff {
@@ -58,7 +59,8 @@ Result<Curve> measure_grid(Subject& subject, const std::string& name, const fiel
   grid.read_block(origin, n, floats.values);
   for (float& v : floats.values)
     if (!std::isfinite(v)) v = static_cast<float>(grid.min_value());
-  const double lo = grid.min_value(), range = grid.max_value() - lo;
+  const DisplayRange& shown = field::display_range(grid);
+  const double lo = shown.lo, range = shown.hi - lo;
   if (!(range > 0)) return Error{"field \"" + name + "\" has one value only"};
   Block<std::uint16_t, AsHalf> halves{n, 0, 1, {}};
   Block<std::uint8_t, AsByte> bytes{n, lo, range / 255, {}};

@@ -1,0 +1,259 @@
+#include "engine/base/display_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "engine/base/numbers.h"
+
+namespace catena {
+namespace {
+
+constexpr double kFillGap = 2, kFewGap = 10, kSpikeGap = 50, kWildGap = 1e6;  // in lengths of the range so far
+constexpr double kWildShare = 0.1, kWildSize = 1e9, kHugeSize = 1e15, kHugeRatio = 1e6;
+constexpr std::size_t kMostSampled = 1u << 20;
+constexpr std::size_t kFewestInside = 8;  // fewer different values may be materials
+constexpr std::uint64_t kFewValues = 4, kFewDivisor = 10000, kSmallDivisor = 64;
+constexpr double kManyShare = 0.001;  // from here on a single value may be a fill value
+
+struct DistinctValue {
+  double value;
+  std::uint64_t count;
+  bool fill;
+};
+
+/// The limits of integer types: data have them as well.
+constexpr std::array<float, 6> kIntegerFills{-32768.f, -32767.f, 32767.f, 65535.f, -2147483648.f, 2147483648.f};
+
+bool is_integer_fill(double value) {
+  return std::ranges::any_of(kIntegerFills, [&](float fill) { return value == static_cast<double>(fill); });
+}
+
+std::vector<DistinctValue> distinct_values(const std::vector<float>& sorted) {
+  std::vector<DistinctValue> distinct;
+  for (const float v : sorted) {
+    if (distinct.empty() || distinct.back().value != static_cast<double>(v)) distinct.push_back({v, 0, is_fill_value(v)});
+    ++distinct.back().count;
+  }
+  return distinct;
+}
+
+/// Grows an interval of distinct values from its core.
+class RangeSearch {
+ public:
+  explicit RangeSearch(const std::vector<DistinctValue>& values) : values_(values) {
+    for (const DistinctValue& v : values_) all_ += v.count;
+    few_ = std::max(std::min(kFewValues, all_ / kSmallDivisor), all_ / kFewDivisor);
+    find_core();
+  }
+
+  void grow() {
+    while (grow_once()) {
+    }
+  }
+  std::size_t first() const { return first_; }
+  std::size_t last() const { return last_; }
+
+ private:
+  void find_core() {
+    std::vector<std::size_t> inner;
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (!values_[i].fill) inner.push_back(i);
+    if (inner.empty())
+      for (std::size_t i = 0; i < values_.size(); ++i) inner.push_back(i);
+    const std::size_t reach = (inner.size() + 1) / 2 - 1;
+    double shortest = std::numeric_limits<double>::infinity();
+    std::uint64_t most = 0;
+    for (std::size_t i = 0; i + reach < inner.size(); ++i) {
+      const double length = values_[inner[i + reach]].value - values_[inner[i]].value;
+      const std::uint64_t count = values_[inner[i]].count;
+      if (length > shortest || (length == shortest && count <= most)) continue;
+      shortest = length;
+      most = count;
+      first_ = inner[i];
+      last_ = inner[i + reach];
+    }
+  }
+
+  /// Takes in one value more; false where only values beyond are left.
+  bool grow_once() {
+    const bool can_fall = first_ > 0, can_rise = last_ + 1 < values_.size();
+    const double down = can_fall ? values_[first_].value - values_[first_ - 1].value : 0,
+                 up = can_rise ? values_[last_ + 1].value - values_[last_].value : 0;
+    const bool down_first = can_fall && (!can_rise || down <= up);
+    for (const bool falls : {down_first, !down_first}) {
+      if (!(falls ? can_fall : can_rise)) continue;
+      if (is_beyond(falls, falls ? down : up)) continue;
+      falls ? --first_ : ++last_;
+      return true;
+    }
+    return false;
+  }
+
+  bool is_beyond(bool low, double gap) const {
+    const double length = values_[last_].value - values_[first_].value;
+    if (length > 0 && gap < kFillGap * length) return false;
+    const auto begin = low ? values_.begin() : values_.begin() + static_cast<std::ptrdiff_t>(last_ + 1);
+    const auto end = low ? values_.begin() + static_cast<std::ptrdiff_t>(first_) : values_.end();
+    std::uint64_t others = 0, spike = 0, all = 0;
+    bool integers = false;
+    for (auto it = begin; it != end; ++it) {
+      all += it->count;
+      integers = integers || is_integer_fill(it->value);
+      if (it->fill) continue;
+      others += it->count;
+      if (it->value != 0) spike = std::max(spike, it->count);
+    }
+    const double nearest = std::fabs(low ? (end - 1)->value : begin->value);
+    const double inside = std::max(std::fabs(values_[first_].value), std::fabs(values_[last_].value));
+    if (!(length > 0)) return (others == 0 && !integers) || (others <= few_ && nearest >= kHugeSize && nearest >= kHugeRatio * inside);
+    if (others == 0) return gap >= kFillGap * length;
+    if (others <= few_ && gap > kFewGap * length) return true;
+    if (others - spike <= few_ && spike > 0 && last_ - first_ >= kFewestInside && gap > kSpikeGap * length) return true;
+    return static_cast<double>(all) <= kWildShare * static_cast<double>(all_) && nearest >= kWildSize && nearest >= kWildSize * inside &&
+           gap > kWildGap * length;
+  }
+
+  const std::vector<DistinctValue>& values_;
+  std::uint64_t all_ = 0, few_ = 0;
+  std::size_t first_ = 0, last_ = 0;
+};
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// Between the last value shown and the first one beyond.
+double fence(double shown, double beyond, double length) {
+  const double half = 0.5 * shown + 0.5 * beyond, reach = kFewGap * length;
+  if (!(length > 0)) return half;
+  return beyond > shown ? std::min(half, shown + reach) : std::max(half, shown - reach);
+}
+
+void add_beyond(DisplayRange::Beyond& beyond, double value, std::uint64_t count, bool low) {
+  if (beyond.count == 0) beyond.nearest = beyond.farthest = value;
+  beyond.nearest = low ? std::max(beyond.nearest, value) : std::min(beyond.nearest, value);
+  beyond.farthest = low ? std::min(beyond.farthest, value) : std::max(beyond.farthest, value);
+  beyond.count += count;
+}
+
+template <class T>
+DisplayRange range_of_all(std::span<const T> values) {
+  const std::size_t step = 1 + values.size() / kMostSampled;
+  std::vector<float> sample;
+  double least = kNone, most = -kNone;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const T v = values[i];
+    if (!std::isfinite(v)) continue;
+    least = std::min(least, static_cast<double>(v));
+    most = std::max(most, static_cast<double>(v));
+    if (i % step == 0) sample.push_back(static_cast<float>(v));
+  }
+  if (least > most) return {};
+  RangeCounter counter(display_range(std::move(sample), least, most));
+  for (const T v : values) counter.add(static_cast<double>(v));
+  return counter.range();
+}
+
+std::string count_text(const DisplayRange::Beyond& beyond, std::string_view noun) {
+  if (beyond.nearest == beyond.farthest)
+    return fmt::format("{}{} of {}", beyond.count, noun.empty() ? "" : beyond.count == 1 ? " value" : " values", readable(beyond.nearest));
+  return fmt::format("{}{} of {} to {}", beyond.count, noun.empty() ? "" : " values", readable(std::min(beyond.nearest, beyond.farthest)),
+                     readable(std::max(beyond.nearest, beyond.farthest)));
+}
+
+std::string beyond_text(const DisplayRange& range) {
+  if (range.below.count > 0 && range.above.count > 0)
+    return count_text(range.below, "values") + " below, " + count_text(range.above, "") + " above";
+  return count_text(range.below.count > 0 ? range.below : range.above, "values") + " beyond";
+}
+
+}  // namespace
+
+RangeCounter::RangeCounter(const DisplayRange& of_sample)
+    : counted_{kNone, -kNone, of_sample.least, of_sample.most, 0, {}, {}}, from_(-kNone), to_(kNone) {
+  const double length = of_sample.hi - of_sample.lo;
+  if (of_sample.below.count > 0) from_ = fence(of_sample.lo, of_sample.below.nearest, length);
+  if (of_sample.above.count > 0) to_ = fence(of_sample.hi, of_sample.above.nearest, length);
+}
+
+void RangeCounter::add(double value, std::uint64_t count) {
+  if (!std::isfinite(value)) return;
+  counted_.count += count;
+  if (value < from_) return add_beyond(counted_.below, value, count, true);
+  if (value > to_) return add_beyond(counted_.above, value, count, false);
+  counted_.lo = std::min(counted_.lo, value);
+  counted_.hi = std::max(counted_.hi, value);
+}
+
+void RangeCounter::join(const RangeCounter& part) {
+  counted_.count += part.counted_.count;
+  counted_.lo = std::min(counted_.lo, part.counted_.lo);
+  counted_.hi = std::max(counted_.hi, part.counted_.hi);
+  for (const auto side : {&DisplayRange::below, &DisplayRange::above}) {
+    const DisplayRange::Beyond& beyond = part.counted_.*side;
+    if (beyond.count == 0) continue;
+    add_beyond(counted_.*side, beyond.nearest, beyond.count, side == &DisplayRange::below);
+    add_beyond(counted_.*side, beyond.farthest, 0, side == &DisplayRange::below);
+  }
+}
+
+DisplayRange RangeCounter::range() const { return counted_; }
+
+bool is_fill_value(float value) {
+  constexpr float kNetcdf = 9.9692099683868690e+36f;
+  for (const float below : {-999.f, -999.25f, -9999.f, -99999.f, -999999.f, -9999999.f})
+    if (value == below) return true;
+  const float size = std::fabs(value);
+  for (const float either :
+       {1e15f, 1e20f, 1e30f, 1e31f, 1e32f, 1e33f, 1e34f, 1e35f, 1e36f, 1e37f, 1e38f, kNetcdf, std::numeric_limits<float>::max()})
+    if (size == either) return true;
+  return is_integer_fill(value);
+}
+
+DisplayRange display_range(std::vector<float> sample, double least, double most) {
+  DisplayRange range{least, most, least, most, 0, {}, {}};
+  std::erase_if(sample, [&](float v) { return !std::isfinite(v) || v < least || v > most; });
+  range.count = sample.size();
+  if (!std::isfinite(least) || !std::isfinite(most) || !(least < most)) return range;
+  sample.push_back(static_cast<float>(least));
+  sample.push_back(static_cast<float>(most));
+  std::ranges::sort(sample);
+  const std::vector<DistinctValue> values = distinct_values(sample);
+  RangeSearch search(values);
+  search.grow();
+  const std::size_t first = search.first(), last = search.last();
+  for (std::size_t i = 0; i < first; ++i) range.below.count += values[i].count;
+  for (std::size_t i = last + 1; i < values.size(); ++i) range.above.count += values[i].count;
+  if (first > 0) range.lo = values[first].value, range.below.nearest = values[first - 1].value, range.below.farthest = values.front().value;
+  if (last + 1 < values.size())
+    range.hi = values[last].value, range.above.nearest = values[last + 1].value, range.above.farthest = values.back().value;
+  return range;
+}
+
+DisplayRange display_range(std::span<const double> values) { return range_of_all(values); }
+DisplayRange display_range(std::span<const float> values) { return range_of_all(values); }
+
+std::string range_text(const DisplayRange& range) {
+  const std::string shown = readable(range.lo) + " .. " + readable(range.hi);
+  return range.is_cut() ? shown + " (" + beyond_text(range) + ")" : shown;
+}
+
+std::string beyond_note(const DisplayRange& range) {
+  constexpr std::uint64_t kFewValues = 10;  // that are outliers and no code for missing data
+  if (!range.is_cut()) return {};
+  std::string text = fmt::format("{} the others, {} .. {}, which colours span where no range is stated", beyond_text(range),
+                                 readable(range.lo), readable(range.hi));
+  for (const DisplayRange::Beyond& beyond : {range.below, range.above}) {
+    const double share = static_cast<double>(beyond.count) / static_cast<double>(std::max<std::uint64_t>(range.count, 1));
+    if (beyond.count == 0 || beyond.nearest != beyond.farthest) continue;
+    if (share >= kManyShare && beyond.count >= kFewValues)
+      text += fmt::format("; {:.3g} % of the values are exactly {}: perhaps missing data, which a mask (\"valid\") leaves out", 100 * share,
+                          readable(beyond.nearest));
+    else if (is_fill_value(static_cast<float>(beyond.nearest)))
+      text += fmt::format("; {} often stands for missing data", readable(beyond.nearest));
+  }
+  return text;
+}
+
+}  // namespace catena

@@ -1,0 +1,176 @@
+#include "haptics/device/process/process_device.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "engine/base/clock.h"
+#include "engine/base/helper_process.h"
+#include "engine/base/machine_failure.h"
+#include "haptics/device/process/force_table.h"
+#include "haptics/device/process/page.h"
+
+namespace catena::haptics {
+
+namespace {
+
+using process::DevicePage;
+
+constexpr int kOpenMs = 60'000;
+constexpr double kEndS = 3, kLostS = 0.1;
+
+Error cannot_start(const std::string& device, const std::string& why) {
+  return Error{device + ": the process that holds the device cannot be started: " + why, true};
+}
+
+/// The page's memory, mapped here; its size is sealed, so that neither side can take it from under the other.
+class SharedPage {
+ public:
+  static Result<SharedPage> make(const std::string& device) {
+    Descriptor file(::memfd_create("catena-device", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (!file || ::ftruncate(file.get(), sizeof(DevicePage)) != 0 ||
+        ::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+      return cannot_start(device, cause_of(errno));
+    void* const at = ::mmap(nullptr, sizeof(DevicePage), PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+    if (at == MAP_FAILED) return cannot_start(device, cause_of(errno));
+    return SharedPage(std::move(file), new (at) DevicePage{});
+  }
+  SharedPage(SharedPage&& other) noexcept : file_(std::move(other.file_)), page_(std::exchange(other.page_, nullptr)) {}
+  SharedPage& operator=(SharedPage&&) = delete;
+  ~SharedPage() {
+    if (page_ != nullptr) ::munmap(page_, sizeof(DevicePage));
+  }
+  DevicePage& operator*() const { return *page_; }
+  int fd() const { return file_.get(); }
+
+ private:
+  SharedPage(Descriptor file, DevicePage* page) : file_(std::move(file)), page_(page) {}
+  Descriptor file_;
+  DevicePage* page_;
+};
+
+class ProcessDevice final : public Device {
+ public:
+  ProcessDevice(SharedPage memory, HelperProcess process, Descriptor lifeline, std::string table)
+      : memory_(std::move(memory)),
+        process_(std::move(process)),
+        lifeline_(std::move(lifeline)),
+        table_(std::move(table)),
+        page_(*memory_) {
+    const process::Description& is = page_.description;
+    capabilities_.name = is.name;
+    capabilities_.workspace_m = is.workspace_m;
+    capabilities_.workspace_centre_m = is.workspace_centre_m;
+    capabilities_.buttons = is.buttons;
+    capabilities_.has_orientation = is.has_orientation;
+    capabilities_.vibrates = is.vibrates;
+    capabilities_.max_force_n = is.max_force_n;
+    capabilities_.max_torque_nm = is.max_torque_nm;
+    capabilities_.mechanics = is.mechanics;
+  }
+  /// The end of the lifeline is the end of the force; the process is waited for, so that its table is whole.
+  ~ProcessDevice() override {
+    lifeline_.close();
+    process_.wait(kEndS);
+  }
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+
+  DeviceInput read() noexcept override {
+    page_.poses.take();
+    const process::Pose& pose = page_.poses.front();
+    DeviceInput input = pose.input;
+    if (pose.written_ns == 0) {
+      input.status = DeviceStatus::starting;
+      return input;
+    }
+    input.age_s += 1e-9 * static_cast<double>(std::max<std::int64_t>(0, now_ns() - pose.written_ns));
+    const std::uint32_t takeovers = page_.takeovers.load(std::memory_order_acquire);
+    // once, so that the force ramps in
+    if (input.age_s > kLostS || takeovers != seen_takeovers_) input.status = DeviceStatus::lost;
+    seen_takeovers_ = takeovers;
+    return input;
+  }
+
+  void write(const DeviceOutput& output) noexcept override { page_.orders.publish({output, seen_takeovers_}); }
+  void stop() noexcept override { page_.stopped = 1; }
+  void resume() noexcept override { page_.stopped = 0; }
+  bool at_rest() const noexcept override { return page_.at_rest != 0; }
+
+  Outcome files_written() const override {
+    const int code = page_.table_error;
+    return code == 0 ? Outcome(Done{}) : system_error(table_ + ": cannot write all rows", code);
+  }
+
+  std::string status_text() const override {
+    if (const Outcome whole = files_written(); !whole) return whole.error().message;
+    page_.status.take();
+    const process::StatusText words = page_.status.front();
+    return {words.text, ::strnlen(words.text, sizeof words.text)};
+  }
+
+ private:
+  SharedPage memory_;
+  HelperProcess process_;
+  Descriptor lifeline_;
+  std::string table_;
+  DevicePage& page_;
+  DeviceCapabilities capabilities_;
+  std::uint32_t seen_takeovers_ = 0;  ///< haptic thread
+};
+
+template <std::size_t N>
+bool fits(char (&to)[N], const std::string& text) {
+  std::snprintf(to, N, "%s", text.c_str());
+  return text.size() < N;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const std::string& log, const DeviceSettings& settings) {
+  CATENA_TRY(SharedPage memory, SharedPage::make(device));
+  DevicePage& page = *memory;
+  page.rate_hz = settings.rate_hz;
+  page.silence_ms = std::max<std::uint32_t>(50, static_cast<std::uint32_t>(4000 / settings.rate_hz));
+  page.force_gain = settings.force_gain;
+  if (!fits(page.device, device) || !fits(page.firmware, settings.firmware))
+    return Error{device + ": its name, or that of its firmware, is too long for a process of its own"};
+  CATENA_TRY(const Descriptor table, process::open_force_table(log));
+  // a process that does not start writes nothing
+  bool starts = false;
+  const std::shared_ptr<void> tidy(nullptr, [&](void*) {
+    if (!starts && !log.empty()) ::unlink(log.c_str());
+  });
+  int pair[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return cannot_start(device, cause_of(errno));
+  Descriptor ours(pair[0]);
+  std::optional<HelperProcess> process;
+  {
+    const Descriptor theirs(pair[1]);
+    const int given[] = {memory.fd(), theirs.get(), table.get()};
+    CATENA_TRY(HelperProcess started, HelperProcess::start(helper_path("catena-device"), given));
+    process.emplace(std::move(started));
+  }  // the process holds the only other end: its death is heard
+  pollfd line{ours.get(), POLLIN, 0};
+  int heard = 0;
+  do heard = ::poll(&line, 1, kOpenMs);
+  while (heard < 0 && errno == EINTR);
+  char answer = 0;
+  if (heard != 1 || ::read(ours.get(), &answer, 1) != 1) return cannot_start(device, "catena-device does not answer");
+  if (answer != process::kReady)
+    return Error{std::string(page.problem, ::strnlen(page.problem, sizeof page.problem)), page.problem_of_machine};
+  starts = true;
+  return std::unique_ptr<Device>(std::make_unique<ProcessDevice>(std::move(memory), std::move(*process), std::move(ours), log));
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,230 @@
+#include "render/extract/flat_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/numbers.h"
+#include "engine/base/threads.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/labels.h"
+#include "engine/scene/lines.h"
+#include "render/extract/extract_parts.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kTubeShare = 0.003;  ///< fitted tube radius by the domain's diagonal
+constexpr double kMaxArrows = 100000;
+constexpr double kPulseShare = 1.0 / 12;  ///< of a pulse: the longest segment
+constexpr double kErrors[] = {0.02, 0.05, 0.1, 0.2};
+constexpr double kFinest = 1e-6;           ///< of the domain's length: no error needs to be less
+constexpr std::size_t kTried = 64;         ///< lines by which the error is chosen
+constexpr std::size_t kBytesAPoint = 100;  ///< drawn: place, value, colour, ring
+constexpr std::size_t kLinesAtOnce = 8;
+
+/// What a set's colours show, at a place of a line.
+class LineValue {
+ public:
+  LineValue(const scene::ColorBy& by, field::AnyField shown, field::VectorFieldPtr flow)
+      : by_(by), shown_(std::move(shown)), flow_(std::move(flow)) {}
+  double at(const FlatPoint& point) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (by_.what == scene::ColorBy::What::arc_length) return point.s;
+    const field::VectorField* vector = by_.what == scene::ColorBy::What::speed ? flow_.get() : shown_.vector.get();
+    if (vector != nullptr) {
+      const field::VectorSample sample = vector->sample(point.p, cursor_);
+      return sample.inside ? norm(sample.value) : none;
+    }
+    const field::ScalarSample sample = shown_.scalar->sample(point.p, cursor_);
+    return sample.inside ? sample.value : none;
+  }
+  /// The finest detail of what is shown: a segment's longest length.
+  double detail() const {
+    if (by_.what == scene::ColorBy::What::arc_length) return 0;
+    const field::Field* field = by_.what == scene::ColorBy::What::speed ? flow_.get() : shown_.get();
+    return field->is_grid() ? field->longest_edge() : field->length() / 128;
+  }
+
+ private:
+  const scene::ColorBy& by_;
+  field::AnyField shown_;
+  field::VectorFieldPtr flow_;
+  field::Cursor cursor_;
+};
+
+void add_arrows(const flow::Curve& curve, double spacing, double radius, std::vector<ArrowItem>& arrows, std::vector<FlatPoint>& places) {
+  const double first = curve.knots().front().s, last = curve.knots().back().s, length = std::min(kArrowLength * radius, 0.8 * spacing);
+  for (double n = std::ceil((first + 0.5 * length) / spacing - 0.5); (n + 0.5) * spacing <= last - 0.5 * length; ++n) {
+    const double s = (n + 0.5) * spacing;
+    Vec3 p, t;
+    curve.evaluate_in(curve.interval_of(s), s, p, t);
+    t = direction(t);
+    arrows.push_back({p - (0.5 * length) * t, p + (0.5 * length) * t, kArrowRadius * radius, {}});
+    places.push_back({p, s});
+  }
+}
+
+/// Of the domain; of a formula that of the box of its picture.
+double shown_diagonal(const scene::Scene& scene, const scene::StreamlineSet& set, const field::Field& flow) {
+  if (flow.is_grid()) return domain_diagonal(flow);
+  const std::array<double, 2>& box = scene.world.get<scene::FieldSource>(set.field).box;
+  return std::sqrt(3.0) * (box[1] - box[0]);
+}
+
+/// The lines of a set as they come, each flattened once.
+class Flattener {
+ public:
+  Flattener(scene::Scene& scene, const scene::StreamlineSet& set, field::VectorFieldPtr flow, field::AnyField shown)
+      : scene_(scene), set_(set), flow_(std::move(flow)), shown_(std::move(shown)) {
+    flat_.radius = set.radius > 0 ? set.radius : kTubeShare * shown_diagonal(scene, set, *flow_);
+    if (set.color_by) value_.emplace(*set.color_by, shown_, flow_);
+  }
+  Outcome add(const scene::LineBlock& block);
+  Result<FlatLines> finish();
+
+ private:
+  /// What becomes of one curve.
+  struct Line {
+    std::vector<Vec3> points;
+    std::vector<double> arc_lengths, values;
+  };
+  Line line_of(const flow::Curve& curve, std::optional<LineValue>& value) const;
+  FlattenOptions options_for(const flow::Curve& curve) const;
+  Outcome choose_error(const scene::LineBlock& block);
+  Outcome check_arrows(const scene::LineBlock& block);
+  void take(Line line);
+
+  scene::Scene& scene_;
+  const scene::StreamlineSet& set_;
+  field::VectorFieldPtr flow_;
+  field::AnyField shown_;
+  std::optional<LineValue> value_;
+  double error_ = 0;            ///< by the radius; 0: not chosen yet
+  double length_ = 0;           ///< of all curves so far
+  std::vector<double> values_;  ///< by point of all tubes
+  std::vector<FlatPoint> arrow_places_;
+  FlatLines flat_;
+};
+
+FlattenOptions Flattener::options_for(const flow::Curve& curve) const {
+  FlattenOptions options{flat_.radius, std::max(error_, kFinest * curve.domain_length() / flat_.radius)};
+  double detail = value_ ? value_->detail() : 0;
+  if (value_ && detail == 0) detail = curve.period() / 64;
+  const double band = kPulseShare * set_.pulse;
+  options.longest = detail > 0 && band > 0 ? std::min(detail, band) : std::max(detail, band);
+  return options;
+}
+
+Flattener::Line Flattener::line_of(const flow::Curve& curve, std::optional<LineValue>& value) const {
+  Line line;
+  for (const FlatPoint& place : flatten_places(curve, options_for(curve))) {
+    line.points.push_back(place.p);
+    if (set_.pulse > 0) line.arc_lengths.push_back(place.s);
+    if (value) line.values.push_back(value->at(place));
+  }
+  line.points.shrink_to_fit();
+  return line;
+}
+
+/// The smallest error with which the set has no more than its share of points, as a few of its lines tell it.
+Outcome Flattener::choose_error(const scene::LineBlock& block) {
+  const std::size_t tried = std::min(kTried, block.curves.size());
+  const double lines = static_cast<double>(block.curves.size()) * static_cast<double>(block.of) / static_cast<double>(block.seeds);
+  double points = 0;
+  for (const double error : kErrors) {
+    error_ = error;
+    points = 0;
+    for (std::size_t i = 0; i < tried; ++i) {
+      const flow::Curve& curve = *block.curves[i * block.curves.size() / tried];
+      points += static_cast<double>(flatten_places(curve, options_for(curve)).size());
+    }
+    points *= lines / static_cast<double>(tried);
+    if (points <= kPointsALine * std::max(lines, kFewLines)) break;
+  }
+  return ask_for_memory("drawing " + to_text(std::round(lines)) + " streamlines", points * kBytesAPoint);
+}
+
+/// A slip of the spacing must not fill the memory.
+Outcome Flattener::check_arrows(const scene::LineBlock& block) {
+  for (const flow::CurvePtr& curve : block.curves) length_ += curve->period();
+  if (!(set_.arrows > 0) || !(length_ / set_.arrows > kMaxArrows)) return Done{};
+  return json::error_at(json::member_or(set_.where, "arrows"), "\"arrows\" this close would be more than 100000 on the lines, of which " +
+                                                                   std::to_string(block.seeds) + " are " + to_text(length_) +
+                                                                   " long together; a longer spacing was expected");
+}
+
+void Flattener::take(Line line) {
+  TubeItem tube{{}, flat_.radius, set_.color, {}};
+  tube.points = std::move(line.points);
+  flat_.tubes.push_back(std::move(tube));
+  if (set_.pulse > 0) flat_.arc_lengths.push_back(std::move(line.arc_lengths));
+  values_.insert(values_.end(), line.values.begin(), line.values.end());
+}
+
+Outcome Flattener::add(const scene::LineBlock& block) {
+  if (block.curves.empty()) return Done{};
+  if (error_ == 0) CATENA_CHECK(choose_error(block));
+  CATENA_CHECK(check_arrows(block));
+  std::vector<Line> lines(block.curves.size());
+  parallel_for(lines.size(), kLinesAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::optional<LineValue> value = value_;
+    for (std::size_t i = begin; i < end; ++i) lines[i] = line_of(*block.curves[i], value);
+  });
+  for (Line& line : lines) take(std::move(line));
+  if (set_.arrows > 0)
+    for (const flow::CurvePtr& curve : block.curves) add_arrows(*curve, set_.arrows, flat_.radius, flat_.arrows, arrow_places_);
+  return Done{};
+}
+
+Result<FlatLines> Flattener::finish() {
+  if (!value_) {
+    for (ArrowItem& arrow : flat_.arrows) arrow.color = set_.color;
+    return std::move(flat_);
+  }
+  const scene::ColorBy& by = *set_.color_by;
+  const field::AnyField of = by.what == scene::ColorBy::What::speed ? field::AnyField{{}, flow_} : shown_;
+  const DisplayRange range = field::display_range(values_, of);
+  CATENA_CHECK(scene::check_mapping(by, range.lo));
+  flat_.colors = shown_.get() == nullptr ? scene::color_table(by.colors, by.named, range.lo, range.hi)
+                                         : scene::shown_table(scene_, by.field, by.colors, by.named, range.lo, range.hi);
+  std::size_t first = 0;
+  for (TubeItem& tube : flat_.tubes) {
+    const std::span<double> values = std::span(values_).subspan(first, tube.points.size());
+    first += values.size();
+    // a line ends on the domain's face, which rounding may put outside
+    if (values.size() > 1 && std::isnan(values.front())) values.front() = values[1];
+    if (values.size() > 1 && std::isnan(values.back())) values.back() = values[values.size() - 2];
+    std::vector<Color> colors;
+    colors.reserve(values.size());
+    for (const double value : values) colors.push_back(table_color(flat_.colors, value));
+    tube.colors = std::move(colors);
+  }
+  for (std::size_t i = 0; i < flat_.arrows.size(); ++i) flat_.arrows[i].color = table_color(flat_.colors, value_->at(arrow_places_[i]));
+  return std::move(flat_);
+}
+
+}  // namespace
+
+double domain_diagonal(const field::Field& field) {
+  return norm(field.mapping().world_from_index_linear * (field.index_box().hi - field.index_box().lo));
+}
+
+Result<FlatLines> flat_lines(scene::Scene& scene, scene::Entity entity) {
+  const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(entity);
+  CATENA_TRY(const field::AnyField flow, scene::use_field(scene, set.field, set.where));
+  field::AnyField shown;
+  if (set.color_by && set.color_by->what == scene::ColorBy::What::field) {
+    CATENA_TRY(shown, scene::use_field(scene, set.color_by->field, set.where));
+  }
+  if (!flow.vector) CATENA_CHECK(scene::use_lines(scene, entity));  // says so
+  Flattener flattener(scene, set, flow.vector, shown);
+  CATENA_CHECK(scene::visit_lines(scene, entity, [&](const scene::LineBlock& block) { return flattener.add(block); }));
+  CATENA_TRY(FlatLines made, flattener.finish());
+  made.version = scene::lines_version(scene, entity);
+  return made;
+}
+
+}  // namespace catena::render

@@ -1,0 +1,157 @@
+#include "render/raycast/preintegrated.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/raycast/transfer_tables.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr int kCodes = 256, kFine = 16;  // samples a code
+constexpr double kMissed = 0.1;          // of what samples may miss of a peak or a gap
+
+/// sigma, and sigma times red, green, blue.
+using Look = std::array<double, 4>;
+
+Look look_at(const TransferTable& table, double value) {
+  const double sigma = table_value(table, value, 3);
+  if (!(sigma > 0)) return {};
+  return {sigma, sigma * table_value(table, value, 0), sigma * table_value(table, value, 1), sigma * table_value(table, value, 2)};
+}
+
+std::uint32_t quantised(double share, double greatest) { return std::uint32_t(std::lround(std::clamp(share, 0.0, 1.0) * greatest)); }
+
+std::array<std::uint32_t, 2> entry(const Look& mean) {
+  if (!(mean[0] > 0)) return {};
+  return {std::bit_cast<std::uint32_t>(float(mean[0])),
+          quantised(mean[1] / mean[0], 2047) | quantised(mean[2] / mean[0], 2047) << 11 | quantised(mean[3] / mean[0], 1023) << 22};
+}
+
+/// Whether even samples from lo to hi, read with linear interpolation, take every peak and every gap of the function: near each of its
+/// points, a sample's width either side, they come within a tenth of what it is there and at the points beside.
+bool takes_peaks(const TransferTable& table, double lo, double hi, int samples) {
+  const double width = (hi - lo) / double(samples - 1);
+  const auto takes = [&](const auto& points, std::size_t i, int channel, std::size_t component) {
+    const double own = points[i][component], before = std::floor((points[i][0] - lo) / width) - 1;
+    double least = HUGE_VAL, greatest = -HUGE_VAL;
+    for (int k = 0; k < 4; ++k) {
+      const double sample = table_value(table, std::clamp(lo + (before + k) * width, lo, hi), channel);
+      least = std::min(least, sample);
+      greatest = std::max(greatest, sample);
+    }
+    const double beside = std::max(points[i > 0 ? i - 1 : i][component], points[std::min(i + 1, points.size() - 1)][component]);
+    const double near = kMissed * std::max(own, beside);
+    return own >= least - near && own <= greatest + near;
+  };
+  const auto takes_all = [&](const auto& points, int first_channel) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t c = 1; c < points[i].size() && points[i][0] > lo && points[i][0] < hi; ++c)
+        if (!takes(points, i, first_channel + int(c) - 1, c)) return false;
+    return true;
+  };
+  return takes_all(table.colors, 0) && takes_all(table.extinctions, 3);
+}
+
+}  // namespace
+
+ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded) {
+  if (!(values.least < values.greatest)) return values;
+  const std::vector<double> points = points_between(table, values.least, values.greatest);
+  std::vector<Look> looks;
+  for (const double value : points) looks.push_back(look_at(table, value));
+  std::size_t first = 0, final = points.size() - 1;
+  const auto trims = [&](const Look& end) { return !shaded || !(end[0] > 0); };
+  while (trims(looks.front()) && first < final && looks[first + 1] == looks.front()) ++first;
+  while (trims(looks.back()) && final > first && looks[final - 1] == looks.back()) --final;
+  return {points[first], points[final]};
+}
+
+double changed_by_codes(const TransferTable& table, const ValueInterval& active, std::span<const float> values, double length) {
+  if (!(active.least < active.greatest) || values.empty()) return 0;
+  const double per_code = (active.greatest - active.least) / (kCodes - 1);
+  const auto shown = [&](double value) {
+    Look look = look_at(table, value);
+    const double alpha = -std::expm1(-look[0] * length), share = look[0] > 0 ? alpha / look[0] : 0;
+    look[0] = alpha;
+    for (int c = 1; c < 4; ++c) look[c] *= share;
+    return look;
+  };
+  double sum = 0;
+  for (const float raw : values) {
+    const double value = std::clamp(double(raw), active.least, active.greatest);
+    const Look exact = shown(value), rounded = shown(active.least + per_code * std::round((value - active.least) / per_code));
+    double change = 0;
+    for (int c = 0; c < 4; ++c) change = std::max(change, std::fabs(exact[c] - rounded[c]));
+    sum += change;
+  }
+  return sum / double(values.size());
+}
+
+bool is_packed_whole(const TransferTable& table, const ValueInterval& active) {
+  return !(active.least < active.greatest) || takes_peaks(table, active.least, active.greatest, (kCodes - 1) * kFine + 1);
+}
+
+namespace {
+
+/// What lies between a code and the next: the integral in codes, and whether the function stays the same.
+struct Piece {
+  Look integral{};
+  bool level = true;
+  double greatest_sigma = 0;
+};
+
+/// Sigma and colour are linear between the function's points, so that Simpson's rule is exact.
+Piece piece_between(const TransferTable& table, double from, double to) {
+  Piece piece;
+  if (!(from < to)) return piece;
+  const std::vector<double> values = points_between(table, from, to);
+  Look before = look_at(table, from);
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const Look middle = look_at(table, 0.5 * (values[i - 1] + values[i])), after = look_at(table, values[i]);
+    for (int c = 0; c < 4; ++c)
+      piece.integral[c] += (before[c] + 4 * middle[c] + after[c]) / 6 * ((values[i] - values[i - 1]) / (to - from));
+    piece.level = piece.level && before == middle && middle == after;
+    piece.greatest_sigma = std::max({piece.greatest_sigma, before[0], after[0]});
+    before = after;
+  }
+  return piece;
+}
+
+}  // namespace
+
+PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded) {
+  std::array<Look, kCodes> looks{}, integral{};
+  std::array<bool, kCodes> alike{};  // code and the next: nothing changes between them
+  PreintegratedTable out;
+  for (int a = 0; a < kCodes; ++a) {
+    looks[a] = look_at(table, lo + per_code * a);
+    out.greatest_sigma = std::max(out.greatest_sigma, looks[a][0]);
+    if (a == 0) continue;
+    const Piece piece = piece_between(table, lo + per_code * (a - 1), lo + per_code * a);
+    for (int c = 0; c < 4; ++c) integral[a][c] = integral[a - 1][c] + piece.integral[c];
+    alike[a - 1] = piece.level && (!shaded || !(looks[a - 1][0] > 0));
+    out.greatest_sigma = std::max(out.greatest_sigma, piece.greatest_sigma);
+    out.looks.look[a] = std::uint16_t(out.looks.look[a - 1] + (alike[a - 1] ? 0 : 1));
+  }
+  const auto mean = [&](int a, int b) {
+    Look m;
+    for (int c = 0; c < 4; ++c) m[c] = std::max(0.0, (integral[b][c] - integral[a][c]) / (b - a));
+    return m;
+  };
+
+  out.entries.resize(std::size_t(kCodes) * kCodes);
+  for (int a = 0; a < kCodes; ++a) {
+    out.looks.invisible[a] = !(looks[a][0] > 0);
+    out.entries[std::size_t(a) * kCodes + a] = entry(looks[a]);
+    for (int b = a + 1; b < kCodes; ++b) {
+      const bool same = out.looks.look[a] == out.looks.look[b];
+      out.entries[std::size_t(a) * kCodes + b] = out.entries[std::size_t(b) * kCodes + a] = entry(same ? looks[a] : mean(a, b));
+    }
+  }
+  return out;
+}
+
+}  // namespace catena::render

@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+"""One picture, whole programs: from the file to the PNG. Catena's default and each setting that it can name beside VTK's mapper.
+needs: python3-numpy, python3-scipy, python3-pil, python3-vtk9, xvfb-run; cases made by volume_cases.py
+usage: xvfb-run -a one_picture.py --catena PROGRAM --cases DIR [--rounds N] [--goal E] [--no-vtk] [CASE ...]
+For each case: wall seconds (the least of the rounds, settings in turn) and the covered error (peers/picture_error.py) beside that program's
+own converged picture. The last columns are the default's time by that of the cheapest setting that meets the goal, and VTK's by the
+default's: of VTK's settings the cheapest whose error is at most the default's, or the goal."""
+import argparse, json, os, statistics, subprocess, sys, tempfile, time
+import numpy as np
+from PIL import Image
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "peers"))
+from picture_error import rmse
+
+OURS = ("draft", "step=4", "step=2.8", "step=2", "step=1.4", "step=1", "step=0.7", "step=0.5", "step=0.35")
+THEIRS = ("cpu 2 2", "cpu 1 2", "cpu 4 1", "cpu 2 1", "cpu 1.4 1", "cpu 1 1", "cpu 0.7 1")
+CONVERGED, CONVERGED_VTK = "step=0.05", "cpu 0.5 1"
+VTK = """import sys; sys.path.insert(0, sys.argv[1]); import vtk_peer; from PIL import Image
+s = vtk_peer.Scene(sys.argv[2]); s.set_mode(sys.argv[3]); s.draw(30); Image.fromarray(s.picture().copy()).save(sys.argv[4])"""
+
+
+def scene_of(folder, name):
+    case = json.load(open(f"{folder}/{name}.json"))
+    dims, view = case["dims"], case["view"]
+    az, el, far = np.radians(30), np.radians(view["elevation"]), view["distance"] * max(dims)
+    middle = [(n - 1) / 2 for n in dims]
+    eye = [middle[0] + far * np.sin(az) * np.cos(el), middle[1] - far * np.cos(az) * np.cos(el), middle[2] + far * np.sin(el)]
+    return {"fields": {"f": {"file": f"{os.path.abspath(folder)}/{case['raw']}", "shape": dims, "type": "float32"}},
+            "background": "transparent", "camera": {"position": eye, "target": middle, "up": [0, 0, 1], "fovy_deg": view["fovy_deg"]},
+            "volumes": [{"field": "f", "shade": case["shade"], "color": case["colour"], "opacity": case["opacity"], "opacity_unit": case["unit"]}]}
+
+
+def over_black(path):
+    picture = np.asarray(Image.open(path).convert("RGBA")).astype(float)
+    return np.concatenate([(picture[..., :3] * picture[..., 3:] / 255 + .5).astype(np.uint8), picture[..., 3:].astype(np.uint8)], -1)
+
+
+def run(command, out):
+    start = time.perf_counter()
+    done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, LIBGL_ALWAYS_SOFTWARE="1"))
+    if done.returncode:
+        sys.exit(f"{command}: {done.stderr}")
+    return time.perf_counter() - start, done.stdout, over_black(out)
+
+
+def best(times, errors, most):
+    good = [name for name in times if name in errors and errors[name] <= most]
+    return min(good, key=lambda name: times[name]) if good else None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--catena", required=True)
+    parser.add_argument("--cases", required=True)
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--goal", type=float, default=2)
+    parser.add_argument("--no-vtk", action="store_true")
+    parser.add_argument("names", nargs="*", metavar="CASE")
+    args = parser.parse_args()
+    names = args.names or sorted(f[:-5] for f in os.listdir(args.cases) if f.endswith(".json"))
+    shares, gains = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        out = f"{folder}/o.png"
+        for name in names:
+            json.dump(scene_of(args.cases, name), open(f"{folder}/s.json", "w"))
+            ours = lambda q: [args.catena, "render", f"{folder}/s.json", "-o", out, "--size", "1024x768", *(["--quality", q] if q else [])]
+            theirs = lambda q: ["/usr/bin/python3", "-c", VTK, f"{HERE}/peers", f"{args.cases}/{name}.json", q, out]
+            converged = {ours: run(ours(CONVERGED), out)[2]}
+            kinds = [(ours, q) for q in (None, *OURS)]
+            if not args.no_vtk:
+                converged[theirs] = run(theirs(CONVERGED_VTK), out)[2]
+                kinds += [(theirs, q) for q in THEIRS]
+            times, errors, told = {ours: {}, theirs: {}}, {ours: {}, theirs: {}}, ""
+            for _ in range(args.rounds):
+                for of, q in kinds:
+                    took, words, picture = run(of(q), out)
+                    times[of][q] = min(took, times[of].get(q, np.inf))
+                    errors[of][q] = rmse(picture, converged[of])
+                    if q is None:
+                        told = words.splitlines()[0]
+            default, error = times[ours].pop(None), errors[ours].pop(None)
+            cheapest = best(times[ours], errors[ours], args.goal)
+            peer = best(times[theirs], errors[theirs], max(args.goal, error))
+            if cheapest:
+                shares.append(default / times[ours][cheapest])
+            if peer:
+                gains.append(times[theirs][peer] / default)
+            print(f"{name:18} {default:6.2f} s, error {error:4.2f}; "
+                  + (f"{cheapest} {times[ours][cheapest]:.2f} s, {errors[ours][cheapest]:.2f}: {shares[-1]:.2f}x; " if cheapest else "no setting meets the goal; ")
+                  + (f"vtk {peer} {times[theirs][peer]:.2f} s: {gains[-1]:.2f}x; " if peer else "") + told, flush=True)
+    for words, ratios in (("default by the cheapest setting that meets the goal", shares), ("VTK by the default", gains)):
+        if ratios:
+            print(f"{words}: median {statistics.median(ratios):.2f}x, {min(ratios):.2f}x to {max(ratios):.2f}x")
+
+
+if __name__ == "__main__":
+    main()

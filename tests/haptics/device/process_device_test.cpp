@@ -1,0 +1,153 @@
+// A device in a process of its own: what becomes of the force when the program is killed, seen from outside.
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <sstream>
+#include <thread>
+
+#include "haptics/device/process/force_table.h"
+#include "haptics/device/process/process_device.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace process_device_test {
+
+using namespace haptics;
+
+struct Forces {
+  double last_push_s = -1, last_s = -1;
+  Vec3 last_n{0.0};
+};
+
+Forces forces_in(const std::string& path) {
+  Forces forces;
+  const std::string text = test::read_file(path);
+  std::istringstream lines(text.substr(0, text.rfind('\n') + 1));
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    double t = 0;
+    Vec3 f{0.0};
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &t, &f.x, &f.y, &f.z) != 4) continue;
+    forces.last_s = t;
+    forces.last_n = f;
+    if (f != Vec3(0.0)) forces.last_push_s = t;
+  }
+  return forces;
+}
+
+/// Waits at most half a minute.
+bool comes(const std::function<bool()>& condition) {
+  for (int k = 0; k < 3000; ++k) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+/// Pushes with 1 N once the emulated hand has homed and armed the device; never ends by itself.
+[[noreturn]] void push_for_ever(const std::string& table) {
+  auto device = open_in_process("emulated-falcon:still", table, {});
+  if (!device) _exit(1);
+  for (;;) {
+    (*device)->read();
+    DeviceOutput output;
+    output.force_n = {0, 0, 1};
+    (*device)->write(output);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST(ProcessDevice, TheForceIsZeroAfterTheProgramIsKilledOrStopped) {
+  for (const int signal_number : {SIGKILL, SIGSTOP}) {
+    const test::TemporaryFolder folder;
+    const std::string table = folder / "t.csv";
+    const pid_t program = fork();
+    if (program == 0) push_for_ever(table);
+    ASSERT_TRUE(comes([&] { return test::exists(table) && forces_in(table).last_push_s > 0; })) << "the emulated hand arms in 3 s";
+    const double before_s = forces_in(table).last_push_s;
+    kill(program, signal_number);
+    // 10 rows of zero at least: the process goes on for 100 ms
+    EXPECT_TRUE(comes([&] {
+      const Forces now = forces_in(table);
+      return now.last_s > now.last_push_s + 0.05;
+    }));
+    const Forces forces = forces_in(table);
+    EXPECT_EQ(forces.last_n, Vec3(0.0));
+    std::printf("%s: the last push %.1f ms after one that was seen before it\n", sigabbrev_np(signal_number),
+                1e3 * (forces.last_push_s - before_s));
+    if (signal_number == SIGSTOP) kill(program, SIGKILL);
+    waitpid(program, nullptr, 0);
+  }
+}
+
+TEST(ProcessDevice, ADeviceThatIsNoneAndATableThatCannotBeAreSaid) {
+  const auto none = open_in_process("emulated-falcon:nonsense", "", {});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("emulated-falcon:still"), std::string::npos) << none.error().message;
+  const auto full = open_in_process("emulated-falcon", "/dev/null/t.csv", {});
+  ASSERT_FALSE(full);
+  EXPECT_FALSE(full.error().machine);
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  for (const std::string& path : {folder / "pipe", std::string("/dev/full"), folder.path()}) {
+    const auto strange = open_in_process("emulated-falcon", path, {});
+    ASSERT_FALSE(strange) << path;
+    EXPECT_NE(strange.error().message.find("regular file"), std::string::npos) << strange.error().message;
+    EXPECT_FALSE(strange.error().machine);
+  }
+}
+
+/// The exit code of `work` in a process whose `folder` is a disk of so many KiB; 255: none can be made here.
+int on_small_disk(const std::string& folder, int kib, const std::function<int()>& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const bool made = unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                      mount("none", folder.c_str(), "tmpfs", 0, ("size=" + std::to_string(kib) + "k").c_str()) == 0;
+    _exit(made ? work() : 255);
+  }
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 254;
+}
+
+TEST(ProcessDevice, AFullDiskIsSaidBeforeTheHandStartsAndLosesNoZero) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "t.csv";
+  const int at_first = on_small_disk(folder.path(), 16, [&] {
+    const auto table = process::open_force_table(path);
+    if (table || !table.error().machine) return 1;
+    return table.error().message.find("No space left") == std::string::npos ? 2 : test::exists(path) ? 3 : 0;
+  });
+  if (at_first == 255) GTEST_SKIP() << "only root can make a small disk";
+  EXPECT_EQ(at_first, 0);
+  // 1.2 MB of 2 MB of rows fit
+  const int later = on_small_disk(folder.path(), 1200, [&] {
+    std::atomic<int> error{0};
+    {
+      const auto file = process::open_force_table(path);
+      if (!file) return 1;
+      process::ForceTable table(file->get(), error);
+      for (int k = 1; k <= 50'000; ++k) table.add({1 + 1e-5 * k, 2 + 1e-5 * k, 3 + 1e-5 * k});
+      table.add(Vec3(0.0));
+    }
+    if (error != ENOSPC) return 2;
+    const Forces forces = forces_in(path);
+    return forces.last_n != Vec3(0.0) || forces.last_push_s < 0 ? 3 : 0;
+  });
+  EXPECT_EQ(later, 0);
+}
+
+}  // namespace process_device_test
+}  // namespace catena

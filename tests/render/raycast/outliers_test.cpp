@@ -1,0 +1,43 @@
+/// A voxel of 1e20 among values from 0 to 1 spoils its own cells, and not the picture: neither texels of 16 bits nor codes of 8 are scaled
+/// by it.
+#include <cmath>
+
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace raycast_outliers_test {
+
+using namespace catena::render;
+
+class RaycastOutliers : public PictureTest {};
+
+int different_pixels(const Picture& a, const Picture& b) {
+  int count = 0;
+  for (std::uint32_t y = 0; y < a.height; ++y)
+    for (std::uint32_t x = 0; x < a.width; ++x) count += std::abs(a.pixel(x, y)[3] - b.pixel(x, y)[3]) > 8;
+  return count;
+}
+
+TEST_F(RaycastOutliers, ThePictureStaysAsItIs) {
+  const auto wave = [](const Vec3& p) { return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z); };
+  const auto clean = make_grid({24, 24, 24}, wave);
+  RenderSettings fast;
+  fast.fast = FastSettings{1, 1, -1, -1};
+  for (const double outlier : {1e20, -9999.0}) {
+    const auto spoiled = make_grid({24, 24, 24}, [&](const Vec3& p) { return p.x == 4 && p.y == 5 && p.z == 20 ? outlier : wave(p); });
+    for (const bool shade : {false, true})
+      for (const bool exact : {true, false}) {
+        FramePacket packet = packet_of({60, -40, 45}, {11.5, 11.5, 11.5});
+        packet.volumes = {volume_item(clean, {{0, 0}, {1, 0.3}})};
+        packet.volumes[0].shade = shade;
+        const RenderSettings settings = exact ? RenderSettings{} : fast;
+        const Picture expected = draw(packet, settings);
+        packet.volumes[0].grid = spoiled;
+        // the outlier's cells are two voxels wide, a fiftieth of the picture of the box
+        EXPECT_LT(different_pixels(draw(packet, settings, exact ? "exact" : "fast"), expected), 250) << outlier << shade << exact;
+      }
+  }
+}
+
+}  // namespace raycast_outliers_test
+}  // namespace catena::test
