@@ -1,6 +1,7 @@
 #include "render/xr/session.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace catena::render::xr {
 
@@ -88,7 +89,7 @@ Outcome Session::enter(XrSessionState state) {
       return Done{};
     }
     case Act::end:
-      running_ = false;
+      if (!std::exchange(running_, false)) return Done{};  // a runtime that says twice that it stops
       CATENA_XR_CHECK(*instance_, xr().EndSession(session_), "end the session");
       end_wait();  // what it says is of a session that is over
       return Done{};

@@ -75,6 +75,7 @@ XRAPI_ATTR XrResult XRAPI_CALL request_exit(XrSession handle) {
   FIND(SessionObject, session, handle, session);
   if (!session->running) return illegal(self, XR_ERROR_SESSION_NOT_RUNNING, "it does not run");
   session->leaves = true;
+  if (session->state == XR_SESSION_STATE_STOPPING) return XR_SUCCESS;
   if (session->state == XR_SESSION_STATE_FOCUSED) post_state(number(handle), *session, XR_SESSION_STATE_VISIBLE);
   if (session->state == XR_SESSION_STATE_VISIBLE) post_state(number(handle), *session, XR_SESSION_STATE_SYNCHRONIZED);
   post_state(number(handle), *session, XR_SESSION_STATE_STOPPING);

@@ -82,6 +82,15 @@ TEST_F(HeadsetSession, FollowsEveryEdgeUntilThePersonLeaves) {
   EXPECT_EQ(headset_->session().odd_edges(), 0u);
 }
 
+TEST_F(HeadsetSession, AStopThatIsSaidTwiceEndsTheSessionOnce) {
+  runtime_.script().width = runtime_.script().height = 16;
+  play({{4, kStopping}, {4, kStopping}});
+  ASSERT_TRUE(open());
+  ASSERT_TRUE(turn(packet_, {}, 8));
+  EXPECT_FALSE(headset_->running());
+  EXPECT_EQ(runtime_.record().illegal.size(), 0u);
+}
+
 TEST_F(HeadsetSession, ALossIsFoundInEveryState) {
   runtime_.script().width = runtime_.script().height = 16;
   ASSERT_TRUE(open());
