@@ -19,6 +19,7 @@
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
+#include "engine/scene/lines.h"
 
 namespace catena::app {
 
@@ -143,6 +144,7 @@ int run(int argc, char** argv) {
   keep_freed_memory();
   protect_inputs(true);
   field::set_while_reading(tell_reading);
+  scene::set_while_tracing(tell_tracing);
   keep_standard_descriptors();
   return exit_code_after_output(guarded(argc, argv));
 }

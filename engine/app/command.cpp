@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -163,6 +164,13 @@ void Progress::at(double done, std::string_view doing) {
   }
   shown_ = true;
   last_ = now;
+}
+
+void tell_tracing(const std::string& field, std::size_t seeds, std::size_t of) {
+  thread_local std::optional<Progress> shown;
+  if (of == 0) return shown.reset();
+  if (!shown) shown.emplace("streamlines of " + field, static_cast<double>(of));
+  shown->at(static_cast<double>(seeds));
 }
 
 }  // namespace catena::app

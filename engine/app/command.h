@@ -68,6 +68,9 @@ std::string human_bytes(double bytes);
 /// The same of a file that is read by another program: how long it has taken (field::set_while_reading).
 void tell_reading(const std::string& path, double seconds, bool ended);
 
+/// The same of streamlines (scene::set_while_tracing).
+void tell_tracing(const std::string& field, std::size_t seeds, std::size_t of);
+
 /// A line on stderr that says how far long work is: rewritten in place on a terminal, after the first second; elsewhere at most ten lines,
 /// after the first ten seconds.
 class Progress {

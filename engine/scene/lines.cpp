@@ -268,6 +268,11 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& a
 }
 
 namespace {
+WhileTracing while_tracing;
+}
+void set_while_tracing(WhileTracing called) { while_tracing = std::move(called); }
+
+namespace {
 
 /// What is remembered of a set's lines; made anew by `visit`, or to be kept, where a widget or another step has changed them.
 Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<Outcome(const LineBlock&)>& visit, std::size_t most_kept) {
@@ -284,6 +289,8 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
   }
   LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
   request.box = scene.world.get<FieldSource>(set.field).box;
+  const std::string& name = scene.world.get<Name>(set.field).value;
+  if (while_tracing) request.progress = [&](std::size_t seeds, std::size_t of) { while_tracing(name, seeds, of); };
   MadeLines fresh{any.vector->version(), set.seeds.points, {}, 0, false, {}};
   std::size_t knots = 0;
   const auto count = [&](std::span<const flow::CurvePtr> curves) {
@@ -305,7 +312,9 @@ Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<O
     };
     request.most_kept = most_kept;
   }
-  CATENA_TRY(fresh.curves, make_lines(scene, set.seeds, request, json::member_or(set.where, "seeds")));
+  auto lines = make_lines(scene, set.seeds, request, json::member_or(set.where, "seeds"));
+  if (while_tracing) while_tracing(name, 0, 0);
+  CATENA_TRY(fresh.curves, std::move(lines));
   if (!visit) count(fresh.curves);
   fresh.released = knots > 0 && fresh.curves.empty();
   static std::atomic<std::uint64_t> versions{0};

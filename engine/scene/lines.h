@@ -44,6 +44,12 @@ struct LineRequest {
 /// The sentence that says that the lines of so many seeds have more knots together, and what was expected.
 std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most);
 
+/// Called now and then while the seeds of a pattern are traced for a set through that field, and once, with 0 of 0, at their end.
+/// Any thread that makes frames.
+using WhileTracing = std::function<void(const std::string& field, std::size_t seeds, std::size_t of)>;
+/// Once, before any set is traced.
+void set_while_tracing(WhileTracing called);
+
 /// Every line of the seeds. Points that start nothing are errors at their place in the file; a pattern of which no place
 /// starts a line is one, too. Not those of a widget, which the hand may carry anywhere: what starts nothing is left out.
 Result<std::vector<flow::CurvePtr>> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where);

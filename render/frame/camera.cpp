@@ -83,6 +83,21 @@ double smallest_pixel(const Camera& c, const Bounds& box) {
   return pixel_size(c, std::max(0.0, nearest));
 }
 
+bool may_be_seen(const Camera& c, const Vec3& centre, double radius) {
+  const Vec3 from_eye = centre - c.position;
+  const double x = dot(from_eye, c.right), y = dot(from_eye, c.up), depth = -dot(from_eye, c.back);
+  if (!c.orthographic && depth < -radius) return false;
+  // the four planes of the window
+  const auto reaches = [&](double across, double middle, double half) {
+    for (const double side : {-1.0, 1.0}) {
+      const double edge = middle + side * half, away = side * (c.orthographic ? across - edge : across - edge * depth);
+      if (away > radius * (c.orthographic ? 1 : std::sqrt(1 + edge * edge))) return false;
+    }
+    return true;
+  };
+  return reaches(x, c.centre_x, c.half_width) && reaches(y, c.centre_y, c.half_height);
+}
+
 Mat4 view_from_world(const Camera& c) {
   Mat4 m(1.0);
   for (int i = 0; i < 3; ++i) {

@@ -62,6 +62,8 @@ Vec3 unproject(const Camera& camera, double x_px, double y_px, double depth);
 double pixel_size(const Camera& camera, double depth);
 /// The same where a box is nearest to the eye; 0 where it reaches behind the eye of a perspective.
 double smallest_pixel(const Camera& camera, const Bounds& box);
+/// Whether any part of a ball may be in the window, however far away.
+bool may_be_seen(const Camera& camera, const Vec3& centre, double radius);
 
 /// From the scene towards the eye: oblique, +z up.
 Vec3 default_direction();

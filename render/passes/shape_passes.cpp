@@ -175,11 +175,9 @@ class StreamlinePass final : public Pass {
   Outcome prepare(Frame& frame) override {
     const FramePacket& packet = frame.packet;
     left_out_ = packet.left_out;
-    const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
-    if (packet.tubes != tubes_ || !lines_.suits(camera)) {
+    if (packet.tubes != tubes_) {
       tubes_.clear();
-      CATENA_CHECK(lines_.upload(frame.device, packet.tubes, camera));
-      CATENA_CHECK(line_drawer_.prepare(lines_));
+      CATENA_CHECK(lines_.upload(frame.device, packet.tubes));
       tubes_ = packet.tubes;
     }
     if (packet.arrows == arrows_) return Done{};

@@ -12,8 +12,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kJointTurn = 0.35;   // a corner that turns more than this (radians) gets several rings
-constexpr double kRibbonTurn = 0.85;  // the same of a ribbon
+constexpr double kJointTurn = 0.35;  // a corner that turns more than this (radians) gets several rings
 
 std::uint32_t add_vertex(Shape& shape, const Vec3& position, const Vec3& normal, const Color& color) {
   shape.vertices.push_back({position, normal, color, 0});
@@ -111,9 +110,8 @@ std::vector<ColoredPoint> distinct_points(const TubeItem& tube, bool& closed) {
   return points;
 }
 
-/// One ring a point, across the mean of its two segments; a corner sharper than `joint` (radians) gets rings from the one direction to the
-/// other.
-std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed, double joint = kJointTurn) {
+/// One ring a point, across the mean of its two segments; a sharp corner gets rings from the one direction to the other.
+std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed) {
   const std::size_t n = points.size();
   std::vector<Ring> rings;
   rings.reserve(n);
@@ -123,13 +121,13 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed,
     const bool first = !closed && i == 0, last = !closed && i + 1 == n;
     const Vec3 before = first ? segment(0) : segment(i + n - 1), after = last ? before : segment(i);
     const double turn = std::atan2(norm(cross(before, after)), dot(before, after));
-    if (turn <= joint) {
+    if (turn <= kJointTurn) {
       rings.push_back({p, direction(before + after), Vec3(0.0), color, 0, 0});
       continue;
     }
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
-    const int steps = static_cast<int>(std::ceil(turn / joint));
+    const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
     for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(turned(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
   }
   return rings;
@@ -163,7 +161,7 @@ int tube_sides(double radius, double pixel) {
   return pixels < 3 ? 0 : pixels < 6 ? 12 : 16;
 }
 
-std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed) {
+std::vector<TubeRing> tube_rings(const TubeItem& tube, bool& closed) {
   closed = false;
   if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return {};
   const std::vector<ColoredPoint> points = distinct_points(tube, closed);
@@ -171,17 +169,15 @@ std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed) 
   std::vector<TubeRing> wall;
   if (points.size() == 1)
     wall = {{points.front().p, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, points.front().color, 0, 0}};
-  else if (sides > 0)
-    wall = framed_rings(points, closed);
   else
-    wall = rings_of(points, closed, kRibbonTurn);
+    wall = framed_rings(points, closed);
   for (TubeRing& ring : wall) ring.radius = tube.radius;
   if (closed) {
     wall.push_back(wall.front());
     return wall;
   }
   // a half sphere's rings, from its equator or to it
-  const int steps = cap_steps(sides);
+  constexpr int steps = 3;
   const auto latitude = [&](TubeRing ring, int i, double sign) {
     const double angle = 0.5 * kPi * i / steps;
     ring.centre += sign * tube.radius * std::sin(angle) * ring.tangent;

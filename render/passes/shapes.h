@@ -38,9 +38,8 @@ struct TubeRing {
   double radius = 0, lean = 0;
 };
 /// A tube as rings: walls from each to the next are its surface. Of an open one the first and the last have no radius: they are the tips of
-/// the caps; a closed one ends with its first ring. Points as add_tube takes them. `sides` 0: of a tube that is drawn as a ribbon
-/// (tubes.h): rings without normals.
-std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed);
+/// the caps; a closed one ends with its first ring. Points as add_tube takes them.
+std::vector<TubeRing> tube_rings(const TubeItem& tube, bool& closed);
 
 /// Appends a tube. Points that are not further apart than 1e-9 of the radius are one; a single point gives a ball, none nothing.
 /// Colours by point run linearly between them. Closed: the last point repeats the first. Non-finite points are a bug of the caller.

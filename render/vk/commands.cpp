@@ -192,8 +192,8 @@ void Commands::bind_mesh(const Buffer& vertices, const Buffer& indices, VkIndexT
 
 void Commands::bind_indices(const Buffer& indices, VkIndexType type) { vkCmdBindIndexBuffer(buffer_, indices.handle(), 0, type); }
 
-void Commands::draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex) {
-  vkCmdDrawIndexed(buffer_, index_count, 1, first_index, std::int32_t(first_vertex), 0);
+void Commands::draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex, std::uint32_t instance) {
+  vkCmdDrawIndexed(buffer_, index_count, 1, first_index, std::int32_t(first_vertex), instance);
 }
 
 void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) { vkCmdDispatch(buffer_, x, y, z); }

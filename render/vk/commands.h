@@ -95,8 +95,8 @@ class Commands {
   void draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count);
   void bind_indices(const Buffer& indices, VkIndexType type);  ///< of a pipeline without a vertex buffer
   void bind_mesh(const Buffer& vertices, const Buffer& indices, VkIndexType type);
-  /// Of the bound mesh; indices count from `first_vertex` on.
-  void draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex);
+  /// Of the bound mesh; indices count from `first_vertex` on. `instance`: its number for the shader.
+  void draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex, std::uint32_t instance = 0);
   void dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
   /// Ends and submits; the value of the timeline when it is done.

@@ -5,7 +5,7 @@
 #include "shaders/shared/tube.h"
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
-layout(scalar, binding = 1) readonly buffer Rings { RibbonRingData rings[]; };
+layout(scalar, binding = 1) readonly buffer Rings { TubeRingData rings[]; };
 #include "shaders/lib/place.glsl"
 #include "shaders/lib/rings.glsl"
 layout(location = 0) out vec4 out_tangent;  // view axes; and the place across the tube, -1 .. 1
@@ -18,7 +18,7 @@ layout(location = 3) out float out_inside;  // below zero: the wall towards the 
 // A thin tube as a prism: of each ring two vertices of the outline and the ridge between them, one radius towards the eye, so that tubes
 // that touch hide each other as round ones do.
 void main() {
-  const RibbonRingData ring = rings[gl_VertexIndex >> RING_SHIFT];
+  const TubeRingData ring = rings[gl_VertexIndex >> RING_SHIFT];
   const float across = float(gl_VertexIndex & 3) * (2.0 / RIBBON_WALLS) - 1.0;
   const vec3 tangent = direction_of(ring.tangent);
   const vec3 centre = frame.view_from_world * ring.centre + frame.offset;
@@ -34,5 +34,5 @@ void main() {
   out_color = vec4(ring_color(ring.color), turned.z + frame.offset_depth);
   out_id = ring.id & ID_MASK;
   // the clip cuts what leads to a gap off where it begins
-  if (ring.color >> RING_SIDES_SHIFT == RING_GAP) gl_ClipDistance[0] = -1.0e30;
+  if ((ring.color & RING_GAP) != 0u) gl_ClipDistance[0] = -1.0e30;
 }

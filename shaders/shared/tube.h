@@ -4,9 +4,8 @@
 #include "shaders/shared/language.h"
 
 #define RING_SHIFT 4          // a vertex index is ring << RING_SHIFT | side
-#define RING_GAP 3u           // in the place of the sides: nothing is drawn up to this ring, nor from it on
-#define RING_SIDES_SHIFT 30   // in the colour's two highest bits: 12 or 16 sides as 0, 1; or RING_GAP
-#define RING_COLOR_MOST 1023  // each of the others has ten
+#define RING_GAP (1u << 30)   // in the colour: nothing is drawn up to this ring, nor from it on
+#define RING_COLOR_MOST 1023  // each of the colour's parts has ten bits
 #define RIBBON_WALLS 2        // across a ribbon, between its three vertices
 
 CATENA_SHARED_BEGIN
@@ -18,12 +17,6 @@ struct TubeRingData {
   uint tangent, normal;  // unit, in octahedral coordinates, two signed 16-bit shares
   uint color;
   uint id;  // as a mesh vertex's
-};
-
-struct RibbonRingData {
-  vec3 centre;  // relative to the origin of all
-  float radius;
-  uint tangent, color, id;  // as a tube's
 };
 
 CATENA_SHARED_END

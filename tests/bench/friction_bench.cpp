@@ -53,11 +53,11 @@ void AnisotropicFrictionTorusHill256(benchmark::State& state) { run(state, kToru
 void IsosurfaceAloneTorus256(benchmark::State& state) { run(state, kTorus, 0); }
 void IsosurfaceAndDirectionTorusHill256(benchmark::State& state) { run(state, kTorus, 1); }
 void IsosurfaceAndModulatedTorusHill256(benchmark::State& state) { run(state, kTorus, 2); }
-BENCHMARK(AnisotropicFrictionSphereCircle256)->Unit(benchmark::kMillisecond);
-BENCHMARK(AnisotropicFrictionTorusHill256)->Unit(benchmark::kMillisecond);
-BENCHMARK(IsosurfaceAloneTorus256)->Unit(benchmark::kMillisecond);
-BENCHMARK(IsosurfaceAndDirectionTorusHill256)->Unit(benchmark::kMillisecond);
-BENCHMARK(IsosurfaceAndModulatedTorusHill256)->Unit(benchmark::kMillisecond);
+BENCHMARK(AnisotropicFrictionSphereCircle256)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(AnisotropicFrictionTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(IsosurfaceAloneTorus256)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(IsosurfaceAndDirectionTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(IsosurfaceAndModulatedTorusHill256)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 /// The floor: what one fetch of value and gradient costs on the same walk.
 void FetchOnTheWalkTorus256(benchmark::State& state) {

@@ -35,9 +35,9 @@ void TickEmpty(benchmark::State& state) { run_chain(state, Program{}); }
 void TickSelectedStreamlineAndIsosurface256(benchmark::State& state) { run_with(state, kSelected); }
 void TickOnlineStreamlineAndIsosurface256(benchmark::State& state) { run_with(state, kOnline); }
 void TickSelectedStreamlineAndIsosurface256OnADevice(benchmark::State& state) { with_limits(state, kSelected); }
-BENCHMARK(TickEmpty)->Unit(benchmark::kMillisecond);
-BENCHMARK(TickSelectedStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond);
-BENCHMARK(TickSelectedStreamlineAndIsosurface256OnADevice)->Unit(benchmark::kMillisecond);
-BENCHMARK(TickOnlineStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond);
+BENCHMARK(TickEmpty)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(TickSelectedStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(TickSelectedStreamlineAndIsosurface256OnADevice)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(TickOnlineStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace tick_bench

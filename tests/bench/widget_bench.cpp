@@ -30,9 +30,9 @@ void TickWithoutWidgets(benchmark::State& state) { run_chain(state, program_with
 void TickCuttingPlaneAway(benchmark::State& state) { run_chain(state, program_with(1, Vec3(0.0, 0.0, 50.0))); }
 void TickCuttingPlaneExplored(benchmark::State& state) { run_chain(state, program_with(1, Vec3(-3.0, 0.0, 0.0))); }
 void TickEightCuttingPlanes(benchmark::State& state) { run_chain(state, program_with(8, Vec3(-3.0, 0.0, 0.0))); }
-BENCHMARK(TickWithoutWidgets)->Unit(benchmark::kMillisecond);
-BENCHMARK(TickCuttingPlaneAway)->Unit(benchmark::kMillisecond);
-BENCHMARK(TickCuttingPlaneExplored)->Unit(benchmark::kMillisecond);
-BENCHMARK(TickEightCuttingPlanes)->Unit(benchmark::kMillisecond);
+BENCHMARK(TickWithoutWidgets)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(TickCuttingPlaneAway)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(TickCuttingPlaneExplored)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(TickEightCuttingPlanes)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace widget_bench

@@ -134,6 +134,30 @@ TEST(Camera, DegenerateViewsStillGiveAFrame) {
   }
 }
 
+TEST(Camera, ABallMayBeSeenWhereAnyOfItsPlacesIs) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> u(-1, 1);
+  int unseen = 0, left_out = 0;
+  for (int i = 0; i < 2000; ++i) {
+    View view{{10 * u(random), 10 * u(random), 10 * u(random)}, {u(random), u(random), u(random)}, {0, 0, 1}, 30, i % 2 == 1, 5};
+    if (i % 3 == 0) view.window = {0.2, 1.4, -1.2, -0.5};
+    const Camera c = make_camera(view, 80, 60, Bounds());
+    const Vec3 centre{8 * u(random), 8 * u(random), 8 * u(random)};
+    const double radius = 1 + u(random);
+    const bool seen = may_be_seen(c, centre, radius);
+    bool any = false;
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 out = direction(Vec3(u(random), u(random), u(random)));
+      const auto pixel = project(c, centre + (k % 4 == 0 ? 0.5 : 1.0) * radius * out);
+      any = any || (pixel && pixel->x > 0 && pixel->x < 80 && pixel->y > 0 && pixel->y < 60);
+    }
+    EXPECT_TRUE(seen || !any) << i;
+    unseen += !any;
+    left_out += !seen;
+  }
+  EXPECT_GT(left_out, 0.8 * unseen) << "of " << unseen;
+}
+
 TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
   for (const double aspect : {0.5, 1.0, 2.0})
     for (const Vec3& towards : {default_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)})

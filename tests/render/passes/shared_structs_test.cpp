@@ -123,19 +123,6 @@ TEST(SharedStructs, TubeRingData) {
   EXPECT_EQ(found.size(), compared + 1);
 }
 
-TEST(SharedStructs, RibbonRingData) {
-  auto all = struct_offsets(shader_words("ribbon.vert"));
-  const auto& found = all["RibbonRingData"];
-  std::size_t compared = 0;
-  EXPECT_OFFSET(RibbonRingData, centre);
-  EXPECT_OFFSET(RibbonRingData, radius);
-  EXPECT_OFFSET(RibbonRingData, tangent);
-  EXPECT_OFFSET(RibbonRingData, color);
-  EXPECT_OFFSET(RibbonRingData, id);
-  EXPECT_EQ(found.at("[]"), sizeof(RibbonRingData)) << "the stride of the array";
-  EXPECT_EQ(found.size(), compared + 1);
-}
-
 TEST(SharedStructs, MeshFrameData) {
   auto all = struct_offsets(shader_words("mesh.vert"));
   const auto& found = all["MeshFrameData"];
