@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/support.h"
 
 namespace catena::scene {
@@ -112,6 +114,21 @@ TEST(SeedPatterns, EveryPatternGivesLines) {
   const auto even = lines_of(R"("seeds": {"evenly_spaced": {"distance": 0.5, "start": [[1, 0, 0]], "count": 9}}, "length": 8)");
   EXPECT_GE(even.size(), 4u);
   EXPECT_LE(even.size(), 9u);
+}
+
+TEST(SeedPatterns, TheirTracingSaysHowFarItIs) {
+  std::vector<std::pair<std::size_t, std::size_t>> told;
+  set_while_tracing([&](const std::string& field, std::size_t seeds, std::size_t of) {
+    EXPECT_EQ(field, "swirl");
+    told.push_back({seeds, of});
+  });
+  lines_of(R"("seeds": {"sphere": {"center": [0.5, 0, 0], "radius": 0.3, "count": 200}})");
+  set_while_tracing({});
+  ASSERT_GE(told.size(), 3u);
+  EXPECT_EQ(told.back(), std::pair(std::size_t{0}, std::size_t{0})) << "the end";
+  told.pop_back();
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_EQ(told.back(), std::pair(std::size_t{200}, std::size_t{200}));
 }
 
 TEST(SeedPatterns, SeedsOfAnIsosurfaceLieOnIt) {
