@@ -93,9 +93,10 @@ struct TransferFunction {
   struct ExtinctionPoint {
     double value, sigma;  ///< the field's unit; per world unit
   };
-  /// An opacity at a value.
+  /// An opacity at a value. At most kMaxAlpha: an alpha of 1 over a length would be an infinite extinction.
   struct OpacityPoint {
-    double value, alpha;  ///< the field's unit; 0 to 1 over opacity_unit
+    static constexpr double kMaxAlpha = 0.999;  ///< what an alpha of 1 counts as
+    double value, alpha;  ///< the field's unit; 0 to kMaxAlpha over opacity_unit
   };
   std::vector<ColorPoint> colors;            ///< values rising
   std::vector<OpacityPoint> opacities;       ///< either these

@@ -28,8 +28,8 @@ Keys color_scale_keys(std::string_view map, const std::string& range) {
 Keys transfer_keys() {
   return schema::joined(
       color_scale_keys(kDefaultVolumeMap, "0.5 to 99.8 percentile; with a named map the display range"),
-      {schema::table("opacity", 2, "value, 1", "Rows `[value, alpha]`, alpha per `opacity_unit`.")
-           .ranged("0 <= alpha < 1")
+      {schema::table("opacity", 2, "value, 1", "Rows `[value, alpha]`, alpha per `opacity_unit`; 1 counts as 0.999.")
+           .ranged("0 <= alpha <= 1")
            .by_default("from the values"),
        schema::number("opacity_unit", "world", "The length that alpha is meant for.").positive().by_default("smallest voxel edge"),
        schema::table("extinction", 2, "value, 1/world", "Rows `[value, sigma]`, instead of `opacity`.").ranged("sigma >= 0"),

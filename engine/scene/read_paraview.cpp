@@ -1,7 +1,7 @@
 /// ParaView's colour map as it exports it: [{"Name", "ColorSpace", "HSVWrap", "RGBPoints": [x, r, g, b, ...], "Points": [x, a, middle,
 /// sharpness, ...], ...}]. Other keys say nothing about the colours and are passed over. Between points ParaView works in
 /// ColorSpace (none: RGB); what is not linear in RGB becomes kPieces linear pieces. "Points" are opacities, straight lines only
-/// (middle 0.5, sharpness 0); 1 becomes kMaxOpaque, since an opacity per unit length stays below 1.
+/// (middle 0.5, sharpness 0); at most OpacityPoint::kMaxAlpha.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
@@ -12,7 +12,6 @@ namespace catena::scene {
 namespace {
 
 constexpr int kPieces = 32;
-constexpr double kMaxOpaque = 0.999;
 
 /// A flat list of rows of four numbers, the first of each rising.
 Result<std::vector<std::array<double, 4>>> read_rows(const json::Node& node, std::string_view what) {
@@ -70,7 +69,7 @@ Outcome read_opacity_points(const json::Node& node, TransferFunction& transfer) 
     if (i + 1 < rows.size() && (middle != 0.5 || sharpness != 0))
       return json::error_at(node.items[4 * i + 2], "\"Points\" holds a bent piece (" + to_text(middle) + ", " + to_text(sharpness) +
                                                        "); a straight one, 0.5, 0, was expected");
-    transfer.opacities.push_back({value, std::min(alpha, kMaxOpaque)});
+    transfer.opacities.push_back({value, std::min(alpha, TransferFunction::OpacityPoint::kMaxAlpha)});
   }
   return Done{};
 }

@@ -115,9 +115,10 @@ Outcome read_opacities(const json::Node& object, TransferFunction& transfer) {
   if (opacity != nullptr) {
     CATENA_TRY(const auto rows, read_table(*opacity, "opacity", 2));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!(rows[i][1] >= 0 && rows[i][1] < 1))
-        return json::error_at(opacity->items[i], "\"opacity\" holds " + to_text(rows[i][1]) + "; an opacity 0 <= a < 1 was expected");
-      transfer.opacities.push_back({rows[i][0], rows[i][1]});
+      if (!(rows[i][1] >= 0 && rows[i][1] <= 1))
+        return json::error_at(opacity->items[i], "\"opacity\" holds " + to_text(rows[i][1]) + "; an opacity 0 <= a <= 1 was expected");
+      const double alpha = rows[i][1] < 1 ? rows[i][1] : TransferFunction::OpacityPoint::kMaxAlpha;
+      transfer.opacities.push_back({rows[i][0], alpha});
     }
     CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::Range::positive));
   }

@@ -218,8 +218,12 @@ TEST(SceneFile, TransferFunctions) {
   expect_error(volume("\"color\": [[0, 0, 0, 1.5]]"), 3, {"1.5", "from 0 to 1 were expected"});
   expect_error(volume("\"color\": [[0, 0, 0]]"), 3, {"rows of 4 finite numbers were expected"});
   expect_error(volume("\"color\": []"), 3, {"is empty", "expected"});
-  expect_error(volume("\"opacity\": [[0, 0], [1, 1]]"), 3, {"\"opacity\" holds 1", "0 <= a < 1 was expected"});
-  expect_error(volume("\"opacity\": [[0, -0.1]]"), 3, {"0 <= a < 1 was expected"});
+  expect_error(volume("\"opacity\": [[0, 0], [1, 1.1]]"), 3, {"\"opacity\" holds 1.1", "0 <= a <= 1 was expected"});
+  expect_error(volume("\"opacity\": [[0, -0.1]]"), 3, {"0 <= a <= 1 was expected"});
+  const auto opaque = parse_scene(volume("\"opacity\": [[0, 0], [1, 1]]"), "scene.json");
+  ASSERT_TRUE(opaque);
+  opaque->world.each<Volume>(
+      [](Entity, const Volume& v) { EXPECT_EQ(v.transfer.opacities.back().alpha, TransferFunction::OpacityPoint::kMaxAlpha); });
   expect_error(volume("\"opacity\": [[1, 0], [0, 0]]"), 3, {"strictly rising values were expected"});
   expect_error(volume("\"opacity\": [[1, 0]], \"opacity_unit\": 0"), 3, {"\"opacity_unit\" is 0", "> 0 was expected"});
   expect_error(volume("\"opacity_unit\": 1"), 3, {"expected"});

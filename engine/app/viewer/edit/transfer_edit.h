@@ -14,7 +14,7 @@ namespace catena::app {
 using OpacityPoints = std::vector<scene::TransferFunction::OpacityPoint>;
 using ColorPoints = std::vector<scene::TransferFunction::ColorPoint>;
 
-inline constexpr double kMaxAlpha = 0.9999;  ///< alpha < 1: a wall would have no sigma
+inline constexpr double kMaxAlpha = scene::TransferFunction::OpacityPoint::kMaxAlpha;
 
 /// The nearest handle within `reach` pixels; of those at one place the last.
 std::optional<std::size_t> point_at(const OpacityPoints& points, const PlotFrame& frame, double x, double y, double reach);
