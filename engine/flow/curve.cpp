@@ -24,6 +24,32 @@ const char* end_word(End end) {
   return "LENGTH";
 }
 
+double Hermite::foot(const Vec3& x, double g0, double g1) const noexcept {
+  if (g0 == 0) return 0;
+  if (g1 == 0) return 1;
+  const Vec3 e = x - c0;
+  const std::array<double, 6> g{
+      dot(e, c1),      2 * dot(e, c2) - dot(c1, c1), 3 * (dot(e, c3) - dot(c1, c2)), -4 * dot(c1, c3) - 2 * dot(c2, c2), -5 * dot(c2, c3),
+      -3 * dot(c3, c3)};
+  double size = 0;
+  for (const double term : g) size += std::fabs(term);
+  const double rounding = std::numeric_limits<double>::epsilon() * size;
+  double lo = 0, hi = 1, theta = g0 / (g0 - g1), last = 1;
+  for (int i = 0; i < 64; ++i) {
+    if (!(theta > lo && theta < hi)) theta = 0.5 * (lo + hi);
+    const double value = g[0] + theta * (g[1] + theta * (g[2] + theta * (g[3] + theta * (g[4] + theta * g[5]))));
+    if (std::fabs(value) <= rounding) break;
+    ((value > 0) == (g0 > 0) ? lo : hi) = theta;
+    const double slope = g[1] + theta * (2 * g[2] + theta * (3 * g[3] + theta * (4 * g[4] + theta * 5 * g[5])));
+    double step = -value / slope;
+    if (!(std::fabs(step) <= 0.5 * last)) step = 0.5 * (lo + hi) - theta;
+    last = std::fabs(step);
+    if (theta + step == theta) break;
+    theta += step;
+  }
+  return theta;
+}
+
 Curve::Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length)
     : knots_(std::move(knots)), closed_(closed), first_end_(first_end), last_end_(last_end), domain_length_(domain_length) {
   CATENA_ASSERT(knots_.size() >= 2);

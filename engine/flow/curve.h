@@ -54,10 +54,10 @@ struct Hermite {
   Vec3 at(double theta) const { return c0 + theta * (c1 + theta * (c2 + theta * c3)); }
   Vec3 derivative(double theta) const { return c1 + theta * (2.0 * c2 + theta * (3.0 * c3)); }  ///< by theta
 
-  /// theta where (x - c).c' = 0, given its signs at the ends: the foot of x on this piece.
-  double foot(const Vec3& x, double g0, double g1) const {
-    return illinois_root(0.0, g0, 1.0, g1, [&](double theta) { return dot(x - at(theta), derivative(theta)); });
-  }
+  /// theta where g = (x - c).c' = 0, given g(0) and g(1), which have opposite signs (or one is 0): the foot of x on this piece, to the
+  /// rounding of g. Newton's method on the quintic g, with halving where it would leave the bracket or hardly moves. Bounded and bit for
+  /// bit repeatable.
+  double foot(const Vec3& x, double g0, double g1) const noexcept;
 };
 
 /// A knot of a Curve.

@@ -103,21 +103,21 @@ constexpr const char* kWidgets = R"({"fields": {},
   "coupling": {"ramp_s": 0.05, "max_force": 100}})";
 
 const Recorded kRecorded[] = {
-    {"circle", kCircle, 0x609d8539e109214d},
-    {"circle_online", kCircleOnline, 0x95e0775dbacd31d3},
+    {"circle", kCircle, 0x9b0462b529f38796},
+    {"circle_online", kCircleOnline, 0x67d1ceac0b0241de},
     {"sphere", kSphere, 0x4a5465667050ae74},
-    {"chain", kChain, 0x70cf14c60ae6a356},
+    {"chain", kChain, 0xeca69317e9edc503},
     {"shapes", kShapes, 0x421d00521f36a7bf},
     {"friction", kFriction, 0xef3f6de4e6c46cdd},
     {"anisotropic", kAnisotropic, 0x533a99e56006ca8c},
     {"driven", kDriven, 0xd0a43b6f85a41ff2},
-    {"modes", kModes, 0x1ce35714656c99ab},
+    {"modes", kModes, 0x5948f9f4f1804511},
     {"mesh", kMesh, 0x38bd92e22a245e8a},
     {"pipe", kPipe, 0xecb1973a8733ff12},
-    {"balance", kBalance, 0x696e76f8e1f4a4f7},
+    {"balance", kBalance, 0x0192ae194d20fbed},
     {"widgets", kWidgets, 0x44758deae15a5dcd, true},
-    {"grids", kGrids, 0xe74048e48824af15},
-    {"grid_online", kGridOnline, 0xde9c593d62a4b946},
+    {"grids", kGrids, 0xbba92f721691bc6e},
+    {"grid_online", kGridOnline, 0x2d0fb7de732746be},
 };
 
 std::string fmt_hash(std::uint64_t hash) {
