@@ -15,7 +15,7 @@ struct FrameStats {
   std::string device, driver;
   std::vector<double> frame_ms;  ///< start of extraction to the fence of the colour image; the first one's with pipelines and mirrors
   double first_frame_ms = 0, load_ms = 0, mirror_ms = 0, encode_ms = 0;
-  double choose_ms = 0;  ///< before the first frame, to find settings for an error or a time
+  double choose_ms = 0;  ///< to find settings for an error or a time; of a sequence again after the first frame
   std::string quality_mode;
   std::optional<double> estimated_rmse;                     ///< 1/255; measured for time= and error= only
   std::uint32_t tiles = 1;                                  ///< that a frame is drawn in

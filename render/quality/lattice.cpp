@@ -13,16 +13,17 @@
 namespace catena::render {
 namespace {
 
-constexpr double kDeviations = 3;                                       // of the lattice's mean, that an estimate lies above it
-constexpr double kThinGoal = 6;                                         // a thin part may lose that share of the error
-constexpr double kFlickerGoal = 0.5;                                    // the flicker, in errors, or in what the picture itself changes by
-constexpr double kTurn = 0.2;                                           // degrees a frame, which flicker is measured at
-constexpr double kLookedAt = 4000;                                      // pixels, where half a step is tried
-constexpr double kSamples = 6000, kFewSamples = 1000;                   // covered pixels on the lattice
-constexpr std::uint32_t kSpacings[] = {25, 19, 13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
-constexpr std::uint32_t kSeenSpacing = 13;                              // where it is found what is covered
-constexpr std::uint32_t kSparser = 3;                                   // the lattice that shows at which step rays have converged,
-constexpr double kSparseSamples = 500;                                  // if it has so many covered pixels
+constexpr double kDeviations = 3;                     // of the lattice's mean, that an estimate lies above it
+constexpr double kFarTail = 1000, kLeastInTail = 2;   // p999: of so many samples one, of fewer the second
+constexpr double kThinGoal = 6;                       // a thin part may lose that share of the error
+constexpr double kFlickerGoal = 0.5;                  // the flicker, in errors, or in what the picture itself changes by
+constexpr double kTurn = 0.2;                         // degrees a frame, which flicker is measured at
+constexpr double kLookedAt = 4000;                    // pixels, where half a step is tried
+constexpr double kSamples = 6000, kFewSamples = 800;  // covered pixels on the lattice
+constexpr std::uint32_t kSpacings[] = {25, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
+constexpr std::uint32_t kSeenSpacing = 13;                                          // where it is found what is covered
+constexpr std::uint32_t kSparser = 3;   // the lattice that shows at which step rays have converged,
+constexpr double kSparseSamples = 500;  // if it has so many covered pixels
 // steps, voxels: of what is seen, of the fast raycast's rays that what is thin is measured by, and those of the converged picture, which
 // are halved until what is left of its error is less than a share of the goal, or what rounding to 8 bits makes of nothing
 constexpr double kSeenStep = 1, kFineStep = 0.25, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3,
@@ -38,7 +39,9 @@ LatticeError compare_over_ground(const Picture& a, const Picture& b) {
     squares += here * here;
   }
   const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean);
-  return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 0.999)};
+  // of few samples the largest alone says little of the 99.9 percentile
+  const double tail = std::max(1 / kFarTail, kLeastInTail / count);
+  return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 1 - std::min(1.0, tail))};
 }
 
 /// A picture that lies over the first ground, over the one of that number: the second is white, and then the first was black.
@@ -80,7 +83,7 @@ Lattice::Lattice(Renderer& renderer, const FramePacket& packet, LatticeSize size
 
 Outcome Lattice::begin(double goal, bool moves) {
   // exact rays come first: what a large grid needs for them and for the fast raycast is not held at once
-  CATENA_TRY(const Picture seen, renderer_.probe(packet_, exact_rung(kSeenStep), kSeenSpacing));
+  CATENA_TRY(const Picture seen, renderer_.probe(packet_, converged_rung(kSeenStep), kSeenSpacing));
   double covered = 0;
   for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
   covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);

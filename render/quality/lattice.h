@@ -20,7 +20,7 @@ struct LatticeError {
   bool good_for(double e) const { return above <= e && p999 <= kFarthest * e; }
 };
 
-/// How many covered pixels it has: about 6000, about 1000.
+/// How many covered pixels it has: about 6000, about 800.
 enum class LatticeSize { whole, small };
 
 class Lattice {

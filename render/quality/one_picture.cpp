@@ -1,7 +1,9 @@
 #include "render/quality/one_picture.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include "engine/field/grid.h"
 #include "render/quality/refinement.h"
@@ -14,7 +16,8 @@ namespace {
 // sample that is lit; a voxel in the form of fast rays, where processor or GPU draw; a picture of fast rays, as a share of that of exact
 // ones of step 1; and that from which on interpolation is tried.
 constexpr double kThrough = 0.6, kEnding = 0.25, kLit = 3, kPacking = 2, kPackingForGpu = 100, kFastShare = 0.25, kWorthTrying = 6e6;
-constexpr double kRefineHalf = 1, kRefineFull = 3;  // errors
+constexpr std::array<double, 2> kRefine[] = {{1, 3}, {0.4, 1}};  // errors above which every 2nd, every pixel is marched
+constexpr double kFirstExactStep = 1.4, kFirstFastStep = 2;      // voxels
 
 RenderSettings fast_rays(double step, double error, bool smooth) {
   RenderSettings s = fast_rung(step, 1, 0, -1, smooth);
@@ -35,61 +38,82 @@ double OnePicture::work_of_rays(double step) const {
   return lattice_.covered() * way * (kStepless + 1 / step) * (lattice_.shaded() ? kLit : 1);
 }
 
-Result<std::optional<OnePicture::Rays>> OnePicture::exact() const {
-  for (const double step : kExactSteps) {
-    if (step < 2 * lattice_.truth_step()) break;  // they are judged by what is finer than they are
-    CATENA_TRY(const LatticeError error, lattice_.of_rays(exact_rung(step)));
-    if (error.good_for(error_)) return std::optional(Rays{exact_rung(step), error.above});
+template <class MakeSettings>
+Result<std::optional<OnePicture::Rays>> OnePicture::longest(std::span<const double> steps, double first, double share,
+                                                            MakeSettings&& settings_of) const {
+  std::optional<Rays> best;
+  double best_step = 0;
+  const auto try_step = [&](std::size_t i) -> Result<bool> {
+    const RenderSettings settings = settings_of(steps[i]);
+    CATENA_TRY(const LatticeError error, lattice_.of_rays(settings));
+    const bool good = error.rmse <= share * error_ && error.good_for(error_) && lattice_.lattice_keeps_what_is_thin(error_);
+    if (good) best = Rays{settings, error.above}, best_step = steps[i];
+    return good;
+  };
+  const auto middle = static_cast<std::size_t>(std::ranges::find(steps, first) - steps.begin());
+  CATENA_ASSERT(middle < steps.size());
+  for (std::size_t i = middle; i < steps.size() && !best; ++i) CATENA_CHECK(try_step(i));
+  if (!best || best_step != first) return best;
+  for (std::size_t i = middle; i-- > 0;) {
+    CATENA_TRY(const bool good, try_step(i));
+    if (!good) break;
   }
-  return std::optional<Rays>();
+  return best;
 }
 
-Result<std::optional<OnePicture::Rays>> OnePicture::fast(bool smooth) const {
-  const bool facets = !smooth && lattice_.shaded();
-  double before = std::numeric_limits<double>::infinity();
-  for (const double step : kFastSteps) {
-    const RenderSettings settings = fast_rays(step, error_, smooth);
-    CATENA_TRY(const LatticeError error, lattice_.of_rays(settings));
-    if (error.rmse > error_ && error.rmse > kStill * before) break;
-    before = error.rmse;
-    if (error.rmse > (facets ? kFacetShare : kStepShare) * error_ || !error.good_for(error_)) continue;
-    if (lattice_.lattice_keeps_what_is_thin(error_)) return std::optional(Rays{settings, error.above});
-  }
-  return std::optional<Rays>();
+Result<std::optional<OnePicture::Rays>> OnePicture::exact() const {
+  // they are judged by what is finer than they are
+  const auto fine = std::ranges::find_if(kExactSteps, [this](double step) { return step < 2 * lattice_.truth_step(); });
+  return longest({std::begin(kExactSteps), fine}, kFirstExactStep, 1, exact_rung);
+}
+
+Result<std::optional<OnePicture::Rays>> OnePicture::fast() const {
+  return longest(kFastSteps, kFirstFastStep, kStepShare, [this](double step) { return fast_rays(step, error_, lattice_.shaded()); });
 }
 
 Result<std::optional<QualityChoice>> OnePicture::interpolated(const Rays& rays) const {
   RenderSettings settings = rays.settings;
   settings.fast->spacing = 4;
-  settings.fast->refine_half_255 = kRefineHalf * error_;
-  settings.fast->refine_full_255 = kRefineFull * error_;
   settings.keep = true;
-  CATENA_TRY(const LatticeError error, lattice_.of_picture(settings));
-  if (!error.good_for(error_) || !lattice_.lattice_keeps_what_is_thin(error_)) return std::optional<QualityChoice>();
-  return std::optional(choice_of(lattice_, settings, error.above));
+  for (const auto [half, full] : kRefine) {
+    settings.fast->refine_half_255 = half * error_;
+    settings.fast->refine_full_255 = full * error_;
+    CATENA_TRY(const LatticeError error, lattice_.of_picture(settings));
+    if (error.good_for(error_) && lattice_.lattice_keeps_what_is_thin(error_))
+      return std::optional(choice_of(lattice_, settings, error.above));
+  }
+  return std::optional<QualityChoice>();
 }
 
 Result<std::optional<QualityChoice>> OnePicture::find() {
-  CATENA_TRY(const std::optional<Rays> exact_rays, exact());
   const double packing = (lattice_.renderer().device().info().is_cpu() ? kPacking : kPackingForGpu) * voxels();
   const double fast_work = kFastShare * work_of_rays(1);
-  const auto best_exact = [&]() -> std::optional<QualityChoice> {
-    if (!exact_rays) return std::nullopt;
-    return choice_of(lattice_, exact_rays->settings, exact_rays->above);
+  const auto chosen = [this](const std::optional<Rays>& rays) -> std::optional<QualityChoice> {
+    if (!rays) return std::nullopt;
+    return choice_of(lattice_, rays->settings, rays->above);
   };
-  if (exact_rays && work_of_rays(exact_rays->settings.step_voxels) <= packing + fast_work) return best_exact();
-  CATENA_TRY(const bool can_be_fast, lattice_.begin_fast());
-  if (!can_be_fast) return best_exact();
-  CATENA_TRY(std::optional<Rays> rays, fast(false));
-  if (!rays && lattice_.shaded()) {
-    CATENA_TRY(rays, fast(true));
+  const bool exact_first = work_of_rays(kExactSteps[0]) <= packing + fast_work || !lattice_.renderer().draws_fast(lattice_.packet());
+  std::optional<Rays> exact_rays;
+  if (exact_first) {
+    CATENA_TRY(exact_rays, exact());
+    if (exact_rays && work_of_rays(exact_rays->settings.step_voxels) <= packing + fast_work) return chosen(exact_rays);
   }
-  if (!rays) return best_exact();
+  CATENA_TRY(const bool can_be_fast, lattice_.begin_fast());
+  std::optional<Rays> rays;
+  if (can_be_fast) {
+    CATENA_TRY(rays, fast());
+  }
+  if (!rays) {
+    if (!exact_first) {
+      CATENA_TRY(exact_rays, exact());
+    }
+    return chosen(exact_rays);
+  }
   if (fast_work > kWorthTrying) {
     CATENA_TRY(const std::optional<QualityChoice> picture, interpolated(*rays));
     if (picture) return picture;
   }
-  return std::optional(choice_of(lattice_, rays->settings, rays->above));
+  return chosen(rays);
 }
 
 }  // namespace catena::render

@@ -1,17 +1,19 @@
-/// Settings for one picture that is drawn once, found at little cost beside it (quality.h has the errors). Rays are looked at on a small
-/// lattice alone; a finished picture is drawn only where it may become the one that is asked for.
-///   1  exact rays: the longest step whose rays are good enough
+/// Settings for one picture that is drawn once, found at little cost beside it (quality.h has the errors). Rays are measured on a small
+/// lattice; a finished picture is drawn only where it may become the one that is asked for.
+///   1  exact rays, unless even their longest steps are more work than 2: the longest step whose rays are good enough
 ///   2  fast rays, where exact ones are more work than to bring the grid to the device in the form of fast ones and to march these: the
-///      longest step whose rays are good enough, lit by the gradient of the cell or, where that has too large an error, by central
-///      differences
-///   3  every 4th pixel, refined where it is needed, with rays of that step: drawn, where every pixel is much work. Where it is not good
-///      enough: every pixel
+///      longest step whose rays are good enough, lit by central differences (light by the gradient of the cell saves a third of the rays'
+///      time, and to find out whether it is good enough costs more)
+///   3  every 4th pixel, refined where it is needed, with rays of that step: drawn, where every pixel is much work. Where that is not good
+///      enough, it is refined further, and if that is not enough either, every pixel is marched
+/// Steps are tried from a middle one on, to longer ones while they are good enough, or to shorter ones until one is.
 /// Work is counted in samples of unlit exact rays, not timed, so that the choice is the same in every run:
 ///   rays     pixels covered x voxels on the way (a share of the cube root of the grid's, less where rays end) x (0.3 + 1 / step) x light
 ///   packing  samples a voxel, as measured
-/// Nothing is asked of how the error moves with the camera. A small lattice that has begun, and lives longer. Frame thread.
+/// The steadiness of the error while the camera moves is not measured. The lattice must have begun, and must outlive this. Frame thread.
 #pragma once
 #include <optional>
+#include <span>
 
 #include "render/quality/lattice.h"
 #include "render/quality/quality.h"
@@ -30,9 +32,12 @@ class OnePicture {
     RenderSettings settings;
     double above;  ///< of the rays alone: LatticeError
   };
+  /// The longest of the steps (they fall) whose rays are good enough; `share` of the error is for the rays. Nothing: none is.
+  template <class MakeSettings>
+  Result<std::optional<Rays>> longest(std::span<const double> steps, double first, double share, MakeSettings&& settings_of) const;
   Result<std::optional<Rays>> exact() const;
   /// Of every pixel.
-  Result<std::optional<Rays>> fast(bool smooth) const;
+  Result<std::optional<Rays>> fast() const;
   /// Nothing where it is not good enough.
   Result<std::optional<QualityChoice>> interpolated(const Rays& rays) const;
   /// Samples of a picture of exact rays.

@@ -270,7 +270,9 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
   Eye& own = eye();
   const Kept now{settings, {frame, look_.version(), 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
-  const bool still = has_kept_ = keep && target && own.kept && own.kept->settings == settings && own.kept->picture.is(now.picture);
+  const bool same = keep && target && own.kept && own.kept->picture.is(now.picture);
+  const bool still = has_kept_ = same && own.kept->settings == settings;
+  const bool first_is_marched = same && !opaque_depth && settings.spacing > 1 && own.kept->settings.march_alike(settings);
   own.kept.reset();
   marched_half_ = marched_full_ = false;
   commands.use(no_tiles_, vk::kShaderRead);
@@ -313,9 +315,10 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     if (refines) CATENA_CHECK(interpolate(commands, *coarser, image, area, still));
     if (refines && !marches) break;
     const Tiles tiles = still ? Tiles::changed : refines ? Tiles::marked : Tiles::all;
-    CATENA_CHECK(draw(commands, level,
-                      {&image, coarser, marches, tiles, shading(settings), settings.skip, lattice_area(area, spacing, image.info().extent),
-                       opaque_depth, &none}));
+    if (coarser || !first_is_marched)
+      CATENA_CHECK(draw(commands, level,
+                        {&image, coarser, marches, tiles, shading(settings), settings.skip,
+                         lattice_area(area, spacing, image.info().extent), opaque_depth, &none}));
     if (spacing > 1) commands.use(image, vk::kFragmentRead);
     coarser = &image;
   }

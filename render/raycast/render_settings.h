@@ -29,6 +29,12 @@ struct FastSettings {
   /// The last step to every pixel is interpolation alone.
   bool ends_at_half() const { return spacing > 1 && refine_full_255 < 0; }
   bool operator==(const FastSettings&) const = default;
+  /// Whether the rays of the first lattice are the same: all but the refinement is.
+  bool march_alike(FastSettings other) const {
+    other.refine_half_255 = refine_half_255;
+    other.refine_full_255 = refine_full_255;
+    return *this == other;
+  }
 };
 
 /// What a voxel is stored as on the device.

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """One picture, whole programs: from the file to the PNG. Catena's default and each setting that it can name beside VTK's mapper.
 needs: python3-numpy, python3-scipy, python3-pil, python3-vtk9, xvfb-run; cases made by volume_cases.py
-usage: xvfb-run -a one_picture.py --catena PROGRAM --cases DIR [--rounds N] [--goal E] [--no-vtk] [CASE ...]
+usage: xvfb-run -a one_picture.py --catena PROGRAM --cases DIR [--rounds N] [--goal E] [--no-vtk] [--processor] [CASE ...]
 For each case: wall seconds (the least of the rounds, settings in turn) and the covered error (peers/picture_error.py) beside that program's
-own converged picture. The last columns are the default's time by that of the cheapest setting that meets the goal, and VTK's by the
+own converged picture, which is kept in DIR for the next time. Of each program, settings finer than the first that meets half of the goal
+or takes twice as long as the default are left out. The last columns are the default's time by that of the cheapest setting that meets the goal, and VTK's by the
 default's: of VTK's settings the cheapest whose error is at most the default's, or the goal."""
-import argparse, json, os, statistics, subprocess, sys, tempfile, time
+import argparse, json, os, shutil, statistics, subprocess, sys, tempfile, time
 import numpy as np
 from PIL import Image
 
@@ -15,7 +16,8 @@ from picture_error import rmse
 
 OURS = ("draft", "step=4", "step=2.8", "step=2", "step=1.4", "step=1", "step=0.7", "step=0.5", "step=0.35")
 THEIRS = ("cpu 2 2", "cpu 1 2", "cpu 4 1", "cpu 2 1", "cpu 1.4 1", "cpu 1 1", "cpu 0.7 1")
-CONVERGED, CONVERGED_VTK = "step=0.05", "cpu 0.5 1"
+PROCESSOR = False
+CONVERGED, CONVERGED_VTK = "step=0.1", "cpu 0.5 1"
 VTK = """import sys; sys.path.insert(0, sys.argv[1]); import vtk_peer; from PIL import Image
 s = vtk_peer.Scene(sys.argv[2]); s.set_mode(sys.argv[3]); s.draw(30); Image.fromarray(s.picture().copy()).save(sys.argv[4])"""
 
@@ -37,11 +39,20 @@ def over_black(path):
 
 
 def run(command, out):
-    start = time.perf_counter()
+    start, before = time.perf_counter(), os.times()
     done = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, LIBGL_ALWAYS_SOFTWARE="1"))
     if done.returncode:
         sys.exit(f"{command}: {done.stderr}")
-    return time.perf_counter() - start, done.stdout, over_black(out)
+    after = os.times()
+    processor = after.children_user + after.children_system - before.children_user - before.children_system
+    return (processor if PROCESSOR else time.perf_counter() - start), done.stdout, over_black(out)
+
+
+def converged_picture(command, kept, out):
+    if not os.path.exists(kept):
+        run(command, out)
+        shutil.copy(out, kept)
+    return over_black(kept)
 
 
 def best(times, errors, most):
@@ -56,8 +67,11 @@ def main():
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--goal", type=float, default=2)
     parser.add_argument("--no-vtk", action="store_true")
+    parser.add_argument("--processor", action="store_true", help="processor seconds instead of wall seconds")
     parser.add_argument("names", nargs="*", metavar="CASE")
     args = parser.parse_args()
+    global PROCESSOR
+    PROCESSOR = args.processor
     names = args.names or sorted(f[:-5] for f in os.listdir(args.cases) if f.endswith(".json"))
     shares, gains = [], []
     with tempfile.TemporaryDirectory() as folder:
@@ -66,14 +80,17 @@ def main():
             json.dump(scene_of(args.cases, name), open(f"{folder}/s.json", "w"))
             ours = lambda q: [args.catena, "render", f"{folder}/s.json", "-o", out, "--size", "1024x768", *(["--quality", q] if q else [])]
             theirs = lambda q: ["/usr/bin/python3", "-c", VTK, f"{HERE}/peers", f"{args.cases}/{name}.json", q, out]
-            converged = {ours: run(ours(CONVERGED), out)[2]}
-            kinds = [(ours, q) for q in (None, *OURS)]
+            kinds, converged = [(ours, q) for q in (None, *OURS)], {ours: converged_picture(ours(CONVERGED), f"{args.cases}/{name}.ours.png", out)}
             if not args.no_vtk:
-                converged[theirs] = run(theirs(CONVERGED_VTK), out)[2]
+                converged[theirs] = converged_picture(theirs(CONVERGED_VTK), f"{args.cases}/{name}.vtk.png", out)
                 kinds += [(theirs, q) for q in THEIRS]
             times, errors, told = {ours: {}, theirs: {}}, {ours: {}, theirs: {}}, ""
             for _ in range(args.rounds):
                 for of, q in kinds:
+                    slowest = max((took for setting, took in times[of].items() if setting), default=0)
+                    coarser = (error for setting, error in errors[of].items() if setting)
+                    if q and q not in times[of] and (min(coarser, default=np.inf) < args.goal / 2 or slowest > 2 * times[ours][None]):
+                        continue
                     took, words, picture = run(of(q), out)
                     times[of][q] = min(took, times[of].get(q, np.inf))
                     errors[of][q] = rmse(picture, converged[of])

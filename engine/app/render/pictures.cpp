@@ -215,7 +215,6 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors, o.grid, steps.empty() ? o.step : steps.front()));
-  const std::size_t told = scene.notes.size();
   if (o.step >= 0 || !steps.empty()) scene::set_step(scene, steps.empty() ? o.step : steps.front());
   CATENA_CHECK(annotate(scene, o.annotate));
   CATENA_CHECK(o.stereo.apply(scene.stereo));
@@ -250,7 +249,7 @@ Outcome render_pictures(const RenderOptions& given) {
   Frames frames(scene, o, motion, hand, size, steps);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   CATENA_CHECK(check_steps(scene, o, steps));
-  if (is_scene_file(o.source)) tell_new_notes(scene, told);
+  tell_notes(scene);
   if (const Outcome drawable = render::check_rays(packet); !drawable) return Error{o.source + ": " + drawable.error().message};
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
@@ -272,23 +271,26 @@ Outcome render_pictures(const RenderOptions& given) {
                     ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
                     : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || plan.of_eye() || wanted.settings.fast,
                                          frames.renderer->longest_side());
+  const auto choose_for = [&](const char* which, bool once) {
+    wanted.goal->once = once;
+    const std::int64_t start = now_ns();
+    const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
+    stats.choose_ms += ms_since(start);
+    frames.settings = choice.settings;
+    stats.estimated_rmse = choice.estimated_rmse;
+    say(words, fmt::format("quality {}{}: {}, error about {:.2f}/255{}", quality, which, describe(frames.settings), choice.estimated_rmse,
+                           choice.reached ? "" : " (nothing reached the goal: the nearest was taken)"));
+    return choice.empty;
+  };
   const bool planned = plan.of_eye() && !pinned && render::draws_rays(packet);
   if (plan.of_eye() && !pinned && !planned) tell_plan("plan: the picture has no settings: nothing in it is drawn by rays");
   if (planned) {
     CATENA_CHECK(plan_pictures(frames, packet, plan, o, scene, words));
     stats.estimated_rmse = frames.goal->expected_error();
   } else if (wanted.goal) {
-    wanted.goal->once = motion.frames() == 1;
-    const std::int64_t start = now_ns();
-    const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
-    stats.choose_ms = ms_since(start);
-    if (choice.empty)
+    if (choose_for("", true))
       tell_from_catena(
           "note: nothing of the scene is in the picture: it is transparent where the camera looks, or the camera looks elsewhere");
-    frames.settings = choice.settings;
-    stats.estimated_rmse = choice.estimated_rmse;
-    say(words, fmt::format("quality {}: {}, error about {:.2f}/255{}", quality, describe(frames.settings), choice.estimated_rmse,
-                           choice.reached ? "" : " (nothing reached the goal: the nearest was taken)"));
   }
   if (quality == "reference" && !planned) {
     stats.estimated_rmse = machine(render::change_of_half_step(*frames.renderer, sample_of(frames, packet).packet, frames.settings));
@@ -314,8 +316,6 @@ Outcome render_pictures(const RenderOptions& given) {
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
     for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
-    if (!is_scene_file(o.source))
-      for (const std::string& note : scene.notes) tell_from_catena("note: " + note);
     say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, what_is_drawn(packet),
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
     // what a plan expects holds for pictures whose pipelines and mirrors are there
@@ -324,6 +324,10 @@ Outcome render_pictures(const RenderOptions& given) {
       took.push_back(frames.drawing_ms);
     }
     stats.frame_ms.push_back(first);
+    // the first picture is there before settings that hold for a sequence are searched for
+    if (motion.frames() > 1 && !planned && wanted.goal && wanted.goal->kind == render::QualityGoal::Kind::error &&
+        render::draws_rays(packet))
+      choose_for(" of the sequence", false);
     for (int k = 1; k < motion.frames(); ++k) {
       last = frames.settings;
       CATENA_TRY(const double ms, frames.draw(k, takes_all_frames(o) ? &outputs : nullptr));

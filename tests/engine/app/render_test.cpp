@@ -196,6 +196,14 @@ TEST(Render, AnErrorThatWasAskedForIsMeasuredAndSaid) {
     EXPECT_LE(chosen->find("estimated_rmse")->number, 1);
     EXPECT_EQ(stats->find("validation_messages")->number, 0);
   }
+  // a sequence begins with the picture that one alone is
+  const auto one = program({"render", folder / "s.json", "-o", folder / "one.png", "--size", "128x96", "--quality", "error=1"});
+  const auto many = program({"render", folder / "s.json", "-o", folder / "of_%d.png", "--size", "128x96", "--quality", "error=1", "--orbit",
+                             "1", "--frames", "2"});
+  ASSERT_EQ(one.exit_code + many.exit_code, 0) << one.err << many.err;
+  EXPECT_EQ(test::read_file(folder / "of_0.png"), test::read_file(folder / "one.png"));
+  EXPECT_EQ(many.out.find(one.out.substr(0, one.out.find('\n'))), 0u) << many.out;
+  EXPECT_NE(many.out.find("\nquality error=1 of the sequence: "), std::string::npos) << many.out;
   for (const char* quality : {"error=-1", "time=soon", "error="})
     EXPECT_EQ(program({"render", folder / "s.json", "-o", folder / "p.png", "--quality", quality}).exit_code, 2) << quality;
 }
