@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -41,11 +42,19 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
   return overrides;
 }
 
-// a scene may write the same thing a hundred times
-void tell_new_notes(const scene::Scene& scene, std::size_t told) {
-  if (scene.notes.size() <= told) return;
-  const std::size_t rest = scene.notes.size() - told - 1;
-  tell_from_catena("note: " + scene.notes[told] + (rest > 0 ? " (and " + std::to_string(rest) + " more)" : ""));
+void tell_notes(const scene::Scene& scene) { tell_notes({}, scene.notes); }
+
+void tell_notes(const std::string& path, const std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 10;
+  static std::mutex mutex;
+  static std::set<std::string> told;
+  const std::scoped_lock lock(mutex);
+  std::size_t count = 0;
+  for (const std::string& note : notes) {
+    const std::string text = path.empty() ? note : path + ": " + note;
+    if (told.insert(text).second && ++count <= kMost) tell_from_catena("note: " + text);
+  }
+  if (count > kMost) tell_from_catena(fmt::format("note: and {} more", count - kMost));
 }
 
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors,
@@ -55,11 +64,13 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
     if (!grid.empty()) return Error{path + ": --grid goes with a data file; a scene names its grids"};
     if (!colors.is_default()) return Error{path + ": --colormap, --range and --mapping go with a data file; a scene says its colours"};
     auto scene = scene::read_scene(path, overrides);
-    if (scene) tell_new_notes(*scene, 0);
+    if (scene) tell_notes(*scene);
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  return scene::scene_for_file(path, grid, colors, std::max(0, step));
+  auto scene = scene::scene_for_file(path, grid, colors, std::max(0, step));
+  if (scene) tell_notes(*scene);
+  return scene;
 }
 
 Result<scene::Scene> open_followed(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,
@@ -103,8 +114,9 @@ Result<std::vector<field::GridInfo>> grids_of(const std::string& path, const std
   if (grid.empty()) return grids;
   for (const auto& way : {&field::GridInfo::name, &field::GridInfo::number})
     if (const auto found = std::ranges::find(grids, grid, way); found != grids.end()) return std::vector{*found};
-  std::string known;
-  for (const field::GridInfo& one : grids) known += (known.empty() ? "" : ", ") + one.number + (one.number.empty() ? "" : " ") + one.name;
+  std::vector<std::string> names;
+  for (const field::GridInfo& one : grids) names.push_back(one.number + (one.number.empty() ? "" : " ") + one.name);
+  const std::string known = joined({names.begin(), names.end()});
   // the volumes of a DICOM series
   std::erase_if(grids, [&](const field::GridInfo& one) { return !one.number.starts_with(grid + "."); });
   if (!grids.empty()) return grids;

@@ -51,9 +51,11 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
 /// what is followed. Error: nothing in it can get steps, or none was whole after `seconds` (0: no limit).
 Result<scene::Scene> open_followed(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,
                                    double seconds);
-/// Says the notes that a scene has got since it had `told` of them: the first, and how many more. (open_scene has told those of the scene
-/// file; those of its data come when they are loaded.)
-void tell_new_notes(const scene::Scene& scene, std::size_t told);
+/// Tells the notes of a scene and of the data that it has loaded so far, each once in a process: at most ten, and how many more there are.
+/// Every command calls it when its data are loaded; open_scene has told those that were there by then. Any thread.
+void tell_notes(const scene::Scene& scene);
+/// The same of notes on one file.
+void tell_notes(const std::string& path, const std::vector<std::string>& notes);
 /// Refuses a step in time beyond the last one of `source`; `option` states it ("--step 3").
 Outcome check_step(int step, int last, const std::string& option, const std::string& source);
 /// Goes to a step in time, which `option` states ("--step 3"); below 0: nothing is stated. Loads the fields, whose files say how many

@@ -139,6 +139,7 @@ Outcome feel(const FeelOptions& options) {
   if (!hand.note.empty()) tell_from_catena(hand.note);
   CATENA_TRY(const Bounds bounds, bounds_of(scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));
+  tell_notes(scene);
 
   haptics::ServoOptions servo_options;
   servo_options.rate_hz = hand.settings.rate_hz;

@@ -107,6 +107,7 @@ Outcome describe_scene(const std::string& path) {
     print_points(*set, "  ");
   }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  tell_notes(scene);
   if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const haptics::ConstraintType* type = haptics::find_constraint(link.type);

@@ -49,14 +49,13 @@ Outcome replay_scene(const ReplayOptions& options) {
   if (options.output.empty()) return Error{"--output is required (see catena replay --help)"};
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to replay"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
-  const std::size_t told = scene.notes.size();
   RunFiles named = replay_files(options);
   named.reads(scene);
   CATENA_CHECK(named.check());
   CATENA_TRY(const haptics::Limits limits, device_limits(scene, options.scene));
   CATENA_TRY(const std::optional<plan::HandPlan> plan, plan_the_hand(scene, options));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene, limits));
-  tell_new_notes(scene, told);
+  tell_notes(scene);
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
   const std::vector<haptics::ProbeSample> path = probe_samples(rows);
   const bool turns = rows.front().has_orientation;

@@ -83,7 +83,9 @@ Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptio
     CATENA_TRY(any, field::load(scene::request_at(request, scene.time.step)));
     CATENA_CHECK(check_step(options.time_step, scene::steps_of_file(options.source, any).count - 1,
                             fmt::format("--time-step {}", options.time_step), options.source));
+    tell_notes(options.source, any.notes);
   }
+  tell_notes(scene);
   if (!any.vector) return Error{options.source + ": field \"" + options.field + "\" is a scalar field: expected a vector field to trace"};
   return any.vector;
 }

@@ -50,6 +50,12 @@ json::Node option_node(const std::string& option) {
 
 void say(const std::string& output, const std::string& what) { fmt::print("{}: {}\n", printable(output), printable(what)); }
 
+Outcome write_and_tell(const std::string& path, const Surface& surface) {
+  CATENA_CHECK(write_surface(path, surface));
+  if (const std::string lost = lost_in(path, surface); !lost.empty()) tell_notes(path, {lost});
+  return Done{};
+}
+
 Outcome export_isosurface(const SceneExport& options, scene::Scene& scene) {
   CATENA_CHECK(expect(options.output, is_surface_file(options.output), surface_endings()));
   CATENA_TRY(const Entity item, item_of<scene::Isosurface>(scene, *options.isosurface, "isosurfaces"));
@@ -64,7 +70,7 @@ Outcome export_isosurface(const SceneExport& options, scene::Scene& scene) {
              mesh::isosurface(*drawn.scalar->grid(), surface.level, higher ? mesh::Outside::higher : mesh::Outside::lower, scene.path,
                               [&](double done) { progress.at(done); }));
   Surface out{std::move(made.vertices), std::move(made.normals), std::move(made.triangles)};
-  CATENA_CHECK(write_surface(options.output, out));
+  CATENA_CHECK(write_and_tell(options.output, out));
   say(options.output, fmt::format("{} triangles, {} points, level {}", out.triangles.size(), out.points.size(), to_text(surface.level)));
   return Done{};
 }
@@ -74,7 +80,7 @@ Outcome export_mesh(const SceneExport& options, scene::Scene& scene) {
   CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, options.mesh, option_node("--mesh")));
   Surface out{mesh->vertices(), {}, mesh->triangles()};
   for (std::size_t v = 0; v < out.points.size(); ++v) out.normals.push_back(mesh->vertex_normal(static_cast<std::uint32_t>(v)));
-  CATENA_CHECK(write_surface(options.output, out));
+  CATENA_CHECK(write_and_tell(options.output, out));
   say(options.output, fmt::format("{} triangles, {} points", out.triangles.size(), out.points.size()));
   return Done{};
 }
@@ -181,7 +187,7 @@ Outcome export_slice(const SceneExport& options, scene::Scene& scene) {
     CATENA_CHECK(out.commit());
   } else {
     Surface out{plane.points, {}, plane.triangles, samples.at(plane.points)};
-    CATENA_CHECK(write_surface(options.output, out));
+    CATENA_CHECK(write_and_tell(options.output, out));
   }
   say(options.output, fmt::format("{} samples, {} apart", plane.points.size(), to_text(spacing)));
   return Done{};
@@ -231,12 +237,15 @@ Outcome export_scene(const SceneExport& options) {
   // what follows a widget is where the widget is
   const auto driven = scene::drive_widgets(scene);
   if (!driven) return driven.error();
-  if (options.isosurface) return export_isosurface(options, scene);
-  if (options.slice) return export_slice(options, scene);
-  if (options.streamlines) return export_streamlines(options, scene);
-  if (!options.mesh.empty()) return export_mesh(options, scene);
-  if (!options.probe.empty()) return export_probe(options, scene);
-  return export_field(options, scene);
+  const auto part = options.isosurface       ? export_isosurface
+                    : options.slice          ? export_slice
+                    : options.streamlines    ? export_streamlines
+                    : !options.mesh.empty()  ? export_mesh
+                    : !options.probe.empty() ? export_probe
+                                             : export_field;
+  const Outcome done = part(options, scene);
+  tell_notes(scene);
+  return done;
 }
 
 }  // namespace catena::app

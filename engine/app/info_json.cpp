@@ -124,6 +124,7 @@ Result<std::string> json_of_scene(const std::string& path) {
   }
   // what info checks, too: the chain can be made, the device's keys are right
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  tell_notes(scene);
   if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
   scene.world.each<scene::Link>(
       [&](scene::Entity, const scene::Link& link) { links.push_back(JsonObject().add("name", link.name).add("type", link.type).text()); });

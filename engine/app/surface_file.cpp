@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -117,6 +118,21 @@ std::string surface_endings() {
   std::vector<std::string_view> endings;
   for (const SurfaceFormat& format : kSurfaceFormats) endings.push_back(format.ending);
   return alternatives(endings);
+}
+
+std::string lost_in(const std::string& path, const Surface& surface) {
+  constexpr double kTold = 0.01;  // of the triangles: isosurfaces have slivers anywhere
+  if (!has_ending(path, ".stl")) return {};
+  const auto rounded = [&](std::uint32_t n) { return glm::vec3(surface.points[n]); };
+  const auto flat = std::ranges::count_if(surface.triangles, [&](const mesh::Triangle& t) {
+    const auto same = [&](int a, int b) { return surface.points[t[a]] != surface.points[t[b]] && rounded(t[a]) == rounded(t[b]); };
+    return same(0, 1) || same(1, 2) || same(2, 0);
+  });
+  if (!(static_cast<double>(flat) > kTold * static_cast<double>(surface.triangles.size()))) return {};
+  return fmt::format(
+      "{} of {} triangles have two corners at one place in it: so far from the origin its 32-bit numbers are too coarse (.ply and .vtp "
+      "hold 64 bits)",
+      flat, surface.triangles.size());
 }
 
 Outcome write_surface(const std::string& path, const Surface& surface) {

@@ -30,5 +30,7 @@ bool is_surface_file(std::string_view path);
 /// ".vtp, .ply, .stl or .obj"
 std::string surface_endings();
 Outcome write_surface(const std::string& path, const Surface& surface);
+/// What the file's kind cannot hold of it, a sentence without an end; empty: nothing is lost. 32-bit places (.stl) far from the origin.
+std::string lost_in(const std::string& path, const Surface& surface);
 
 }  // namespace catena::app

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/display_range.h"
 #include "engine/base/result.h"
 #include "engine/field/grid.h"
 #include "engine/field/nano_build.h"
@@ -24,7 +25,7 @@ struct DenseSource {
   /// With `masked` only, asked for after `read` for the same layers; empty: the mask is one of voxels. 1 where the cell based at the voxel
   /// may be valid. Voxels that no such cell touches are not valid, and `valid` says so.
   std::function<Outcome(int z, int layers, std::span<std::uint8_t> cells)> read_cells{};
-  std::optional<std::array<double, 2>> range{};  ///< of the data that these were resampled from
+  std::optional<DisplayRange> range{};  ///< of the data that these were resampled from
 };
 
 inline bool is_finite_value(float v) { return std::isfinite(v); }

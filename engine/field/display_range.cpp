@@ -97,11 +97,7 @@ const DisplayRange& cached_range(const Grid& grid) {
     if (storage.range) return *storage.range;
   }
   // without the lock: it is found by several threads, which may take up other work meanwhile
-  DisplayRange found = range_of_grid(*storage.values, storage.valid_voxels, grid.stats());
-  if (storage.data_range && !found.is_cut()) {  // that of the data that were resampled
-    found.lo = found.least = (*storage.data_range)[0];
-    found.hi = found.most = (*storage.data_range)[1];
-  }
+  const DisplayRange found = storage.data_range ? *storage.data_range : range_of_grid(*storage.values, storage.valid_voxels, grid.stats());
   const std::lock_guard lock(storage.range_mutex);
   if (!storage.range) storage.range = found;
   return *storage.range;

@@ -11,7 +11,8 @@
 namespace catena::field {
 
 /// Of the active, valid values of a grid, of a vector grid's magnitudes: found once a grid, from about 2^17 values spread over it, then
-/// from all values where some lie beyond. The range and the counts are exact then.
+/// from all values where some lie beyond. The range and the counts are exact then. Of data that were resampled they are those of the file's
+/// own values.
 const DisplayRange& display_range(const ScalarGrid& grid);
 const DisplayRange& display_range(const VectorGrid& grid);
 /// A formula's is that of all its values.

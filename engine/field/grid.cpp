@@ -131,8 +131,8 @@ std::size_t ScalarGrid::bytes() const noexcept { return storage_->bytes() + (gho
 float ScalarGrid::background() const { return storage_->values->tree().background(); }
 bool ScalarGrid::has_mask() const { return storage_->may_be_invalid; }
 bool ScalarGrid::has_cell_mask() const { return storage_->cells_masked; }
-double ScalarGrid::min_value() const noexcept { return storage_->data_range ? (*storage_->data_range)[0] : stats_.min; }
-double ScalarGrid::max_value() const noexcept { return storage_->data_range ? (*storage_->data_range)[1] : stats_.max; }
+double ScalarGrid::min_value() const noexcept { return storage_->data_range ? storage_->data_range->least : stats_.min; }
+double ScalarGrid::max_value() const noexcept { return storage_->data_range ? storage_->data_range->most : stats_.max; }
 
 VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage,
                        const GridStats& stats, std::shared_ptr<const Ghosts> ghosts)
@@ -207,7 +207,7 @@ VectorCell VectorGrid::cell(const Index3& base, Cursor& cursor) const noexcept {
 Index3 VectorGrid::base_of(const Vec3& index) const noexcept { return storage_->base_of(index); }
 std::size_t VectorGrid::bytes() const noexcept { return storage_->bytes() + (ghosts_ ? ghosts_->memory.size() : 0); }
 bool VectorGrid::has_mask() const { return storage_->may_be_invalid; }
-double VectorGrid::min_length() const noexcept { return storage_->data_range ? (*storage_->data_range)[0] : stats_.min; }
-double VectorGrid::max_length() const noexcept { return storage_->data_range ? (*storage_->data_range)[1] : stats_.max; }
+double VectorGrid::min_length() const noexcept { return storage_->data_range ? storage_->data_range->least : stats_.min; }
+double VectorGrid::max_length() const noexcept { return storage_->data_range ? storage_->data_range->most : stats_.max; }
 
 }  // namespace catena::field

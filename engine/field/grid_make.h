@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "engine/base/display_range.h"
 #include "engine/base/result.h"
 #include "engine/field/grid.h"
 #include "engine/field/nano_stats.h"
@@ -24,8 +25,8 @@ struct GridValue<VectorGrid> {
 /// `own_cells`, a mask of cells beside that of voxels (empty: there is none).
 struct NanoBuffers {
   NanoMemory values, voxels, cells, own_cells;
-  bool cells_masked = false;                     ///< where `cells` are there: a mask of cells is in them
-  std::optional<std::array<double, 2>> range{};  ///< of the data that were resampled
+  bool cells_masked = false;            ///< where `cells` are there: a mask of cells is in them
+  std::optional<DisplayRange> range{};  ///< of the data that were resampled
 };
 
 /// An error (one phrase: "has no active voxels, ...") where no voxel is active, valid or finite, or where indices are too large.

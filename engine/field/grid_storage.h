@@ -29,8 +29,8 @@ struct GridStorage {
   Index3 lo, last;  ///< legal bases: lo..last
   Index3 step;      ///< 1, or 0 along an axis of one layer
   bool may_be_invalid = false;
-  bool cells_masked = false;                          ///< `valid_cells` is less than what `valid_voxels` says
-  std::optional<std::array<double, 2>> data_range{};  ///< of the data that were resampled: scalars, lengths of vectors
+  bool cells_masked = false;                 ///< `valid_cells` is less than what `valid_voxels` says
+  std::optional<DisplayRange> data_range{};  ///< of the data that were resampled: scalars, lengths of vectors
   mutable std::mutex range_mutex;
   mutable std::optional<DisplayRange> range;  ///< once somebody has asked (display_range.h)
 

@@ -63,9 +63,10 @@ Result<AnyField> load_answered(const LoadRequest& request) {
       return Done{};
     };
   if (dense.has_range) {
-    if (!(std::isfinite(dense.least) && std::isfinite(dense.most) && dense.least <= dense.most))
+    const DisplayRange& r = dense.range;
+    if (!(std::isfinite(r.least) && std::isfinite(r.most) && r.least <= r.lo && r.lo <= r.hi && r.hi <= r.most))
       return damaged_answer(path, "the range is none");
-    file.source.range = {{dense.least, dense.most}};
+    file.source.range = r;
   }
   return load_dense(file);
 }

@@ -92,6 +92,28 @@ class Decoder {
   bool ok_ = true;
 };
 
+void put(Encoder& e, const DisplayRange& range) {
+  for (const double v : {range.lo, range.hi, range.least, range.most}) e.number(v);
+  e.number(range.count);
+  for (const DisplayRange::Beyond* beyond : {&range.below, &range.above}) {
+    e.number(beyond->count);
+    e.number(beyond->nearest);
+    e.number(beyond->farthest);
+  }
+}
+
+DisplayRange get_range(Decoder& d) {
+  DisplayRange range;
+  for (double* v : {&range.lo, &range.hi, &range.least, &range.most}) *v = d.number<double>();
+  range.count = d.number<std::uint64_t>();
+  for (DisplayRange::Beyond* beyond : {&range.below, &range.above}) {
+    beyond->count = d.number<std::uint64_t>();
+    beyond->nearest = d.number<double>();
+    beyond->farthest = d.number<double>();
+  }
+  return range;
+}
+
 void put(Encoder& e, const GridInfo& g) {
   e.words(g.name);
   e.words(g.type);
@@ -104,13 +126,7 @@ void put(Encoder& e, const GridInfo& g) {
   e.number(g.stats.max);
   e.vector(g.stats.component_min);
   e.vector(g.stats.component_max);
-  for (const double v : {g.shown.lo, g.shown.hi, g.shown.least, g.shown.most}) e.number(v);
-  e.number(g.shown.count);
-  for (const DisplayRange::Beyond* beyond : {&g.shown.below, &g.shown.above}) {
-    e.number(beyond->count);
-    e.number(beyond->nearest);
-    e.number(beyond->farthest);
-  }
+  put(e, g.shown);
   e.number<std::uint64_t>(g.bytes);
   e.flag(g.usable);
   e.flag(g.is_vector);
@@ -132,13 +148,7 @@ GridInfo get_info(Decoder& d) {
   g.stats.max = d.number<double>();
   g.stats.component_min = d.vector();
   g.stats.component_max = d.vector();
-  for (double* v : {&g.shown.lo, &g.shown.hi, &g.shown.least, &g.shown.most}) *v = d.number<double>();
-  g.shown.count = d.number<std::uint64_t>();
-  for (DisplayRange::Beyond* beyond : {&g.shown.below, &g.shown.above}) {
-    beyond->count = d.number<std::uint64_t>();
-    beyond->nearest = d.number<double>();
-    beyond->farthest = d.number<double>();
-  }
+  g.shown = get_range(d);
   g.bytes = d.number<std::uint64_t>();
   g.usable = d.flag();
   g.is_vector = d.flag();
@@ -217,8 +227,7 @@ std::string encode(const ReadReply& r) {
                          r.shape.loose, r.shape.values})
     e.piece(p);
   e.flag(r.dense.has_range);
-  e.number(r.dense.least);
-  e.number(r.dense.most);
+  put(e, r.dense.range);
   e.words(r.shape.value_name);
   e.number<std::uint64_t>(r.notes.size());
   for (const std::string& note : r.notes) e.words(note);
@@ -267,8 +276,7 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
                    &r.shape.loose, &r.shape.values})
     *p = d.piece();
   r.dense.has_range = d.flag();
-  r.dense.least = d.number<double>();
-  r.dense.most = d.number<double>();
+  r.dense.range = get_range(d);
   r.shape.value_name = d.words();
   for (std::uint64_t n = d.count(sizeof(std::uint64_t)); n > 0 && d.ok(); --n) r.notes.push_back(d.words());
   for (std::uint64_t n = d.count(sizeof(double)); n > 0 && d.ok(); --n) r.times.push_back(d.number<double>());

@@ -18,7 +18,7 @@
 namespace catena::field {
 
 inline constexpr std::uint64_t kExchangeMagic = 0x31615644'6e746143;  // "CatnDVa1"
-inline constexpr std::uint32_t kExchangeVersion = 4;
+inline constexpr std::uint32_t kExchangeVersion = 5;
 /// Of the grid of a .vdb that masks cells, beside "valid": true at the base of each that is valid.
 inline constexpr std::string_view kCellMaskName = "valid_cells";
 inline constexpr std::uint64_t kPieceAlignment = 4096;
@@ -74,8 +74,8 @@ struct DenseReply {
   Piece values;                 ///< 32-bit floats
   Piece valid;                  ///< a byte a voxel, 0 or 1; empty: all are valid
   Piece cells{};                ///< beside `valid`: a byte a voxel, 0 where the cell based at it is not valid; empty: no mask of cells
-  bool has_range = false;       ///< the values were resampled: `least` and `most` are those of the data
-  double least = 0, most = 0;   ///< of vectors: lengths
+  bool has_range = false;       ///< the values were resampled: `range` is that of the data
+  DisplayRange range;           ///< of vectors: of their lengths
 };
 
 /// What is drawn as it lies. Numbers of points are 32-bit.

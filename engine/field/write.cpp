@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -113,9 +114,30 @@ std::string written_endings() {
   return alternatives(endings);
 }
 
+/// NIfTI's 32-bit axes and origin, far from the origin; empty: no voxel is moved by more than a hundredth of its edge.
+static std::string moved_in(const std::string& path, const VoxelBox& box) {
+  constexpr double kTold = 0.01;
+  if (!has_ending(path, ".nii") && !has_ending(path, ".nii.gz")) return {};
+  const Mapping& exact = box.mapping;
+  const auto rounded = [&](const Vec3& index) {
+    Vec3 at(glm::vec3(exact.origin));
+    for (int a = 0; a < 3; ++a) at += index[a] * Vec3(glm::vec3(exact.world_from_index_linear[a]));
+    return at;
+  };
+  double most = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 corner((c & 1) != 0 ? box.size.x - 1 : 0, (c & 2) != 0 ? box.size.y - 1 : 0, (c & 4) != 0 ? box.size.z - 1 : 0);
+    most = std::max(most, max_abs(exact.index_from_world(rounded(corner)) - corner));
+  }
+  if (!(most > kTold)) return {};
+  return fmt::format("its 32-bit places move voxels by up to {:.2g} of an edge, so far from the origin (.vdb, .vti and .nrrd hold 64 bits)",
+                     most);
+}
+
 std::string lost_in(const std::string& path, const AnyField& field) {
   const VoxelBox box(field, {}, {});
-  if (!box.cells_masked || holds_cells(path)) return {};
+  std::string moved = moved_in(path, box);
+  if (!box.cells_masked || holds_cells(path)) return moved;
   // cells between valid voxels that are not valid
   std::vector<std::uint8_t> below(box.layer_voxels()), above(box.layer_voxels()), cells(box.layer_voxels());
   const int step[3] = {box.size.x > 1, box.size.y > 1, box.size.z > 1};
@@ -135,11 +157,12 @@ std::string lost_in(const std::string& path, const AnyField& field) {
         lost += open ? 1 : 0;
       }
   }
-  if (lost == 0) return {};
-  return fmt::format(
-      "{} cells without a value have valid voxels at all their corners: {} masks voxels only, and they are filled in it "
-      "(.vdb and .vti keep them)",
-      lost, path.substr(path.find_last_of('/') + 1));
+  if (lost == 0) return moved;
+  if (!moved.empty()) moved += "; ";
+  return moved + fmt::format(
+                     "{} cells without a value have valid voxels at all their corners: {} masks voxels only, and they are filled in it "
+                     "(.vdb and .vti keep them)",
+                     lost, path.substr(path.find_last_of('/') + 1));
 }
 
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {

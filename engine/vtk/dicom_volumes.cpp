@@ -142,13 +142,41 @@ std::vector<Part> parted_by_number(const Frames& sorted) {
   return parts;
 }
 
+/// Equal distances between slices, along the normal.
+bool is_even(const Frames& sorted) {
+  constexpr double kUneven = 0.02;
+  const Vec3 normal = sorted.front()->normal();
+  const double step = dot(sorted.back()->position - sorted.front()->position, normal) / std::max(1.0, double(sorted.size()) - 1);
+  for (std::size_t k = 1; k < sorted.size(); ++k)
+    if (std::fabs(dot(sorted[k]->position - sorted[k - 1]->position, normal) - step) > kUneven * std::fabs(step)) return false;
+  return true;
+}
+
+/// The acquisitions of a stack where slices of one lie between those of another; empty: they do not.
+std::vector<Part> interleaved_acquisitions(const Frames& stack, const DicomFile& file) {
+  std::vector<Part> parts = parted_by(stack, DicomKey::acquisition, file);
+  const Vec3 normal = stack.front()->normal();
+  const auto from = [&](const Part& part) { return dot(part.frames.front()->position, normal); };
+  const auto to = [&](const Part& part) { return dot(part.frames.back()->position, normal); };
+  for (std::size_t a = 0; a < parts.size(); ++a)
+    for (std::size_t b = a + 1; b < parts.size(); ++b)
+      if (parts[a].frames.size() > 1 && parts[b].frames.size() > 1 && from(parts[a]) < to(parts[b]) && from(parts[b]) < to(parts[a]))
+        return parts;
+  return {};
+}
+
 /// Stacks of frames, one a place each. By the key that needs the fewest; where none will do, by the one that comes nearest, and again.
 std::vector<Part> stacks_of(Frames frames, const DicomFile& file, int depth = 0) {
   sort_along_normal(frames);
   const bool placed = std::ranges::all_of(frames, [](const DicomFrame* frame) { return frame->placed; });
   if (!placed || !file.trouble.empty()) return {{{}, std::move(frames)}};  // one volume, which is refused
   const bool segments = file.segmentation && depth == 0;
-  if (is_stack(frames) && !segments) return {{{}, std::move(frames)}};
+  if (is_stack(frames) && !segments) {
+    // slices of two passes that interleave evenly are one scan; where together they are uneven, and each alone is even, they are two
+    std::vector<Part> passes = is_even(frames) ? std::vector<Part>() : interleaved_acquisitions(frames, file);
+    if (!passes.empty() && std::ranges::all_of(passes, [](const Part& part) { return is_even(part.frames); })) return passes;
+    return {{{}, std::move(frames)}};
+  }
   const std::size_t deepest = std::ranges::max(counts_at_places(frames));
   std::vector<Part> best;
   bool best_done = false;
@@ -265,6 +293,9 @@ void check_volume(DicomVolume& volume, const std::vector<DicomFile>& files) {
       volume.notes.push_back("the header states no PixelSpacing: lengths are counted in pixels");
   }
   if (one || !volume.trouble.empty()) return;
+  if (const std::size_t passes = interleaved_acquisitions(volume.frames, files[first.file]).size(); passes > 0)
+    volume.notes.push_back(fmt::format(
+        "its slices are of {} acquisitions (AcquisitionNumber) that lie between each other: they are taken for one scan", passes));
   const double off = off_line(volume.frames), pixel = std::min(first.column_spacing, first.row_spacing);
   if (volume.frames.size() > 2 && off > 0.5 * pixel)
     volume.trouble = fmt::format("its slices are shifted against each other by up to {:.3g} mm, expected a straight stack", off);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
+#include "engine/vtk/unwritten.h"
 
 namespace catena::vtk {
 
@@ -103,14 +104,17 @@ Result<Shape> shape_of(const itk::ImageIOBase& io) {
   return shape;
 }
 
-vtkSmartPointer<vtkDataArray> read_whole(itk::ImageIOBase& io, std::size_t all_voxels) {
+Result<vtkSmartPointer<vtkDataArray>> read_whole(itk::ImageIOBase& io, std::size_t all_voxels) {
   const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtk_type(io.GetComponentType())));
   values->SetNumberOfComponents(static_cast<int>(io.GetNumberOfComponents()));
   values->SetNumberOfTuples(static_cast<vtkIdType>(all_voxels));
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a));
   io.SetIORegion(region);
-  io.Read(values->GetVoidPointer(0));
+  const auto value_bytes = static_cast<std::size_t>(values->GetDataTypeSize());
+  const std::size_t bytes = value_bytes * static_cast<std::size_t>(values->GetNumberOfValues());
+  void* const memory = values->GetVoidPointer(0);
+  CATENA_CHECK(read_to_the_end(static_cast<std::byte*>(memory), bytes, value_bytes, [&] { io.Read(memory); }));
   return values;
 }
 

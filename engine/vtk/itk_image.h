@@ -38,7 +38,7 @@ struct Shape {
 Result<Shape> shape_of(const itk::ImageIOBase& io);
 
 /// All voxels, of all volumes, as they lie. ITK throws.
-vtkSmartPointer<vtkDataArray> read_whole(itk::ImageIOBase& io, std::size_t all_voxels);
+Result<vtkSmartPointer<vtkDataArray>> read_whole(itk::ImageIOBase& io, std::size_t all_voxels);
 
 /// An image of these voxels, x fastest. Its axes go beside it.
 vtkSmartPointer<vtkImageData> image_of(const int (&size)[3], const vtkSmartPointer<vtkDataArray>& values, const std::string& name);

@@ -25,8 +25,22 @@ struct FreeImage {
 
 constexpr int kPoints = NIFTI_INTENT_POINTSET, kTriangles = NIFTI_INTENT_TRIANGLE;
 
-bool is_table(const giiDataArray& array, int datatype, int columns) {
-  return array.datatype == datatype && array.num_dim == 2 && array.dims[0] > 0 && array.dims[1] == columns && array.data != nullptr;
+constexpr int kColumns = 3;
+
+bool is_table(const giiDataArray& array) {
+  return array.num_dim == 2 && array.dims[0] > 0 && array.dims[1] == kColumns && array.data != nullptr;
+}
+
+/// Where a number of a row lies among all.
+std::size_t place_of(const giiDataArray& array, int row, int column) {
+  const auto r = static_cast<std::size_t>(row), c = static_cast<std::size_t>(column);
+  return array.ind_ord == GIFTI_IND_ORD_COL_MAJOR ? c * static_cast<std::size_t>(array.dims[0]) + r : kColumns * r + c;
+}
+
+double coordinate(const giiDataArray& points, int row, int axis) {
+  const std::size_t at = place_of(points, row, axis);
+  return points.datatype == NIFTI_TYPE_FLOAT64 ? static_cast<const double*>(points.data)[at]
+                                               : static_cast<double>(static_cast<const float*>(points.data)[at]);
 }
 
 }  // namespace
@@ -42,24 +56,24 @@ Result<Opened> open_gifti(const Source& source) {
   for (int i = 0; i < image->numDA; ++i) {
     const giiDataArray* array = image->darray[i];
     if (array == nullptr) continue;
-    if (array->intent == kPoints && points == nullptr && is_table(*array, NIFTI_TYPE_FLOAT32, 3)) points = array;
-    if (array->intent == kTriangles && triangles == nullptr && is_table(*array, NIFTI_TYPE_INT32, 3)) triangles = array;
+    const bool is_real = array->datatype == NIFTI_TYPE_FLOAT32 || array->datatype == NIFTI_TYPE_FLOAT64;
+    if (array->intent == kPoints && points == nullptr && is_real && is_table(*array)) points = array;
+    if (array->intent == kTriangles && triangles == nullptr && array->datatype == NIFTI_TYPE_INT32 && is_table(*array)) triangles = array;
   }
   if (points == nullptr) return failed("holds no points: values of a surface that lies in another file are not shown by themselves");
   if (triangles == nullptr) return failed("holds points without triangles");
   vtkNew<vtkPoints> places;
-  const auto* xyz = static_cast<const float*>(points->data);
+  if (points->datatype == NIFTI_TYPE_FLOAT64) places->SetDataTypeToDouble();
   const int count = points->dims[0];
   places->SetNumberOfPoints(count);
-  for (int i = 0; i < count; ++i) places->SetPoint(i, xyz + 3 * static_cast<std::ptrdiff_t>(i));
+  for (int i = 0; i < count; ++i) places->SetPoint(i, coordinate(*points, i, 0), coordinate(*points, i, 1), coordinate(*points, i, 2));
   poly->SetPoints(places);
   vtkNew<vtkCellArray> cells;
-  const bool by_column = triangles->ind_ord == GIFTI_IND_ORD_COL_MAJOR;
   const auto* ids = static_cast<const int*>(triangles->data);
   for (int i = 0; i < triangles->dims[0]; ++i) {
     vtkIdType corner[3];
-    for (int c = 0; c < 3; ++c) {
-      corner[c] = by_column ? ids[static_cast<std::ptrdiff_t>(c) * triangles->dims[0] + i] : ids[3 * static_cast<std::ptrdiff_t>(i) + c];
+    for (int c = 0; c < kColumns; ++c) {
+      corner[c] = ids[place_of(*triangles, i, c)];
       if (corner[c] < 0 || corner[c] >= count) return failed(fmt::format("triangle {} names point {}, of {}", i, corner[c], count));
     }
     cells->InsertNextCell(3, corner);

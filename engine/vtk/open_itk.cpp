@@ -157,7 +157,9 @@ Result<Opened> open_with_itk(const Source& source) {
       return failed(left_out(stem(source.shown), meaning.kind, components));
     Opened opened;
     // a fourth axis is one of time only where the header says so, and these do not
-    vtkSmartPointer<vtkDataArray> values = read_whole(*io, shape->voxels() * static_cast<std::size_t>(shape->volumes));
+    const auto read = read_whole(*io, shape->voxels() * static_cast<std::size_t>(shape->volumes));
+    if (!read) return failed(read.error().message);
+    vtkSmartPointer<vtkDataArray> values = *read;
     if (shape->volumes > 1) {
       const int volume = std::min(source.step, shape->volumes - 1);
       const auto one = vtkSmartPointer<vtkDataArray>::Take(values->NewInstance());

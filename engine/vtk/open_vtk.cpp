@@ -19,12 +19,15 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/vtk/netcdf_size.h"
 #include "engine/vtk/open.h"
 #include "engine/vtk/open_netcdf.h"
 #include "engine/vtk/open_vtk.h"
+#include "engine/vtk/unwritten.h"
 
 namespace catena::vtk {
 namespace {
@@ -128,6 +131,7 @@ void add_block(vtkDataObject* object, Opened& opened) {
 
 Result<Opened> open_with_vtk(const Source& source) {
   if (has_ending(source.path, ".vtm") || has_ending(source.path, ".vtmb")) CATENA_CHECK(check_indices(source));
+  if (const auto whole = check_netcdf_size(source.path); !whole) return Error{one_line(source.shown + ": " + whole.error().message)};
   return read_with(*reader_of(source), source);
 }
 
@@ -146,12 +150,19 @@ Result<Opened> read_with(vtkAlgorithm& algorithm, const Source& source, const st
   if (has_ending(source.path, ".vtk")) opened.times.clear();  // the legacy reader says 0 of every file
   choose_netcdf_variables(reader, source, opened);
   // the data
-  if (opened.times.empty())
-    reader->Update();
-  else
-    reader->UpdateTimeStep(opened.times[std::min(static_cast<std::size_t>(source.step), opened.times.size() - 1)]);
+  bool again = false;
+  const auto whole = read_to_the_end(
+      [&] {
+        if (std::exchange(again, true)) reader->Modified();
+        if (opened.times.empty())
+          reader->Update();
+        else
+          reader->UpdateTimeStep(opened.times[std::min(static_cast<std::size_t>(source.step), opened.times.size() - 1)]);
+      },
+      [&] { return reader->GetOutputDataObject(0); });
   vtkDataObject* object = reader->GetOutputDataObject(0);
   if (const std::string complaint = take_complaint(); !complaint.empty()) return failed("cannot be read (" + complaint + ")");
+  if (!whole) return failed(whole.error().message);
   if (auto* composite = vtkCompositeDataSet::SafeDownCast(object)) {
     const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
     for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) add_block(each->GetCurrentDataObject(), opened);

@@ -81,7 +81,7 @@ class Answer {
         info.usable = info.usable && plan;
         info.counted = column.of_cells ? field::Counted::cells : field::Counted::points;
         if (plan) {
-          info.type += ", resampled";
+          info.type += ", resampled to so many voxels or more";
           info.size = plan->lattice.size;
           info.mapping = mapping_of(plan->lattice);
           if (const std::string less = coarsened(column, cells, *plan); !less.empty()) reply.notes.push_back(column.name + ": " + less);
@@ -234,8 +234,7 @@ class Answer {
     if (masked) std::copy(made->cells.begin(), made->cells.end(), own_cells);
     const field::GridStats stats = stats_of(opened_, column, seen_);
     reply.dense.has_range = true;
-    reply.dense.least = stats.min;
-    reply.dense.most = stats.max;
+    reply.dense.range = shown_of(opened_, column, seen_, stats);
     // in a sentence
     vtkIdType count = 0;
     for (const CellValues& block : cells) count += block.data->GetNumberOfCells();

@@ -37,10 +37,9 @@ Outcome check_files(const MeasureOptions& options, RunFiles files) {
 /// All that the scene has, in the order of the registry.
 Result<Report> measure(const MeasureOptions& options) {
   CATENA_TRY(scene::Scene scene, open_scene(options.source, options.fields, {}, options.grid));
-  if (!is_scene_file(options.source))
-    for (const std::string& note : scene.notes) tell_from_catena("note: " + note);
   CATENA_CHECK(check_files(options, RunFiles(scene)));
   CATENA_CHECK(scene::prepare(scene));
+  tell_notes(scene);
   Subject subject{std::move(scene), tradeoff::effort(options.quick, options.thorough), {}, {}, 1000, {}, {}};
   CATENA_CHECK(tradeoff::add_hand(subject, options.probe));
   const auto wanted = [&](const tradeoff::Measurement& m) {

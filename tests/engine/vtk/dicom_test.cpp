@@ -222,6 +222,22 @@ TEST_F(DicomFiles, ASeriesOfSeveralStacksIsSeveralGrids) {
   EXPECT_EQ(units_of(folder_ / "many", "3").value, "HU");
 }
 
+TEST_F(DicomFiles, AcquisitionsThatLieBetweenEachOther) {
+  const auto write_two = [&](const std::string& name, double offset) {
+    for (int n = 0; n < 8; ++n) {
+      const double z = 2.0 * (n / 2) + (n % 2) * offset;
+      Dicom d = dicom_image(frames_of({static_cast<std::uint16_t>(100 + 100 * (n % 2) + n / 2)}), {0, 0, z}, n);
+      write(fmt::format("{}/{}", name, n), d.decimals(0x00200012, {1.0 + n % 2}, "IS").file());
+    }
+  };
+  write_two("even", 1);
+  EXPECT_EQ(along_z("even", {0, 1, 2, 3}), (std::vector<double>{100, 200, 101, 201})) << notes_;
+  EXPECT_TRUE(noted("of 2 acquisitions (AcquisitionNumber) that lie between each other")) << notes_;
+  write_two("uneven", 0.7);
+  EXPECT_EQ(along_z("uneven", {0, 2, 4, 6}, "Chest 1.2.3, acquisition 1"), (std::vector<double>{100, 101, 102, 103})) << notes_;
+  EXPECT_EQ(along_z("uneven", {0.7, 2.7, 4.7}, "Chest 1.2.3, acquisition 2"), (std::vector<double>{200, 201, 202})) << notes_;
+}
+
 TEST_F(DicomFiles, NamesGoBeforeNumbersAndASharedNumberIsRefused) {
   // series, SeriesNumber, description; all pixels of a series are its place in this list, from 1
   struct Series {

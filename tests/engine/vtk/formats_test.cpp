@@ -445,7 +445,16 @@ TEST_F(Formats, ADicomFolderIsOneVolumeInHounsfieldUnits) {
 }
 
 TEST_F(Formats, SurfacesOfPlyGiftiAndVtk) {
-  for (const auto& [name, text] : {std::pair{"a.ply", files::ply()}, {"a.gii", files::gifti()}, {"a.vtp", files::vtp()}}) {
+  const auto with = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  std::string by_columns =
+      with(with(files::gifti(), "RowMajorOrder", "ColumnMajorOrder"), "0 0 0 1 0 0 0 2 0 0 0 3", "0 1 0 0 0 0 2 0 0 0 0 3");
+  for (const auto& [name, text] : {std::pair{"a.ply", files::ply()},
+                                   {"a.gii", files::gifti()},
+                                   {"columns.gii", by_columns},
+                                   {"doubles.gii", with(files::gifti(), "FLOAT32", "FLOAT64")},
+                                   {"a.vtp", files::vtp()}}) {
     const auto mesh = mesh::load_mesh(file(name, text));
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ((*mesh)->triangles().size(), 4u) << name;

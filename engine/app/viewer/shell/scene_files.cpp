@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/app/command.h"
 #include "engine/app/run_files.h"
 #include "engine/app/viewer/edit/new_items.h"
 #include "engine/app/viewer/shell/file_list.h"
@@ -17,6 +18,13 @@ namespace catena::app {
 namespace {
 
 constexpr double kKeepS = 3;  // between looks at what is not saved
+
+/// The first of a scene's notes, for the line of the window; all of them are on the terminal.
+std::string noted(const scene::Scene& scene) {
+  if (scene.notes.empty()) return {};
+  const std::size_t rest = scene.notes.size() - 1;
+  return "note: " + scene.notes.front() + (rest > 0 ? fmt::format(" (and {} more on the terminal)", rest) : "");
+}
 
 std::string name_of_file(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -32,6 +40,7 @@ RecordedScene recorded(const SceneHost& scene, const HandHost& hand) {
 Result<LoadedScene> load_first(SceneHost& scene, HandHost& hand, std::uint32_t width, std::uint32_t height) {
   CATENA_TRY(LoadedScene loaded, load_scene(std::move(scene), width, height));
   scene = std::move(loaded.host);
+  tell_notes(scene.scene());
   CATENA_CHECK(hand.prepare(scene.scene(), loaded.bounds, recorded(scene, hand)));
   return loaded;
 }
@@ -44,6 +53,7 @@ SceneFiles::SceneFiles(Shared& shared, Eye& eye, PictureView& picture) : shared_
 void SceneFiles::begin() {
   shared_.state.recent = recent_.shown();
   if (const std::string& source = shared_.options.source; !source.empty()) remember(source);
+  if (const std::string notes = noted(shared_.scene.scene()); !notes.empty()) shared_.state.say(notes);
   look_for_left();
 }
 
@@ -191,7 +201,9 @@ void SceneFiles::replace_scene(LoadedScene loaded, const std::string& path) {
   scene.touch();
   state.untitled = false;
   remember(path);
-  state.say("opened " + path);
+  tell_notes(scene.scene());
+  const std::string notes = noted(scene.scene());
+  state.say("opened " + path + (notes.empty() ? "" : "; " + notes));
   look_for_left();
 }
 
@@ -213,7 +225,9 @@ void SceneFiles::add_to_scene(LoadedScene loaded, const std::string& path) {
   }
   scene.bounds.add(loaded.bounds);
   shared_.controls.bounds = scene.bounds;
-  state.say("added " + name_of_file(path) + " (A brings all into the picture)");
+  tell_notes(loaded.host.scene());
+  const std::string notes = noted(loaded.host.scene());
+  state.say("added " + name_of_file(path) + " (A brings all into the picture)" + (notes.empty() ? "" : "; " + notes));
 }
 
 void SceneFiles::remember(const std::string& path) {
