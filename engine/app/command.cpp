@@ -68,9 +68,7 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  auto scene = scene::scene_for_file(path, grid, colors, std::max(0, step));
-  if (scene) tell_notes(*scene);
-  return scene;
+  return scene::scene_for_file(path, grid, colors, std::max(0, step));
 }
 
 Result<scene::Scene> open_followed(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,

@@ -52,7 +52,7 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
 Result<scene::Scene> open_followed(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,
                                    double seconds);
 /// Tells the notes of a scene and of the data that it has loaded so far, each once in a process: at most ten, and how many more there are.
-/// Every command calls it when its data are loaded; open_scene has told those that were there by then. Any thread.
+/// Every command calls it when its data are loaded; open_scene has told those of a scene file. Any thread.
 void tell_notes(const scene::Scene& scene);
 /// The same of notes on one file.
 void tell_notes(const std::string& path, const std::vector<std::string>& notes);

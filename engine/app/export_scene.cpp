@@ -243,9 +243,9 @@ Outcome export_scene(const SceneExport& options) {
                     : !options.mesh.empty()  ? export_mesh
                     : !options.probe.empty() ? export_probe
                                              : export_field;
-  const Outcome done = part(options, scene);
+  CATENA_CHECK(part(options, scene));
   tell_notes(scene);
-  return done;
+  return Done{};
 }
 
 }  // namespace catena::app

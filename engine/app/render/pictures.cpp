@@ -249,7 +249,7 @@ Outcome render_pictures(const RenderOptions& given) {
   Frames frames(scene, o, motion, hand, size, steps);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   CATENA_CHECK(check_steps(scene, o, steps));
-  tell_notes(scene);
+  if (is_scene_file(o.source)) tell_notes(scene);
   if (const Outcome drawable = render::check_rays(packet); !drawable) return Error{o.source + ": " + drawable.error().message};
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
@@ -316,6 +316,7 @@ Outcome render_pictures(const RenderOptions& given) {
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
     for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
+    tell_notes(scene);
     say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, what_is_drawn(packet),
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
     // what a plan expects holds for pictures whose pipelines and mirrors are there

@@ -51,9 +51,9 @@ TEST(Notes, AreToldOnceByEveryCommandThatLoads) {
 
 TEST(Notes, FormatsOf32BitsSayWhatTheyMoveFarFromTheOrigin) {
   const test::TemporaryFolder folder;
-  for (const double far : {0.0, 6e6}) {
+  for (const double far : {0.0, 6e6 + 0.033}) {
     test::write_file(folder / "s.json", fmt::format(R"({{"fields": {{"f": {{"file": "f.raw", "shape": [8, 8, 8], "spacing": [0.1, 0.1, 0.1],
-      "origin": [{}, 0, 0], "type": "float32"}}}}, "isosurfaces": [{{"field": "f", "level": 3.5}}]}})",
+      "origin": [{0}, {0}, {0}], "type": "float32"}}}}, "isosurfaces": [{{"field": "f", "level": 3.5}}]}})",
                                                     far));
     std::string bytes;
     for (int n = 0; n < 512; ++n) {
