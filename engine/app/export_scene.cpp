@@ -218,8 +218,7 @@ Outcome export_field(const SceneExport& options, scene::Scene& scene) {
   CATENA_TRY(const field::AnyField drawn, scene::use_drawn_field(scene, entity, where));
   const auto& file = scene.world.get<scene::FieldSource>(entity).file;
   CATENA_CHECK(field::write_field(options.output, drawn, options.field, file ? field::units_of(file->path, file->grid) : field::Units{}));
-  if (const std::string lost = field::lost_in(options.output, drawn); !lost.empty())
-    tell_from_catena("note: " + options.output + ": " + lost);
+  if (const std::string lost = field::lost_in(options.output, drawn); !lost.empty()) tell_notes(options.output, {lost});
   say(options.output, options.field);
   return Done{};
 }

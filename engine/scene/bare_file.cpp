@@ -260,6 +260,7 @@ void adopt_loaded(const BareFile& bare, Scene& scene) {
   });
   scene.world.each<DrawnPoints>([&](Entity, DrawnPoints& source) { adopt_shape(source, bare.points); });
   scene.world.each<DrawnCurves>([&](Entity, DrawnCurves& source) { adopt_shape(source, bare.curves); });
+  for (const std::string& note : bare.field.notes) scene.notes.push_back(bare.request.path + ": " + note);
 }
 
 namespace {
@@ -311,9 +312,8 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid, c
   CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors, step));
   CATENA_CHECK(check_size_of_values(bare.field, path));
   CATENA_TRY(Scene scene, parse_scene(bare.text, path));
-  adopt_loaded(bare, scene);
   if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
-  for (const std::string& note : bare.field.notes) scene.notes.push_back(path + ": " + note);
+  adopt_loaded(bare, scene);
   forget_all_lines(scene);
   if (bare.field.get() != nullptr) CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(bare.field.get()->name())), {}));
   return scene;

@@ -20,7 +20,7 @@ struct BareFile {
 };
 
 Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors, int step = 0);
-/// Gives the scene that was read from the text what is loaded already.
+/// Gives the scene that was read from the text what is loaded already, and the notes on it.
 void adopt_loaded(const BareFile& bare, Scene& scene);
 
 }  // namespace catena::scene

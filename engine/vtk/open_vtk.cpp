@@ -131,7 +131,9 @@ void add_block(vtkDataObject* object, Opened& opened) {
 
 Result<Opened> open_with_vtk(const Source& source) {
   if (has_ending(source.path, ".vtm") || has_ending(source.path, ".vtmb")) CATENA_CHECK(check_indices(source));
-  if (const auto whole = check_netcdf_size(source.path); !whole) return Error{one_line(source.shown + ": " + whole.error().message)};
+  const bool netcdf = has_ending(source.path, ".nc") || has_ending(source.path, ".cdf");
+  if (const auto whole = netcdf ? check_netcdf_size(source.path) : Outcome(Done{}); !whole)
+    return Error{one_line(source.shown + ": " + whole.error().message)};
   return read_with(*reader_of(source), source);
 }
 

@@ -33,9 +33,11 @@ def scene_of(folder, name):
             "volumes": [{"field": "f", "shade": case["shade"], "color": case["colour"], "opacity": case["opacity"], "opacity_unit": case["unit"]}]}
 
 
-def over_black(path):
+def over(path, ground):
+    """A picture over an even grey, with its own alpha."""
     picture = np.asarray(Image.open(path).convert("RGBA")).astype(float)
-    return np.concatenate([(picture[..., :3] * picture[..., 3:] / 255 + .5).astype(np.uint8), picture[..., 3:].astype(np.uint8)], -1)
+    alpha = picture[..., 3:]
+    return np.concatenate([(picture[..., :3] * alpha / 255 + ground * (255 - alpha) / 255 + .5).astype(np.uint8), alpha.astype(np.uint8)], -1)
 
 
 def run(command, out):
@@ -45,14 +47,14 @@ def run(command, out):
         sys.exit(f"{command}: {done.stderr}")
     after = os.times()
     processor = after.children_user + after.children_system - before.children_user - before.children_system
-    return (processor if PROCESSOR else time.perf_counter() - start), done.stdout, over_black(out)
+    return (processor if PROCESSOR else time.perf_counter() - start), done.stdout, over(out, 0)
 
 
 def converged_picture(command, kept, out):
     if not os.path.exists(kept):
         run(command, out)
         shutil.copy(out, kept)
-    return over_black(kept)
+    return over(kept, 0)
 
 
 def best(times, errors, most):

@@ -7,19 +7,12 @@ same view by exact rays of a tenth of a voxel's step (picture_error.py: covered 
 views: how many state at least the truth, and the quantiles of the truth by what was stated."""
 import argparse, json, os, re, subprocess, sys, tempfile
 import numpy as np
-from PIL import Image
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "peers"))
 sys.path.insert(0, HERE)
-from one_picture import scene_of
+from one_picture import over, scene_of
 from picture_error import rmse
-
-
-def over(path, ground):
-    picture = np.asarray(Image.open(path).convert("RGBA")).astype(float)
-    alpha = picture[..., 3:]
-    return np.concatenate([(picture[..., :3] * alpha / 255 + ground * (255 - alpha) / 255 + .5).astype(np.uint8), alpha.astype(np.uint8)], -1)
 
 
 def draw(catena, scene, out, size, quality):

@@ -35,7 +35,8 @@ TEST(Notes, AreToldOnceByEveryCommandThatLoads) {
                                              {"replay", scene, "--probe", folder / "p.csv", "-o", folder / "o.csv"},
                                              {"render", scene, "-o", folder / "o.png", "--size", "64x48"},
                                              {"render", folder / "ring.vts", "-o", folder / "o.png", "--size", "64x48"},
-                                             {"view", scene, "--screenshot", folder / "v.png", "--frames", "1", "--size", "64x48"}}) {
+                                             {"view", folder / "ring.vts", "--screenshot", folder / "v.png", "--frames", "1", "--size", "64x48"},
+           {"view", scene, "--screenshot", folder / "v.png", "--frames", "1", "--size", "64x48"}}) {
     const auto run = test::run_catena(command);
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(count_of(run.err, "cells resampled to"), 1u) << command[0] << ": " << run.err;

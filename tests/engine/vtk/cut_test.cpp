@@ -6,8 +6,6 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
-#include <functional>
 
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
@@ -45,7 +43,7 @@ std::string legacy(bool ascii) {
          (ascii ? words(kAll) : floats(kAll, true)) + "\n";
 }
 
-std::string appended(bool whole_end) {
+std::string appended() {
   std::string file = fmt::format(
       "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\"><ImageData WholeExtent=\"0 {0} 0 {0} "
       "0 {0}\" Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece Extent=\"0 {0} 0 {0} 0 {0}\"><PointData><DataArray type=\"Float32\" Name=\"v\" "
@@ -54,7 +52,7 @@ std::string appended(bool whole_end) {
   const std::uint32_t bytes = 4 * kAll;
   file.append(reinterpret_cast<const char*>(&bytes), 4);
   file += floats(kAll, false);
-  return file + (whole_end ? "</AppendedData></VTKFile>" : "");
+  return file + "</AppendedData></VTKFile>";
 }
 
 std::string meta_image() {
@@ -88,7 +86,7 @@ TEST(CutFiles, AreRefused) {
   const test::TemporaryFolder folder;
   for (const auto& [name, whole] : {std::pair<std::string, std::string>{"b.vtk", legacy(false)},
                                     {"a.vtk", legacy(true)},
-                                    {"x.vti", appended(true)},
+                                    {"x.vti", appended()},
                                     {"i.mha", meta_image()},
                                     {"c1.nc", netcdf(folder, 0)},
                                     {"c2.nc", netcdf(folder, NC_64BIT_OFFSET)},
@@ -112,7 +110,7 @@ TEST(CutFiles, AreRefused) {
 TEST(CutFiles, OnlyLookSo) {
   const test::TemporaryFolder folder;
   for (const unsigned fill : {0x5au, 0xa5u, 0x3cu, 0xc3u}) {
-    std::string file = appended(true);
+    std::string file = appended();
     file.replace(file.find('_') + 5 + 4 * (kAll - 1), 4, std::string(4, static_cast<char>(fill)));
     test::write_file(folder / "f.vti", file);
     LoadRequest request;
