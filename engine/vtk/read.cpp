@@ -198,7 +198,9 @@ class Answer {
     const Written written = write_image(opened_, column, grid, seen, values, valid, cells);
     if (!written.cells) reply.dense.cells = {};
     if (written.all_valid && !written.cells) reply.dense.valid = {};
-    if (column.of_cells) reply.notes.push_back(fmt::format("{} belongs to cells: its values sit in their middles", column.name));
+    if (column.of_cells)
+      reply.notes.push_back(fmt::format("{} belongs to cells: its values sit in their middles{}", column.name,
+                                        written.all_valid ? "" : ", and holes reach to the middles of the cells around them"));
     if (grid.flat[0] || grid.flat[1] || grid.flat[2]) reply.notes.push_back("what is flat has got a thickness of one voxel");
     if (!written.exact) reply.notes.push_back(fmt::format("values of type {} are rounded to 32-bit floats", reply.dense.type));
     return Done{};

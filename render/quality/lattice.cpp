@@ -143,13 +143,6 @@ Result<double> Lattice::change_of_half_step(const RenderSettings& settings) cons
   return compare(picture, finer).rmse;
 }
 
-double Lattice::opaque_share() const {
-  constexpr int kOpaque = 250;
-  double covered = 0, opaque = 0;
-  for (std::size_t i = 3; i < truth_.rgba.size(); i += 4) covered += truth_.rgba[i] > 0, opaque += truth_.rgba[i] >= kOpaque;
-  return opaque / std::max(covered, 1.0);
-}
-
 bool Lattice::shaded() const { return std::ranges::any_of(packet_.volumes, &VolumeItem::shade); }
 
 bool Lattice::empty() const {

@@ -42,7 +42,6 @@ class Lattice {
   double truth_step() const { return truth_step_; }  ///< of the converged rays, voxels
   double truth_error() const { return truth_error_; }
   double covered() const { return covered_; }  ///< pixels
-  double opaque_share() const;                 ///< of the covered pixels of the lattice those that let next to nothing through
   bool shaded() const;                         ///< a volume of it is
   bool empty() const;                          ///< every pixel was looked at, and nothing is in any
   int pictures() const { return pictures_; }   ///< drawn so far

@@ -6,16 +6,17 @@
 #include <iterator>
 
 #include "engine/field/grid.h"
+#include "render/mirror/packed_volume.h"
 #include "render/quality/refinement.h"
 #include "render/quality/search.h"
 
 namespace catena::render {
 namespace {
 
-// Work, in samples of unlit exact rays. Of the way through a cube of voxels what rays go that let light through, and that end in it; a
-// sample that is lit; a voxel in the form of fast rays, where processor or GPU draw; a picture of fast rays, as a share of that of exact
-// ones of step 1; and that from which on interpolation is tried.
-constexpr double kThrough = 0.6, kEnding = 0.25, kLit = 3, kPacking = 2, kPackingForGpu = 100, kFastShare = 0.25, kWorthTrying = 6e6;
+// Work, in samples of unlit exact rays: a sample that is lit; a voxel in the form of fast rays, where processor or GPU draw, and with its
+// gradient so many times that; a picture of fast rays and their search, as a share of that of exact ones of step 1; and that from which on
+// interpolation is tried.
+constexpr double kLit = 6, kPacking = 3, kPackingForGpu = 150, kWithGradient = 2, kFastShare = 0.5, kWorthTrying = 2e7;
 constexpr std::array<double, 2> kRefine[] = {{1, 3}, {0.4, 1}};  // errors above which every 2nd, every pixel is marched
 constexpr double kFirstExactStep = 1.4, kFirstFastStep = 2;      // voxels
 
@@ -27,15 +28,18 @@ RenderSettings fast_rays(double step, double error, bool smooth) {
 
 }  // namespace
 
-double OnePicture::voxels() const {
-  double bytes = 0;
-  for (const VolumeItem& item : lattice_.packet().volumes) bytes += double(item.grid->bytes());
-  return bytes / sizeof(float);
+double OnePicture::work_of_packing() const {
+  vk::Device& device = lattice_.renderer().device();
+  double voxels = 0;
+  for (const VolumeItem& item : lattice_.packet().volumes) {
+    const Vec3 n = item.grid->index_box().hi - item.grid->index_box().lo + Vec3(1.0);
+    voxels += can_be_packed(device, *item.grid) ? n.x * n.y * n.z : double(item.grid->bytes()) / sizeof(float);
+  }
+  return voxels * (device.info().is_cpu() ? kPacking : kPackingForGpu) * (lattice_.shaded() ? kWithGradient : 1);
 }
 
 double OnePicture::work_of_rays(double step) const {
-  const double opaque = lattice_.opaque_share(), way = std::cbrt(voxels()) * (kThrough * (1 - opaque) + kEnding * opaque);
-  return lattice_.covered() * way * (kStepless + 1 / step) * (lattice_.shaded() ? kLit : 1);
+  return (way_.marched + (lattice_.shaded() ? kLit - 1 : 0) * way_.visible) * (kStepless + 1 / step);
 }
 
 template <class MakeSettings>
@@ -86,7 +90,7 @@ Result<std::optional<QualityChoice>> OnePicture::interpolated(const Rays& rays) 
 }
 
 Result<std::optional<QualityChoice>> OnePicture::find() {
-  const double packing = (lattice_.renderer().device().info().is_cpu() ? kPacking : kPackingForGpu) * voxels();
+  const double packing = work_of_packing();
   const double fast_work = kFastShare * work_of_rays(1);
   const auto chosen = [this](const std::optional<Rays>& rays) -> std::optional<QualityChoice> {
     if (!rays) return std::nullopt;

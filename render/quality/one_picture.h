@@ -8,8 +8,8 @@
 ///      enough, it is refined further, and if that is not enough either, every pixel is marched
 /// Steps are tried from a middle one on, to longer ones while they are good enough, or to shorter ones until one is.
 /// Work is counted in samples of unlit exact rays, not timed, so that the choice is the same in every run:
-///   rays     pixels covered x voxels on the way (a share of the cube root of the grid's, less where rays end) x (0.3 + 1 / step) x light
-///   packing  samples a voxel, as measured
+///   rays     voxels on the way (ray_way.h), those that are lit counted more, x (0.3 + 1 / step)
+///   packing  so many samples a voxel that is kept, more with its gradient, as measured
 /// The steadiness of the error while the camera moves is not measured. The lattice must have begun, and must outlive this. Frame thread.
 #pragma once
 #include <optional>
@@ -17,13 +17,14 @@
 
 #include "render/quality/lattice.h"
 #include "render/quality/quality.h"
+#include "render/quality/ray_way.h"
 
 namespace catena::render {
 
 class OnePicture {
  public:
   /// `error`: covered RMSE, 1/255.
-  OnePicture(Lattice& lattice, double error) : lattice_(lattice), error_(error) {}
+  OnePicture(Lattice& lattice, double error) : lattice_(lattice), way_(ray_way(lattice.packet())), error_(error) {}
   /// Nothing where no rays are good enough.
   Result<std::optional<QualityChoice>> find();
 
@@ -42,9 +43,10 @@ class OnePicture {
   Result<std::optional<QualityChoice>> interpolated(const Rays& rays) const;
   /// Samples of a picture of exact rays.
   double work_of_rays(double step) const;
-  double voxels() const;
+  double work_of_packing() const;
 
   Lattice& lattice_;
+  const RayWay way_;
   const double error_;
 };
 

@@ -1,6 +1,6 @@
 /// Every command on a tiny file, while one thing of the machine fails (tests/fault/inject.cpp): no signal ends it, exit code 0, 1 or 2;
 /// with another than 0 one line that begins "catena: ", no output and nothing half-written. A sample here; all of it:
-///   CATENA_FAULT_FIRST=10000 CATENA_FAULT_EVERY=100 build/dev/test_fault
+///   CATENA_FAULT_FIRST=10000 CATENA_FAULT_EVERY=100 build/release/test_fault
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>

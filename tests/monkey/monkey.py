@@ -2,7 +2,7 @@
 """A monkey at the window: types, clicks, drags and drops at random, as fast as X takes it, until the time is over. Needs python3-xlib and a
 display of its own; its seed repeats what it does (not when the window sees it).
 
-    xvfb-run -a -s "-screen 0 1000x700x24" tests/monkey/monkey.py --seed 1 --seconds 1800 --folder DIR build/dev/catena scene.json ...
+    xvfb-run -a -s "-screen 0 1000x700x24" tests/monkey/monkey.py --seed 1 --seconds 1800 --folder DIR build/release/catena scene.json ...
 
 Works in DIR, which should be an empty folder of scenes and data: it saves, overwrites and discards. Every start takes one of the scenes.
 Now and then the window is closed by the keyboard, or killed, and opened again.

@@ -131,7 +131,7 @@ TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessio
 }
 
 /// The paper's study with a trial in each condition, from its first page to the questionnaire: some minutes, so by hand alone.
-///   build/dev/test_engine_app --gtest_also_run_disabled_tests --gtest_filter='*AllFourTasks*'
+///   build/release/test_engine_app --gtest_also_run_disabled_tests --gtest_filter='*AllFourTasks*'
 /// With CATENA_XVFB="-fbdir DIR" and CATENA_PICTURE=PROGRAM, the program is called with a name for each page, trial and question.
 TEST_F(StudyWindowTest, DISABLED_AScriptedMouseGoesThroughAllFourTasks) {
   const std::string studies = test::source_dir() + "/assets/studies/";

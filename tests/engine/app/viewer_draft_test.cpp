@@ -236,6 +236,18 @@ TEST_F(ViewerDraft, QuitAsksWhileItRecordsAndNoOtherKeyQuits) {
   EXPECT_TRUE(test::exists(folder_ / "run.catlog"));
 }
 
+// before: the last ticks were missing, as after a crash
+TEST_F(ViewerDraft, ARecordingIsWholeWhereATerminationEndsTheWindow) {
+  ASSERT_EQ(test::drive_windows(folder_, "view flow.json --size 900x600 --record run.catlog\ntitled 'recording'; sleep 0.5\n"
+                                         "kill -TERM $V; wait $V; exit 0\n"),
+            0)
+      << log();
+  const auto run = test::run_catena({"info", folder_ / "run.catlog"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "") << "it is whole";
+  EXPECT_EQ(test::run_catena({"replay", "--log", folder_ / "run.catlog"}).exit_code, 0);
+}
+
 TEST_F(ViewerDraft, EscapeClosesAMenuFirst) {
   ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600",
                                "xdotool mousemove 600 300; sleep 0.3; keys shift+F12; written flow-001.png\n"

@@ -109,6 +109,28 @@ TEST(Confine, NoCodeAndNoMoreRights) {
   expect_only_outside("groups", [] { return ::setpgid(0, 0) == 0; });
 }
 
+TEST(Confine, NoRightOfRootStays) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root has rights to drop";
+  int ready[2], end[2];
+  ASSERT_TRUE(::pipe(ready) == 0 && ::pipe(end) == 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    char byte = confine({}) ? 'y' : 'n';
+    (void)!::write(ready[1], &byte, 1);
+    (void)!::read(end[0], &byte, 1);
+    ::_exit(0);
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  EXPECT_EQ(byte, 'y');
+  const std::string status = catena::test::read_file("/proc/" + std::to_string(child) + "/status");
+  for (const char* set : {"CapInh", "CapPrm", "CapEff", "CapBnd", "CapAmb"})
+    EXPECT_NE(status.find(std::string(set) + ":\t0000000000000000"), std::string::npos) << set << "\n" << status;
+  (void)!::write(end[1], &byte, 1);
+  ::waitpid(child, nullptr, 0);
+  for (const int file : {ready[0], ready[1], end[0], end[1]}) ::close(file);
+}
+
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST(Confine, TimeAndMemoryHaveLimits) {
   ProcessLimits limits;

@@ -58,6 +58,7 @@ class VtkFuzz : public testing::Test {
   void expect_one_line(const std::string& message, const std::string& path) {
     EXPECT_NE(message.find(path), std::string::npos) << message;
     EXPECT_EQ(message.find_first_of("\r\n\x1b"), std::string::npos) << message;
+    EXPECT_EQ(message.find("0x"), std::string::npos) << "an address: " << message;
     EXPECT_LT(message.size(), 800u) << message;
   }
   /// True: loaded.

@@ -1,5 +1,5 @@
 /// Damaged .vdb files through the whole path: the reader's process, its answer, the grid, a few fetches. Longer:
-///   CATENA_FUZZ_INPUTS=100000 build/dev/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
+///   CATENA_FUZZ_INPUTS=100000 build/release/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
 /// prints how they ended. CATENA_FUZZ_KEEP=FOLDER keeps the files, so that they can be tried on another build.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

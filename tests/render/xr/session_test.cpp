@@ -217,7 +217,7 @@ TEST_F(HeadsetSession, ManyFramesTakeNoMoreMemory) {
   if (asked) std::printf("%d frames, %.0f bytes more after the first third\n", frames, grown);
 }
 
-/// XR_RUNTIME_JSON=/somewhere/openxr.json build/dev/test_render_xr --gtest_filter='*AnyRuntime*' tries a real one.
+/// XR_RUNTIME_JSON=/somewhere/openxr.json build/release/test_render_xr --gtest_filter='*AnyRuntime*' tries a real one.
 TEST_F(HeadsetSession, AnyRuntimeThatIsNamedShowsPictures) {
   if (named_runtime().empty()) GTEST_SKIP() << "XR_RUNTIME_JSON names no runtime";
   ::setenv("XR_RUNTIME_JSON", named_runtime().c_str(), 1);

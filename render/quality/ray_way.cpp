@@ -1,0 +1,83 @@
+#include "render/quality/ray_way.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/field/grid.h"
+#include "render/frame/camera.h"
+#include "render/raycast/transfer_tables.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kRays = 1000;            // through the whole picture
+constexpr double kEvery = 2;              // voxels between the samples here
+constexpr double kBeside = 6;             // voxels of what is empty beside what is seen, in the same brick of 8
+constexpr double kLeastLight = 1 / 256.;  // where a ray ends
+
+/// The part of a ray in a box of index space; empty: lo > hi.
+struct Part {
+  double lo = 0, hi = 1e300;
+  void cut(double origin, double along, double from, double to) {
+    if (along == 0) {
+      if (origin < from || origin > to) hi = -1;
+      return;
+    }
+    const auto [first, last] = std::minmax({(from - origin) / along, (to - origin) / along});
+    lo = std::max(lo, first);
+    hi = std::min(hi, last);
+  }
+};
+
+Part part_of(const Ray& ray, const VolumeItem& item, const FramePacket& packet) {
+  const field::Mapping& mapping = item.grid->mapping();
+  const field::Box& box = item.grid->index_box();
+  const Vec3 origin = mapping.index_from_world(ray.origin), end = mapping.index_from_world(ray.origin + ray.direction);
+  Part part;
+  for (int a = 0; a < 3; ++a) part.cut(origin[a], end[a] - origin[a], box.lo[a], box.hi[a]);
+  if (!item.clipped) return part;
+  for (const Plane& plane : packet.clip) part.cut(dot(plane.normal, ray.origin - plane.point), dot(plane.normal, ray.direction), 0, 1e300);
+  return part;
+}
+
+void follow(const Ray& ray, const Part& part, const VolumeItem& item, RayWay& way) {
+  const double edge = item.grid->mapping().smallest_edge(), step = kEvery * edge;
+  const bool ends = item.projection == Projection::composite;
+  field::Cursor cursor;
+  double light = 1, empty = kBeside;  // since what was seen last
+  for (double at = part.lo + 0.5 * step; at < part.hi && light > kLeastLight; at += step) {
+    const field::ScalarSample sample = item.grid->sample(ray.origin + at * ray.direction, cursor);
+    const double sigma = sample.inside ? table_value(item.transfer, sample.value, 3) : 0;
+    if (!(sigma > 0) && ends) {
+      if (empty < kBeside) way.marched += kEvery;
+      empty += kEvery;
+      continue;
+    }
+    way.marched += kEvery + std::min(std::max(empty - kBeside, 0.0), kBeside);
+    way.visible += kEvery;
+    empty = 0;
+    if (ends) light *= std::exp(-sigma * step);
+  }
+}
+
+}  // namespace
+
+RayWay ray_way(const FramePacket& packet) {
+  Bounds bounds;
+  for (const VolumeItem& item : packet.volumes) bounds.add(field::world_bounds(item.grid->mapping(), item.grid->index_box()));
+  const double width = packet.width, height = packet.height, spacing = std::max(1.0, std::sqrt(width * height / kRays));
+  const Camera camera = make_camera(packet.view, width, height, bounds);
+  RayWay way;
+  for (double y = 0.5 * spacing; y < height; y += spacing)
+    for (double x = 0.5 * spacing; x < width; x += spacing) {
+      const Ray ray = ray_through(camera, x, y);
+      for (const VolumeItem& item : packet.volumes)
+        if (const Part part = part_of(ray, item, packet); part.lo < part.hi) follow(ray, part, item, way);
+    }
+  const double rays = std::floor(width / spacing + 0.5) * std::floor(height / spacing + 0.5);
+  way.marched *= width * height / rays;
+  way.visible *= width * height / rays;
+  return way;
+}
+
+}  // namespace catena::render
