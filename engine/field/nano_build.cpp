@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 
+#include "engine/base/huge_pages.h"
 #include "engine/base/result.h"
 
 namespace catena::field {
@@ -212,6 +213,7 @@ NanoMemory NanoMemory::mapped(void* start, std::size_t bytes, bool held) {
 NanoMemory NanoMemory::reserve(std::size_t bytes) {
   void* start = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (start == MAP_FAILED) throw std::bad_alloc();
+  prefer_huge_pages(start, bytes);
   return mapped(start, bytes, true);
 }
 

@@ -16,7 +16,7 @@ namespace {
 // Work, in samples of unlit exact rays: a sample that is lit; a voxel in the form of fast rays, where processor or GPU draw, and with its
 // gradient so many times that; a picture of fast rays and their search, as a share of that of exact ones of step 1; and that from which on
 // interpolation is tried.
-constexpr double kLit = 6, kPacking = 3, kPackingForGpu = 150, kWithGradient = 2, kFastShare = 0.5, kWorthTrying = 2e7;
+constexpr double kLit = 8, kPacking = 4.5, kPackingForGpu = 200, kWithGradient = 2, kFastShare = 1, kWorthTrying = 4e7;
 constexpr std::array<double, 2> kRefine[] = {{1, 3}, {0.4, 1}};  // errors above which every 2nd, every pixel is marched
 constexpr double kFirstExactStep = 1.4, kFirstFastStep = 2;      // voxels
 

@@ -1,7 +1,9 @@
 #include "render/quality/ray_way.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "engine/field/grid.h"
 #include "render/frame/camera.h"
@@ -10,10 +12,11 @@
 namespace catena::render {
 namespace {
 
-constexpr double kRays = 1000;            // through the whole picture
+constexpr double kRays = 250;             // groups of them through the whole picture
 constexpr double kEvery = 2;              // voxels between the samples here
-constexpr double kBeside = 6;             // voxels of what is empty beside what is seen, in the same brick of 8
+constexpr int kBeside = 3;                // samples in what is empty beside what is seen, in the same brick of 8
 constexpr double kLeastLight = 1 / 256.;  // where a ray ends
+constexpr std::array<double, 2> kTogether[] = {{-1.5, -0.5}, {1.5, -0.5}, {-1.5, 0.5}, {1.5, 0.5}};  // pixels: of 4 x 2 in a vector's lanes
 
 /// The part of a ray in a box of index space; empty: lo > hi.
 struct Part {
@@ -40,22 +43,24 @@ Part part_of(const Ray& ray, const VolumeItem& item, const FramePacket& packet) 
   return part;
 }
 
-void follow(const Ray& ray, const Part& part, const VolumeItem& item, RayWay& way) {
+/// What a ray does, by the sample: true where it meets an extinction.
+void follow(const Ray& ray, const Part& part, const VolumeItem& item, std::vector<bool>& samples) {
+  samples.clear();
   const double edge = item.grid->mapping().smallest_edge(), step = kEvery * edge;
   const bool ends = item.projection == Projection::composite;
   field::Cursor cursor;
-  double light = 1, empty = kBeside;  // since what was seen last
+  double light = 1;
+  int empty = kBeside;  // samples since what was seen last
   for (double at = part.lo + 0.5 * step; at < part.hi && light > kLeastLight; at += step) {
     const field::ScalarSample sample = item.grid->sample(ray.origin + at * ray.direction, cursor);
     const double sigma = sample.inside ? table_value(item.transfer, sample.value, 3) : 0;
-    if (!(sigma > 0) && ends) {
-      if (empty < kBeside) way.marched += kEvery;
-      empty += kEvery;
-      continue;
+    if (sigma > 0 || !ends) {
+      samples.insert(samples.end(), std::size_t(std::clamp(empty - kBeside, 0, kBeside)), false);
+      samples.push_back(true);
+      empty = 0;
+    } else if (++empty <= kBeside) {
+      samples.push_back(false);
     }
-    way.marched += kEvery + std::min(std::max(empty - kBeside, 0.0), kBeside);
-    way.visible += kEvery;
-    empty = 0;
     if (ends) light *= std::exp(-sigma * step);
   }
 }
@@ -68,12 +73,22 @@ RayWay ray_way(const FramePacket& packet) {
   const double width = packet.width, height = packet.height, spacing = std::max(1.0, std::sqrt(width * height / kRays));
   const Camera camera = make_camera(packet.view, width, height, bounds);
   RayWay way;
+  std::vector<bool> samples, together;
   for (double y = 0.5 * spacing; y < height; y += spacing)
-    for (double x = 0.5 * spacing; x < width; x += spacing) {
-      const Ray ray = ray_through(camera, x, y);
-      for (const VolumeItem& item : packet.volumes)
-        if (const Part part = part_of(ray, item, packet); part.lo < part.hi) follow(ray, part, item, way);
-    }
+    for (double x = 0.5 * spacing; x < width; x += spacing)
+      for (const VolumeItem& item : packet.volumes) {
+        together.clear();
+        for (const auto [right, down] : kTogether) {
+          const Ray ray = ray_through(camera, x + right, y + down);
+          const Part part = part_of(ray, item, packet);
+          if (part.lo >= part.hi) continue;
+          follow(ray, part, item, samples);
+          together.resize(std::max(together.size(), samples.size()));
+          for (std::size_t i = 0; i < samples.size(); ++i) together[i] = together[i] || samples[i];
+        }
+        way.marched += kEvery * double(together.size());
+        way.visible += kEvery * double(std::ranges::count(together, true));
+      }
   const double rays = std::floor(width / spacing + 0.5) * std::floor(height / spacing + 0.5);
   way.marched *= width * height / rays;
   way.visible *= width * height / rays;

@@ -125,10 +125,24 @@ TEST(Parts, APipeThatNobodyReadsIsNoOutput) {
 /// Before: 120 s of processor time.
 TEST(Parts, AHeaderCostsSeconds) {
   const test::TemporaryFolder folder;
-  test::write_file(folder / "a.mha", "ObjectType = Image\nNDims = -1\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n");
-  const auto run = test::run_catena({"info", folder / "a.mha"});
-  EXPECT_EQ(run.exit_code, 2) << run.err;
-  EXPECT_EQ(run.err.find("20 s of processor time"), std::string::npos) << run.err;
+  const std::string many = "2000000000", head = "<?xml version=\"1.0\"?>\n<VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
+  const std::string extent = "\"0 " + many + " 0 " + many + " 0 " + many + "\"";
+  for (const auto& [name, text] : {
+           std::pair<const char*, std::string>{
+               "a.mha", "ObjectType = Image\nNDims = -1\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"},
+           {"a.mhd", "NDims = 3\nDimSize = " + many + " 2 2\nElementType = MET_FLOAT\nElementDataFile = a_%d.raw 1 " + many + " 1\n"},
+           {"a.vtu", head + "UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"" + many + "\" NumberOfCells=\"" + many +
+                         "\"/></UnstructuredGrid></VTKFile>"},
+           {"a.vts",
+            head + "StructuredGrid\"><StructuredGrid WholeExtent=" + extent + "><Piece Extent=" + extent + "/></StructuredGrid></VTKFile>"},
+           {"a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a*.geo\nTIME\ntime set: 1\nnumber of steps: " + many +
+                          "\nfilename start number: 0\nfilename increment: 1\ntime values: 0\n"},
+       }) {
+    test::write_file(folder / name, text);
+    const auto run = test::run_catena({"info", folder / name});
+    EXPECT_EQ(run.exit_code, 2) << name << run.err;
+    EXPECT_EQ(run.err.find("20 s of processor time"), std::string::npos) << name << run.err;
+  }
 }
 
 /// Before: loaded whole. 4 GB, none of which are on the disk, and 50 MB of memory.

@@ -1,0 +1,19 @@
+#include "engine/base/huge_pages.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdint>
+
+namespace catena {
+
+void prefer_huge_pages(void* start, std::size_t bytes) {
+  constexpr std::size_t kHuge = std::size_t{2} << 20;
+  if (bytes < 2 * kHuge) return;
+  // whole mappings stay whole: mremap() does not take parts that are advised otherwise
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE)), at = reinterpret_cast<std::uintptr_t>(start);
+  const std::uintptr_t begin = (at + page - 1) / page * page, end = (at + bytes + page - 1) / page * page;
+  ::madvise(static_cast<std::byte*>(start) + (begin - at), end - begin, MADV_HUGEPAGE);
+}
+
+}  // namespace catena

@@ -1,0 +1,11 @@
+/// Pages of 2 MiB for large memory that is soon read or written everywhere: fewer faults while it is filled, fewer misses of the address
+/// cache while it is read. A wish: where the kernel has none, nothing changes. Any thread.
+#pragma once
+#include <cstddef>
+
+namespace catena {
+
+/// `bytes` from `start` on, mapped and private. Less than two such pages are left alone.
+void prefer_huge_pages(void* start, std::size_t bytes);
+
+}  // namespace catena
