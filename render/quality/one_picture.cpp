@@ -32,8 +32,8 @@ double OnePicture::work_of_packing() const {
   vk::Device& device = lattice_.renderer().device();
   double voxels = 0;
   for (const VolumeItem& item : lattice_.packet().volumes) {
-    const Vec3 n = item.grid->index_box().hi - item.grid->index_box().lo + Vec3(1.0);
-    voxels += can_be_packed(device, *item.grid) ? n.x * n.y * n.z : double(item.grid->bytes()) / sizeof(float);
+    const std::size_t bytes = can_be_packed(device, *item.grid) ? packed_bytes(*item.grid, false) : item.grid->bytes();
+    voxels += double(bytes) / sizeof(float);
   }
   return voxels * (device.info().is_cpu() ? kPacking : kPackingForGpu) * (lattice_.shaded() ? kWithGradient : 1);
 }
@@ -90,14 +90,18 @@ Result<std::optional<QualityChoice>> OnePicture::interpolated(const Rays& rays) 
 }
 
 Result<std::optional<QualityChoice>> OnePicture::find() {
-  const double packing = work_of_packing();
-  const double fast_work = kFastShare * work_of_rays(1);
   const auto chosen = [this](const std::optional<Rays>& rays) -> std::optional<QualityChoice> {
     if (!rays) return std::nullopt;
     return choice_of(lattice_, rays->settings, rays->above);
   };
-  const bool exact_first = work_of_rays(kExactSteps[0]) <= packing + fast_work || !lattice_.renderer().draws_fast(lattice_.packet());
   std::optional<Rays> exact_rays;
+  if (!lattice_.renderer().draws_fast(lattice_.packet())) {
+    CATENA_TRY(exact_rays, exact());
+    return chosen(exact_rays);
+  }
+  way_ = ray_way(lattice_.packet());
+  const double packing = work_of_packing(), fast_work = kFastShare * work_of_rays(1);
+  const bool exact_first = work_of_rays(kExactSteps[0]) <= packing + fast_work;
   if (exact_first) {
     CATENA_TRY(exact_rays, exact());
     if (exact_rays && work_of_rays(exact_rays->settings.step_voxels) <= packing + fast_work) return chosen(exact_rays);

@@ -24,7 +24,7 @@ namespace catena::render {
 class OnePicture {
  public:
   /// `error`: covered RMSE, 1/255.
-  OnePicture(Lattice& lattice, double error) : lattice_(lattice), way_(ray_way(lattice.packet())), error_(error) {}
+  OnePicture(Lattice& lattice, double error) : lattice_(lattice), error_(error) {}
   /// Nothing where no rays are good enough.
   Result<std::optional<QualityChoice>> find();
 
@@ -46,7 +46,7 @@ class OnePicture {
   double work_of_packing() const;
 
   Lattice& lattice_;
-  const RayWay way_;
+  RayWay way_;  ///< where there is a choice
   const double error_;
 };
 

@@ -13,7 +13,8 @@ namespace catena::render {
 namespace {
 
 constexpr double kRays = 250;             // groups of them through the whole picture
-constexpr double kEvery = 2;              // voxels between the samples here
+constexpr double kEvery = 2;              // voxels between the samples here,
+constexpr double kMostSamples = 4096;     // of which a ray has so many at most
 constexpr int kBeside = 3;                // samples in what is empty beside what is seen, in the same brick of 8
 constexpr double kLeastLight = 1 / 256.;  // where a ray ends
 constexpr std::array<double, 2> kTogether[] = {{-1.5, -0.5}, {1.5, -0.5}, {-1.5, 0.5}, {1.5, 0.5}};  // pixels: of 4 x 2 in a vector's lanes
@@ -44,9 +45,8 @@ Part part_of(const Ray& ray, const VolumeItem& item, const FramePacket& packet) 
 }
 
 /// What a ray does, by the sample: true where it meets an extinction.
-void follow(const Ray& ray, const Part& part, const VolumeItem& item, std::vector<bool>& samples) {
+void follow(const Ray& ray, const Part& part, double step, const VolumeItem& item, std::vector<bool>& samples) {
   samples.clear();
-  const double edge = item.grid->mapping().smallest_edge(), step = kEvery * edge;
   const bool ends = item.projection == Projection::composite;
   field::Cursor cursor;
   double light = 1;
@@ -73,25 +73,28 @@ RayWay ray_way(const FramePacket& packet) {
   const double width = packet.width, height = packet.height, spacing = std::max(1.0, std::sqrt(width * height / kRays));
   const Camera camera = make_camera(packet.view, width, height, bounds);
   RayWay way;
+  double groups = 0;
   std::vector<bool> samples, together;
   for (double y = 0.5 * spacing; y < height; y += spacing)
-    for (double x = 0.5 * spacing; x < width; x += spacing)
+    for (double x = 0.5 * spacing; x < width; x += spacing, ++groups)
       for (const VolumeItem& item : packet.volumes) {
+        const double edge = item.grid->mapping().smallest_edge(),
+                     every = std::max(kEvery,
+                                      field::world_bounds(item.grid->mapping(), item.grid->index_box()).diagonal() / edge / kMostSamples);
         together.clear();
         for (const auto [right, down] : kTogether) {
           const Ray ray = ray_through(camera, x + right, y + down);
           const Part part = part_of(ray, item, packet);
           if (part.lo >= part.hi) continue;
-          follow(ray, part, item, samples);
+          follow(ray, part, every * edge, item, samples);
           together.resize(std::max(together.size(), samples.size()));
           for (std::size_t i = 0; i < samples.size(); ++i) together[i] = together[i] || samples[i];
         }
-        way.marched += kEvery * double(together.size());
-        way.visible += kEvery * double(std::ranges::count(together, true));
+        way.marched += every * double(together.size());
+        way.visible += every * double(std::ranges::count(together, true));
       }
-  const double rays = std::floor(width / spacing + 0.5) * std::floor(height / spacing + 0.5);
-  way.marched *= width * height / rays;
-  way.visible *= width * height / rays;
+  way.marched *= width * height / groups;
+  way.visible *= width * height / groups;
   return way;
 }
 

@@ -50,9 +50,8 @@ Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& need
   counters.peak = std::max(counters.peak, counters.bytes);
   ++counters.allocations;
   // the memory of a processor's driver is this process's own
-  constexpr VkDeviceSize kLarge = 4 << 20;
-  if (void* start = nullptr;
-      device.info().is_cpu() && needs.size >= kLarge && vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &start) == VK_SUCCESS) {
+  if (void* start = nullptr; device.info().is_cpu() && needs.size >= kLeastForHugePages &&
+                             vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &start) == VK_SUCCESS) {
     prefer_huge_pages(start, needs.size);
     vkUnmapMemory(device.handle(), memory);
   }

@@ -14,7 +14,11 @@ using haptics::tests::Example;
 using haptics::tests::Fields;
 using haptics::tests::Random;
 
+#ifdef CATENA_SANITIZED
+constexpr int kHostileTicks = 100000, kQuietTicks = 100000;
+#else
 constexpr int kHostileTicks = 10000000, kQuietTicks = 1000000;
+#endif
 constexpr int kParts = 20;  ///< tests that share the hostile ticks
 
 std::string text_of(const Example& e) { return R"({"name": "a", "type": ")" + e.type + "\", " + e.body + "}"; }

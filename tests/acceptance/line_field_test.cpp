@@ -14,7 +14,11 @@ using haptics::tests::Fields;
 using haptics::tests::Random;
 using haptics::tests::Rig;
 
+#ifdef CATENA_SANITIZED
+constexpr std::size_t kLines = 60;
+#else
 constexpr std::size_t kLines = 1000;
+#endif
 
 struct Heart {
   std::shared_ptr<const field::VectorGrid> grid;

@@ -10,7 +10,11 @@ using haptics::tests::Rig;
 
 constexpr double kStiffness = 800, kMetres = 0.05, kMaxForce = 8, kLevel = 0.6;
 constexpr int kNodes = 96;
+#ifdef CATENA_SANITIZED
+constexpr int kTicks = 6000;
+#else
 constexpr int kTicks = 60000;
+#endif
 
 /// A ball whose every voxel is off by up to 0.05: shells, islands and holes about the level.
 std::shared_ptr<const field::ScalarGrid> noisy_ball() {
@@ -79,7 +83,9 @@ void follow(const std::string& side) {
   EXPECT_LE(worst_move, 1);
   EXPECT_LE(worst_step, 1);
   EXPECT_LE(worst_rise, 1e-9);
+#ifndef CATENA_SANITIZED
   EXPECT_GT(worst_unlimited, 3) << "the path has no jump to hold back";
+#endif
 }
 
 TEST(NoisySurface, TheProxyKeepsToItsTravelFromBothSides) { follow(""); }
@@ -135,7 +141,9 @@ TEST(NoisySurface, FrictionKeepsItsProxyThroughAFailedReprojection) {
   }
   attained("noisy ball, drag: ticks with a proxy kept", kept);
   attained("noisy ball, drag: ticks that lose it", lost);
+#ifndef CATENA_SANITIZED
   EXPECT_GT(kept, 0) << "no reprojection fails on this path";
+#endif
   EXPECT_EQ(at_once, 0);
 }
 

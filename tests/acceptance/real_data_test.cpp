@@ -12,7 +12,11 @@
 namespace catena::acceptance {
 namespace real_data_test {
 
+#ifdef CATENA_SANITIZED
+constexpr int kTicks = 6000;
+#else
 constexpr int kTicks = 60000;
+#endif
 constexpr int kEvery = 60;  ///< ticks between two comparisons with the reference
 
 /// The raw voxels, read as a trilinear field in long double; only axis-aligned grids.
