@@ -67,6 +67,7 @@ struct LinkReport {
   double booked_j = 0;            ///< given to the hand and stored for it beyond what it put in; a switch or snap shows as a jump
   double leaving = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
   std::int32_t evaluations = 0;   ///< field fetches of this tick
+  std::int32_t curve = -1;        ///< the line of a file that it holds to; -1: none; not in recordings
   Status status = Status::ok;     ///< how the link is
   bool active = false;            ///< enabled and not released
   bool left = false;              ///< the hand has left the feature: leaving >= 1, or let go

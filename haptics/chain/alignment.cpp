@@ -4,6 +4,9 @@ namespace catena::haptics {
 
 namespace {
 
+constexpr double kPastSquare = 0.17;  // sin 10 degrees: so far past square to an axis without a sense, the tool turns to its other end
+constexpr double kQuarterTurn = 1.5707963267948966;  // radians: the longest way to an axis without a sense
+
 // It constrains: not on the free side, not released, and something is there.
 bool holds(const LinkState& link) noexcept {
   return link.active() &&
@@ -21,11 +24,12 @@ Vec3 axis_of(const Link& spec, LinkState& link, LinkScratch& scratch, const Vec3
   return found && primitive.kind != Primitive::Kind::point ? primitive.axis : Vec3(0.0);
 }
 
-// The smallest rotation of the tool that brings its axis onto n.
-Quat turn_onto(const Align& align, const Quat& tool, const Vec3& n) noexcept {
-  const Vec3 axis = direction(rotate(tool, align.tool_axis));
-  const bool turned = align.sign == Align::Sign::either && dot(axis, n) < 0;
-  return shortest_arc(axis, turned ? -n : n);
+// Of +-n the one that the tool is drawn to: the one of the last tick until the tool is well past square to it; the nearer one at first.
+Vec3 end_of(const Align& align, const Vec3& tool_axis, const Vec3& n, const Vec3& last) noexcept {
+  if (align.sign == Align::Sign::same) return n;
+  if (!(max_abs(last) > 0)) return dot(tool_axis, n) < 0 ? -n : n;
+  const Vec3 same = dot(n, last) < 0 ? -n : n;
+  return dot(tool_axis, same) < -kPastSquare ? -same : same;
 }
 
 }  // namespace
@@ -39,9 +43,7 @@ Vec3 align_links(const Program& program, const Order& order, const Quat& tool, c
     aligns = aligns || program.links[i].align.on;
   }
   const double damping = program.coupling.rotational_damping_nms_per_rad;
-  const bool fades = state.fade.left > 0 || (state.engaged && state.fade.replaced);
-  if (!aligns && !fades && !(damping > 0)) {
-    state.engaged = false;
+  if (!aligns && !(max_abs(state.ramp.rest) > 0 || max_abs(state.ramp.last) > 0) && !(damping > 0)) {
     state.last = tool;
     return Vec3(0.0);
   }
@@ -49,19 +51,26 @@ Vec3 align_links(const Program& program, const Order& order, const Quat& tool, c
   // each rotational proxy is the next link's orientation
   Quat incoming = tool;
   Vec3 torque(0.0);
+  double stiffness = 0;
   std::array<Vec3, kMaxLinks> shares{};
   for (int k = 0; k < order.count && aligns; ++k) {
     const int link = order.links[static_cast<std::size_t>(k)];
     const auto i = static_cast<std::size_t>(link);
     const Align& align = program.links[i].align;
     if (align.on) {
-      state.axes[i] = axis_of(program.links[i], links[i], scratch[i], state.axes[i]);
-      if (max_abs(state.axes[i]) > 0) {
-        const Quat before = normalised(incoming), turn = turn_onto(align, before, state.axes[i]);
-        const double kappa = std::fmin(align.stiffness_nm_per_rad, program.limits.max_rotational_stiffness_nm_per_rad);
+      const Vec3 n = axis_of(program.links[i], links[i], scratch[i], state.axes[i]);
+      const double kappa = std::fmin(align.stiffness_nm_per_rad, program.limits.max_rotational_stiffness_nm_per_rad);
+      stiffness += kappa;
+      if (max_abs(n) > 0) {
+        const Quat before = normalised(incoming);
+        const Vec3 axis = direction(rotate(before, align.tool_axis));
+        state.axes[i] = end_of(align, axis, n, state.axes[i]);
+        const Quat turn = shortest_arc(axis, state.axes[i]);
         shares[i] = rotation_vector(turn) * (links[i].weight * kappa);
         torque += shares[i];
         incoming = normalised(turn * before);
+      } else {
+        state.axes[i] = Vec3(0.0);
       }
     }
     out.links[i].orientation = incoming;
@@ -75,23 +84,16 @@ Vec3 align_links(const Program& program, const Order& order, const Quat& tool, c
     if (order.mode < 0) before = out.links[i].orientation;
   }
 
-  // what a switch took away fades
-  if (step.first_tick || !state.engaged) {
-    state.fade.order = order;
-    if (step.first_tick) {
-      state.fade.shares = shares;
-      state.fade.replaced = false;
-    } else {
-      state.fade.shares = {};
-    }
-  }
-  if (!step.first_tick) torque += step_fade(state.fade, order, shares, step.ramp_step);
-  state.engaged = aligns;
+  // no step of the torque
+  const Quat q0 = normalised(tool);
+  const Vec3 turned = step.first_tick ? Vec3(0.0) : rotation_vector(normalised(q0 * glm::conjugate(normalised(state.last))));
+  if (step.first_tick) state.ramp.last = torque;
+  state.stiffness = max_abs(state.ramp.rest) > 0 || max_abs(state.ramp.last) > 0 ? std::fmax(stiffness, state.stiffness) : stiffness;
+  const double fall = step.ramp_step < 1 ? state.stiffness * kQuarterTurn * step.ramp_step : std::numeric_limits<double>::infinity();
+  torque += step_ramp(state.ramp, torque, stiffness * norm(turned), fall);
 
   // the coupling's damping
-  const Quat q0 = normalised(tool);
-  if (!step.first_tick && step.dt_s > 0 && damping > 0)
-    torque -= rotation_vector(normalised(q0 * glm::conjugate(normalised(state.last)))) * (damping / step.dt_s);
+  if (step.dt_s > 0 && damping > 0) torque -= turned * (damping / step.dt_s);
   state.last = q0;
   return torque;
 }

@@ -42,6 +42,7 @@ bool begin_links(SingleTick& tick) noexcept {
     LinkState& link = tick.links[i];
     tick.length = std::max(tick.length, tick.program.links[i].constraint->domain_length());
     link.dt_s = tick.dt_s;
+    link.hand_step = kFastestHand * tick.dt_s / tick.program.metres_per_unit;
     link.begin_tick();
     if (link.started) continue;
     begun = true;

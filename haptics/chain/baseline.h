@@ -7,7 +7,7 @@
 /// again by the probe x itself: one-sided links on the free side, two-sided ones where x crosses the surface or comes within a
 /// tenth of release. Where no link holds p = x, bit for bit.
 /// Every link reports p. A link that holds reports an equal share of F (weight 1 / their number, stiffness K), the others none;
-/// no weights rise at a switch: the step of the whole force fades (switching.h).
+/// no weights rise at a switch: the step of the whole force is ramped (ramp.h).
 /// In LinkState `proxy` stays the constraint's own. Haptic thread: no allocation, lock, throw or unbounded loop.
 #pragma once
 #include "haptics/chain/switching.h"

@@ -54,8 +54,7 @@ bool are_sane(const Program& program, const WidgetsState& state) {
 }  // namespace
 
 Outcome check_state(const Program& program, const ChainState& state) {
-  const bool chain = are_bools(state.has_probe) && are_bools(state.fade.replaced, state.alignment.fade.replaced, state.alignment.engaged) &&
-                     is_sane(state.fade.order) && is_sane(state.alignment.fade.order) && is_sane(state.single) && is_sane(state.guard) &&
+  const bool chain = are_bools(state.has_probe) && is_sane(state.order) && is_sane(state.single) && is_sane(state.guard) &&
                      is_sane(state.passivity) && are_bools(state.switches.link_on) && are_bools(state.switches.mode_on) &&
                      are_sane(state.indications) && is_finite(state.last_probe) && is_finite(state.force_n);
   if (!chain) return Error{"the state of the chain is damaged or forged: expected one that a tick leaves"};

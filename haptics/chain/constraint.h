@@ -45,7 +45,8 @@ inline constexpr int kWorkCap = 4096, kFetchWork = 7, kCellWork = 8, kCubicWork 
 inline constexpr int kLastStep = 256;  ///< of the cap: for what is begun before it is used up
 /// Of max_force: what a proxy's slip may add to the force in one tick, so that with its probe's motion it stays below 5 %.
 inline constexpr double kSlipPart = 0.04;
-inline constexpr double kRearmPart = 0.1;  ///< of `release`: within it a link that has let go takes hold again
+inline constexpr double kRearmPart = 0.1;   ///< of `release`: within it a link that has let go takes hold again
+inline constexpr double kFastestHand = 15;  ///< m/s: a probe that moves faster was thrown
 
 /// What "bit for bit" means: tells -0 from 0, and a NaN is itself.
 inline bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -57,11 +58,13 @@ struct LinkState {
   double limit = 0;                          ///< |probe - proxy| at which the link slips or lets go now, world units; 0: never
   double dt_s = 0;                           ///< since the last tick; 0 in the first
   double stiffness_n_per_m = 0;              ///< k_i of this tick
+  double hand_step = 0;                      ///< the longest way of a hand in this tick, kFastestHand dt / S, world units
   std::int32_t evaluations = 0;              ///< field fetches of this tick
   std::int32_t steps = 0;                    ///< other counted work of this tick
   std::int32_t most = kWorkCap - kLastStep;  ///< of this tick's work; a constraint may ask for less
   /// How far the proxy may slip in this tick beyond what its probe moves, world units: kSlipPart max_force / (k_i S).
   double slip = std::numeric_limits<double>::infinity();
+  std::int32_t curve = -1;                           ///< the line of a file that it holds to; -1: none
   Status status = Status::ok;                        ///< how the link is
   Reason reason = Reason::none;                      ///< set together with a status of critical or boundary; means nothing beside another
   bool started = false;                              ///< `start` has been called
@@ -83,10 +86,11 @@ struct LinkState {
   int affordable(int wanted) const { return std::max(0, std::min(wanted, most - work())); }
   /// Less than `reserve` units are left.
   bool exhausted(int reserve = 0) const { return work() + reserve >= most; }
-  /// Sets the counters back, before a tick.
+  /// Sets counters and what is told back, before a tick.
   void begin_tick() {
     evaluations = steps = 0;
     most = kWorkCap - kLastStep;
+    curve = -1;
   }
 };
 static_assert(std::is_trivially_copyable_v<LinkState>);

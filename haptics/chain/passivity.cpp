@@ -69,7 +69,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   // what the last tick's force has done since
   const PassivityState::Sent did = acted(state, limits.delay_s, tick.dt_s);
   const double work_j = dot(did.force_n, move_m), taken_j = -dot(did.added_n, move_m);
-  // what fades is granted as far as there is something left of what the switch took away
+  // what is ramped is granted as far as there is something left of what springs that came or went had
   const bool fades = max_abs(did.fading_n) > 0 || max_abs(tick.fading_n) > 0;
   const double faded_j = std::fmin(dot(did.fading_n, move_m), state.let_go_j);
   state.let_go_j = fades ? state.let_go_j - faded_j : 0;
@@ -114,7 +114,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   const double made_j = work_j - free_j + storage_j - state.storage_j;
   const double own_j = tick.dt_s > 0 ? limits.damping_ns_per_m * dot(move_m, move_m) / tick.dt_s : 0;
   const double booked_j = anew ? std::fmax(0.0, made_j) : std::fmax(0.0, raised_j);
-  if (anew && fades) state.let_go_j += std::fmax(0.0, -made_j);
+  if (anew && fades) state.let_go_j += std::fabs(made_j);
   state.granted_j += booked_j + free_j;
   const double step_j = own_j - made_j + booked_j;
   state.balance_j = std::fmin(0.0, state.balance_j + step_j);

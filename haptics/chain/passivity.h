@@ -13,7 +13,7 @@
 ///             class of sampled-data systems", J. Robotic Systems 14(1), 1997). A surplus is not kept: it would pay for what
 ///             an unstable contact gives out later.
 ///   granted   to the hand by the program, not to be taken back by the controller: the jumps of V at switches, snaps and
-///             programs, weights and ramps that rise, what fades (switching.h) as far as the springs that were taken away had it, cues, and
+///             programs, weights and ramps that rise, what is ramped (ramp.h) as far as the springs that came or went have it, cues, and
 ///             links that are sources of energy by what they are (Constraint::is_source: gradient_force), which have no storage
 ///   controller  a damping of the hand. Where B and its last step together are below 0 it is large enough to take that energy out within
 ///             the next tick if the hand keeps its velocity, but at most max_added_damping. Then it shrinks by the factor 1 - dt / 30 ms
@@ -34,7 +34,7 @@ struct PassivityState {
   struct Sent {
     Vec3 force_n{0.0};    ///< all of it
     Vec3 granted_n{0.0};  ///< its part that is granted
-    Vec3 fading_n{0.0};   ///< its part that fades after a switch
+    Vec3 fading_n{0.0};   ///< its part that is ramped
     Vec3 added_n{0.0};    ///< the controller's
   };
   static constexpr std::uint32_t kPast = 16;  ///< a delay of more than 14 periods counts as 14
@@ -51,7 +51,7 @@ struct PassivityState {
   double storage_j = 0;                      ///< V
   double balance_j = 0;                      ///< B
   double granted_j = 0;                      ///< since the start
-  double let_go_j = 0;                       ///< by springs that a switch took away: what may still fade
+  double let_go_j = 0;                       ///< of springs that came or went in one tick: what the ramp may still give
   double dissipated_j = 0;                   ///< by the controller, since the start
   double damping_ns_per_m = 0;               ///< that the controller adds now
   bool anew = true;  ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
@@ -69,7 +69,7 @@ struct LedgerTick {
   double dt_s = 0;                              ///< since the last tick
   const Order& order;                           ///< the links that run
   const std::array<Vec3, kMaxLinks>& shares_n;  ///< f_i as the chain asks for them
-  Vec3 cues_n{0.0}, fading_n{0.0};              ///< cues; what fades after a switch
+  Vec3 cues_n{0.0}, fading_n{0.0};              ///< cues; what is ramped
   Vec3 sum_n{0.0};                              ///< shares, others and damping, before any limit
 };
 

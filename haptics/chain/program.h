@@ -26,7 +26,7 @@ struct Switch {
 ///   m = |p_i - p_(i-1)| / at, 1 where the link has let go;  left: from m >= 1 (but for round-off) until m < 0.95
 ///   detent: a pulse of `amplitude` towards the feature when the link is left and when it is back, linear to zero over `duration`
 ///   vibration: a triangle wave of `amplitude` and `frequency` along the gap while m >= from
-/// Both times w_i, and faded out with the link's share where it is switched off.
+/// Both times w_i.
 struct Indication {
   /// How it is told.
   enum class Cue { none, detent, vibration };
@@ -76,7 +76,7 @@ struct Coupling {
   double stiffness_n_per_m = 500;                 ///< what make_link() gives a link that does not say; the tick reads the link's own
   double damping_ns_per_m = 0;                    ///< b, of the hand
   double max_force_n = 8;                         ///< of the whole force
-  double ramp_s = 0;                              ///< seconds over which a switch fades; 0: at once
+  double ramp_s = 0;                              ///< seconds in which a step of max_force is ramped (ramp.h); 0: at once
   double rotational_stiffness_nm_per_rad = 0.5;   ///< of links that align and do not say
   double rotational_damping_nms_per_rad = 0;      ///< b_r
   CouplingMethod method = CouplingMethod::chain;  ///< the chain, or a baseline

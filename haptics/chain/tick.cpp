@@ -13,7 +13,8 @@ struct Coupled {
   std::array<Vec3, kMaxLinks> gaps{};      ///< p_i - p_(i-1), world units
   std::array<Vec3, kMaxLinks> shares_n{};  ///< of the force
   Vec3 force_n{0.0};
-  Vec3 reach{0.0};  ///< from the probe to the last proxy, world units
+  Vec3 reach{0.0};              ///< from the probe to the last proxy, world units
+  double newtons_per_unit = 0;  ///< K S: of the links that run, together
 };
 
 bool is_single(const Program& program) noexcept { return program.coupling.method != CouplingMethod::chain; }
@@ -35,6 +36,7 @@ void advance_link(const Program& program, std::size_t i, const Vec3& incoming, b
   const Link& spec = program.links[i];
   link.begin_tick();
   link.dt_s = dt;
+  link.hand_step = kFastestHand * dt / program.metres_per_unit;
   if (!link.started) {
     begin_link(spec, incoming, first_tick, link, scratch);
   } else {
@@ -64,8 +66,7 @@ Vec3 last_proxy(const Order& order, const Vec3& probe, const ChainState& state) 
 Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe, double dt, ChainState& state,
                   ChainScratch& scratch) noexcept {
   SingleTick single{program, order, probe, dt, !state.has_probe, state.single, state.links, scratch.links};
-  const bool same_order = order == state.fade.order;
-  advance_single_proxy(single, same_order);
+  advance_single_proxy(single, order == state.order);
   Coupled out;
   const Vec3 gap = state.single.proxy - probe;
   for (std::size_t i = 0; i < kMaxLinks; ++i) {
@@ -75,9 +76,8 @@ Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe,
     out.gaps[i] = gap;
     out.shares_n[i] = gap * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
   }
-  // a switch moves the one proxy, so that all of the force's step fades
-  if (!same_order) state.fade.replaced = true;
-  out.force_n = gap * (capped(program.coupling.stiffness_n_per_m, program.limits) * program.metres_per_unit);
+  out.newtons_per_unit = capped(program.coupling.stiffness_n_per_m, program.limits) * program.metres_per_unit;
+  out.force_n = gap * out.newtons_per_unit;
   out.reach = gap;
   return out;
 }
@@ -93,6 +93,7 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
     advance_link(program, i, incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
     out.gaps[i] = link.proxy - incoming;
     out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
+    out.newtons_per_unit += link.stiffness_n_per_m * program.metres_per_unit;
     out.force_n += out.shares_n[i];
     incoming = link.proxy;
   }
@@ -101,8 +102,9 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
   return out;
 }
 
-// The force's direction where it is too large for a double: every term scaled down before it is formed.
-Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, double dt, const ChainState& state) noexcept {
+// The direction of the links' force, and of `braking` times the move, where they are too large for a double: every term scaled down before
+// it is formed.
+Vec3 huge_direction(const Program& program, const Order& order, const Vec3& probe, double braking, const ChainState& state) noexcept {
   constexpr double small = 1e-160;
   Vec3 incoming = probe, force(0.0);
   const bool single = is_single(program);
@@ -114,9 +116,8 @@ Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, d
     force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.metres_per_unit * small);
     incoming = link.proxy;
   }
-  if (state.has_probe && dt > 0)
-    force -= (probe * small - state.last_probe * small) * (program.coupling.damping_ns_per_m * program.metres_per_unit / dt * small);
-  return force;
+  if (state.has_probe) force -= (probe * small - state.last_probe * small) * (braking * small);
+  return direction(force);
 }
 
 // A report is finite: the largest double for what is larger, 0 for what is not a number (a huge gap that weighs nothing).
@@ -139,7 +140,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
   out.torque_nm = state.guard.torque_nm;
   out.force_state = state.guard.force_state;
   out.link_count = static_cast<std::int32_t>(program.links.size());
-  out.mode = state.fade.order.mode;
+  out.mode = state.order.mode;
   out.energy_j = state.passivity.energy_j();
   out.dissipated_j = state.passivity.dissipated_j;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
@@ -154,6 +155,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
     to.status = link.status;
     to.reason = reason_of(link);
     to.active = link.active();
+    to.curve = link.curve;
   }
   report_widgets(program, state.widgets, out);
 }
@@ -168,6 +170,7 @@ void hold_all(const Program& program, double t_s, ChainState& state, exchange::H
     out.links[i].left = state.indications[i].left;
   }
   state.force_n = state.told_n = Vec3(0.0);
+  state.ramp = Ramp{};
   // no pose, no force: whatever the clock says
   guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
   suspend(state.passivity);
@@ -190,7 +193,9 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     return hold_all(program, probe.t_s, state, out);
 
   const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_t_s) : 0;
-  const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
+  // a ramp counts from the last tick, even one without a probe
+  const double ramp_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.clock_t_s));
+  const double ramp_step = program.coupling.ramp_s > 0 ? ramp_dt / program.coupling.ramp_s : 1;
   const double s = program.metres_per_unit;
   Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
   if (!program.widgets.empty())
@@ -204,47 +209,40 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
 
   if (!program.widgets.empty()) move_widgets(program, last_proxy(order, probe.position, state), state.widgets);
 
-  // what the links tell of the hand, and what fades out after a change of the order
-  Vec3 force = coupled.force_n, cues(0.0);
-  std::array<Vec3, kMaxLinks> felt = coupled.shares_n;
+  // what the links tell of the hand
+  Vec3 cues(0.0);
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const Vec3& share = coupled.shares_n[i];
     out.links[i].force_n = {bounded(share.x), bounded(share.y), bounded(share.z)};
     out.links[i].gap = bounded(norm(coupled.gaps[i]));
-    const Vec3 cue =
-        indicate(program.links[i].indication, state.links[i], coupled.gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
-    felt[i] += cue;
-    cues += cue;
+    cues += indicate(program.links[i].indication, state.links[i], coupled.gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
   }
-  Vec3 fading(0.0);
-  if (state.has_probe) {
-    fading = step_fade(state.fade, order, felt, ramp_step);
-    force += fading;
-  } else {
-    state.fade.order = order;
-    state.fade.shares = felt;
-  }
-  force += cues;
-  state.told_n = {bounded(force.x), bounded(force.y), bounded(force.z)};
+
+  // their force, without a step
+  const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
+  const double most = program.coupling.max_force_n;
+  const bool huge = !std::isfinite(norm(coupled.force_n));
+  const Vec3 pull = huge ? huge_direction(program, order, probe.position, 0, state) * most : at_most(coupled.force_n, most);
+  if (!state.has_probe) state.ramp.last = pull;
+  const double fall = program.coupling.ramp_s > 0 ? most * ramp_step : std::numeric_limits<double>::infinity();
+  const Vec3 ramped = step_ramp(state.ramp, pull, coupled.newtons_per_unit * norm(move), fall);
+  const Vec3 told = coupled.force_n + ramped + cues;
+  state.told_n = {bounded(told.x), bounded(told.y), bounded(told.z)};
 
   // the coupling's damping, then the limit with the direction kept
-  if (state.has_probe && dt > 0) force -= (probe.position - state.last_probe) * (program.coupling.damping_ns_per_m * s / dt);
-  const Vec3 sum = force;
-  const double magnitude = norm(force);
-  if (!std::isfinite(magnitude)) {
-    force = direction(huge_force(program, order, probe.position, dt, state)) * program.coupling.max_force_n;
-  } else if (magnitude > program.coupling.max_force_n) {
-    force *= program.coupling.max_force_n / magnitude;
-  }
+  const double braking = dt > 0 ? program.coupling.damping_ns_per_m * s / dt : 0;
+  const Vec3 braked = state.has_probe ? move * braking : Vec3(0.0), sum = told - braked;
+  const Vec3 whole = max_abs(ramped) > 0 ? pull + ramped + cues - braked : sum;
+  const Vec3 force =
+      std::isfinite(norm(whole)) ? at_most(whole, most) : huge_direction(program, order, probe.position, braking, state) * most;
 
   state.force_n = force;
   const Vec3 torque =
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
   for (std::size_t i = 0; i < program.links.size(); ++i) state.alignment.links[i] = out.links[i].orientation;
-  const double guard_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.clock_t_s));
-  guard(program.limits, {force, torque, probe.condition, probe.forces_on, guard_dt}, state.guard);
-  const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
-  settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, cues, fading, sum}, state.guard, state.passivity);
+  guard(program.limits, {force, torque, probe.condition, probe.forces_on, ramp_dt}, state.guard);
+  settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum}, state.guard, state.passivity);
+  state.order = order;
   state.last_probe = probe.position;
   state.last_t_s = state.clock_t_s = probe.t_s;
   state.has_probe = true;
@@ -263,11 +261,9 @@ bool keeps(const Link& from, const Link& to) noexcept {
 void rebind(const Program& from, const Program& to, ChainState& state, ChainScratch& scratch) noexcept {
   const ChainState old = state;
   scratch = ChainScratch{};
-  state.fade.replaced = state.alignment.fade.replaced = true;
   state.alignment.axes = {};
   state.passivity.anew = true;
   if (from.coupling.method != to.coupling.method) state.single = SingleProxy{};
-  state.fade.shares = old.fade.shares;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {
     state.links[i] = LinkState{};
     state.indications[i] = IndicationState{};

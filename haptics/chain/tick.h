@@ -1,7 +1,8 @@
 /// One tick: a pure function of (program, state, probe). The servo thread, `replay`, the tests and the benchmarks run this.
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
-///   plus what fades out after a switch (switching.h) and the cues of links that the hand leaves (indication.h), if any
+///   plus the cues of links that the hand leaves (indication.h), if any. While a step of the links' force is ramped (ramp.h), the sum over
+///   the links is cut to max_force by itself, and what the ramp holds back is added
 ///   torque: of links that align the tool (alignment.h), if any
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
 /// then the guard (guard.h): what the device's limits and the tick's condition leave of it, and the ledger (passivity.h).
@@ -14,6 +15,7 @@
 #include "haptics/chain/guard.h"
 #include "haptics/chain/indication.h"
 #include "haptics/chain/passivity.h"
+#include "haptics/chain/ramp.h"
 #include "haptics/chain/switching.h"
 #include "haptics/chain/widgets.h"
 
@@ -34,7 +36,8 @@ struct ChainState {
   std::array<LinkState, kMaxLinks> links{};              ///< by link
   std::array<IndicationState, kMaxLinks> indications{};  ///< by link
   SwitchState switches;                                  ///< which links are on
-  Fade fade;                                             ///< what fades after a switch
+  Order order;                                           ///< of the last tick
+  Ramp ramp;                                             ///< of the force
   AlignmentState alignment;                              ///< the rotational chain
   WidgetsState widgets;                                  ///< the widgets
   SingleProxy single;                                    ///< baselines

@@ -2,7 +2,7 @@
 /// follow its last proxy. The links x, y, z and sphere are shared by all widgets; what each of them is on stands in LinkState::shape.
 ///   explore, rotate, hover   the scene's links, then the widget's
 ///   translate, turn, drag    the widget's alone
-/// No force jump: a link that is put on another shape starts anew, its weight from 0, and what it gave before fades (switching.h).
+/// A link that is put on another shape starts anew, its weight from 0; the force has no step (ramp.h).
 /// A tick without a probe holds everything; machine.h says how a grab goes on afterwards. Haptic thread: no allocation, lock, throw.
 #pragma once
 #include "engine/widget/machine.h"

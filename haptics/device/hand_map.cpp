@@ -9,6 +9,10 @@ namespace {
 
 constexpr double kGravityRamp_s = 0.1;
 
+double encoder_step_m(const DeviceCapabilities& device, const DeviceSettings& settings) {
+  return settings.encoder_step_m.value_or(device.mechanics.encoder_step_m);
+}
+
 std::uint32_t mask_of(int button) { return button > 0 ? 1u << (button - 1) : 0u; }
 
 DeviceCapabilities mapped(DeviceCapabilities device, const DeviceSettings& settings, bool turns) {
@@ -22,13 +26,13 @@ DeviceCapabilities mapped(DeviceCapabilities device, const DeviceSettings& setti
 
 }  // namespace
 
-bool is_identity(const DeviceSettings& settings) {
-  return settings.hand_from_device == Mat3(1.0) && settings.scale == 1 && settings.clutch_button == 0 && settings.force_button == 0 &&
+bool is_identity(const DeviceCapabilities& device, const DeviceSettings& settings) {
+  return !(encoder_step_m(device, settings) > 0) && settings.hand_from_device == Mat3(1.0) && settings.scale == 1 && settings.clutch_button == 0 && settings.force_button == 0 &&
          settings.gravity_n == Vec3(0.0);
 }
 
 std::unique_ptr<Device> with_hand_map(std::unique_ptr<Device> device, const DeviceSettings& settings) {
-  if (is_identity(settings)) return device;
+  if (is_identity(device->capabilities(), settings)) return device;
   return std::make_unique<HandMap>(std::move(device), settings);
 }
 
@@ -37,6 +41,7 @@ HandMap::HandMap(std::unique_ptr<Device> device, const DeviceSettings& settings)
       hand_from_device_(settings.hand_from_device),
       turn_(normalised(glm::quat_cast(settings.hand_from_device))),
       scale_(settings.scale),
+      still_(encoder_step_m(device_->capabilities(), settings), settings.rate_hz),
       clutch_mask_(mask_of(settings.clutch_button)),
       force_mask_(mask_of(settings.force_button)),
       gravity_n_(settings.gravity_n),
@@ -74,11 +79,15 @@ DeviceInput HandMap::read() noexcept {
   if (ready) {
     const std::uint32_t pressed = has_buttons_ ? input.buttons & ~last_buttons_ : 0u;
     if ((pressed & force_mask_) != 0) switched_on_ = !switched_on_;
-    if (!input.recorded) map_pose(input, clutches && has_read_);
+    if (!input.recorded) {
+      input.position_m = still_.follow(input.position_m);
+      map_pose(input, clutches && has_read_);
+    }
     last_buttons_ = input.buttons;
     has_read_ = has_buttons_ = true;
   } else {
     switched_on_ = has_buttons_ = false;
+    still_.forget();
   }
   input.forces_on = input.forces_on && !clutches && (force_mask_ == 0 || switched_on_);
   input.buttons &= ~(clutch_mask_ | force_mask_);

@@ -1,5 +1,5 @@
-/// The way from the device to the hand: any device, with what its settings say of axes, scale, clutch, gravity and switch.
-///   in:   x = s A x_d + o,   q = q_o A q_d      A: hand axes from device axes;  s: metres of hand per metre of device
+/// The way from the device to the hand: any device, with what its settings say of encoders, axes, scale, clutch, gravity and switch.
+///   in:   x_d without the dither of a hand that rests (still_pose.h);  x = s A x_d + o,   q = q_o A q_d      A: hand axes from device axes;  s: metres of hand per metre of device
 ///   out:  F_d = A^T F + g,   torque_d = A^T q_o^-1 torque      g: carries the grip, device axes
 /// Clutch: while its button is held the probe rests and the forces are off; on release o and q_o keep the difference, and the guard
 /// ramps the forces in. Force switch: off at the start and after a loss of the device; each press that is seen turns it over. Both
@@ -14,11 +14,12 @@
 #include <memory>
 
 #include "haptics/device/settings.h"
+#include "haptics/device/still_pose.h"
 
 namespace catena::haptics {
 
 /// True where a device needs no map.
-bool is_identity(const DeviceSettings& settings);
+bool is_identity(const DeviceCapabilities& device, const DeviceSettings& settings);
 
 class HandMap final : public Device {
  public:
@@ -41,6 +42,7 @@ class HandMap final : public Device {
   Mat3 hand_from_device_;
   Quat turn_;
   double scale_;
+  StillPose still_;
   std::uint32_t clutch_mask_, force_mask_;
   Vec3 gravity_n_;
   double gravity_step_;  ///< of its weight, a tick

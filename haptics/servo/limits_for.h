@@ -1,6 +1,6 @@
 /// What a device may be asked for: its own capabilities, bounded by what the person says. Off the tick.
 /// A device with force output, where the settings do not say otherwise:
-///   stiffness   the safe one at the servo's rate, min(2 b / (T + 2 t_d), 2 f_c / encoder step): 0, and nothing is felt, where the
+///   stiffness   the safe one at the servo's rate, min(2 b / (T + 2 t_d), f_c / encoder step): 0, and nothing is felt, where the
 ///               mechanism's damping b is not stated, or f_c beside an encoder step; rotational the same
 ///   force       the device's most; a larger number of the person's is taken at its word
 ///   slew        from nothing to the device's maximum force in 2 ms: max_force / 2 ms, at most 10 kN/s. Contact at hand speed is slower

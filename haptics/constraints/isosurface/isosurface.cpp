@@ -3,6 +3,7 @@
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface/analytic.h"
 #include "haptics/constraints/isosurface/cell_walk.h"
+#include "haptics/constraints/isosurface/crossing.h"
 #include "haptics/constraints/isosurface/reach.h"
 #include "haptics/constraints/isosurface/wall.h"
 #include "haptics/constraints/rules/link_keys.h"
@@ -40,8 +41,8 @@ bool is_thrown(const SideMemory& side, const Vec3& probe, double length) noexcep
 
 class LevelSurface final : public Surface {
  public:
-  LevelSurface(const LevelField& field, const PieceFrames& frames, IsosurfaceMemory& memory)
-      : field_(field), frames_(frames), memory_(memory) {}
+  LevelSurface(const LevelField& field, const PieceFrames& frames, const SideRules& rules, IsosurfaceMemory& memory)
+      : field_(field), frames_(frames), memory_(memory), one_sided_(rules.free != FreeSide::none) {}
 
   SideValue side(const Vec3& at) noexcept override {
     here_ = field_.at(at);
@@ -67,8 +68,9 @@ class LevelSurface final : public Surface {
 
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
     const LevelPoint end = look(probe);
-    const Reached reached = reach_on_segment(field_, field_.at(from), end);
-    return reached.found ? settle(reached.at, probe, Curvature{}) : Hold{};
+    const Reached reached = first_crossing(field_, from, end);
+    if (!reached.found) return {};
+    return field_.cells() ? settle(reached.at, probe, Curvature{}) : settle_formula(reached.at, probe, Curvature{}, false);
   }
 
   Hold near_by(const Vec3& probe, double limit) noexcept override {
@@ -82,7 +84,7 @@ class LevelSurface final : public Surface {
   }
 
   Vec3 normal() const noexcept override { return memory_.normal; }
-  double march_step() const noexcept override { return field_.march_step(); }
+  bool may_be_thin() const noexcept override { return true; }
   double domain_length() const noexcept override { return field_.length(); }
 
  private:
@@ -303,7 +305,10 @@ class LevelSurface final : public Surface {
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
       const Reached reached = reach_along_gradient(field_, at, at.n, 2 * voxel);
-      if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) return cell_point(*field_.cells(), reached.at.p);
+      // a probe behind a sheet is not in front of it
+      const bool same_sheet = !one_sided_ || dot(reached.at.n, probe - reached.at.p) * dot(start.n, e) > 0;
+      if (reached.found && reached.at.valid && same_sheet && norm(probe - reached.at.p) < norm(e))
+        return cell_point(*field_.cells(), reached.at.p);
     }
     return cell;
   }
@@ -324,6 +329,7 @@ class LevelSurface final : public Surface {
   LevelField field_;
   const PieceFrames& frames_;
   IsosurfaceMemory& memory_;
+  bool one_sided_;
   double travel_ = std::numeric_limits<double>::infinity();  ///< of this tick, along a wall
   LevelPoint here_;
   Vec3 asked_{0.0};
@@ -346,7 +352,7 @@ class Isosurface final : public Constraint {
     memory = IsosurfaceMemory{};
     memory.scan = scan;
     const SideRules rules = rules_.at(probe, state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, rules, memory);
     start_on(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
@@ -355,7 +361,7 @@ class Isosurface final : public Constraint {
     const SideMemory& side = memory.side;
     const bool finishes = side.fresh && side.status == Status::budget;
     if (field_->grid() != nullptr && (finishes || is_thrown(side, probe, field_->length()))) state.most = kThrownWork;
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, rules, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }
   bool is_sane(const LinkState& state) const noexcept override {

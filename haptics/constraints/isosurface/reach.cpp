@@ -113,7 +113,6 @@ Closest descend(LevelField& field, const Vec3& probe, const ClosestGoal& goal, L
 namespace {
 
 constexpr int kMarchSteps = 64;
-constexpr int kSegmentSteps = 64;
 constexpr int kReserve = 32;  // fetches that a scan leaves for what follows
 
 bool opposite(double a, double b) { return (a <= 0 && b >= 0) || (a >= 0 && b <= 0); }
@@ -215,21 +214,6 @@ Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_onl
   scan.nearest = nearest.p;
   scan.open = scan.next < kDirections * static_cast<int>(kRadii.size());
   return {false, nearest};
-}
-
-Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept {
-  const double length = norm(to.p - from.p);
-  const double count = std::min(std::max(std::floor(length / field.march_step()) + 1.0, 1.0), static_cast<double>(kSegmentSteps));
-  LevelPoint a = from;
-  for (double i = 1; i <= count && !field.spent(); ++i) {
-    const LevelPoint b = i == count ? to : field.at(from.p + (to.p - from.p) * (i / count));
-    if (a.valid && b.valid && opposite(a.sigma, b.sigma)) {
-      const Reached root = root_between(field, a, b);
-      if (root.found) return root;
-    }
-    a = b;
-  }
-  return {};
 }
 
 }  // namespace catena::haptics

@@ -45,7 +45,4 @@ inline bool is_sane(const Scan& scan) noexcept {
 /// nearest in value; with scan.open the budget has ended the scan, and the next call goes on.
 Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only, Scan& scan) noexcept;
 
-/// The first crossing of the segment from..to, seen with steps of march_step (at most 64).
-Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept;
-
 }  // namespace catena::haptics

@@ -10,7 +10,6 @@ namespace {
 constexpr double kFarthest = 1e6;  // in the mesh's own frame: a probe beyond is drawn in, towards the mesh
 constexpr double kReachOfWalk = 32;
 constexpr double kMeshSearchRadius = 4e6;
-constexpr double kShortest = 1e-300;
 
 Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) {
   // halves, so that no difference overflows
@@ -75,7 +74,7 @@ class MeshSurface final : public Surface {
   }
 
   Vec3 normal() const noexcept override { return mesh_.face(memory_.at.face).normal; }
-  double march_step() const noexcept override { return kShortest; }  // every step may pass through a sheet
+  bool may_be_thin() const noexcept override { return true; }
   double domain_length() const noexcept override { return mesh_.length(); }
 
  private:

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double kReleasePart = 2, kMaxSnap = 0.9;
 
-constexpr int kMaxBeforeSearch = 64;  // fetches: with more already spent, the search waits for the next tick
-
 struct SnapMemory {
   Vec3 hidden{0.0};  ///< the constraint's proxy while apart
   bool apart;
@@ -37,32 +35,25 @@ class Snap final : public Constraint {
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     SnapMemory& memory = outer_of<SnapMemory>(state);
     const Distances distances = at_last_proxy(state, scratch);
-    state.released = false;
-    state.limit = 0;
     if (!memory.apart) {
+      state.released = false;
+      state.limit = 0;
       inner_->advance(probe, state, scratch);
       const bool stays = state.status != Status::no_surface && !(norm(probe - state.proxy) >= distances.release);
-      if (stays) return settle(memory, distances, state);
-      memory.hidden = state.proxy;
+      if (stays) return hold(memory, distances, state);
+      return stay_apart(memory, distances, probe, Status::released, state);
     }
 
     // apart: where is the feature, and is it within reach; a search out of budget has found nothing
-    const bool lets_go = !memory.apart;
+    state.released = false;
     state.proxy = memory.hidden;
-    const bool affordable = state.evaluations <= (lets_go ? kMaxBeforeSearch : kEvaluationCap - 1);
-    if (affordable) inner_->seek(probe, state, scratch);
-    const bool searched = affordable && state.evaluations < kEvaluationCap && state.status != Status::budget;
-    if (searched && norm(probe - state.proxy) <= distances.snap) {
+    inner_->seek(probe, state, scratch);
+    const bool found = state.evaluations < kEvaluationCap && state.status != Status::budget && state.status != Status::no_surface;
+    if (found && norm(probe - state.proxy) <= distances.snap) {
       inner_->advance(probe, state, scratch);
-      if (!(norm(probe - state.proxy) >= distances.release)) return settle(memory, distances, state);
+      if (state.status != Status::no_surface && !(norm(probe - state.proxy) >= distances.release)) return hold(memory, distances, state);
     }
-    memory.hidden = state.proxy;
-    memory.apart = true;
-    state.proxy = probe;
-    state.residual = 0;
-    state.limit = distances.release;
-    state.released = searched;
-    state.status = state.released ? Status::released : Status::budget;
+    stay_apart(memory, distances, probe, state.status == Status::no_surface ? Status::no_surface : Status::released, state);
   }
 
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
@@ -83,12 +74,23 @@ class Snap final : public Constraint {
     return {spec_.has_snap ? std::fmin(snap, kMaxSnap * release) : kRearmPart * release, release};
   }
 
-  /// Held: what the constraint says. Without a feature it is apart, but says so itself.
-  static void settle(SnapMemory& memory, const Distances& distances, LinkState& state) noexcept {
-    memory.apart = state.status == Status::no_surface;
+  /// Held: what the constraint says.
+  static void hold(SnapMemory& memory, const Distances& distances, LinkState& state) noexcept {
+    memory.apart = false;
     memory.hidden = state.proxy;
     state.released = state.status == Status::released;
     if (!(state.limit > 0 && state.limit < distances.release)) state.limit = distances.release;
+  }
+  /// Apart: the probe passes; the constraint's own proxy is hidden.
+  static void stay_apart(SnapMemory& memory, const Distances& distances, const Vec3& probe, Status status, LinkState& state) noexcept {
+    memory.apart = true;
+    memory.hidden = state.proxy;
+    state.proxy = probe;
+    state.residual = 0;
+    state.limit = distances.release;
+    state.released = status == Status::released;
+    state.curve = -1;
+    state.status = status;
   }
 
   std::shared_ptr<const Constraint> inner_;

@@ -1,8 +1,8 @@
 /// Snap and release with hysteresis around any constraint (paper, section 2: taking hold and leaving a feature).
 ///   apart:  the proxy is the incoming probe x bit for bit, RELEASED; the constraint seeks its closest feature f unseen.
 ///           Takes hold in the tick in which |x - f| <= snap.
-///   held:   the constraint's own proxy p and status. Lets go in the tick in which |x - p| >= release, unless another place of
-///           the feature is within snap: then it goes on from there (BUDGET, and apart, where that search has to wait a tick).
+///   held:   the constraint's own proxy p and status. Lets go in the tick in which |x - p| >= release, or in which the constraint finds
+///           no feature: RELEASED in that tick, whatever else is near. In the next one another place of the feature may take hold.
 /// Keys of every link: `snap` (starts apart, unless the first probe is within it), `release` (default 2 snap; more than snap).
 /// `release` alone: starts held, snap = 0.1 release; a type that releases by itself then keeps its own rule. Both may follow a
 /// field; where release falls to snap or less, snap counts as 0.9 release. World units.

@@ -8,17 +8,22 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kHandStep = 0.02;  // of L: longest step, and deepest hold, for thin sheets
-constexpr double kThrough = 1e-6;   // of L: closer than this to the face, a probe on the free side has come out of it
+constexpr double kHandStep = 0.02;  // of L: a step that a hand makes, however short the tick
+constexpr double kInFront = 1e-11;  // of L: round-off of a probe in front of what holds it
 
 bool is_free(const SideRules& rules, double value) {
   return rules.free == FreeSide::above ? value >= 0 : rules.free == FreeSide::below ? value <= 0 : false;
 }
 
-/// True when the probe lies behind the held point, seen from the free side.
-bool is_behind(const Surface& surface, const SideRules& rules, const Vec3& probe, const Vec3& proxy) {
+/// How far the probe is in front of the sheet held, on its free side.
+double in_front(const Surface& surface, const SideRules& rules, const Vec3& probe, const Vec3& proxy) {
   const double above = dot(surface.normal(), probe - proxy);
-  return rules.free == FreeSide::above ? above < 0 : above > 0;
+  return rules.free == FreeSide::above ? above : -above;
+}
+
+/// Whether a hand may have made the last step.
+bool is_thrown(const Surface& surface, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
+  return memory.fresh && norm(probe - memory.probe) > std::max(kHandStep * surface.domain_length(), state.hand_step);
 }
 
 /// Passes the probe through where the field is not finite.
@@ -62,46 +67,22 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
     leave(probe, 0, Status::released, state);
     return;
   }
-  // a sheet taken hold of from afar pulls by the ramp
-  if (!memory.holding && norm(probe - hold.proxy) > travel_of(memory, probe, 0, state)) state.weight = 0;
   memory.holding = true;
   leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
 }
 
-/// One step of the way to the probe from a sheet that holds no more. True: it is there.
-bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
-  const Vec3 way = probe - memory.proxy;
-  const double far = norm(way), travel = travel_of(memory, probe, far, state);
-  if (!(far > travel)) {
-    memory.gliding = false;
-    return true;
-  }
-  memory.holding = memory.sheet = false;
-  if (rules.release > 0 && far >= rules.release) {
-    memory.gliding = false;
-    state.released = true;
-    leave(probe, 0, Status::released, state);
-  } else {
-    memory.gliding = true;
-    leave(memory.proxy + way * (travel / far), 0, Status::budget, state);
-  }
-  return false;
-}
-
-/// A thin sheet between the probe, on the free side, and where it came from: the held point on its near face, if any.
-Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory) {
-  const double reach = kHandStep * surface.domain_length();
+/// A one-sided probe on the free side: what holds it there, if anything. Held before, the sheet by which it came in; else one that its last
+/// step passed through.
+Hold hold_beyond(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
+  if (is_thrown(surface, probe, memory, state)) return {};
   Hold hold;
   if (memory.holding) {
-    // caught before, or pushed through within the sheet
-    const bool pushed = surface.follows_through() || (surface.march_step() > 0 && norm(probe - memory.probe) <= reach);
-    if (memory.sheet || pushed) hold = surface.slide(probe);
-    if (!memory.sheet && norm(probe - hold.proxy) <= kThrough * surface.domain_length()) hold.found = false;
-  } else if (memory.fresh && memory.status == Status::free && memory.known && surface.march_step() > 0) {
-    const double step = norm(probe - memory.probe);
-    if (step > surface.march_step() && step <= reach) hold = surface.cross(memory.probe, probe);
+    hold = surface.slide(probe);
+  } else if (surface.may_be_thin() && memory.fresh && memory.known && memory.status == Status::free) {
+    hold = surface.cross(memory.probe, probe);
   }
-  if (hold.found && (norm(probe - hold.proxy) > reach || !is_behind(surface, rules, probe, hold.proxy))) hold.found = false;
+  const bool on_its_way = memory.holding && hold.status == Status::budget;
+  if (hold.found && !on_its_way && in_front(surface, rules, probe, hold.proxy) >= -kInFront * surface.domain_length()) return {};
   return hold;
 }
 
@@ -163,8 +144,8 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
   if (state.released) {
     if (!one_sided) {
       const bool both = memory.fresh && memory.known && side.known;
-      const bool far = memory.fresh && surface.march_step() > 0 && norm(probe - memory.probe) > surface.march_step();
-      if (both && ((memory.value < 0) != (side.value < 0) || far)) hold = surface.cross(memory.probe, probe);
+      const bool crossed = both && (memory.value < 0) != (side.value < 0);
+      if (crossed || (both && surface.may_be_thin())) hold = surface.cross(memory.probe, probe);
       if (!hold.found) hold = surface.near_by(probe, kRearmPart * rules.release);
       have_hold = hold.found;
     }
@@ -176,21 +157,18 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
     state.released = memory.holding = memory.sheet = false;
   }
 
-  if (memory.gliding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
-
-  // free motion, but not through a thin sheet
+  // on the free side: free, or beyond a body that holds
   if (free) {
-    hold = catch_sheet(surface, rules, probe, memory);
-    memory.sheet = hold.found;
+    hold = hold_beyond(surface, rules, probe, memory, state);
     if (!hold.found) {
-      if (memory.holding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
-      memory.holding = false;
+      memory.holding = memory.sheet = false;
       leave(probe, 0, Status::free, state);
       remember(probe, side, memory, state);
       return;
     }
     have_hold = true;
   }
+  memory.sheet = free;
 
   // nothing is known of the side here: what is held stays held, what is free stays free
   if (one_sided && !side.known && !memory.holding) {

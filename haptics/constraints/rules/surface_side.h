@@ -4,11 +4,12 @@
 ///   release: the link lets go in the tick in which |probe - proxy| >= release. A one-sided link takes hold again when its
 ///   probe is on the free side, a two-sided one when the probe crosses the level or comes within 0.1 release of it.
 ///   A one-sided link whose first probe is deeper than release starts released.
-/// Thin sheets: a one-sided probe that passes a sheet, within one step of at most 0.02 L (a hand, not a jump) or by being pushed
-/// through it step by step, is held on the sheet's near face until it comes back, or is 0.02 L away, or released.
-/// Travel: no hold ends or begins with a step of the force. In one tick the proxy moves at most |dx| + slip (constraint.h), but for
-/// release: a hold that ends far from its probe in another way glides to it so fast, BUDGET; one that begins far from its probe takes
-/// hold with the ramp of a link that is switched on (the coupling's ramp_s; 0: at once).
+/// Sheets: which part of the surface holds a one-sided probe is state: the sheet by which it came in, followed as the proxy moves. It holds
+/// until the probe is in front of that sheet again (n . (x - p) >= 0 towards the free side, the proxy at its closest point) or `release`
+/// away, however thin the body is: what lies behind its far side is not free. A probe that comes in and out again within one tick is caught
+/// likewise. A probe that was thrown (further than 0.02 L in one tick, and faster than a hand, constraint.h) is where it is: on the free
+/// side it is free.
+/// Travel: in one tick the proxy moves at most |dx| + slip (constraint.h) along the surface.
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/chain/parameter.h"
@@ -75,10 +76,8 @@ class Surface {
   virtual Hold near_by(const Vec3& probe, double limit) noexcept = 0;
   /// Unit normal at the point held, to the side above.
   virtual Vec3 normal() const noexcept = 0;
-  /// Two crossings closer than this within one tick are not looked for; 0: there are none.
-  virtual double march_step() const noexcept { return 0; }
-  /// True where `slide` keeps the face held on the far side too: then a thin body that is passed slowly holds as a sheet does.
-  virtual bool follows_through() const noexcept { return false; }
+  /// Whether a step from free to free side may pass through it.
+  virtual bool may_be_thin() const noexcept { return false; }
   /// L, world units.
   virtual double domain_length() const noexcept = 0;
 };
@@ -93,15 +92,14 @@ struct SideMemory {
   bool fresh;           ///< `probe` and `proxy` mean something
   bool holding;         ///< the surface has a point to go on from
   bool settled;         ///< nothing to gain from another tick at the same probe
-  bool sheet;           ///< holding from the near face of a thin sheet
-  bool gliding;         ///< has let go of a sheet that is far, and is on its way to the probe
+  bool sheet;           ///< holding a probe that is beyond the body, where the value is that of the free side
   Status status;        ///< of the last tick
   Reason reason;        ///< of the last tick
 };
 
 /// Of a state from a file: see Constraint::is_sane.
 inline bool is_sane(const SideMemory& m) noexcept {
-  return are_bools(m.known, m.fresh, m.holding, m.settled, m.sheet, m.gliding) && is_one_of(m.status, Status::bad_probe) &&
+  return are_bools(m.known, m.fresh, m.holding, m.settled, m.sheet) && is_one_of(m.status, Status::bad_probe) &&
          is_one_of(m.reason, Reason::not_finite);
 }
 

@@ -1,8 +1,10 @@
 /// The proxy on straight pieces that follow each other, at the local minimum of the distance to the probe that lies downhill from where
-/// the proxy is (shapes.h, polyline_constraint). Start, `seek` and taking hold again: the closest place anywhere (closest_search.h).
+/// the proxy is (shapes.h, polyline_constraint). Start, `seek` and taking hold again: the closest place anywhere (closest_search.h); the
+/// probe passes, BUDGET, until that search has ended.
 ///   Pieces   has(k): of 0 true; piece(k): a Straight; neighbour(k, way): the piece after (way 1) or before (-1) it, itself at an open end;
 ///            search, is_sane, extent as of ClosestSearch; kFirstVisits, kVisits: nodes of the first tick's search and of a later one's;
-///            kVisitWork, walk_work(n), kMostPieces: what a visited node and the n-th piece walked count, and how many a tick walks
+///            line_of(k), if it has lines: the one of piece k; kVisitWork, walk_work(n), kMostPieces: what a visited node and the n-th
+///            piece walked count, and how many a tick walks
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/constraints/rules/closest_search.h"
@@ -27,14 +29,11 @@ class AlongPieces final : public Surface {
   SideValue side(const Vec3&) noexcept override { return {}; }
 
   Hold place(const Vec3& probe) noexcept override {
-    SearchState& search = memory_.search;
-    shape_.search(probe, search.any ? Shape::kVisits : Shape::kFirstVisits, search);
-    work_ += Shape::kVisitWork * search.visits;
-    return hold(search.best, probe, search.open ? Status::budget : Status::ok);
+    search(probe);
+    return memory_.search.open ? Hold{false, probe, 0, Status::budget} : hold(memory_.search.best, probe, Status::ok);
   }
 
   Hold slide(const Vec3& probe) noexcept override {
-    if (memory_.search.open) return place(probe);
     std::uint32_t k = memory_.piece;
     int way = memory_.end == 0 ? 0 : leave_corner(k, probe);
     for (int visited = 0; visited < Shape::kMostPieces; ++visited, work_ += Shape::walk_work(visited)) {
@@ -51,18 +50,20 @@ class AlongPieces final : public Surface {
   Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
 
   Hold near_by(const Vec3& probe, double limit) noexcept override {
-    const Hold found = place(probe);
+    search(probe);
+    const Hold found = hold(memory_.search.best, probe, Status::ok);
     if (!(norm(probe - found.proxy) <= limit)) return {};
     memory_.search.open = false;
-    return {true, found.proxy, found.residual, Status::ok};
+    return found;
   }
 
   int work() const noexcept { return work_; }
+  int curve() const noexcept requires requires(const Shape& shape) { shape.line_of(0u); }
+  { return shape_.line_of(memory_.piece); }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
   double domain_length() const noexcept override { return std::max(kSceneLength, shape_.extent()); }
 
   bool primitive(const Vec3& at, Primitive& out) noexcept {
-    memory_.search.open = false;
     const Hold held = slide(at);
     if (memory_.end != 0)
       out = {Primitive::Kind::point, held.proxy, Vec3(0.0)};
@@ -72,6 +73,11 @@ class AlongPieces final : public Surface {
   }
 
  private:
+  void search(const Vec3& probe) noexcept {
+    SearchState& search = memory_.search;
+    shape_.search(probe, search.any ? Shape::kVisits : Shape::kFirstVisits, search);
+    work_ += Shape::kVisitWork * search.visits;
+  }
   /// From a corner both ways may lead nearer: the steeper one; at a tie onwards. Sets k to the piece on that side.
   int leave_corner(std::uint32_t& k, const Vec3& probe) const {
     const std::uint32_t other = shape_.neighbour(k, memory_.end);

@@ -62,8 +62,7 @@ class BoxSurface final : public Surface {
     return std::fabs(value(to_box(probe))) <= limit ? place(probe) : Hold{};
   }
   Vec3 normal() const noexcept override { return normal_; }
-  double march_step() const noexcept override { return std::numeric_limits<double>::min(); }
-  bool follows_through() const noexcept override { return shape_.catches; }
+  bool may_be_thin() const noexcept override { return true; }
   double domain_length() const noexcept override { return std::max(kSceneLength, 2 * max_abs(shape_.half)); }
 
   /// A face's plane; from outside an edge's line or the corner.

@@ -54,13 +54,13 @@ class ClosedForm final : public Constraint {
     Memory& memory = memory_of<Memory>(state);
     S surface(shape_, memory.own, memory.side);
     start_on(surface, rules_.at(probe, state, scratch), probe, memory.side, state);
-    count(surface, state);
+    tell(surface, memory.side.holding, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Memory& memory = memory_of<Memory>(state);
     S surface(shape_, memory.own, memory.side);
     advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
-    count(surface, state);
+    tell(surface, memory.side.holding, state);
   }
   bool primitive(const Vec3& at, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
     if (state.released || state.status == Status::no_surface) return false;
@@ -78,8 +78,9 @@ class ClosedForm final : public Constraint {
   }
 
  private:
-  static void count(const S& surface, LinkState& state) noexcept {
+  static void tell(const S& surface, [[maybe_unused]] bool holding, LinkState& state) noexcept {
     if constexpr (requires { surface.work(); }) state.steps += surface.work();
+    if constexpr (requires { surface.curve(); }) state.curve = holding ? surface.curve() : -1;
   }
   struct Memory {
     SideMemory side;

@@ -77,6 +77,11 @@ struct FileLines {
     if (way > 0) return lines->is_last[k + 1] ? k : k + 1;
     return k == 0 || lines->is_last[k - 1] ? k : k - 1;
   }
+  /// The line of a piece, as the file counts them.
+  int line_of(std::uint32_t k) const noexcept {
+    const auto& first = lines->set->first;
+    return static_cast<int>(std::upper_bound(first.begin(), first.end(), k) - first.begin()) - 1;
+  }
   void search(const Vec3& probe, int most_visits, SearchState& state) const noexcept {
     lines->tree.search(
         probe, most_visits, state,

@@ -54,24 +54,16 @@ class NearestPoint final : public Surface {
   SideValue side(const Vec3&) noexcept override { return {}; }
 
   Hold place(const Vec3& probe) noexcept override {
-    SearchState& search = memory_.search;
-    shape_.tree.search(
-        probe - shape_.origin, search.any ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
-        [&](std::size_t leaf, const auto& see) {
-          const std::size_t last = std::min((leaf + 1) * kPointsOfLeaf, shape_.points.size());
-          for (std::size_t k = leaf * kPointsOfLeaf; k < last; ++k) see(static_cast<std::uint32_t>(k));
-        });
-    work_ += kVisitWork * search.visits;
-    memory_.held = search.best;
-    return hold(search.open ? Status::budget : Status::ok);
+    search(probe);
+    return memory_.search.open ? Hold{false, probe, 0, Status::budget} : hold();
   }
-  Hold slide(const Vec3& probe) noexcept override { return memory_.search.open ? place(probe) : hold(Status::ok); }
+  Hold slide(const Vec3&) noexcept override { return hold(); }
   Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
   Hold near_by(const Vec3& probe, double limit) noexcept override {
-    const Hold found = place(probe);
-    if (!(norm(probe - found.proxy) <= limit)) return {};
+    search(probe);
+    if (!(norm(probe - held()) <= limit)) return {};
     memory_.search.open = false;
-    return {true, found.proxy, 0, Status::ok};
+    return hold();
   }
 
   int work() const noexcept { return work_; }
@@ -83,11 +75,22 @@ class NearestPoint final : public Surface {
   }
 
  private:
+  void search(const Vec3& probe) noexcept {
+    SearchState& search = memory_.search;
+    shape_.tree.search(
+        probe - shape_.origin, search.any ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
+        [&](std::size_t leaf, const auto& see) {
+          const std::size_t last = std::min((leaf + 1) * kPointsOfLeaf, shape_.points.size());
+          for (std::size_t k = leaf * kPointsOfLeaf; k < last; ++k) see(static_cast<std::uint32_t>(k));
+        });
+    work_ += kVisitWork * search.visits;
+    memory_.held = search.best;
+  }
   Vec3 held() const noexcept {
     const Vec3 p(shape_.points[memory_.held]);
     return shape_.origin == Vec3(0.0) ? p : shape_.origin + p;
   }
-  Hold hold(Status status) const noexcept { return {true, held(), 0, status}; }
+  Hold hold() const noexcept { return {true, held(), 0, Status::ok}; }
 
   const PointTree& shape_;
   Memory& memory_;

@@ -105,7 +105,7 @@ class SphereSurface final : public Surface {
 
   Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
   Vec3 normal() const noexcept override { return normal_; }
-  double march_step() const noexcept override { return std::numeric_limits<double>::min(); }
+  bool may_be_thin() const noexcept override { return true; }
   /// L: its diameter, or that of a scene without fields.
   double domain_length() const noexcept override { return std::max(kSceneLength, 2 * radius_); }
 

@@ -280,7 +280,7 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
   EXPECT_NEAR(replay_with("").number(0, "force_z"), 8, 1e-12);
   EXPECT_NEAR(replay_with(plain + R"(, "stiffness_cap": 300})").number(9, "force_z"), 3, 1e-12);
   EXPECT_NEAR(replay_with(plain + R"(, "damping": 0.1, "friction": 9})").number(9, "force_z"), 200 * 0.01, 1e-12) << "2 b / T";
-  EXPECT_NEAR(replay_with(plain + R"(, "encoder_step": 1e-3, "friction": 0.3})").number(9, "force_z"), 6, 1e-12) << "2 f_c / step";
+  EXPECT_NEAR(replay_with(plain + R"(, "encoder_step": 1e-3, "friction": 0.3})").number(9, "force_z"), 3, 1e-12) << "f_c / step";
   EXPECT_NEAR(replay_with(plain + R"(, "max_force": 1.5})").number(9, "force_z"), 1.5, 1e-12);
   const Table slewed = replay_with(R"({"type": "simulated", "slew": 40, "ramp_in": 0, "stiffness_cap": "none"})");
   const Table ramped = replay_with(R"({"type": "simulated", "slew": 1e9, "ramp_in": 0.2, "stiffness_cap": "none"})");

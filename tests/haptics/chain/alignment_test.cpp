@@ -110,7 +110,9 @@ TEST(Alignment, TheSpringGivesBackWhatItTook) {
   };
   EXPECT_NEAR(work_of(Align::Sign::either, 0.9), 0, 1e-6);
   EXPECT_NEAR(work_of(Align::Sign::same, 2.5), 0, 1e-6);
-  EXPECT_NEAR(work_of(Align::Sign::either, 2.5), 0, 2e-3);  // twice over the ridge, within one tick each: kappa pi/2 times a tick's turn
+  // four times over the ridge, which takes what lies between 10 degrees past it and 10 degrees before it, and gives nothing
+  const double past = kPi / 2 + std::asin(0.17), before = kPi - past;
+  EXPECT_NEAR(work_of(Align::Sign::either, 2.5), -4 * 0.5 * 0.7 * (past * past - before * before), 2e-3);
 }
 
 TEST(Alignment, ThroughHalfATurnTheTorqueStaysBounded) {

@@ -330,7 +330,7 @@ TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
   Vec3 last = hand.out.force_n;
   for (int k = 0; k < 60; ++k) {
     hand.at({0, 0.01, 0.01}, k / 25 % 2 == 0 ? 1 : 0);
-    EXPECT_LE(norm(hand.out.force_n - last), 500 * 0.01 * 0.0501 + 1e-12) << k;
+    EXPECT_LE(norm(hand.out.force_n - last), hand.program.coupling.max_force_n * 0.05 + 1e-12) << k;
     last = hand.out.force_n;
   }
 }

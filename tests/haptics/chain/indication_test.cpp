@@ -130,7 +130,7 @@ TEST(Indication, ExtremesStayFinite) {
       }
 }
 
-TEST(Indication, InTheChainCuesRampAndFadeWithTheirLink) {
+TEST(Indication, InTheChainCuesRampInWithTheirLinkAndEndWithIt) {
   Program program;
   program.links = {test::hold_plane("a", {0, 0, 1}, 0, 0)};  // no stiffness: the cue alone
   program.links[0].on.button = 1;
@@ -143,8 +143,12 @@ TEST(Indication, InTheChainCuesRampAndFadeWithTheirLink) {
   for (int i = 0; i < 600; ++i) {
     const double before = hand.out.force_n.z;
     hand.step(probe, i < 200 ? 1 : i < 300 ? 0 : static_cast<std::uint32_t>(i / 20 % 2));
-    // the wave's own slope is 4 x 10 Hz x 1 ms, the ramp's and the fade's 0.01 each
-    EXPECT_LE(std::fabs(hand.out.force_n.z - before), 0.04 + 0.03) << i;
+    // the wave's own slope is 4 x 10 Hz x 1 ms, the ramp's 0.01
+    const bool on = i < 200 || (i >= 300 && i / 20 % 2 == 1);
+    if (on)
+      EXPECT_LE(std::fabs(hand.out.force_n.z - before), 0.04 + 0.01 + 1e-9) << i;
+    else
+      EXPECT_EQ(hand.out.force_n, Vec3(0.0)) << i;
     swing = std::max(swing, std::fabs(hand.out.force_n.z));
     if (i >= 101 && i < 200) {
       EXPECT_DOUBLE_EQ(hand.out.links[0].leaving, 0.5);

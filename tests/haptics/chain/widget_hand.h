@@ -24,7 +24,7 @@ inline haptics::Program widget_program(std::vector<widget::Spec> specs, std::vec
   haptics::Program program;
   program.links = std::move(links);
   program.coupling.ramp_s = ramp_s;
-  program.coupling.max_force_n = 1e9;
+  program.coupling.max_force_n = 500;
   for (std::size_t i = 0; i < specs.size(); ++i) program.widget_names.push_back("w" + std::to_string(i));
   program.widgets = std::move(specs);
   haptics::add_widget_links(program);
@@ -59,8 +59,8 @@ struct WidgetHand {
   /// Names of the links that run, in order.
   std::string order() const {
     std::string names;
-    for (int k = 0; k < state.fade.order.count; ++k)
-      names += (k > 0 ? " " : "") + program.links[static_cast<std::size_t>(state.fade.order.links[static_cast<std::size_t>(k)])].name;
+    for (int k = 0; k < state.order.count; ++k)
+      names += (k > 0 ? " " : "") + program.links[static_cast<std::size_t>(state.order.links[static_cast<std::size_t>(k)])].name;
     return names;
   }
   void replace(const haptics::Program& next) {

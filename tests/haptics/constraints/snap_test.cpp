@@ -171,7 +171,9 @@ TEST(Snap, AnOnlineStreamlineWithoutSeedTakesHoldWhereTheHandIs) {
   EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0.5, 0)));
   rig.tick({0.2, 0.7, 0});
   EXPECT_LE(norm(rig.state.proxy - Vec3(0.2, 0.5, 0)), 1e-11);
-  // pulled off, it goes on from the line through the hand
+  // pulled off, it lets go, and then takes hold of the line through the hand
+  rig.tick({0.2, 0.81, 0});
+  EXPECT_TRUE(apart(rig, {0.2, 0.81, 0}));
   rig.tick({0.2, 0.81, 0});
   EXPECT_TRUE(held(rig));
   EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.2, 0.81, 0)));

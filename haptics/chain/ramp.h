@@ -1,0 +1,31 @@
+/// The one rule of ramps: no tick changes the sum of the links' forces by more than the hand's motion explains and a ramp allows, whatever
+/// the cause: a switch, a mode, a snap, a release, a search that fails, another sheet, another program.
+///   f_k: the links' force of tick k, at most max_force;  moved = K |dx|, K = sum of k_i S;  fall = max_force dt / ramp_s
+///   d = f_k - f_(k-1);   e += d min(1, moved / |d|) - d;   |e| shrinks by `fall`;   sent: f_k + e
+/// so that |sent_k - sent_(k-1)| <= moved + fall. Where d stays within `moved` nothing is added, and e fades to zero. ramp_s = 0: no ramp.
+/// Cues (indication.h) and damping are added after it. Torques follow the same rule (alignment.h). Haptic thread: no allocation, lock,
+/// throw.
+#pragma once
+#include "engine/base/vec.h"
+
+namespace catena::haptics {
+
+/// What the ramp remembers. Newtons, or newton metres.
+struct Ramp {
+  Vec3 last{0.0};  ///< f of the last tick
+  Vec3 rest{0.0};  ///< e: what is still to fade
+};
+
+/// Steps the ramp to this tick's f; the first tick and those without a ramp (`fall` infinite) add nothing. Returns e.
+inline Vec3 step_ramp(Ramp& ramp, const Vec3& now, double moved, double fall) noexcept {
+  const Vec3 step = now - ramp.last;
+  const double far = norm(step);
+  ramp.last = now;
+  if (far > moved) ramp.rest += step * (moved / far) - step;
+  const double left = norm(ramp.rest);
+  // infinite or not a number: nothing that could fade
+  ramp.rest = left > fall && std::isfinite(left) ? ramp.rest * ((left - fall) / left) : Vec3(0.0);
+  return ramp.rest;
+}
+
+}  // namespace catena::haptics

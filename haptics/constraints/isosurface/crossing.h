@@ -1,0 +1,15 @@
+/// The first crossing of a level by the way of a probe, between two ticks. However thin the body is that the way passes through:
+///   trilinear cells   exact: along a straight way the value in one cell is a cubic, of which every extreme is looked at
+///   else              by steps of half a voxel, or L/256; between two places on the same side, where their tangents meet beyond the level,
+///                     which every convex dip lies above
+/// World units; every fetch counts. Haptic thread: no allocation, lock, or throw.
+#pragma once
+#include "haptics/constraints/isosurface/reach.h"
+
+namespace catena::haptics {
+
+/// Where the segment from..to meets the level first; `to` has been asked for already. A way of more than 160 cells, or 64 steps, is looked
+/// at by as many steps.
+Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to) noexcept;
+
+}  // namespace catena::haptics

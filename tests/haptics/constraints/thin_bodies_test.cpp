@@ -1,0 +1,143 @@
+// A one-sided link holds a hand by the sheet by which it came in, until `release` and through no other door, whatever the body's thickness,
+// tilt and curvature, and whatever the hand's speed and the rate.
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::tests {
+namespace thin_bodies_test {
+
+constexpr double kReleaseAt = 0.3;
+
+/// A part of a shell of a sphere, or where the radius is infinite of a plate: positive within half its thickness.
+struct Shell {
+  Vec3 outward;  ///< of the middle of the front, which passes the origin
+  double thickness = 0, radius = std::numeric_limits<double>::infinity();
+
+  double value(const Vec3& x) const { return 0.5 * thickness - std::fabs(height(x)); }
+  /// Above the middle of the body.
+  double height(const Vec3& x) const { return std::isfinite(radius) ? norm(x + outward * radius) - radius : dot(outward, x); }
+  Vec3 up(const Vec3& x) const { return std::isfinite(radius) ? direction(x + outward * radius) : outward; }
+};
+
+class ShellFormula final : public field::ScalarField {
+ public:
+  explicit ShellFormula(const Shell& shell) : shell_(shell) {
+    set_domain("shell", field::Mapping::from_linear(Mat3(1.0), Vec3(0.0)), {Vec3(-2.0), Vec3(2.0)});
+  }
+  field::ScalarSample sample(const Vec3& x, field::Cursor&) const noexcept override {
+    return {shell_.value(x), shell_.up(x) * (shell_.height(x) < 0 ? 1.0 : -1.0), true};
+  }
+  double min_value() const noexcept override { return -std::numeric_limits<double>::infinity(); }
+  double max_value() const noexcept override { return 0.5 * shell_.thickness; }
+
+ private:
+  Shell shell_;
+};
+
+/// Pushes from the front through the body: slowly about the body, then by steps of `fast` until it lets go. `is_inside`: of the body as it
+/// is sampled.
+template <class Inside>
+void push(const ConstraintPtr& link, const Shell& shell, const Vec3& way, double slow, double fast, double dt, const Inside& is_inside,
+          const std::string& what) {
+  Rig rig(link);
+  rig.state.hand_step = kFastestHand * dt;
+  const double cosine = -dot(way, shell.outward);
+  double at = -0.5 * shell.thickness - 0.02;
+  Vec3 x = way * (at / cosine);
+  rig.tick(x);
+  bool inside = false;
+  for (int i = 0; i < 20000; ++i) {
+    at += std::fabs(at) < 0.5 * shell.thickness + 2 * slow ? slow : fast;
+    const Vec3 last = x;
+    x = way * (at / cosine);
+    rig.tick(x);
+    for (int k = 1; k <= 64 && !inside; ++k) inside = is_inside(last + (x - last) * (k / 64.0));
+    if (!inside) continue;
+    if (rig.state.released) {
+      EXPECT_GE(shell.thickness * 0.5 - shell.height(x), kReleaseAt * 0.7) << what;
+      return;
+    }
+    ASSERT_TRUE(rig.state.status == Status::ok || rig.state.status == Status::budget)
+        << what << ": " << exchange::status_word(rig.state.status) << " at a depth of " << 0.5 * shell.thickness - shell.height(x);
+    ASSERT_LT(norm(rig.state.proxy - x), kReleaseAt) << what;
+    if (rig.state.status == Status::ok) {
+      ASSERT_GT(dot(rig.state.proxy - x, shell.up(rig.state.proxy)), -1e-9) << what << ": held by the far side";
+    }
+  }
+  FAIL() << what << ": it never let go";
+}
+
+class ThinBodies : public testing::TestWithParam<int> {};
+
+TEST_P(ThinBodies, HoldByTheSheetOfTheirFront) {
+  Random random(static_cast<std::uint64_t>(100 + GetParam()));
+  for (int i = 0; i < 40; ++i) {
+    Shell shell{random.unit(), std::pow(10, random.in(-3, -1))};
+    if (i % 2) shell.radius = random.in(0.8, 3);
+    const double rate = std::array{100.0, 1000.0, 8000.0}[static_cast<std::size_t>(i % 3)];
+    const double speed = std::pow(10, random.in(-2, 1));
+    const double step = speed / rate, fast = std::max(step, 0.01);
+    const Vec3 way = direction(direction(cross(shell.outward, random.unit())) * random.in(0, 0.6) - shell.outward);
+    const double slow = std::max(step, shell.thickness / 500);
+    Fields fields;
+    const double voxel = shell.thickness * random.in(0.6, 3);
+    const std::string what = fmt::format("{}: thickness {:.4f}, radius {:.2f}, voxel {:.4f}, {:.3f} m/s at {} Hz", i, shell.thickness,
+                                         shell.radius, voxel, speed, rate);
+    fields.named["f"].scalar = std::make_shared<ShellFormula>(shell);
+    const auto in_shell = [&](const Vec3& x) { return shell.value(x) > 1e-6; };
+    const std::string rules = fmt::format(R"(, "release": {})", kReleaseAt);
+    if (GetParam() == 0) {
+      push(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below")" + rules + "}", fields), shell, way,
+           slow, fast, 1 / rate, in_shell, "formula " + what);
+    } else if (GetParam() == 1) {
+      // a grid of its own axes, fine enough across the body for there to be one
+      if (voxel < 0.012) continue;
+      const auto half = static_cast<int>(std::min(0.7 / voxel, 40.0));
+      const double edge = std::max(voxel, 0.7 / 40);
+      if (shell.thickness < 1.2 * edge) shell.thickness = 1.2 * edge;
+      const auto mapping = field::Mapping::from_linear(Mat3(edge), Vec3(-edge * half));
+      fields.named["g"].scalar =
+          grid_of(mapping, {2 * half + 1, 2 * half + 1, 2 * half + 1}, [&](const Vec3& x) { return shell.value(x); });
+      push(
+          build(R"({"name": "a", "type": "isosurface", "field": "g", "level": 0, "free": "below")" + rules + "}", fields), shell, way, slow,
+          fast, 1 / rate,
+          [&](const Vec3& x) {
+            field::Cursor cursor;
+            return fields.named["g"].scalar->sample(x, cursor).value > 1e-6;
+          },
+          "grid " + what);
+    } else {
+      shell.radius = std::numeric_limits<double>::infinity();
+      Vec3 a = direction(cross(shell.outward, random.unit()));
+      const Vec3 b = cross(shell.outward, a);
+      const std::string box = fmt::format(
+          R"({{"name": "a", "type": "box", "center": [0, 0, 0], "size": [3, 3, {}], "rotation": [{}, {}, {}, {}, {}, {}, {}, {}, {}], "free": "above"{}}})",
+          shell.thickness, a.x, b.x, shell.outward.x, a.y, b.y, shell.outward.y, a.z, b.z, shell.outward.z, rules);
+      push(build(box), shell, way, slow, fast, 1 / rate, in_shell, "box " + what);
+    }
+    if (HasFatalFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ThinBodies, testing::Values(0, 1, 2));
+
+// Below a voxel: two layers of samples above the level, and between them steps that pass both sheets.
+TEST(ThinBodies, AFastHandIsCaughtHoweverThinTheBodyIs) {
+  Random random(7);
+  for (int i = 0; i < 300; ++i) {
+    Fields fields;
+    const double peak = std::pow(10, random.in(-4, -0.5));  // the body is as thick as 2 peak voxels
+    const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
+    fields.named["f"].scalar = grid_of(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
+    Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below"})", fields));
+    rig.state.hand_step = 0.1;
+    const double before = random.in(0.001, 0.03), after = random.in(0.001, 0.03);
+    const Vec3 place(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 0), slant(random.in(-0.02, 0.02), random.in(-0.02, 0.02), 0);
+    rig.tick(place + Vec3(0, 0, 0.1 * peak + before));
+    ASSERT_EQ(rig.tick(place + slant - Vec3(0, 0, 0.1 * peak + after)).status, Status::ok) << peak;
+    ASSERT_NEAR(rig.state.proxy.z, 0.1 * peak, 1e-7);
+    ASSERT_EQ(rig.tick(place + slant + Vec3(0, 0, 0.1 * peak + after)).status, Status::free);
+  }
+}
+
+}  // namespace thin_bodies_test
+}  // namespace catena::haptics::tests
