@@ -113,6 +113,8 @@ Outcome replay_scene(const ReplayOptions& options) {
   }
   CATENA_CHECK(commit_all(files));
   if (!scene.workspace.given) fmt::print("{}", scale_sentence({program->metres_per_unit}, false));
+  if (!(program->coupling.ramp_s > 0))
+    fmt::print("forces are not ramped (\"ramp_s\" is 0): where a link lets go or is switched they step\n");
   fmt::print("{}", observer.sentence(scene, 1e-3 * stats.tick_ns_p50));
   fmt::print("{}", felt.text(*program, stats));
   fmt::print("{}", use.text(*program));

@@ -111,10 +111,11 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
   CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
   flow::TraceOptions exact;
   exact.length = options.length;
+  exact.longest_step = options.step * flow.field->longest_edge();
   flow::BatchOptions batch;
   batch.length = options.length;
   batch.tolerance = options.tolerance;
-  if (options.step > 0) batch.longest_step = options.step;
+  batch.longest_step = options.step;
   const bool exactly = options.tolerance <= 1e-9;
   const flow::BatchTracer tracer(flow, batch);
   const std::size_t at_once = exactly ? 64 : 4096;  // between two looks at the progress
@@ -238,7 +239,11 @@ void add_trace(CLI::App& program, Work& chosen) {
       ->add_option("--tolerance", options->tolerance,
                    "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
       ->check(CLI::Range(0.0, 0.01));
-  command->add_option("--step", options->step, "with a tolerance: the longest step, voxels (default: 0.5)")->check(CLI::Range(0.01, 4.0));
+  command
+      ->add_option(
+          "--step", options->step,
+          "the longest step, voxels, of a formula world units (default: 0.5; as the lines need where the tolerance is at most 1e-9)")
+      ->check(CLI::Range(0.01, 4.0));
   command->add_option("--time-step", options->time_step, "which step in time, from 0, of a field that has several (default: the scene's)")
       ->check(CLI::Range(0, 1'000'000));
   command->add_option("--repeat", options->repeat, "trace a table so many times, for --stats: medians, and the first")

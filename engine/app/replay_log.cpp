@@ -48,9 +48,11 @@ namespace {
 
 // "12 ticks, all equal to the bit", or where they are not.
 Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, const log::LogReplay& result) {
+  const std::string& by = reader.header().catena_version;
   if (result.differing > 0)
-    throw MachineFailure{fmt::format("{}: first differs at tick {}: {} ({} of {} ticks differ)", options.log, result.first_differing,
-                                     result.difference, result.differing, result.stats.ticks)};
+    throw MachineFailure{fmt::format("{}: first differs at tick {}: {} ({} of {} ticks differ{})", options.log, result.first_differing,
+                                     result.difference, result.differing, result.stats.ticks,
+                                     by == kVersion ? "" : "; recorded by catena " + by + ", and this is " + kVersion)};
   fmt::print("{}: {} ticks, all equal to the bit; {}\n", printable(options.log), result.stats.ticks,
              result.stopped.empty() ? printable(reader.ending()) : "then the recording has a hole");
   if (!result.stopped.empty()) throw MachineFailure{fmt::format("{}: {}; what follows cannot be run again", options.log, result.stopped)};

@@ -230,6 +230,7 @@ void BatchBranch::add_knots() {
 }
 
 constexpr double kLapGap = 0.01;           ///< voxels
+constexpr float kLongestStep = 0.5f;       ///< voxels
 constexpr double kByHandTolerance = 1e-8;  ///< of the exact marcher's pieces: errors grow near saddles
 
 using Slots = std::vector<std::optional<Result<CurvePtr>>>;
@@ -279,9 +280,10 @@ class Worker {
       : bricks_(bricks), flow_(flow), seeds_(seeds), order_(order), next_(next), slots_(slots) {
     const double tolerance = options.tolerance * flow.field->length() / flow.field->longest_edge();
     control_.tolerance2 = static_cast<float>(tolerance * tolerance);
-    control_.longest_step = static_cast<float>(options.longest_step);
+    control_.longest_step = options.longest_step > 0 ? static_cast<float>(options.longest_step) : kLongestStep;
     trace_.length = options.length;
     trace_.max_knots = options.max_knots;
+    trace_.longest_step = options.longest_step * flow.field->longest_edge();
     trace_.tolerance = trace_.hermite_tolerance = std::min(options.tolerance, kByHandTolerance);
     trace_ = filled_options(flow, trace_);
     lap_gap_ = std::max(kLapGap * flow.field->longest_edge(), 10 * options.tolerance * flow.field->length());
@@ -379,6 +381,7 @@ std::vector<Result<CurvePtr>> BatchTracer::trace(std::span<const Vec3> seeds) co
     TraceOptions options;
     options.length = options_.length;
     options.max_knots = options_.max_knots;
+    options.longest_step = options_.longest_step * flow_.field->longest_edge();
     options.tolerance = options.hermite_tolerance = options_.tolerance;
     return trace_each(flow_, seeds, options);
   }

@@ -17,7 +17,8 @@ namespace catena::flow {
 struct BatchOptions {
   double length = 0;                ///< longest arc length in each direction, world units; 0: 10 L
   double tolerance = 1e-7;          ///< of the estimated error of one step, times L; never above a hundredth of the step
-  double longest_step = 0.5;        ///< voxels: bounds what the estimate cannot see, the kinks at the faces of cells
+  double longest_step = 0;          ///< voxels, of a formula world units; 0: half a voxel, which bounds what the estimate cannot see,
+                                    ///< the kinks at the faces of cells
   std::size_t max_knots = 2000000;  ///< of one line, both directions together
 };
 

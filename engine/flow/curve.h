@@ -131,6 +131,7 @@ struct TraceOptions {
   double tolerance = 1e-10;          ///< of the embedded error of one step, times L
   double hermite_tolerance = 1e-11;  ///< of the Hermite midpoint against a half step, times L
   std::size_t max_knots = 2000000;   ///< of both directions together
+  double longest_step = 0;           ///< of one step, world units; 0: two voxels, or a tenth of L
 };
 
 /// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. Ends at the domain's boundary, a

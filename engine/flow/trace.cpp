@@ -72,7 +72,7 @@ class March {
   /// One accepted step, or one change of the step's length, or the end.
   std::optional<LineEnd> advance(std::vector<Knot>& knots) {
     if (h_ <= 0) h_ = 1e-3 * domain_;
-    double h = std::min(std::min(h_, medium_.longest_step()), options_.length - s_);
+    double h = std::min({h_, medium_.longest_step(), options_.longest_step, options_.length - s_});
     const bool forced = idle_ > 8;
     if (forced) h = std::min(h, forced_);
 
@@ -277,6 +277,7 @@ Result<CurvePtr> sewn(const Flow& flow, const Vec3& seed, const Branch& forward,
 
 TraceOptions filled_options(const Flow& flow, TraceOptions options) {
   if (!(options.length > 0)) options.length = 10 * flow.field->length();
+  if (!(options.longest_step > 0)) options.longest_step = std::numeric_limits<double>::infinity();
   options.max_knots = std::max<std::size_t>(options.max_knots / 2, 8);
   return options;
 }

@@ -248,7 +248,7 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& a
   flow::BatchOptions batch;
   batch.length = request.length;
   batch.tolerance = std::max(tolerance, kExact);
-  if (request.step > 0) batch.longest_step = request.step;
+  batch.longest_step = request.step;
   const json::Node& place = seeds.pattern ? seeds.pattern->where : where;
   if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) {
     flow::EvenlySpaced spacing{seeds.pattern->distance, seeds.pattern->test, seeds.pattern->start,

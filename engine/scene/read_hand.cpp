@@ -75,7 +75,7 @@ const Table<Coupling>& coupling_table() {
            &Coupling::rotational_stiffness_nm_per_rad);
     t.bind(schema::number("rotational_damping", "N m s/rad", "Against the tool's turning.").not_negative(),
            &Coupling::rotational_damping_nms_per_rad);
-    t.bind(schema::number("ramp_s", "s", "How long a switch takes to reach full force.")
+    t.bind(schema::number("ramp_s", "s", "In so long a step of the force as large as `max_force` is let in or out, whatever makes it.")
                .not_negative()
                .by_default("0 in `replay`, 0.02 with a device"),
            &Coupling::ramp_s);

@@ -27,8 +27,8 @@ DeviceCapabilities mapped(DeviceCapabilities device, const DeviceSettings& setti
 }  // namespace
 
 bool is_identity(const DeviceCapabilities& device, const DeviceSettings& settings) {
-  return !(encoder_step_m(device, settings) > 0) && settings.hand_from_device == Mat3(1.0) && settings.scale == 1 && settings.clutch_button == 0 && settings.force_button == 0 &&
-         settings.gravity_n == Vec3(0.0);
+  return !(encoder_step_m(device, settings) > 0) && settings.hand_from_device == Mat3(1.0) && settings.scale == 1 &&
+         settings.clutch_button == 0 && settings.force_button == 0 && settings.gravity_n == Vec3(0.0);
 }
 
 std::unique_ptr<Device> with_hand_map(std::unique_ptr<Device> device, const DeviceSettings& settings) {

@@ -1,6 +1,7 @@
 /// The way from the device to the hand: any device, with what its settings say of encoders, axes, scale, clutch, gravity and switch.
-///   in:   x_d without the dither of a hand that rests (still_pose.h);  x = s A x_d + o,   q = q_o A q_d      A: hand axes from device axes;  s: metres of hand per metre of device
-///   out:  F_d = A^T F + g,   torque_d = A^T q_o^-1 torque      g: carries the grip, device axes
+///   in:   x_d without the dither of a hand that rests (still_pose.h);  x = s A x_d + o,   q = q_o A q_d      A: hand axes from device
+///   axes;  s: metres of hand per metre of device out:  F_d = A^T F + g,   torque_d = A^T q_o^-1 torque      g: carries the grip, device
+///   axes
 /// Clutch: while its button is held the probe rests and the forces are off; on release o and q_o keep the difference, and the guard
 /// ramps the forces in. Force switch: off at the start and after a loss of the device; each press that is seen turns it over. Both
 /// buttons are masked: the scene does not see them.

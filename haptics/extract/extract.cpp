@@ -118,6 +118,18 @@ std::atomic<std::uint64_t> newest_epoch{0};
 /// The links that a name stands for: indices into the program's. A mode's links have names of their own, too.
 using LinksOf = std::vector<std::pair<std::string, std::vector<int>>>;
 
+/// A note where a mesh that has an outside says in places that it is the other one.
+Outcome note_sides(scene::Scene& scene, const json::Node& name, const std::string& link) {
+  CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, name.string, name));
+  if (mesh->misoriented_edges() == 0) return Done{};
+  const std::string note = fmt::format(
+      "link \"{}\": at {} edges of mesh \"{}\" the two faces disagree on which side is free; there the hand may pass, or be held from "
+      "inside",
+      link, mesh->misoriented_edges(), name.string);
+  if (std::find(scene.notes.begin(), scene.notes.end(), note) == scene.notes.end()) scene.notes.push_back(note);
+  return Done{};
+}
+
 /// Adds the link, or the links of a ready-made mode.
 Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildContext& context, Program& program, LinksOf& links_of) {
   CATENA_TRY(const json::Node item, with_widget_values(scene, from.node));
@@ -128,6 +140,7 @@ Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildConte
       return json::error_at(from.node,
                             "the chain is too long; at most " + std::to_string(exchange::kMaxSceneLinks) + " links were expected");
     CATENA_TRY(Link link, make_link(node, program.coupling, context));
+    if (const json::Node* mesh = node.find("mesh"); mesh != nullptr && link.one_sided) CATENA_CHECK(note_sides(scene, *mesh, link.name));
     if (const json::Node* field = node.find("field"); field != nullptr && field->kind == json::Kind::string)
       link.lies_on = scene::label_name(scene, field->string);
     for (const Link& other : program.links)

@@ -15,6 +15,9 @@ using study::Asks;
 using study::Expect;
 using study::Finding;
 
+// Intervals that overlap say nothing where they had to. Large: J. Cohen, Statistical Power Analysis for the Behavioral Sciences, 1988.
+constexpr double kLargeDifference = 0.8, kLeastPower = 0.8;
+
 /// What the parts of a finding say, gathered.
 struct Parts {
   int all = 0, borne_out = 0, untested = 0;
@@ -53,6 +56,13 @@ Quantity quantity_of(const Finding& f) {
 std::optional<bool> first_is(const Paired& paired, Expect expect) {
   if (!paired.test) return std::nullopt;
   return paired.corrected < kAlpha && (expect == Expect::lower) == (paired.test->difference < 0);
+}
+
+/// The power of a paired t-test of `n` subjects for a large difference: P(|T| > t), T noncentral with delta = d sqrt(n).
+double power_of(double n) {
+  if (n < 2) return 0;
+  const double df = n - 1, delta = kLargeDifference * std::sqrt(n), t = statistics::t_quantile(1 - 0.5 * kAlpha, df);
+  return statistics::noncentral_t_above(t, df, delta) + statistics::noncentral_t_below(-t, df, delta);
 }
 
 /// A correlation that is another's opposite is no weaker one.
@@ -94,8 +104,14 @@ struct Judge {
       for (const int c : f.conditions) {
         const Mean& m = *mean_of({t, c});
         const std::string text = fmt::format("{}: {}, {}", task_name(t), words({t, 0}), words({t, c}));
+        const double power = m.of ? power_of(static_cast<double>(m.of->n)) : 0;
         if (!m.overlaps)
           parts.add(std::nullopt, text);
+        else if (*m.overlaps && power < kLeastPower)
+          parts.add(std::nullopt,
+                    fmt::format("{} (overlap, but of {} subjects a difference of {} standard deviations is seen with a power of "
+                                "{:.2f} only; {} was expected)",
+                                text, m.of->n, kLargeDifference, power, kLeastPower));
         else
           parts.add(*m.overlaps == (f.expect == Expect::overlap), text + (*m.overlaps ? " (overlap)" : " (apart)"));
       }
