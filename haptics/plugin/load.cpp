@@ -66,7 +66,7 @@ Outcome check_type(const ConstraintType& type, const std::vector<std::string>& b
   if (known != nullptr || find_ready_mode(type.type) != nullptr)
     return Error{named + ", which Catena has already; another name was expected"};
   if (std::find(before.begin(), before.end(), type.type) != before.end()) return Error{named + " twice; another name was expected"};
-  if (type.build == nullptr) return Error{named + " without a function that builds it"};
+  if (type.build == nullptr) return Error{named + " without a function that builds it; ConstraintType::build was expected"};
   std::vector<std::string_view> keys = schema::names_of(common_keys());
   for (const schema::Key& key : type.keys) {
     if (!is_word(key.name) || std::find(keys.begin(), keys.end(), key.name) != keys.end())
