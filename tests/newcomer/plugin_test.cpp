@@ -33,10 +33,10 @@ struct Plugin : testing::Test {
     test::write_file(folder / "path.csv", "t,x,y,z\n0,1.5,0,0\n0.001,0.9,0,0\n0.002,0.8,0.1,0\n");
   }
 
-  /// As a user who is not root, with some variables ("NAME=VALUE") and the folder's own plug-ins.
+  /// What env is told: the program as a user who is not root, with some variables ("NAME=VALUE") and the folder's own plug-ins.
   std::vector<std::string> words(const std::vector<std::string>& arguments, const std::vector<std::string>& variables = {}) const {
-    std::vector<std::string> all{
-        "env", "-u", "CATENA_PLUGINS", "HOME=" + (folder / "out"), "XDG_DATA_HOME=" + (folder / "data"), "CATENA_TEST_MARK=" + mark};
+    std::vector<std::string> all{"-u", "CATENA_PLUGINS", "HOME=" + (folder / "out"), "XDG_DATA_HOME=" + (folder / "data"),
+                                 "CATENA_TEST_MARK=" + mark};
     all.insert(all.end(), variables.begin(), variables.end());
     if (::geteuid() == 0) all.insert(all.end(), {"setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
     all.push_back(test::program_path());
@@ -44,11 +44,7 @@ struct Plugin : testing::Test {
     return all;
   }
   test::ProgramResult run(const std::vector<std::string>& arguments, const std::vector<std::string>& variables = {}) const {
-    return test::run_program("/usr/bin/env", [&] {
-      std::vector<std::string> all = words(arguments, variables);
-      all.erase(all.begin());
-      return all;
-    }());
+    return test::run_program("/usr/bin/env", words(arguments, variables));
   }
   test::ProgramResult keys(const std::vector<std::string>& variables, std::vector<std::string> more = {}) const {
     more.insert(more.begin(), {"info", "--keys", "chain"});
@@ -219,7 +215,7 @@ TEST_F(Plugin, NothingIsLoadedWithRightsOfOthers) {
 
 TEST_F(Plugin, TheWindowShowsIt) {
   if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
-  std::string command = "timeout 90 " + test::on_display("640x480");
+  std::string command = "timeout 90 " + test::on_display("640x480") + "env";
   for (const std::string& word :
        words({"view", scene, "--plugin", shell, "--size", "600x400", "--frames", "10", "--window-screenshot", folder / "out/w.png"}))
     command += " '" + word + "'";
