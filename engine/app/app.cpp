@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "engine/app/options.h"
+#include "engine/app/plugins.h"
 #include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
 #include "engine/base/input_files.h"
@@ -77,6 +78,18 @@ void add_memory_limit(CLI::App& program) {
   }
 }
 
+// --plugin FILE, of every command that users see
+void add_plugins(CLI::App& program, std::vector<std::string>& plugins) {
+  const auto add_to = [&](CLI::App& command) {
+    command.add_option("--plugin", plugins, "a shared library with a constraint of your own; may be repeated")->allow_extra_args(false);
+  };
+  for (CLI::App* command : program.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); })) {
+    const auto parts = command->get_subcommands([](const CLI::App*) { return true; });
+    if (command->get_require_subcommand_min() == 0) add_to(*command);
+    for (CLI::App* part : parts) add_to(*part);
+  }
+}
+
 // Everything that allocates: the caller tells what it throws.
 int parse_and_work(int argc, char** argv) {
   if (const Outcome ready = prepare_process(); !ready) return machine_failed(ready.error().message);
@@ -101,6 +114,8 @@ int parse_and_work(int argc, char** argv) {
   add_view(program, chosen, view_exit_code);
   add_documents(program, chosen);
   add_memory_limit(program);
+  std::vector<std::string> plugins;
+  add_plugins(program, plugins);
   for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     refuse_empty_numbers(*command);
     for (CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*part);
@@ -113,7 +128,8 @@ int parse_and_work(int argc, char** argv) {
     const std::string unknown = unknown_word(program, argc, argv);
     return bad_input(unknown.empty() ? usage_message(program, error) : unknown);
   }
-  const Outcome done = chosen();
+  const Outcome loaded = load_plugins(plugins);
+  const Outcome done = loaded ? chosen() : loaded;
   if (!done) return exit_code_of(done.error()) == 1 ? machine_failed(done.error().message) : bad_input(done.error().message);
   return view_exit_code;
 }

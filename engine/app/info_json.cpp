@@ -6,6 +6,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/json_object.h"
+#include "engine/app/plugins.h"
 #include "engine/app/replay_log.h"
 #include "engine/curves/load.h"
 #include "engine/curves/points.h"
@@ -153,8 +154,9 @@ Result<std::string> json_of_scene(const std::string& path) {
 Result<std::string> json_of_log(const std::string& path) {
   CATENA_TRY(log::LogReader reader, log::LogReader::open(path));
   const log::LogHeader& header = reader.header();
-  std::vector<std::string> fields, gaps;
+  std::vector<std::string> fields, plugins, gaps;
   for (const std::string& field : header.fields) fields.push_back(json_of(field));
+  for (const log::LogPlugin& plugin : header.plugins) plugins.push_back(json_of(text_of(plugin)));
   std::uint64_t ticks = 0;
   double first_s = 0, last_s = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
@@ -167,7 +169,7 @@ Result<std::string> json_of_log(const std::string& path) {
   }
   JsonObject out;
   out.add("kind", "recording").add("file", path).add("scene", header.scene_path).add("about", header.about);
-  out.raw("fields", json_array(fields)).add("version", header.catena_version);
+  out.raw("fields", json_array(fields)).raw("plugins", json_array(plugins)).add("version", header.catena_version);
   out.add("started_unix_s", static_cast<std::int64_t>(header.started_unix_ns / 1'000'000'000));
   out.add("device", header.device).add("rate_hz", header.rate_hz).add("ticks", ticks).add("seconds", last_s - first_s);
   return out.raw("gaps", json_array(gaps)).add("ending", std::string(reader.ending())).text();

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/app/plan/hand_plan.h"
+#include "engine/app/plugins.h"
 #include "engine/app/run_files.h"
 #include "engine/app/tick_csv.h"
 #include "engine/base/numbers.h"
@@ -141,6 +142,7 @@ Result<log::LogHeader> log_header(const std::string& scene_path, const std::vect
   header.device = device;
   header.catena_version = kVersion;
   header.rate_hz = rate_hz;
+  header.plugins = plugins_for_log();
   return header;
 }
 
@@ -193,6 +195,7 @@ Outcome LogScene::read(const std::optional<std::string>& own_text) {
 
 Result<std::shared_ptr<const haptics::Program>> LogScene::build(const log::LogProgram& program) {
   CATENA_CHECK(read(program.scene_text));
+  CATENA_CHECK(check_plugins(header_.plugins, *scene_));
   scene::Coupling& coupling = scene_->coupling;
   // a scene from outside keeps what it states; what it leaves open was fitted when it was recorded
   if (!from_file_) {
@@ -231,6 +234,7 @@ Outcome describe_log(const std::string& path) {
   fmt::print("{}: recording of {}\n", printable(path), header.scene_path.empty() ? "a scene without a name" : printable(header.scene_path));
   if (!header.about.empty()) fmt::print("  about        {}\n", printable(header.about));
   for (const std::string& field : header.fields) fmt::print("  field        {}\n", printable(field));
+  for (const log::LogPlugin& plugin : header.plugins) fmt::print("  plug-in      {}\n", text_of(plugin));
   fmt::print("  recorded     {:%Y-%m-%d %H:%M:%S} UTC by catena {}\n", fmt::gmtime(seconds), printable(header.catena_version));
   fmt::print("  device       {} at {} Hz\n", printable(header.device), to_text(header.rate_hz));
   std::uint64_t ticks = 0;

@@ -21,19 +21,17 @@ if(CATENA_INSTALL)
   install(DIRECTORY assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets COMPONENT catena)
 endif()
 
-if(NOT CATENA_LIBRARY OR CATENA_SANITIZE)
-  return()
-endif()
-
-# ---- what can be seen of it: the names that the public headers declare ----
+# ---- what can be seen of library and program: the names that the public headers declare ----
 set(list engine/base/public_headers.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
 file(STRINGS ${list} CATENA_PUBLIC_HEADERS REGEX "^[^#]")
 set(patterns "")
+set(interface "")
 foreach(header ${CATENA_PUBLIC_HEADERS})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
   file(READ ${header} text)
   string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+  string(APPEND interface "${text}")
   string(REGEX MATCHALL "namespace catena[a-z_:]* " spaces "${text}")
   string(REGEX MATCHALL "(class|struct) [A-Z][A-Za-z0-9]*" types "${text}")
   string(REGEX MATCHALL "[ *&][a-z][a-z0-9_]*\\(" functions "${text}")
@@ -54,16 +52,42 @@ endforeach()
 list(SORT patterns)
 list(REMOVE_DUPLICATES patterns)
 string(REPLACE ";" ";\n    " patterns "${patterns}")
+
+# ---- plug-ins: the program has what they call (haptics/plugin/plugin.h), all that is in the rooms of the constraints ----
+string(SHA256 interface "${interface}")
+string(SUBSTRING ${interface} 0 16 interface)
+set(interface "CATENA_PLUGIN_INTERFACE=\"${PROJECT_VERSION} ${interface}\"")
+set_source_files_properties(haptics/plugin/load.cpp PROPERTIES COMPILE_DEFINITIONS "${interface}")
+add_library(catena_part_plugin INTERFACE)
+add_library(catena::plugin ALIAS catena_part_plugin)
+set_target_properties(catena_part_plugin PROPERTIES EXPORT_NAME plugin)
+target_include_directories(catena_part_plugin INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/catena>)
+target_link_libraries(catena_part_plugin INTERFACE glm::glm)
+target_compile_features(catena_part_plugin INTERFACE cxx_std_20)
+target_compile_definitions(catena_part_plugin INTERFACE ${interface})
+target_compile_options(catena_part_plugin INTERFACE -ffp-contract=off)  # a tick repeats to the bit
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/program_exports.list CONTENT "{\n  extern \"C++\" {\n    ${patterns};\n  };\n};\n")
+target_link_options(catena PRIVATE -Wl,--dynamic-list=${PROJECT_BINARY_DIR}/program_exports.list)
+set(whole WHOLE_ARCHIVE)
+foreach(room base geometry schema exchange field mesh curves flow widget)
+  string(APPEND whole ",catena_engine_${room}")
+endforeach()
+set_target_properties(catena PROPERTIES LINK_DEPENDS ${PROJECT_BINARY_DIR}/program_exports.list
+  LINK_LIBRARY_OVERRIDE "${whole},catena_haptics_chain,catena_haptics_constraints")
+
+if(NOT CATENA_LIBRARY OR CATENA_SANITIZE)
+  return()
+endif()
+
+# ---- the library ----
 set(node CATENA_${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/exports.map
   CONTENT "${node} {\n  global:\n  extern \"C++\" {\n    ${patterns};\n  };\n  local: *;\n};\n")
-
-# ---- the library ----
 set(objects "")
 set(third_party "")
 get_property(rooms GLOBAL PROPERTY CATENA_ROOMS)
 foreach(room ${rooms})
-  if(NOT room MATCHES "^catena_(engine_(vdb|vtk|reader|web)|render_(compile|xr))$")
+  if(NOT room MATCHES "^catena_(engine_(vdb|vtk|reader|web)|haptics_plugin|render_(compile|xr))$")
     get_target_property(libraries ${room} CATENA_THIRD_PARTY)
     list(APPEND objects $<TARGET_OBJECTS:${room}>)
     list(APPEND third_party ${libraries})
@@ -102,7 +126,7 @@ if(NOT CATENA_INSTALL)
 endif()
 
 # ---- what is installed of it ----
-install(TARGETS catena_library catena_part_field catena_part_flow catena_part_haptics catena_part_render EXPORT catena
+install(TARGETS catena_library catena_part_plugin catena_part_field catena_part_flow catena_part_haptics catena_part_render EXPORT catena
   LIBRARY COMPONENT library NAMELINK_COMPONENT development)
 foreach(header ${CATENA_PUBLIC_HEADERS})
   get_filename_component(folder ${header} DIRECTORY)

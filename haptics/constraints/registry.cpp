@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <exception>
+#include <new>
+#include <system_error>
+
 #include "haptics/constraints/forces/forces.h"
 #include "haptics/constraints/friction/friction.h"
 #include "haptics/constraints/isosurface/isosurface.h"
@@ -47,6 +51,32 @@ std::vector<ConstraintType>& list_of_types() {
   return list;
 }
 
+/// For a person: what it does, and where it comes from.
+std::string described(const ConstraintType& type) {
+  return type.help + (type.paper.empty() ? "" : " Paper: " + type.paper + ".") +
+         (type.plugin.empty() ? "" : " Of the plug-in " + type.plugin + ".");
+}
+
+/// What a plug-in builds: its exceptions, and what is nothing, are errors of the link.
+Result<std::shared_ptr<const Constraint>> build_of_plugin(const ConstraintType& type, const json::Node& link, const BuildContext& context) {
+  const auto failed = [&](const std::string& why) {
+    return json::error_at(link, fmt::format("the plug-in {} {}; a constraint of type \"{}\" was expected", type.plugin, why, type.type));
+  };
+  try {
+    auto built = type.build(link, context);
+    if (built && *built == nullptr) return failed("built nothing");
+    return built;
+  } catch (const std::bad_alloc&) {
+    throw;  // the machine's
+  } catch (const std::system_error&) {
+    throw;
+  } catch (const std::exception& error) {
+    return failed(fmt::format("threw an exception ({})", error.what()));
+  } catch (...) {
+    return failed("threw an exception");
+  }
+}
+
 }  // namespace
 
 const std::vector<ConstraintType>& registry() { return list_of_types(); }
@@ -80,7 +110,7 @@ const schema::Keys& common_keys() {
 schema::Component chain_component() {
   schema::Component chain{"chain", "What the hand feels: links, in their order.", schema::Component::Shape::list, common_keys(),
                           exchange::kMaxSceneLinks};
-  for (const ConstraintType& type : registry()) chain.variants.push_back({type.type, type.help + " Paper: " + type.paper + ".", type.keys});
+  for (const ConstraintType& type : registry()) chain.variants.push_back({type.type, described(type), type.keys});
   for (const ReadyMode& mode : ready_modes()) chain.variants.push_back({mode.type, mode.help + " Paper: " + mode.paper + ".", mode.keys});
   return chain;
 }
@@ -105,7 +135,8 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   if (!type)
     return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
   CATENA_CHECK(json::only_keys(link, schema::names_of(common_keys(), type->keys)));
-  CATENA_TRY(std::shared_ptr<const Constraint> made, type->build(link, context));
+  CATENA_TRY(std::shared_ptr<const Constraint> made,
+             type->plugin.empty() ? type->build(link, context) : build_of_plugin(*type, link, context));
   return wrap_snap(link, type->releases_itself, std::move(made), context);
 }
 

@@ -40,6 +40,7 @@ struct ConstraintType {
   bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
   bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
   std::string feels{};           ///< the part of a scene whose items a link of this type lies on, "isosurfaces"; empty: none
+  std::string plugin{};          ///< the file of the plug-in that brought it (haptics/plugin/plugin.h), as loading it sets it; empty: none
 };
 
 /// All types, in the order of the documents. Any thread once programs have added theirs.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/support/program.h"
 #include "tests/support/support.h"
@@ -23,11 +24,14 @@ inline const std::string& installed() {
 }
 
 /// What bash says to these lines, errors too, in a folder, where docs/tutorials.md has been obeyed. The first line that fails ends it.
-inline ProgramResult shell(const std::string& folder, const std::string& lines) {
+/// `before`: a program with its options that starts bash.
+inline ProgramResult shell(const std::string& folder, const std::string& lines, std::vector<std::string> before = {}) {
   const std::string& at = installed();
-  return run_program("/bin/bash", {"-c", "set -euo pipefail; exec 2>&1; cd '" + folder + "'; export CATENA=" + at + " PATH=" + at +
-                                             "/bin:$PATH PYTHONPATH=" + at + "/" CATENA_PYTHON_FOLDER " PYTHONDONTWRITEBYTECODE=1" +
-                                             " CMAKE_CXX_COMPILER_LAUNCHER=" CATENA_LAUNCHER "\n" + lines});
+  before.insert(before.end(), {"/bin/bash", "-c",
+                               "set -euo pipefail; exec 2>&1; cd '" + folder + "'; export CATENA=" + at + " PATH=" + at +
+                                   "/bin:$PATH PYTHONPATH=" + at + "/" CATENA_PYTHON_FOLDER " PYTHONDONTWRITEBYTECODE=1" +
+                                   " CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER-" CATENA_LAUNCHER "}\n" + lines});
+  return run_program("/usr/bin/env", before);
 }
 
 }  // namespace catena::test

@@ -132,6 +132,21 @@ TEST_F(Package, TheLibraryShowsOnlyWhatPublicHeadersDeclare) {
   EXPECT_GT(seen, 500);
 }
 
+TEST_F(Package, PlugInsFindInTheProgramWhatTheLibraryShows) {
+  const auto names = [](const std::string& file) {
+    const test::ProgramResult listed = test::run_program("/usr/bin/nm", {"-D", "--defined-only", "--without-symbol-versions", file});
+    EXPECT_EQ(listed.exit_code, 0) << listed.err;
+    std::set<std::string> found;
+    std::istringstream in(listed.out);
+    for (std::string address, kind, name; in >> address >> kind >> name;)
+      if (name.starts_with("_Z")) found.insert(name);
+    return found;
+  };
+  const std::set<std::string> program = names(prefix() + "/bin/catena"), library = names(prefix() + "/" + CATENA_LIBDIR + "/libcatena.so");
+  EXPECT_GT(library.size(), 500u);
+  for (const std::string& name : library) EXPECT_TRUE(program.contains(name)) << name;
+}
+
 TEST_F(Package, TheLibraryIsFoundByItsSoname) {
   const test::ProgramResult elf = test::run_program("/usr/bin/readelf", {"-d", prefix() + "/" + CATENA_LIBDIR + "/libcatena.so"});
   EXPECT_NE(elf.out.find("[libcatena.so." CATENA_SOVERSION "]"), std::string::npos) << elf.out;

@@ -107,6 +107,7 @@ inline haptics::log::LogReplayHooks hooks_for(const std::vector<Change>& changes
 inline std::string small_log(int ticks = 60) {
   const TemporaryFolder folder;
   haptics::log::LogHeader header{"scene.json", "/somewhere", "{\"chain\": []}", {"density=d.vdb:x"}, "null", "0.1.0", 1000, 1};
+  header.plugins = {{"ring.so", 7, {"ring", "knot"}}, {"none.so", 8, {}}};
   haptics::log::LogOptions options;
   options.flush_s = 1000;
   auto writer = haptics::log::LogWriter::open(folder / "small.catlog", header, {}, options);

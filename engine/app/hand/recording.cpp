@@ -1,6 +1,7 @@
 #include "engine/app/hand/recording.h"
 
 #include "engine/app/command.h"
+#include "engine/app/plugins.h"
 #include "engine/base/clock.h"
 
 namespace catena::app {
@@ -16,6 +17,7 @@ Result<Recording> Recording::open(const std::string& path, RecordedScene scene, 
   header.device = hand.device->capabilities().name;
   header.catena_version = kVersion;
   header.rate_hz = hand.settings.rate_hz;
+  header.plugins = plugins_for_log();
   CATENA_TRY(recording.writer_, haptics::log::LogWriter::open(path, std::move(header), scene.inputs));
   recording.path_ = path;
   recording.text_ = std::move(scene.text);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "engine/app/plugins.h"
 #include "engine/app/run_files.h"
 #include "engine/app/study/study_command.h"
 #include "engine/app/study/subject_folder.h"
@@ -76,6 +77,7 @@ class Recordings {
     header.catena_version = kVersion;
     header.rate_hz = study::kSimulatedRateHz;
     header.about = about_trial(study_, trial);
+    header.plugins = plugins_for_log();
     unfinished_ = data_.unfinished_recording(trial);
     CATENA_TRY(writer_, haptics::log::LogWriter::open(unfinished_, std::move(header)));
     writer_->add_program(program);

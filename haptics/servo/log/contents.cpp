@@ -122,7 +122,14 @@ std::string to_bytes(const LogHeader& h) {
   out.put_string(h.catena_version);
   out.put(h.rate_hz);
   out.put(h.started_unix_ns);
-  if (!h.about.empty()) out.put_string(h.about);
+  if (!h.about.empty() || !h.plugins.empty()) out.put_string(h.about);
+  if (!h.plugins.empty()) out.put(static_cast<std::uint32_t>(h.plugins.size()));
+  for (const LogPlugin& plugin : h.plugins) {
+    out.put_string(plugin.file);
+    out.put(plugin.hash);
+    out.put(static_cast<std::uint32_t>(plugin.types.size()));
+    for (const std::string& type : plugin.types) out.put_string(type);
+  }
   return std::move(out.bytes());
 }
 
@@ -137,6 +144,14 @@ std::optional<LogHeader> header_from(std::string_view bytes) {
   h.rate_hz = in.get<double>();
   h.started_unix_ns = in.get<std::int64_t>();
   if (!in.finished()) h.about = in.get_string();
+  const auto plugins = in.finished() ? 0 : in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < plugins && in.good(); ++i) {
+    LogPlugin& plugin = h.plugins.emplace_back();
+    plugin.file = in.get_string();
+    plugin.hash = in.get<std::uint64_t>();
+    const auto types = in.get<std::uint32_t>();
+    for (std::uint32_t k = 0; k < types && in.good(); ++k) plugin.types.push_back(in.get_string());
+  }
   if (!in.finished()) return std::nullopt;
   return h;
 }

@@ -8,6 +8,13 @@
 
 namespace catena::haptics::log {
 
+/// A plug-in that was loaded: its constraints may run in the ticks.
+struct LogPlugin {
+  std::string file;                ///< its name, without its folder
+  std::uint64_t hash = 0;          ///< FNV-1a-64 of the file
+  std::vector<std::string> types;  ///< types of links that it gave
+};
+
 /// What was known before the first tick.
 struct LogHeader {
   std::string scene_path;            ///< as the user gave it
@@ -19,6 +26,7 @@ struct LogHeader {
   double rate_hz = 1000;             ///< of the servo
   std::int64_t started_unix_ns = 0;  ///< 0: filled in by the writer
   std::string about{};               ///< what it was recorded for, one line; empty: nothing is known
+  std::vector<LogPlugin> plugins{};  ///< none in recordings of before there were plug-ins
 };
 
 /// All of a program that its scene's text does not say, or that the program may have got elsewhere (a fitted workspace, a ramp).

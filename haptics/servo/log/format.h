@@ -87,7 +87,9 @@ class ByteReader {
 ///
 /// 1 HEADER   string scene path, string working folder (of relative paths), string scene text, u32 n and n strings NAME=FILE[:GRID]
 ///            (fields replaced on the command line), string device, string version of Catena, f64 nominal rate in Hz,
-///            i64 start in ns since 1970 (UTC), and where somebody said what it was recorded for: string about
+///            i64 start in ns since 1970 (UTC), and where somebody said what it was recorded for, or plug-ins were loaded: string about;
+///            where plug-ins were loaded: u32 n, n times {string file name, u64 hash of the file, u32 m, m strings: types of links that it
+///            gave}. A program from before there were plug-ins calls the header of such a log damaged.
 /// 2 PROGRAM  runs from `first tick` on; of two with the same first tick the second took over before that tick.  u64 epoch, u64 first tick,
 ///            u8 known (0: nobody told the writer what follows; the rest is empty),
 ///            u8 text (0: the header's scene text, 1: its own), string scene text,

@@ -1,0 +1,164 @@
+#include "haptics/plugin/load.h"
+
+#include <dlfcn.h>
+#include <sys/auxv.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cfenv>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+
+#include "engine/base/hash.h"
+#include "engine/base/text.h"
+#include "haptics/constraints/presets/modes.h"
+#include "haptics/plugin/file.h"
+
+namespace catena::haptics::plugin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
+
+std::vector<Loaded>& list_of_loaded() {
+  static std::vector<Loaded> list;
+  return list;
+}
+
+/// Who else than this user and root may change what is at a path; empty: nobody. A group counts as somebody else unless it is the owner's
+/// own, which has the owner's number; of a folder with the sticky bit nobody removes what is another's.
+std::string changed_by_others(const fs::path& path) {
+  struct stat about {};
+  if (::stat(path.c_str(), &about) != 0) return "cannot be looked at";
+  if (about.st_uid != 0 && about.st_uid != ::geteuid()) return "belongs to somebody else";
+  const bool group = (about.st_mode & S_IWGRP) != 0 && about.st_gid != about.st_uid;
+  if (S_ISDIR(about.st_mode) && (about.st_mode & S_ISVTX) != 0) return {};
+  return group || (about.st_mode & S_IWOTH) != 0 ? "may be written by others" : "";
+}
+
+Outcome check_statement(const Statement& stated) {
+  static constexpr Statement kOwn = statement(CATENA_PLUGIN_INTERFACE);
+  const auto other = [](const char* what, const char* theirs, const char* own) {
+    return Error{std::string("was built ") + what + " " + printable(theirs) + ", this program " + what + " " + own +
+                 "; build the plug-in again as this program was"};
+  };
+  if (std::strcmp(stated.headers, kOwn.headers) != 0) return other("for Catena", stated.headers, kOwn.headers);
+  if (std::strcmp(stated.compiler, kOwn.compiler) != 0) return other("by", stated.compiler, kOwn.compiler);
+  return Done{};
+}
+
+bool is_word(const std::string& text) {
+  return text.size() <= 60 && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos && !text.empty() &&
+         text[0] >= 'a';
+}
+
+/// Of a type beside those that are known, the plug-in's own before it among them.
+Outcome check_type(const ConstraintType& type, const std::vector<std::string>& before) {
+  if (!is_word(type.type))
+    return Error{"gives a type the name " + in_quotes(type.type) + "; small letters, digits and _ were expected, a letter first"};
+  const std::string named = "gives the type " + in_quotes(type.type);
+  const ConstraintType* const known = find_constraint(type.type);
+  if (known != nullptr && !known->plugin.empty())
+    return Error{named + ", which the plug-in " + printable(known->plugin) + " has given already; another name was expected"};
+  if (known != nullptr || find_ready_mode(type.type) != nullptr)
+    return Error{named + ", which Catena has already; another name was expected"};
+  if (std::find(before.begin(), before.end(), type.type) != before.end()) return Error{named + " twice; another name was expected"};
+  if (type.build == nullptr) return Error{named + " without a function that builds it; ConstraintType::build was expected"};
+  std::vector<std::string_view> keys = schema::names_of(common_keys());
+  for (const schema::Key& key : type.keys) {
+    if (!is_word(key.name) || std::find(keys.begin(), keys.end(), key.name) != keys.end())
+      return Error{named + " the key " + in_quotes(key.name) + "; a name that no other key of the link has was expected"};
+    keys.push_back(key.name);
+  }
+  return Done{};
+}
+
+/// Its types, all of them or none.
+Result<std::vector<ConstraintType>> types_of(const Entry& entry) {
+  std::vector<ConstraintType> types;
+  try {
+    entry.add(types);
+  } catch (const std::exception& error) {
+    return Error{"threw an exception (" + printable(error.what()) + "); its types were expected"};
+  } catch (...) {
+    return Error{"threw an exception; its types were expected"};
+  }
+  if (types.empty()) return Error{"gives no type; at least one was expected"};
+  std::vector<std::string> before;
+  for (const ConstraintType& type : types) {
+    CATENA_CHECK(check_type(type, before));
+    before.push_back(type.type);
+  }
+  return types;
+}
+
+/// Runs the library's own initialisers.
+Result<const Entry*> open_library(const std::string& path, const Statement& stated) {
+  std::fenv_t rounding;  // a library that was linked with -ffast-math turns small numbers to 0 in the whole thread
+  std::fegetenv(&rounding);
+  void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+  std::fesetenv(&rounding);
+  if (library == nullptr) {
+    std::string why = ::dlerror();
+    if (why.starts_with(path + ": ")) why.erase(0, path.size() + 2);
+    return Error{"cannot be loaded (" + printable(why) + "); what the headers of the target catena::plugin declare was expected"};
+  }
+  const auto* const entry = static_cast<const Entry*>(::dlsym(library, "catena_plugin"));
+  if (entry == nullptr || entry->add == nullptr || std::memcmp(&entry->statement, &stated, sizeof stated) != 0)
+    return Error{"has another entry than its file states; the one of CATENA_CONSTRAINT_PLUGIN was expected"};
+  return entry;
+}
+
+Outcome load_checked(const fs::path& path) {
+  CATENA_TRY(const std::string bytes, read_text(path.string(), "a plug-in", kMostBytes));
+  const auto failed = [&](const std::string& why) { return Error{one_line(path.string() + ": " + why)}; };
+  const std::uint64_t hash = hash_of(bytes.data(), bytes.size());
+  for (const Loaded& other : loaded())
+    if (other.hash == hash) return Done{};
+  for (const fs::path& place : {path, path.parent_path()})
+    if (const std::string why = changed_by_others(place); !why.empty())
+      return Error{one_line(place.string() + ": " + why + "; a plug-in that only you and root may change was expected, in such a folder")};
+  const auto file = read_file(bytes);
+  if (!file) return failed(file.error().message);
+  if (const Outcome same = check_statement(file->statement); !same) return failed(same.error().message);
+  if (file->links_catena) return failed("links libcatena.so, a second Catena; the target catena::plugin was expected in its place");
+  const auto entry = open_library(path.string(), file->statement);
+  if (!entry) return failed(entry.error().message);
+  auto types = types_of(**entry);
+  if (!types) return failed(types.error().message);
+  Loaded plugin{path.filename().string(), hash, {}};
+  for (ConstraintType& type : *types) {
+    plugin.types.push_back(type.type);
+    type.help = one_line(type.help);
+    type.paper = one_line(type.paper);
+    type.plugin = plugin.file;
+    add_constraint(std::move(type));
+  }
+  list_of_loaded().push_back(std::move(plugin));
+  return Done{};
+}
+
+}  // namespace
+
+const std::vector<Loaded>& loaded() { return list_of_loaded(); }
+
+std::string refusal() {
+  uid_t real = 0, effective = 0, saved = 0;
+  if (::getresuid(&real, &effective, &saved) != 0 || real == 0 || effective == 0 || saved == 0)
+    return "nothing is loaded as root; run it as yourself";
+  if (::getauxval(AT_SECURE) != 0 || real != effective || real != saved)
+    return "nothing is loaded by a program with rights that its user lacks; a program without them was expected";
+  return {};
+}
+
+Outcome load(const std::string& path) {
+  if (const std::string why = refusal(); !why.empty()) return Error{one_line(path + ": " + why)};
+  std::error_code code;
+  const fs::path whole = fs::canonical(path, code);  // an absolute name, so that no library's search path has a say
+  return load_checked(code ? fs::path(path) : whole);
+}
+
+}  // namespace catena::haptics::plugin

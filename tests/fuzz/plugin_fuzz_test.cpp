@@ -1,0 +1,63 @@
+/// A plug-in's file out of hostile hands, before anything of it runs: what it states, or one sentence.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "haptics/plugin/file.h"
+#include "tests/fuzz/mutate_bytes.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace plugin_fuzz_test {
+
+namespace plugin = haptics::plugin;
+
+const std::string& seed() {
+  static const std::string bytes = test::read_file(test::binary_dir() + "/shell.so");
+  return bytes;
+}
+
+/// Ends of texts are where they are expected, whatever the bytes.
+bool check(const std::string& bytes) {
+  const auto file = plugin::read_file(bytes);
+  if (!file) {
+    EXPECT_EQ(file.error().message.find('\n'), std::string::npos);
+    EXPECT_NE(file.error().message.find("was expected"), std::string::npos);
+    return false;
+  }
+  EXPECT_LT(std::strlen(file->statement.headers), sizeof file->statement.headers);
+  EXPECT_LT(std::strlen(file->statement.compiler), sizeof file->statement.compiler);
+  return true;
+}
+
+TEST(PluginFuzz, TheSeedIsValid) { EXPECT_TRUE(check(seed())); }
+
+TEST(PluginFuzz, EveryPieceOfTheHeadAndOfTheSections) {
+  constexpr std::size_t kHead = 64;
+  for (std::size_t n = 0; n <= kHead; ++n) EXPECT_FALSE(check(seed().substr(0, n)));
+  for (std::size_t cut = 1; cut <= seed().size(); cut += 64) check(seed().substr(0, seed().size() - cut));
+  for (std::size_t at = 0; at < kHead; ++at)
+    for (const int turned : {0x01, 0x80, 0xff}) {
+      std::string bytes = seed();
+      bytes[at] = static_cast<char>(bytes[at] ^ static_cast<char>(turned));
+      check(bytes);
+    }
+}
+
+TEST(PluginFuzz, Mutations) {
+  // the table of sections lies at the end
+  std::uint64_t sections = 0;
+  ASSERT_GT(seed().size(), 64u);
+  std::memcpy(&sections, seed().data() + 40, sizeof sections);
+  test::Inputs inputs(5000, 23);
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure()) {
+    const bool head = inputs.count() % 3 == 0;
+    read += check(test::mutate_bytes(seed(), inputs.random, 3, head ? 0 : sections, head ? 64 : seed().size())) ? 1 : 0;
+  }
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, inputs.count());
+}
+
+}  // namespace plugin_fuzz_test
+}  // namespace catena
