@@ -1,5 +1,5 @@
 /// catena tradeoff SCENE|FILE -o DIR [--quick|--thorough] [--compare OTHER.json]: error against cost of this scene's settings
-/// catena tradeoff --figure 2|3|stiffness -o DIR: figures of the paper
+/// catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -26,9 +26,14 @@ Outcome run_tradeoff(const TradeoffOptions& options) {
     return Error{
         "tradeoff: expected a scene or a data file to measure, --figure 2 (drift of the methods from a streamline), --figure 3 (a "
         "penetrable surface and a curve: "
-        "the chain beside its baselines) or --figure stiffness (the largest spring by damping, rate and delay)"};
+        "the chain beside its baselines), --figure stiffness (the largest spring by damping, rate and delay) or --figure energy (what a "
+        "closed "
+        "loop of the hand gains)"};
   CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
-  CATENA_CHECK(options.figure == "2" ? figure2(folder) : options.figure == "3" ? figure3(folder) : figure_stiffness(folder));
+  CATENA_CHECK(options.figure == "2"           ? figure2(folder)
+               : options.figure == "3"         ? figure3(folder)
+               : options.figure == "stiffness" ? figure_stiffness(folder)
+                                               : figure_energy(folder));
   CATENA_CHECK(folder.commit());
   fmt::print("{}:", printable(options.output));
   for (const std::string& name : folder.names()) fmt::print(" {}", name);
@@ -46,8 +51,9 @@ void add_tradeoff(CLI::App& program, Work& chosen) {
              "a scene (.json) or a data file to measure; or the tradeoff.json of a run, for its page again");
   command
       ->add_option("--figure", options->figure,
-                   "2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest spring")
-      ->check(CLI::IsMember({"2", "3", "stiffness"}));
+                   "2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest spring; energy: what a closed "
+                   "loop of the hand gains")
+      ->check(CLI::IsMember({"2", "3", "stiffness", "energy"}));
   command->add_option("-o,--output", options->output, "a folder for the page and the tables; of a figure its script and plots")->required();
   command->add_flag("--quick", options->quick, "two minutes at most");
   command->add_flag("--thorough", options->thorough, "larger pictures and more repeats: up to 20 minutes");

@@ -77,7 +77,7 @@ void append_tick(std::string& line, const LinkColumns& columns, const exchange::
 }
 
 std::string details_header(const LinkColumns& columns) {
-  std::string line = "t,mode";
+  std::string line = "t,mode,left_out";
   for (const std::string& name : columns.names())
     line += fmt::format(
         ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy,{0}_booked",
@@ -91,6 +91,8 @@ void append_details(std::string& line, const LinkColumns& columns, const std::ve
   line += ',';
   const auto mode = static_cast<std::size_t>(state.mode);
   if (state.mode >= 0) line += mode < modes.size() ? modes[mode] : fmt::format("mode_{}", mode + 1);
+  line += ',';
+  append_text(line, state.left_out_j);
   for (std::size_t c = 0; c < columns.names().size(); ++c) {
     if (columns.link(c) < 0) {
       line += ",,,,,,,,,,,";

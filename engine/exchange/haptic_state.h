@@ -38,6 +38,8 @@ struct WidgetReport {
 
 /// How the links make one force: the proxy chain, or one of the baselines that the paper compares it with (haptics/chain/baseline.h).
 enum class CouplingMethod { chain, pipe, balance, closest, linear };
+/// How the links' pulls make one force: the paper's sum, or by virtual work.
+enum class CouplingForce { paper, conservative };
 
 inline constexpr int kMaxSceneLinks = 8;              ///< Links of a scene.
 inline constexpr int kMaxLinks = kMaxSceneLinks + 4;  ///< And those that the widgets share.
@@ -98,6 +100,7 @@ struct HapticState {
   Vec3 coupling_force_n{0.0};               ///< what the chain asks for, before what the device allows: equal to force_n without a device
   double energy_j = 0;                      ///< of the passivity observer: what the hand may still get back
   double dissipated_j = 0;                  ///< what the passivity controller has taken
+  double left_out_j = 0;                    ///< of a conservative force: work that the bound of the derivatives leaves out, since the start
   Condition condition = Condition::normal;  ///< how the tick came about
   ForceState force_state = ForceState::on;  ///< what became of the force
   // written by the servo

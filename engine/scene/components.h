@@ -357,6 +357,7 @@ struct Widget {
   std::optional<double> followed_value;  ///< and the isolevel's value
 };
 
+using exchange::CouplingForce;
 using exchange::CouplingMethod;
 
 /// How the links make one force, as the scene says it (haptics/chain/program.h has the law).
@@ -368,6 +369,7 @@ struct Coupling {
   double rotational_stiffness_nm_per_rad = 0.5;   ///< of links that align and do not say, N m/rad
   double rotational_damping_nms_per_rad = 0;      ///< N m s/rad
   CouplingMethod method = CouplingMethod::chain;  ///< the proxy chain, or a baseline
+  CouplingForce force = CouplingForce::paper;     ///< of the chain
 };
 
 /// What may be given up for what, by measured curves (engine/app/plan): of each pair one at most.

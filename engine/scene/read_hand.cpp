@@ -80,6 +80,9 @@ const Table<Coupling>& coupling_table() {
                .by_default("0 in `replay`, 0.02 with a device"),
            &Coupling::ramp_s);
     t.bind(schema::word("method", {"chain", "pipe", "balance", "closest", "linear"}, "`chain`, or a method before it."), &Coupling::method);
+    t.bind(schema::word("force", {"paper", "conservative"},
+                        "Of the chain: the paper's sum of pulls, or by virtual work, which slow closed loops take no energy from."),
+           &Coupling::force);
     return t;
   }();
   return table;

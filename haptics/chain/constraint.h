@@ -142,6 +142,12 @@ struct Primitive {
   Vec3 axis{0.0};           ///< unit: the line's direction, the plane's normal
 };
 
+/// A force on the probe, and what the bound of a derivative takes from it (rules/pull_back.h).
+struct PulledBack {
+  Vec3 force{0.0};     ///< J^T f, J bounded
+  Vec3 left_out{0.0};  ///< the unbounded J^T f less that; zero where nothing was bounded
+};
+
 /// The interface of every constraint (paper, section 3): a rule that keeps a proxy. Derive from it, describe it by a ConstraintType
 /// (haptics/constraints/registry.h), and scenes can name it. A Constraint object is the immutable specification, made off the tick; what
 /// changes from tick to tick is in LinkState (plain data), and caches that never change a result are in LinkScratch.
@@ -174,6 +180,13 @@ class Constraint {
   /// instead of advance, and before the first start (`memory` is zero then). A constraint with many local minima may take
   /// several ticks over the search.
   virtual void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept { start(probe, state, scratch); }
+
+  /// What the force f on the proxy is for the probe, by virtual work: J^T f with J = dp/dx, at the state that `advance` left. Its fetches
+  /// count. By default f itself: of a constraint that is no projection (friction, forces), and where the proxy is the probe.
+  virtual PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept {
+    (void)probe, (void)state, (void)scratch;
+    return {f};
+  }
 
   /// True where it draws the hand by what it is, rather than holds it: the ledger (passivity.h) grants what it gives.
   virtual bool is_source() const noexcept { return false; }

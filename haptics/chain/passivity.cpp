@@ -64,6 +64,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   const Limits& limits = program.limits;
   const Vec3 move_m = tick.move * program.metres_per_unit;
   const bool weighs = program.coupling.method == CouplingMethod::chain;
+  const bool conservative = weighs && program.coupling.force == CouplingForce::conservative;
   const std::size_t count = program.links.size();
 
   // what the last tick's force has done since
@@ -97,7 +98,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
     const bool apart = is_apart(link, max_abs(force_n) > 0);
     anew = anew || apart != state.apart[i];
     state.apart[i] = apart;
-    const double stored_j = share * dot(force_n, tick.reach);
+    const double stored_j = share * dot(force_n, conservative ? tick.gaps[i] : tick.reach);
     if (link.on && program.links[i].constraint->is_source()) {
       granted_n += force_n;
       state.stored_j[i] = 0;

@@ -2,7 +2,8 @@
 ///   work      W_i = S f_i(k-1) . (x_k - x_(k-1)): the force of a tick is held until the next one, so the sum is exact and
 ///             needs no guess at a velocity (the sampled form of Hannaford & Ryu, "Time-domain passivity control of haptic
 ///             interfaces", IEEE Trans. Robotics and Automation 18(1), 2002). f_i is the link's share as it was sent.
-///   storage   V_i = S/2 f_i . (p_n - x), with p_n the chain's last proxy: their sum is K/2 |S (p_n - x)|^2 where all links
+///   storage   of a conservative force V_i = S/2 f_i . (p_i - p_(i-1)), which is K/2 |S gap|^2; else V_i = S/2 f_i . (p_n - x), with p_n
+///   the chain's last proxy: their sum is K/2 |S (p_n - x)|^2 where all links
 ///             are equally stiff, and K/2 |S gap|^2 for one link; less where the force is limited
 ///   ledger    booked_i = sum of W_i + V_i: what the link has given to the hand and has ready for it, beyond what it got. A
 ///             still probe changes it by 1/2 K (|x - p_new|^2 - |x - p_old|^2), which is round-off. It rises by what a switch, a
@@ -65,6 +66,7 @@ struct PassivityState {
 /// One tick as the ledger sees it, before and after the guard.
 struct LedgerTick {
   Vec3 move{0.0};                               ///< x_k - x_(k-1), world units
+  const std::array<Vec3, kMaxLinks>& gaps;      ///< p_i - p_(i-1), world units
   Vec3 reach{0.0};                              ///< p_n - x, world units
   double dt_s = 0;                              ///< since the last tick
   const Order& order;                           ///< the links that run

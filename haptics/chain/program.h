@@ -69,6 +69,7 @@ struct Mode {
   Switch on;               ///< its switch
 };
 
+using exchange::CouplingForce;
 using exchange::CouplingMethod;
 
 /// How the links make one force; the law stands in tick.h.
@@ -80,6 +81,7 @@ struct Coupling {
   double rotational_stiffness_nm_per_rad = 0.5;   ///< of links that align and do not say
   double rotational_damping_nms_per_rad = 0;      ///< b_r
   CouplingMethod method = CouplingMethod::chain;  ///< the chain, or a baseline
+  CouplingForce force = CouplingForce::paper;     ///< of the chain
 };
 
 /// All that a tick needs to know. Made off the tick (extract_program()), immutable, read by the haptic thread.

@@ -13,6 +13,7 @@ struct Coupled {
   std::array<Vec3, kMaxLinks> gaps{};      ///< p_i - p_(i-1), world units
   std::array<Vec3, kMaxLinks> shares_n{};  ///< of the force
   Vec3 force_n{0.0};
+  Vec3 left_out_n{0.0};         ///< of a conservative force: what bounds leave out
   Vec3 reach{0.0};              ///< from the probe to the last proxy, world units
   double newtons_per_unit = 0;  ///< K S: of the links that run, together
 };
@@ -86,16 +87,25 @@ Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe,
 Coupled chain(const Program& program, const Order& order, const Vec3& probe, double dt, double ramp_step, ChainState& state,
               ChainScratch& scratch) noexcept {
   Coupled out;
+  const bool conservative = program.coupling.force == CouplingForce::conservative;
   Vec3 incoming = probe;
   for (int k = 0; k < order.count; ++k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     LinkState& link = state.links[i];
     advance_link(program, i, incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
+    if (conservative && !program.links[i].stiffness_n_per_m.is_constant())
+      link.stiffness_n_per_m =
+          capped(program.links[i].stiffness_n_per_m.at(link.proxy, scratch.links[i].stiffness, link.evaluations), program.limits);
     out.gaps[i] = link.proxy - incoming;
     out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
     out.newtons_per_unit += link.stiffness_n_per_m * program.metres_per_unit;
     out.force_n += out.shares_n[i];
     incoming = link.proxy;
+  }
+  if (conservative) {
+    const PulledBack all = virtual_work(program, order, probe, out.gaps, out.shares_n, state.links, scratch.links);
+    out.force_n = all.force;
+    out.left_out_n = all.left_out;
   }
   out.reach = incoming - probe;
   pass_through(program, order, probe, state);
@@ -143,6 +153,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
   out.mode = state.order.mode;
   out.energy_j = state.passivity.energy_j();
   out.dissipated_j = state.passivity.dissipated_j;
+  out.left_out_j = bounded(state.left_out.work_j);
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkState& link = state.links[i];
     exchange::LinkReport& to = out.links[i];
@@ -241,7 +252,9 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
   for (std::size_t i = 0; i < program.links.size(); ++i) state.alignment.links[i] = out.links[i].orientation;
   guard(program.limits, {force, torque, probe.condition, probe.forces_on, ramp_dt}, state.guard);
-  settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum}, state.guard, state.passivity);
+  book(state.left_out, coupled.left_out_n, move * s);
+  settle(program, state.links, {move, coupled.gaps, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum}, state.guard,
+         state.passivity);
   state.order = order;
   state.last_probe = probe.position;
   state.last_t_s = state.clock_t_s = probe.t_s;

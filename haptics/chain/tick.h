@@ -1,6 +1,7 @@
 /// One tick: a pure function of (program, state, probe). The servo thread, `replay`, the tests and the benchmarks run this.
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
+///   or by virtual work (virtual_work.h), where the coupling asks for a conservative force;
 ///   plus the cues of links that the hand leaves (indication.h), if any. While a step of the links' force is ramped (ramp.h), the sum over
 ///   the links is cut to max_force by itself, and what the ramp holds back is added
 ///   torque: of links that align the tool (alignment.h), if any
@@ -17,6 +18,7 @@
 #include "haptics/chain/passivity.h"
 #include "haptics/chain/ramp.h"
 #include "haptics/chain/switching.h"
+#include "haptics/chain/virtual_work.h"
 #include "haptics/chain/widgets.h"
 
 namespace catena::haptics {
@@ -38,6 +40,7 @@ struct ChainState {
   SwitchState switches;                                  ///< which links are on
   Order order;                                           ///< of the last tick
   Ramp ramp;                                             ///< of the force
+  LeftOut left_out;                                      ///< of a conservative force
   AlignmentState alignment;                              ///< the rotational chain
   WidgetsState widgets;                                  ///< the widgets
   SingleProxy single;                                    ///< baselines

@@ -37,6 +37,14 @@ class WidgetLink final : public Constraint {
     state.residual = holds ? hold.residual : 0;
     state.status = holds ? Status::ok : Status::free;
   }
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    const Shape& shape = state.shape;
+    if (state.status != Status::ok) return {f};
+    if (shape.kind == Shape::Kind::plane) return haptics::pull_back({Primitive::Kind::plane, state.proxy, shape.normal}, f);
+    if (shape.kind == Shape::Kind::point) return {};
+    const SideMemory none{};
+    return SphereSurface({shape.origin, shape.radius, false}, memory_of<SphereSurface::Memory>(state), none).pull_back(probe, f);
+  }
   /// It remembers a normal.
   bool is_sane(const LinkState&) const noexcept override { return true; }
 };

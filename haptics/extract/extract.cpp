@@ -203,6 +203,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
   program->coupling.rotational_damping_nms_per_rad = scene.coupling.rotational_damping_nms_per_rad;
   program->coupling.ramp_s = scene.coupling.ramp_s.value_or(0);
   program->coupling.method = scene.coupling.method;
+  program->coupling.force = scene.coupling.force;
   program->limits = limits;
   program->metres_per_unit = scene.workspace.metres_per_unit;
   program->workspace_origin = scene.workspace.origin;

@@ -33,8 +33,10 @@ std::string to_json(const Vec3& v);
 ///   2  drift of the linear follow mode and of higher-order methods from the streamline (section 4)
 ///   3  a penetrable surface and a curve: the baselines' one proxy beside the chain (section 5)
 ///   stiffness  the largest spring that a device can show, by damping, rate and delay, beside the passive limit
+///   energy     what a closed loop of the hand gains from two links, by their angle, by both forces
 Outcome figure2(ResultFolder& folder);
 Outcome figure3(ResultFolder& folder);
 Outcome figure_stiffness(ResultFolder& folder);
+Outcome figure_energy(ResultFolder& folder);
 
 }  // namespace catena::app

@@ -1,5 +1,8 @@
 #include "haptics/constraints/isosurface/cell_walk.h"
 
+#include <bit>
+#include <limits>
+
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface/piece.h"
 
@@ -8,6 +11,7 @@ namespace {
 
 constexpr double kStill = 1e-13;    // of L: a shorter move is none
 constexpr double kAccepted = 1e-6;  // of L: what may remain where no piece moves any more
+constexpr double kWalkEnded = 3e-8;    // of L: on which a walk has ended
 constexpr int kWalkRounds = 600;
 constexpr double kFarAway = 2;        // voxels
 constexpr int kHalvings = 24;         // to find where a way passes its limit
@@ -92,6 +96,39 @@ CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept 
 
 Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
+}
+
+PulledBack pull_back_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at, const Vec3& f) noexcept {
+  const field::ScalarGrid& grid = *field.cells();
+  const Corner corner(grid.index_box(), at);
+  const unsigned own = corner.upper();
+  Cells cells(field);
+  struct {
+    double size = std::numeric_limits<double>::infinity();
+    bool closest = false;
+    int held = 4;
+    unsigned axes = 0;
+    CellPoint here;
+  } best;
+  for_subsets(corner.faces, [&](unsigned flip) {
+    const CellPoint here = corner.seen_from(own ^ flip);
+    const field::ScalarCell* cell = cells.find(here.base);
+    if (cell == nullptr) return;
+    for_subsets(corner.faces, [&](unsigned held) {
+      const Piece piece(grid.mapping(), *cell, field.level(), frames.of[held | corner.flat], field.steps());
+      const PieceSample s = piece.sample(here.f);
+      const int count = std::popcount(held);
+      if (!s.usable) return;
+      const double size = norm(piece.tangential(here.f, probe, s));
+      const bool closest = size <= kWalkEnded * field.length();
+      const bool better = closest != best.closest ? closest : closest && count != best.held ? count < best.held : size < best.size;
+      if (better) best = {size, closest, count, held, here};
+    });
+  });
+  const field::ScalarCell* cell = best.held < 4 ? cells.find(best.here.base) : nullptr;
+  if (cell == nullptr) return {};
+  const Piece piece(grid.mapping(), *cell, field.level(), frames.of[best.axes | corner.flat], field.steps());
+  return piece.pull_back(best.here.f, probe, f);
 }
 
 WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {

@@ -125,4 +125,8 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
 WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at,
                       TravelLimit* limit = nullptr) noexcept;
 
+/// J^T f of the projection at `at`, where a walk has ended: by the cell's exact Hessian, in the span of the axes that are not held. Of the
+/// pieces that meet the point the one counts on which it is a closest point, with the fewest axes held.
+PulledBack pull_back_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at, const Vec3& f) noexcept;
+
 }  // namespace catena::haptics

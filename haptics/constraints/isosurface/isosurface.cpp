@@ -7,6 +7,7 @@
 #include "haptics/constraints/isosurface/reach.h"
 #include "haptics/constraints/isosurface/wall.h"
 #include "haptics/constraints/rules/link_keys.h"
+#include "haptics/constraints/rules/pull_back.h"
 #include "haptics/constraints/rules/surface_side.h"
 
 namespace catena::haptics {
@@ -269,7 +270,7 @@ class LevelSurface final : public Surface {
 
   int quick_of_grid() const noexcept { return field_.state().most <= kThrownWork ? kThrownQuick : kQuickOfGrids; }
   ClosestGoal goal(int most) noexcept {
-    return {1e-8 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
+    return {1e-10 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
             kQuickRefusals};
   }
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
@@ -368,6 +369,20 @@ class Isosurface final : public Constraint {
     const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) && haptics::is_sane(memory.scan) &&
            are_bools(memory.walled);
+  }
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
+    const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    if (!memory.side.holding) return {f};
+    LevelField field(*field_, level_, scratch.cursors[0], state);
+    if (field.cells()) return pull_back_cells(field, frames_, probe, memory.cell, f);
+    if (memory.walled) return {};  // at the end of the domain
+    const LevelPoint& at = memory.at;
+    const double h = 1e-5 * field.length();
+    const auto bent = [&](const Vec3& v) {
+      const LevelPoint ahead = field.at(at.p + v * h), behind = field.at(at.p - v * h);
+      return ahead.valid && behind.valid ? (ahead.n - behind.n) / (2 * h) : Vec3(0.0);
+    };
+    return pull_back_on_surface(at.n, dot(at.n, probe - at.p), bent, f);
   }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.

@@ -1,6 +1,7 @@
 #include "haptics/constraints/isosurface/piece.h"
 
 #include "haptics/constraints/isosurface/analytic.h"
+#include "haptics/constraints/rules/pull_back.h"
 
 namespace catena::haptics {
 
@@ -39,6 +40,17 @@ Vec3 Piece::newton(const Vec3& f, const Vec3& probe, const PieceSample& s, const
   double u1, u2;
   solve_tangent(1 + delta * dot(t1, b1), delta * dot(t1, b2), 1 + delta * dot(t2, b2), size, 0, 0.1, u1, u2);
   return t1 * u1 + t2 * u2;
+}
+
+PulledBack Piece::pull_back(const Vec3& f, const Vec3& probe, const Vec3& force) const noexcept {
+  const PieceSample s = sample(f);
+  if (!s.usable || frame_.count < 2) return {};
+  const double delta = dot(s.n, probe - world(f));
+  const auto bent = [&](const Vec3& v) { return frame_.on_span(hessian_times(f, v)) * (1 / s.slope); };
+  if (frame_.count == 3) return pull_back_on_surface(s.n, delta, bent, force);
+  // one direction is left: in the span, across n
+  const Vec3 other = cross(frame_.q[0], frame_.q[1]), t = direction(cross(s.n, other));
+  return pull_back_on_curve(t, 1 + delta * dot(t, bent(t)), force);
 }
 
 bool Piece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out, double& along) const noexcept {

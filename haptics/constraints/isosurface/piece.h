@@ -57,6 +57,8 @@ class Piece {
   Vec3 tangential(const Vec3& f, const Vec3& probe, const PieceSample& s) const noexcept;
   /// The Newton step on the tangent plane.
   Vec3 newton(const Vec3& f, const Vec3& probe, const PieceSample& s, const Vec3& t) const noexcept;
+  /// J^T force at f, the closest point of the piece to the probe.
+  PulledBack pull_back(const Vec3& f, const Vec3& probe, const Vec3& force) const noexcept;
   /// f + step, brought back to the level along n (of the point f). False: no level near by. May leave the cell.
   /// `along`: where on that line a search begins (0: at f + step), and where it ended.
   bool retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out, double& along) const noexcept;

@@ -2,6 +2,7 @@
 
 #include "haptics/constraints/mesh/contact.h"
 #include "haptics/constraints/mesh/walk.h"
+#include "haptics/constraints/rules/pull_back.h"
 #include "haptics/constraints/rules/surface_side.h"
 
 namespace catena::haptics {
@@ -111,6 +112,16 @@ class TwoSidedMesh final : public Constraint {
     out = {Primitive::Kind::plane, state.proxy, mesh_->face(memory.at.face).normal};
     return true;
   }
+  /// Of the face, the edge or the corner that it is on.
+  PulledBack pull_back(const Vec3&, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    const auto& memory = memory_of<WalkMemory>(state);
+    const mesh::Closest& at = memory.at;
+    if (!memory.side.holding) return {f};
+    if (at.corner >= 0) return {};
+    if (at.edge < 0) return haptics::pull_back({Primitive::Kind::plane, state.proxy, mesh_->face(at.face).normal}, f);
+    const Vec3 along = mesh_->corner(at.face, (at.edge + 1) % 3) - mesh_->corner(at.face, at.edge);
+    return haptics::pull_back({Primitive::Kind::line, state.proxy, direction(along)}, f);
+  }
   bool is_sane(const LinkState& state) const noexcept override {
     const auto& memory = memory_of<WalkMemory>(state);
     return haptics::is_sane(memory.side) && memory.at.face < mesh_->triangles().size();
@@ -197,6 +208,10 @@ class OneSidedMesh final : public Constraint {
       out = {Primitive::Kind::point, state.proxy, Vec3(0.0)};
     }
     return true;
+  }
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Primitive binding;
+    return primitive(probe, state, scratch, binding) ? haptics::pull_back(binding, f) : PulledBack{f};
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const auto& memory = memory_of<GodMemory>(state);

@@ -59,6 +59,9 @@ class Snap final : public Constraint {
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     return !outer_of<SnapMemory>(state).apart && inner_->primitive(at, state, scratch, out);
   }
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
+    return outer_of<SnapMemory>(state).apart ? PulledBack{f} : inner_->pull_back(probe, f, state, scratch);
+  }
   bool is_sane(const LinkState& state) const noexcept override {
     return are_bools(outer_of<SnapMemory>(state).apart) && inner_->is_sane(state);
   }

@@ -3,6 +3,7 @@
 /// Finite for |x| up to 1e300. Lengths in world units. Any thread; allocates nothing.
 #pragma once
 #include "engine/base/vec.h"
+#include "haptics/constraints/rules/pull_back.h"
 #include "haptics/constraints/rules/surface_side.h"
 
 namespace catena::haptics {
@@ -66,6 +67,17 @@ class ClosedForm final : public Constraint {
     if (state.released || state.status == Status::no_surface) return false;
     Memory copy = memory_of<Memory>(state);
     return S(shape_, copy.own, copy.side).primitive(at, out);
+  }
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    Memory copy = memory_of<Memory>(state);
+    if (!copy.side.holding) return {f};
+    S surface(shape_, copy.own, copy.side);
+    if constexpr (requires { surface.pull_back(probe, f); }) {
+      return surface.pull_back(probe, f);
+    } else {
+      Primitive primitive;
+      return surface.primitive(probe, primitive) ? haptics::pull_back(primitive, f) : PulledBack{f};
+    }
   }
   bool has_primitive() const noexcept override { return true; }
   bool is_sane(const LinkState& state) const noexcept override {

@@ -109,6 +109,11 @@ class SphereSurface final : public Surface {
   /// L: its diameter, or that of a scene without fields.
   double domain_length() const noexcept override { return std::max(kSceneLength, 2 * radius_); }
 
+  /// J = (R / d) (I - r r^T), r the unit way from the centre, d the probe's distance from it.
+  PulledBack pull_back(const Vec3& probe, const Vec3& f) const noexcept {
+    const Vec3 r = direction(probe - center_);
+    return divided(f - r * dot(r, f), norm(probe - center_) / radius_);
+  }
   /// The tangent plane where it holds.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     const Hold hold = slide(at);

@@ -4,6 +4,7 @@
 #include "engine/flow/derivatives.h"
 #include "engine/flow/flow.h"
 #include "haptics/constraints/equations.h"
+#include "haptics/constraints/rules/pull_back.h"
 
 namespace catena::haptics {
 namespace {
@@ -310,6 +311,21 @@ class OnlineStreamline final : public Constraint {
     state.evaluations = foot.evaluations;
     out = line_or_point(foot);
     return memory_of<OnlineMemory>(foot).mode != OnlineMode::seeking;
+  }
+  /// J = t t^T / (1 - kappa N . (x - p)), kappa N by two more fetches along the line; 0 where the line holds it at an end.
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
+    const OnlineMemory& memory = memory_of<OnlineMemory>(state);
+    if (memory.mode == OnlineMode::seeking) return {f};
+    if (memory.mode != OnlineMode::following) return {};
+    const double h = 1e-5 * spec_.field->length();
+    const flow::Flow flow{spec_.field.get(), spec_.line, spec_.min_speed};
+    Vec3 ahead, behind, bend(0.0);
+    state.evaluations += 2;
+    const Vec3 &p = state.proxy, &t = memory.t;
+    if (flow::direction_at(flow, p + t * h, t, scratch.cursors[0], ahead) == Stop::none &&
+        flow::direction_at(flow, p - t * h, t, scratch.cursors[0], behind) == Stop::none)
+      bend = (ahead - behind) / (2 * h);
+    return pull_back_on_curve(t, 1 - dot(bend, probe - p), f);
   }
   double domain_length() const noexcept override { return spec_.field->length(); }
 

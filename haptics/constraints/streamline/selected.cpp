@@ -1,6 +1,7 @@
 #include "haptics/constraints/streamline/selected.h"
 
 #include "engine/flow/curve.h"
+#include "haptics/constraints/rules/pull_back.h"
 
 namespace catena::haptics {
 namespace {
@@ -94,6 +95,19 @@ class SelectedStreamline final : public Constraint {
     const bool ends = foot.status == Status::boundary || foot.status == Status::critical;
     out = {ends ? Primitive::Kind::point : Primitive::Kind::line, p, ends ? Vec3(0.0) : direction(derivative)};
     return true;
+  }
+  /// J = p' p'^T / (p' . p' - (x - p) . p''), of the cubic that it is on; 0 at an open end.
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    const SelectedMemory& memory = memory_of<SelectedMemory>(state);
+    const flow::Knot &a = curve_->knots()[memory.interval], &b = curve_->knots()[memory.interval + 1];
+    const bool first = memory.interval == 0 && memory.s <= a.s, last = memory.interval + 1 == intervals_ && memory.s >= b.s;
+    if (!curve_->closed() && (first || last)) return {};
+    Vec3 p, tangent;
+    curve_->evaluate_in(memory.interval, memory.s, p, tangent);
+    const double h = b.s - a.s, theta = (memory.s - a.s) / h, squared = dot(tangent, tangent);
+    const flow::Hermite piece(a.p, a.to(b), h, a.t, b.t);
+    const Vec3 bend = (2.0 * piece.c2 + (6 * theta) * piece.c3) / (h * h);
+    return divided(tangent * (dot(tangent, f) / squared), 1 - dot(probe - p, bend) / squared);
   }
   double domain_length() const noexcept override { return curve_->domain_length(); }
 

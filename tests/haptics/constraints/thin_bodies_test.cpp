@@ -129,7 +129,7 @@ TEST(ThinBodies, AFastHandIsCaughtHoweverThinTheBodyIs) {
     const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
     fields.named["f"].scalar = grid_of(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
     Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below"})", fields));
-    rig.state.hand_step = 0.1;
+    rig.state.hand_step = 0.2;
     const double before = random.in(0.001, 0.03), after = random.in(0.001, 0.03);
     const Vec3 place(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 0), slant(random.in(-0.02, 0.02), random.in(-0.02, 0.02), 0);
     rig.tick(place + Vec3(0, 0, 0.1 * peak + before));

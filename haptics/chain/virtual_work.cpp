@@ -1,0 +1,37 @@
+#include "haptics/chain/virtual_work.h"
+
+namespace catena::haptics {
+
+namespace {
+
+constexpr double kDifference = 1e-6;  // of L: for the gradient of a stiffness
+
+}  // namespace
+
+PulledBack virtual_work(const Program& program, const Order& order, const Vec3& probe, const std::array<Vec3, kMaxLinks>& gaps,
+                        const std::array<Vec3, kMaxLinks>& shares_n, std::array<LinkState, kMaxLinks>& links,
+                        std::array<LinkScratch, kMaxLinks>& scratch) noexcept {
+  PulledBack all;
+  for (int k = order.count - 1; k >= 0; --k) {
+    const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
+    const Link& spec = program.links[i];
+    // a stiffness that follows a field pulls towards where it is less
+    if (!spec.stiffness_n_per_m.is_constant()) {
+      const Vec3 slope = spec.stiffness_n_per_m.gradient(links[i].proxy, kDifference * spec.constraint->domain_length(),
+                                                         scratch[i].stiffness, links[i].evaluations);
+      all.force -= slope * (0.5 * links[i].weight * program.metres_per_unit * dot(gaps[i], gaps[i]));
+    }
+    if (max_abs(all.force) > 0 || max_abs(all.left_out) > 0) {
+      const int before = k > 0 ? order.links[static_cast<std::size_t>(k - 1)] : -1;
+      const Vec3& incoming = before < 0 ? probe : links[static_cast<std::size_t>(before)].proxy;
+      const PulledBack force = spec.constraint->pull_back(incoming, all.force, links[i], scratch[i]);
+      const Vec3 left_out =
+          max_abs(all.left_out) > 0 ? spec.constraint->pull_back(incoming, all.left_out, links[i], scratch[i]).force : Vec3(0.0);
+      all = {force.force, force.left_out + left_out};
+    }
+    all.force += shares_n[i];
+  }
+  return all;
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,202 @@
+// Work of a chain along slow closed loops of the hand, in units of K gap^2: by the paper's sum of pulls, and by virtual work, which is the
+// gradient of an energy. The work is a trapezoid rule over the parameter of the loop, refined until half the step changes it by less than
+// 1e-10 of K gap^2; gap is the hand's largest distance from the last proxy. Prints the table of pairs.
+#include "haptics/chain/tick.h"
+#include "haptics/constraints/rules/link_keys.h"
+#include "tests/engine/flow/fields.h"
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::tests {
+namespace energy_test {
+
+constexpr double kStiffness = 100;
+
+Fields fields() {
+  Fields made;
+  for (const char* name : {"sphere", "torus"}) made.named[name].scalar = analytic(name);
+  for (const char* name : {"circle", "helix"}) made.named[name].vector = field::make_analytic(name)->vector;
+  made.named["torus_grid"].scalar = sampled("torus", 33);
+  made.named["slope"].scalar = grid_of(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9}, [](const Vec3& p) { return p.x; });
+  return made;
+}
+
+/// A closed way of the hand about `centre`.
+struct Loop {
+  Vec3 centre, a, b, c;
+
+  Vec3 at(double part) const {
+    const double u = 2 * 3.14159265358979323846 * part;
+    return centre + a * std::cos(u) + b * std::sin(u) + c * (0.3 * std::sin(2 * u));
+  }
+  /// By `part`.
+  Vec3 velocity(double part) const {
+    const double turn = 2 * 3.14159265358979323846, u = turn * part;
+    return (b * std::cos(u) - a * std::sin(u) + c * (0.6 * std::cos(2 * u))) * turn;
+  }
+};
+
+struct Result {
+  double work = 0;  ///< by K gap^2
+  double left_out = 0;
+  bool converged = false;
+};
+
+Result work_of(const std::vector<std::string>& links, CouplingForce force, const Loop& loop, int most = 1 << 14) {
+  static const Fields all = fields();
+  Program program;
+  for (const std::string& text : links) {
+    Link link;
+    link.name = "l" + std::to_string(program.links.size());
+    link.constraint = build(R"({"name": "a", )" + text + "}", all);
+    link.stiffness_n_per_m = kStiffness;
+    program.links.push_back(std::move(link));
+  }
+  program.coupling.force = force;
+  program.coupling.max_force_n = 1e9;
+  Result result;
+  double before = 0;
+  for (int n = 64; n <= most; n *= 2) {
+    ChainState state;
+    ChainScratch scratch;
+    exchange::HapticState out;
+    double gap = 0, work = 0, t = 0, left = 0;
+    // one lap to arrive, and one that counts
+    for (int k = 0; k <= 2 * n; ++k) {
+      const Vec3 next = loop.at(static_cast<double>(k % n) / n);
+      tick(program, {t += 1e-3, next, 0}, state, scratch, out);
+      if (k == n) left = out.left_out_j;
+      if (k > n) {
+        work += dot(out.force_n, loop.velocity(static_cast<double>(k % n) / n)) / n;
+        gap = std::max(gap, norm(out.links[program.links.size() - 1].proxy - next));
+      }
+    }
+    const double unit = kStiffness * gap * gap;
+    result = {work / unit, (out.left_out_j - left) / unit, n > 64 && std::fabs(work - before) <= 1e-10 * unit};
+    if (result.converged) break;
+    before = work;
+  }
+  return result;
+}
+
+std::string plane(const Vec3& n, double height = 0) {
+  const Vec3 p = direction(n) * height;
+  return fmt::format(R"("type": "plane", "point": [{}, {}, {}], "normal": [{}, {}, {}])", p.x, p.y, p.z, n.x, n.y, n.z);
+}
+std::string line(const Vec3& p, const Vec3& d) {
+  return fmt::format(R"("type": "line", "point": [{}, {}, {}], "direction": [{}, {}, {}])", p.x, p.y, p.z, d.x, d.y, d.z);
+}
+const std::string kSphere = R"("type": "sphere", "center": [0, 0, 0], "radius": 1.5)";
+const std::string kBall = R"("type": "isosurface", "field": "sphere", "level": 1.5)";
+const std::string kTorus = R"("type": "isosurface", "field": "torus", "level": 0.4)";
+const std::string kCircle = R"("type": "streamline", "field": "circle", "seed": [1.5, 0, 0])";
+const std::string kHelix = R"("type": "streamline", "field": "helix", "seed": [1.5, 0, 0])";
+const std::string kOnline = R"("type": "streamline", "field": "circle", "seed": [1.5, 0, 0], "follow": "online")";
+
+TEST(Energy, TwoPlanesAtFortyFiveDegreesGainByThePaperAndNothingByVirtualWork) {
+  const double s = std::sqrt(0.5);
+  const std::vector<std::string> planes{plane({0, 0, 1}), plane({s, 0, s})};
+  double most = 0;
+  Random random(1);
+  for (int i = 0; i < 20; ++i) {
+    const Loop loop{random.box(0.1), random.box(0.3), random.box(0.3), Vec3(0.0)};
+    const Result paper = work_of(planes, CouplingForce::paper, loop), virtual_work = work_of(planes, CouplingForce::conservative, loop);
+    most = std::max(most, std::fabs(paper.work));
+    EXPECT_LE(std::fabs(virtual_work.work), 1e-9);
+  }
+  EXPECT_GT(most, 0.1) << "the paper's form is not conservative";
+}
+
+TEST(Energy, OfSmoothProjectionsOverLoopsBySeed) {
+  Random random(2);
+  const std::vector<std::pair<const char*, std::string>> links{{"plane", plane({1, 2, 3}, 0.3)},
+                                                               {"line", line({0.2, 0.1, 0}, {1, 0.5, -0.3})},
+                                                               {"sphere", kSphere},
+                                                               {"ball", kBall},
+                                                               {"torus", kTorus},
+                                                               {"circle", kCircle},
+                                                               {"helix", kHelix},
+                                                               {"online", kOnline}};
+  std::printf("%-10s%-10s%14s%18s\n", "first", "second", "paper", "virtual work");
+  for (const auto& [first, a] : links)
+    for (const auto& [second, b] : links) {
+      double paper = 0, conservative = 0;
+      {
+        // near the circle of radius 1.5 in z = 0, where all of them have one smooth closest place
+        const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
+        paper = std::max(paper, std::fabs(work_of({a, b}, CouplingForce::paper, loop).work));
+        const Result result = work_of({a, b}, CouplingForce::conservative, loop);
+        conservative = std::max(conservative, std::fabs(result.work + result.left_out));
+      }
+      std::printf("%-10s%-10s%14.2e%18.1e\n", first, second, paper, conservative);
+      EXPECT_LE(conservative, 1e-9) << first << ", " << second;
+    }
+}
+
+TEST(Energy, OfThreeLinks) {
+  Random random(3);
+  const std::vector<std::vector<std::string>> chains{{kSphere, plane({1, 2, 3}, 0.3), line({0, 0, 0}, {1, 0.2, 0})},
+                                                     {kTorus, kSphere, kCircle},
+                                                     {kHelix, plane({0, 1, 1}), kSphere},
+                                                     {plane({1, 0, 1}), plane({0, 1, 1}), plane({1, 1, 0})}};
+  for (const auto& chain : chains)
+    for (int i = 0; i < 3; ++i) {
+      const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
+      const Result result = work_of(chain, CouplingForce::conservative, loop);
+      EXPECT_LE(std::fabs(result.work + result.left_out), 1e-9);
+    }
+}
+
+TEST(Energy, OfContactsThatComeAndGoAndOfCells) {
+  Random random(4);
+  const std::string one_sided = plane({0, 0, 1}, 0.1) + R"(, "free": "above")";
+  const std::string grid = R"("type": "isosurface", "field": "torus_grid", "level": 0.4)";
+  const std::vector<std::vector<std::string>> chains{{one_sided, plane({1, 0, 1}, 0.2)},
+                                                     {plane({1, 0, 1}, 0.2), one_sided},
+                                                     {grid, plane({1, 2, 3}, 0.3)},
+                                                     {plane({1, 2, 3}, 0.3), grid},
+                                                     {grid, kCircle}};
+  for (const auto& chain : chains) {
+    // where a contact begins the force jumps, and the sum over the loop is as good as its step
+    const Loop loop{Vec3(1.65, 0.1, 0.1) + random.box(0.05), random.box(0.15), random.box(0.15), random.box(0.1)};
+    const Result result = work_of(chain, CouplingForce::conservative, loop, 1 << 19);
+    EXPECT_LE(std::fabs(result.work + result.left_out), 1e-6) << chain[0] << " " << chain[1];
+  }
+}
+
+TEST(Energy, OfAStiffnessThatFollowsAField) {
+  static const Fields all = fields();
+  auto node = json::parse(R"({"k": {"field": "slope", "map": [[-2, 50], [2, 300]]}})", "s.json");
+  const auto map = get_parameter(*node, "k", 0.0, json::Range::not_negative, all.context());
+  ASSERT_TRUE(map);
+  for (const CouplingForce force : {CouplingForce::paper, CouplingForce::conservative}) {
+    Program program;
+    Link link;
+    link.name = "a";
+    link.constraint = build(R"({"name": "a", )" + plane({0, 0, 1}) + "}");
+    link.stiffness_n_per_m = *map;
+    program.links = {link};
+    program.coupling.force = force;
+    program.coupling.max_force_n = 1e9;
+    ChainState state;
+    ChainScratch scratch;
+    exchange::HapticState out;
+    const Loop loop{Vec3(0.1, 0, 0.3), Vec3(0.3, 0, 0), Vec3(0, 0, 0.2), Vec3(0.0)};
+    double work = 0, t = 0;
+    Vec3 x(0.0), f(0.0);
+    const int n = 1 << 14;
+    for (int k = 0; k <= 2 * n; ++k) {
+      const Vec3 next = loop.at(static_cast<double>(k % n) / n);
+      tick(program, {t += 1e-3, next, 0}, state, scratch, out);
+      if (k > n) work += 0.5 * dot(out.force_n + f, next - x);
+      x = next;
+      f = out.force_n;
+    }
+    if (force == CouplingForce::paper)
+      EXPECT_GT(std::fabs(work), 0.01 * 175 * 0.25);
+    else
+      EXPECT_LE(std::fabs(work), 1e-6 * 175 * 0.25);
+  }
+}
+
+}  // namespace energy_test
+}  // namespace catena::haptics::tests
