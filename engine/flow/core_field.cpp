@@ -149,6 +149,7 @@ CoreField::CoreField(const field::VectorField& field, CoreCriterion criterion, d
 
 bool CoreField::flow_at(const Vec3& world, CoreFlow& out) {
   if (!field_.is_grid()) {
+    if (!field_.index_box().contains(field_.mapping().index_from_world(world))) return false;
     int evaluations = 0;
     const VelocityGradient found = velocity_gradient(field_, world, cursor_, evaluations);
     const double share = found.scale / scale_;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <glm/matrix.hpp>
 
 #include "engine/base/result.h"
 #include "engine/flow/vortex_cores.h"
@@ -45,6 +46,38 @@ double length_of(const Hermite& piece) {
 }
 
 }  // namespace
+
+std::vector<Vec3> faired(const std::vector<Vec3>& places, bool closed, int reach) {
+  const int n = static_cast<int>(places.size());
+  std::vector<Vec3> out(places);
+  for (int i = 0; i < n; ++i) {
+    const int half = closed ? std::min(reach, (n - 1) / 2) : std::min({reach, i, n - 1 - i});
+    if (half < 2) continue;
+    const auto at = [&](int k) -> const Vec3& { return places[static_cast<std::size_t>((i + k + n) % n)]; };
+    // least squares, by the way along the chords
+    Mat3 normal(0.0), right(0.0);
+    const auto add = [&](double u, const Vec3& p) {
+      const Vec3 powers(1, u, u * u);
+      for (int r = 0; r < 3; ++r) {
+        normal[r] += powers * powers[r];
+        right[r] += p * powers[r];
+      }
+    };
+    const double unit = norm(at(1) - at(0));
+    add(0, Vec3(0.0));
+    for (const int way : {-1, 1}) {
+      double u = 0;
+      for (int k = 1; k <= half; ++k) {
+        u += way * norm(at(way * k) - at(way * (k - 1))) / unit;
+        add(u, at(way * k) - places[static_cast<std::size_t>(i)]);
+      }
+    }
+    const Mat3 inverse = glm::inverse(normal);
+    const Vec3 moved = right[0] * inverse[0][0] + right[1] * inverse[1][0] + right[2] * inverse[2][0];
+    if (is_finite(moved)) out[static_cast<std::size_t>(i)] += moved;
+  }
+  return out;
+}
 
 CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last, double domain_length) {
   const std::size_t n = places.size(), pieces = closed ? n : n - 1;

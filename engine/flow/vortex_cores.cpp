@@ -16,12 +16,13 @@ namespace {
 
 constexpr int kBlock = 16;             // cells an axis of what is looked at in one piece
 constexpr int kFormulaCells = 48;      // an axis of a formula's domain
-constexpr double kFormulaStep = 1e-3;  // of L
+constexpr double kFormulaStep = 5e-4;  // of L
 constexpr double kNear = 1.5;          // cells: longest Newton step to a core
 constexpr double kOnCore = 0.25;       // cells: a place on a core
 constexpr std::size_t kSeedsABlock = 256, kLeastPlaces = 64;
 constexpr double kVoxelsOfLine = 4, kPartOfLength = 0.02;  // the shortest line by default
 constexpr double kJoined = 2.5;                            // cells: longest gap within a line
+constexpr int kFaired = 6;                                 // knots to each side that a knot of a grid's core is fitted to
 constexpr std::size_t kMostPlaces = 4'000'000;
 
 /// What is found in a block of cells.
@@ -206,7 +207,7 @@ Result<VortexCoresPtr> trace_cores(const field::VectorField& field, const CoreOp
   std::erase_if(traces, [&](const CoreTrace& line) { return mean_swirl(line) < options.least_swirl * strongest; });
   std::stable_sort(traces.begin(), traces.end(), [](const CoreTrace& a, const CoreTrace& b) { return length_of(a) > length_of(b); });
   for (const CoreTrace& line : traces) {
-    const std::vector<Vec3>& p = line.places;
+    const std::vector<Vec3> p = grid ? faired(line.places, line.closed, kFaired) : line.places;
     made->lines.push_back(spline_through(p, line.closed, end_at(field, p[0], p[1], line.first_leaves),
                                          end_at(field, p[p.size() - 1], p[p.size() - 2], line.last_leaves), field.length()));
     std::vector<float>& swirls = made->swirls.emplace_back();

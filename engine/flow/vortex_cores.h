@@ -6,8 +6,10 @@
 /// Where more than half of the places at which the flow turns are on a core by the criterion (v || curl v everywhere: a Beltrami flow), it
 /// tells none from another, and none is traced.
 /// How: at the middle of every cell (of a formula: of 48 an axis of its domain) one Newton step; where it is shorter than 1.5 cells the
-/// core is sought, and followed both ways in steps of half a voxel (of a formula: L / 1000), each corrected by Newton's method across the
-/// line to 1e-13 L, or 1e-3 voxels where grad v has a kink. Lines whose ends meet are joined, and through their knots goes a cubic spline,
+/// core is sought, and followed both ways in steps of half a voxel (of a formula: L / 2000), each corrected by Newton's method across the
+/// line to 1e-13 L, or 1e-3 voxels where grad v has a kink. Lines whose ends meet are joined. Of a grid
+/// each knot is then moved onto the parabola that fits its neighbours within three voxels best, fewer near an open end, which stays: noise
+/// and the kinks of cells count less, and a line that is straight or bends evenly stays where it is. Through the knots goes a cubic spline,
 /// so that tangent and curvature are continuous. Off the tick; any thread; the same lines for the same field.
 #pragma once
 #include <array>
@@ -46,6 +48,8 @@ using VortexCoresPtr = std::shared_ptr<const VortexCores>;
 /// The cores of a field; those that something holds are not traced again. The error: no memory, or more lines than can be kept.
 Result<VortexCoresPtr> vortex_cores(const field::VectorFieldPtr& field, const CoreOptions& options);
 
+/// Private to this room: each place on the parabola of the `reach` places before and after it.
+std::vector<Vec3> faired(const std::vector<Vec3>& places, bool closed, int reach);
 /// Private to this room: a line through these places (core_lines.cpp); `closed`: the last one leads to the first.
 CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last, double domain_length);
 

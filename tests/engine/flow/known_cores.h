@@ -24,12 +24,14 @@ inline double swirl_rate(double r2, double core) { return r2 > 0 ? -std::expm1(-
 inline std::vector<KnownCore> known_cores() {
   std::vector<KnownCore> all;
   const auto within = [](const Vec3& p) { return max_abs(p) < 1.1; };
-  {
-    const Vec3 axis = direction(Vec3(0.3, -0.2, 1)), through(0.11, 0.07, -0.05);
-    KnownCore burgers{"burgers",
+  // the same with a stream along the core that is faster on one side
+  for (const double shear : {0.0, 1.5}) {
+    const Vec3 axis = direction(Vec3(0.3, -0.2, 1)), through(0.11, 0.07, -0.05), side = direction(cross(axis, Vec3(0.4, 1, 0)));
+    KnownCore burgers{shear == 0 ? "burgers" : "sheared",
                       [=](const Vec3& p) {
                         const Vec3 e = p - through, out = e - axis * dot(axis, e);
-                        return 4 * swirl_rate(dot(out, out), 0.3) * cross(axis, out) - 0.3 * out + 0.6 * axis * dot(axis, e);
+                        const Vec3 stream = axis * (shear * (0.5 + dot(side, out)));
+                        return stream + 4 * swirl_rate(dot(out, out), 0.3) * cross(axis, out) - 0.3 * out + 0.6 * axis * dot(axis, e);
                       },
                       [=](const Vec3& p) { return through + axis * dot(axis, p - through); },
                       {}};
@@ -55,12 +57,12 @@ inline std::vector<KnownCore> known_cores() {
       if (const Vec3 p = middle + 1.5 * (u * std::cos(0.00628 * i) + w * std::sin(0.00628 * i)); within(p)) bent.places.push_back(p);
     all.push_back(bent);
   }
-  for (const double swirl : {0.0, 0.5}) {
+  {
     const auto hill = analytic_vector("hill");
-    KnownCore ring{swirl == 0 ? "ring" : "ring swirl",
+    KnownCore ring{"ring",
                    [=](const Vec3& p) {
                      field::Cursor cursor;
-                     return hill->sample(p, cursor).value + swirl * cross(Vec3(0, 0, 1), p);
+                     return hill->sample(p, cursor).value;
                    },
                    [](const Vec3& p) { return direction(Vec3(p.x, p.y, 0)) * std::sqrt(0.5); },
                    {}};
