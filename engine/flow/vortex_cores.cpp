@@ -20,7 +20,7 @@ constexpr double kFormulaStep = 5e-4;  // of L
 constexpr double kNear = 1.5;          // cells: longest Newton step to a core
 constexpr double kOnCore = 0.25;       // cells: a place on a core
 constexpr std::size_t kSeedsABlock = 256, kLeastPlaces = 64;
-constexpr double kVoxelsOfLine = 4, kPartOfLength = 0.02;  // the shortest line by default
+constexpr double kVoxelsOfLine = 6, kPartOfLength = 0.02;  // the shortest line by default
 constexpr double kJoined = 2.5;                            // cells: longest gap within a line
 constexpr int kFaired = 6;                                 // knots to each side that a knot of a grid's core is fitted to
 constexpr std::size_t kMostPlaces = 4'000'000;

@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 3> kCoreCriteria{"sujudi-haimes", 
 /// What is asked for.
 struct CoreOptions {
   CoreCriterion criterion = CoreCriterion::sujudi_haimes;  ///< by what a core is told
-  double least_length = 0;                                 ///< of a line, world units; 0: of grids 4 voxels, of others 0.02 L
+  double least_length = 0;                                 ///< of a line, world units; 0: of grids 6 voxels, of others 0.02 L
   double least_swirl = 0.05;                               ///< mean swirl of a line, of the strongest one's
   auto operator<=>(const CoreOptions&) const = default;
 };

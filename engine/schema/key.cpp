@@ -96,7 +96,7 @@ Key core_criterion_key() {
 }
 
 Key core_length_key() {
-  return number("least_length", "world", "Shorter core lines are left out.").positive().by_default("4 voxels; of a formula 0.02 L");
+  return number("least_length", "world", "Shorter core lines are left out.").positive().by_default("6 voxels; of a formula 0.02 L");
 }
 
 Key core_swirl_key() {

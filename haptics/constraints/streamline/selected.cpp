@@ -9,95 +9,6 @@ constexpr std::int32_t kKnotCap = 4096, kKnotsAStep = 2;
 constexpr double kFarSquared = 1e100;
 constexpr double kHugeDistance = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
 
-/// One tick along a curve.
-class Walk {
- public:
-  Walk(const flow::Curve& curve, SelectedMemory& memory, LinkState& state)
-      : curve_(curve), memory_(memory), state_(state), intervals_(curve.knots().size() - 1) {}
-
-  void to(const Vec3& far_probe) noexcept {
-    const Vec3 probe = max_abs(far_probe) > kHugeDistance ? far_probe * 1e-20 : far_probe;
-    state_.status = Status::ok;
-    state_.residual = 0;
-    memory_.knots = 2;
-    std::size_t k = memory_.interval;
-    double below = slope_at_knot(k, probe), above = slope_at_knot(k + 1, probe);
-
-    // every place here is equally near (the centre of a circle): stay
-    const double flat = 1e-13 * curve_.domain_length();
-    if (std::fabs(below) <= flat && std::fabs(above) <= flat) return place(k, memory_.s);
-
-    // downhill: up the curve, down it, or a foot in this interval
-    int way = 0;
-    if (below > 0 && above > 0)
-      way = 1;
-    else if (below < 0 && above < 0)
-      way = -1;
-    else if (!(below >= 0 && above <= 0))
-      way = slope_at(k, memory_.s, probe) >= 0 ? 1 : -1;
-
-    // knot by knot until the slope changes sign
-    const std::size_t start = k;
-    if (way > 0) {
-      while (above > 0) {
-        if (k + 1 == intervals_ && !curve_.closed()) return hold(k, curve_.knots().back().s, curve_.last_end());
-        k = k + 1 == intervals_ ? 0 : k + 1;
-        if (++memory_.knots > kKnotCap || k == start) return out_of_budget(k, curve_.knots()[k].s);
-        below = above;
-        above = slope_at_knot(k + 1, probe);
-      }
-    } else if (way < 0) {
-      while (below < 0) {
-        if (k == 0 && !curve_.closed()) return hold(k, curve_.knots().front().s, curve_.first_end());
-        k = k == 0 ? intervals_ - 1 : k - 1;
-        if (++memory_.knots > kKnotCap || k == start) return out_of_budget(k, curve_.knots()[k + 1].s);
-        above = below;
-        below = slope_at_knot(k, probe);
-      }
-    }
-
-    // the foot, from the interval's own knots
-    const flow::Knot &a = curve_.knots()[k], &b = curve_.knots()[k + 1];
-    const double h = b.s - a.s;
-    const flow::Hermite piece(a.p, a.to(b), h, a.t, b.t);
-    const double theta = piece.foot(probe, below * h, above * h);
-    place(k, theta >= 1 ? b.s : a.s + theta * h);
-  }
-
-  void place(std::size_t k, double s) noexcept {
-    state_.steps += memory_.knots / kKnotsAStep;
-    memory_.s = s;
-    memory_.interval = k;
-    Vec3 derivative;
-    curve_.evaluate_in(k, s, state_.proxy, derivative);
-  }
-
- private:
-  double slope_at_knot(std::size_t k, const Vec3& x) const noexcept {
-    const flow::Knot& knot = curve_.knots()[k];
-    return dot(knot.to(x), knot.t);
-  }
-  double slope_at(std::size_t k, double s, const Vec3& x) const noexcept {
-    Vec3 p, derivative;
-    curve_.evaluate_in(k, s, p, derivative);
-    return dot(x - p, derivative);
-  }
-  void hold(std::size_t k, double s, const flow::LineEnd& end) noexcept {
-    place(k, s);
-    const bool critical = end.end == flow::End::critical || end.end == flow::End::incoherent;
-    if (end.end == flow::End::boundary || critical) stop_link(state_, critical ? Status::critical : Status::boundary, end.reason);
-  }
-  void out_of_budget(std::size_t k, double s) noexcept {
-    place(k, s);
-    state_.status = Status::budget;
-  }
-
-  const flow::Curve& curve_;
-  SelectedMemory& memory_;
-  LinkState& state_;
-  std::size_t intervals_;
-};
-
 class SelectedStreamline final : public Constraint {
  public:
   explicit SelectedStreamline(flow::CurvePtr curve) : curve_(std::move(curve)), nearest_(curve_), intervals_(curve_->knots().size() - 1) {
@@ -112,8 +23,54 @@ class SelectedStreamline final : public Constraint {
     state.status = Status::ok;
   }
 
-  void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    move_along(*curve_, probe, memory_of<SelectedMemory>(state), state);
+  void advance(const Vec3& far_probe, LinkState& state, LinkScratch&) const noexcept override {
+    const Vec3 probe = max_abs(far_probe) > kHugeDistance ? far_probe * 1e-20 : far_probe;
+    SelectedMemory& memory = memory_of<SelectedMemory>(state);
+    state.status = Status::ok;
+    state.residual = 0;
+    memory.knots = 2;
+    std::size_t k = memory.interval;
+    double below = slope_at_knot(k, probe), above = slope_at_knot(k + 1, probe);
+
+    // every place here is equally near (the centre of a circle): stay
+    const double flat = 1e-13 * curve_->domain_length();
+    if (std::fabs(below) <= flat && std::fabs(above) <= flat) return place(memory, k, memory.s, state);
+
+    // downhill: up the curve, down it, or a foot in this interval
+    int way = 0;
+    if (below > 0 && above > 0)
+      way = 1;
+    else if (below < 0 && above < 0)
+      way = -1;
+    else if (!(below >= 0 && above <= 0))
+      way = slope_at(k, memory.s, probe) >= 0 ? 1 : -1;
+
+    // knot by knot until the slope changes sign
+    const std::size_t start = k;
+    if (way > 0) {
+      while (above > 0) {
+        if (k + 1 == intervals_ && !curve_->closed()) return hold(memory, k, curve_->knots().back().s, curve_->last_end(), state);
+        k = k + 1 == intervals_ ? 0 : k + 1;
+        if (++memory.knots > kKnotCap || k == start) return out_of_budget(memory, k, curve_->knots()[k].s, state);
+        below = above;
+        above = slope_at_knot(k + 1, probe);
+      }
+    } else if (way < 0) {
+      while (below < 0) {
+        if (k == 0 && !curve_->closed()) return hold(memory, k, curve_->knots().front().s, curve_->first_end(), state);
+        k = k == 0 ? intervals_ - 1 : k - 1;
+        if (++memory.knots > kKnotCap || k == start) return out_of_budget(memory, k, curve_->knots()[k + 1].s, state);
+        above = below;
+        below = slope_at_knot(k, probe);
+      }
+    }
+
+    // the foot, from the interval's own knots
+    const flow::Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
+    const double h = b.s - a.s;
+    const flow::Hermite piece(a.p, a.to(b), h, a.t, b.t);
+    const double theta = piece.foot(probe, below * h, above * h);
+    place(memory, k, theta >= 1 ? b.s : a.s + theta * h, state);
   }
 
   /// The nearest place of the whole curve.
@@ -122,7 +79,7 @@ class SelectedStreamline final : public Constraint {
     state.status = Status::ok;
     auto& memory = memory_of<SelectedMemory>(state);
     memory.knots = kKnotsAStep * found.work;
-    Walk(*curve_, memory, state).place(found.interval, found.s);
+    place(memory, found.interval, found.s, state);
   }
 
   bool is_sane(const LinkState& state) const noexcept override { return memory_of<SelectedMemory>(state).interval < intervals_; }
@@ -141,6 +98,32 @@ class SelectedStreamline final : public Constraint {
   double domain_length() const noexcept override { return curve_->domain_length(); }
 
  private:
+  double slope_at_knot(std::size_t k, const Vec3& x) const noexcept {
+    const flow::Knot& knot = curve_->knots()[k];
+    return dot(knot.to(x), knot.t);
+  }
+  double slope_at(std::size_t k, double s, const Vec3& x) const noexcept {
+    Vec3 p, derivative;
+    curve_->evaluate_in(k, s, p, derivative);
+    return dot(x - p, derivative);
+  }
+  void place(SelectedMemory& memory, std::size_t k, double s, LinkState& state) const noexcept {
+    state.steps += memory.knots / kKnotsAStep;
+    memory.s = s;
+    memory.interval = k;
+    Vec3 derivative;
+    curve_->evaluate_in(k, s, state.proxy, derivative);
+  }
+  void hold(SelectedMemory& memory, std::size_t k, double s, const flow::LineEnd& end, LinkState& state) const noexcept {
+    place(memory, k, s, state);
+    const bool critical = end.end == flow::End::critical || end.end == flow::End::incoherent;
+    if (end.end == flow::End::boundary || critical) stop_link(state, critical ? Status::critical : Status::boundary, end.reason);
+  }
+  void out_of_budget(SelectedMemory& memory, std::size_t k, double s, LinkState& state) const noexcept {
+    place(memory, k, s, state);
+    state.status = Status::budget;
+  }
+
   flow::CurvePtr curve_;
   flow::NearestOnCurve nearest_;
   std::size_t intervals_;
@@ -148,10 +131,6 @@ class SelectedStreamline final : public Constraint {
 };
 
 }  // namespace
-
-void move_along(const flow::Curve& curve, const Vec3& probe, SelectedMemory& memory, LinkState& state) noexcept {
-  Walk(curve, memory, state).to(probe);
-}
 
 std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve) {
   CATENA_ASSERT(curve && curve->knots().size() >= 2);

@@ -17,9 +17,6 @@ struct SelectedMemory {
   std::int32_t knots = 0;      ///< visited in the last tick: its work
 };
 
-/// One tick along a curve from where `memory` says: sets proxy, status and reason, and counts the work.
-void move_along(const flow::Curve& curve, const Vec3& probe, SelectedMemory& memory, LinkState& state) noexcept;
-
 /// The constraint that holds its probe on a curve. Off the tick.
 std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve);
 

@@ -4,7 +4,6 @@
 #include "engine/flow/vortex_cores.h"
 #include "engine/schema/values.h"
 #include "haptics/constraints/rules/link_keys.h"
-#include "haptics/constraints/streamline/selected.h"
 #include "haptics/constraints/streamline/streamline.h"
 
 namespace catena::haptics {
@@ -13,12 +12,11 @@ namespace {
 constexpr double kFarthestProbe = 1e100;  // squares of what lies beyond lose their meaning
 
 struct CoreMemory {
-  SelectedMemory along;    ///< on the line held
-  std::uint32_t line = 0;  ///< of the cores
-  bool holding = false;    ///< the line and the place on it mean something
-  bool fresh = false;      ///< `probe` and `core` mean something
-  Vec3 probe{0.0};         ///< the last one
-  Vec3 core{0.0};          ///< the place on the core, or on the way to it
+  Vec3 probe{0.0};       ///< the last one
+  Vec3 core{0.0};        ///< the place on the core, or on the way to it
+  Vec3 axis{0.0};        ///< of the core there, unit
+  bool holding = false;  ///< core and axis mean something
+  bool fresh = false;    ///< `probe` means something
 };
 
 class VortexCore final : public Constraint {
@@ -43,20 +41,17 @@ class VortexCore final : public Constraint {
     const double moved = memory.fresh ? norm(probe - memory.probe) : std::numeric_limits<double>::infinity();
     memory.probe = probe;
     memory.fresh = true;
-    if (!nearest_ || !(max_abs(probe) < kFarthestProbe)) {
-      memory.holding = false;
-      return pass(probe, state);
-    }
-    if (memory.holding) {
-      move_along(line_of(memory), probe, memory.along, state);
-      change_line(probe, memory, state);
-    }
-    if (!memory.holding || norm(probe - state.proxy) > search_) {
-      if (!take_hold(probe, memory, state)) return pass(probe, state);
+    const bool held = memory.holding;
+    memory.holding = nearest_ && max_abs(probe) < kFarthestProbe && find(probe, memory, state);
+    if (!memory.holding) return pass(probe, state);
+    const Vec3 way = state.proxy - memory.core;
+    const double gap = norm(probe - state.proxy), far = norm(way), travel = state.travel(moved, gap);
+    if (!held) {
       // from afar it pulls by the ramp
-      if (norm(probe - state.proxy) > state.travel(moved, 0)) state.weight = 0;
-    } else {
-      go(moved, norm(probe - state.proxy), memory, state);
+      if (gap > state.travel(moved, 0)) state.weight = 0;
+    } else if (far > travel) {
+      state.proxy = memory.core + way * (travel / far);
+      state.status = Status::budget;
     }
     memory.core = state.proxy;
     leave_tube(probe, state);
@@ -65,22 +60,17 @@ class VortexCore final : public Constraint {
   bool primitive(const Vec3&, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
     const CoreMemory& memory = memory_of<CoreMemory>(state);
     if (!memory.holding || radius_ > 0) return false;
-    Vec3 place, derivative;
-    line_of(memory).evaluate_in(memory.along.interval, memory.along.s, place, derivative);
-    out = {Primitive::Kind::line, place, direction(derivative)};
+    out = {Primitive::Kind::line, memory.core, memory.axis};
     return true;
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const CoreMemory& memory = memory_of<CoreMemory>(state);
-    if (!are_bools(memory.holding, memory.fresh)) return false;
-    return !memory.holding || (memory.line < cores_->lines.size() && memory.along.interval + 1 < line_of(memory).knots().size());
+    return are_bools(memory.holding, memory.fresh);
   }
   bool has_primitive() const noexcept override { return radius_ == 0; }
   double domain_length() const noexcept override { return length_; }
 
  private:
-  const flow::Curve& line_of(const CoreMemory& memory) const noexcept { return *cores_->lines[memory.line]; }
-
   /// There is no core here, or every place is one.
   void pass(const Vec3& probe, LinkState& state) const noexcept {
     state.proxy = probe;
@@ -88,39 +78,22 @@ class VortexCore final : public Constraint {
     stop_link(state, cores_->everywhere ? Status::critical : Status::no_surface, cores_->everywhere ? Reason::parallel : Reason::none);
   }
 
-  bool take_hold(const Vec3& probe, CoreMemory& memory, LinkState& state) const noexcept {
+  /// The nearest place of all cores: sets proxy and status.
+  bool find(const Vec3& probe, CoreMemory& memory, LinkState& state) const noexcept {
     const flow::NearestPlace found = nearest_->at(probe, search_);
     state.steps += found.work;
-    memory.holding = std::isfinite(found.distance2);
-    if (!memory.holding) return false;
-    memory.line = static_cast<std::uint32_t>(found.line);
-    memory.along = {found.s, found.interval, 0};
-    // sets proxy and status there
-    move_along(line_of(memory), probe, memory.along, state);
+    if (!std::isfinite(found.distance2)) return false;
+    const flow::Curve& line = *cores_->lines[found.line];
+    Vec3 derivative;
+    line.evaluate_in(found.interval, found.s, state.proxy, derivative);
+    memory.axis = direction(derivative);
+    state.residual = 0;
+    state.status = Status::ok;
+    const bool first = found.s == line.knots().front().s;
+    if (line.closed() || (!first && found.s != line.knots().back().s)) return true;
+    const flow::LineEnd& end = first ? line.first_end() : line.last_end();
+    if (end == flow::End::boundary) stop_link(state, Status::boundary, end.reason);
     return true;
-  }
-
-  /// At an open end another line may be nearer: it goes on there.
-  void change_line(const Vec3& probe, CoreMemory& memory, LinkState& state) const noexcept {
-    const flow::Curve& line = line_of(memory);
-    const double s = memory.along.s;
-    if (line.closed() || (s != line.knots().front().s && s != line.knots().back().s)) return;
-    const Vec3 away = probe - state.proxy;
-    const flow::NearestPlace found = nearest_->at(probe, search_);
-    state.steps += found.work;
-    if (found.line == memory.line || !(found.distance2 < dot(away, away))) return;
-    memory.line = static_cast<std::uint32_t>(found.line);
-    memory.along = {found.s, found.interval, 0};
-    move_along(line_of(memory), probe, memory.along, state);
-  }
-
-  /// The place on the core moves in a tick no farther than the probe and the slip.
-  void go(double moved, double gap, CoreMemory& memory, LinkState& state) const noexcept {
-    const Vec3 way = state.proxy - memory.core;
-    const double far = norm(way), travel = state.travel(moved, gap);
-    if (!(far > travel)) return;
-    state.proxy = memory.core + way * (travel / far);
-    state.status = Status::budget;
   }
 
   /// Within the tube the hand moves freely; beyond, it is held on its wall.
