@@ -21,6 +21,9 @@ bool complex_pair(const Mat3& j, Vec3& axis, double& swirl) {
       j[0][0] * j[1][1] - j[1][0] * j[0][1] + j[0][0] * j[2][2] - j[2][0] * j[0][2] + j[1][1] * j[2][2] - j[2][1] * j[1][2];
   const double det = dot(j[0], cross(j[1], j[2]));
   const auto p = [&](double x) { return ((x - trace) * x + minors) * x - det; };
+  // three real roots: x = trace / 3 + t, t^3 + 3 a t = 2 b
+  const double third = trace / 3, a3 = minors / 3 - third * third, b2 = third * third * third - 0.5 * (third * minors - det);
+  if (!(a3 * a3 * a3 + b2 * b2 > 0)) return false;
   // a bracket of a real root, and Newton's method within it
   double lo = -2 * size, hi = 2 * size, x = trace / 3;
   for (int i = 0; i < 80; ++i) {
