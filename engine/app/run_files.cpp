@@ -33,7 +33,7 @@ std::vector<std::string> inputs_of(const scene::Scene& scene) {
         inputs.push_back(*ending == 0 ? source.labels_file : fs::path(source.labels_file).replace_extension(ending).string());
   });
   const auto add_shape = [&](scene::Entity, const auto& source) {
-    inputs.push_back(source.path);
+    if (!source.path.empty()) inputs.push_back(source.path);
     inputs.insert(inputs.end(), source.steps.series.begin(), source.steps.series.end());
   };
   scene.world.each<scene::MeshSource>(add_shape);

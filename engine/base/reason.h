@@ -12,11 +12,12 @@ enum class Reason : std::uint8_t {
   mask,        ///< beside the valid voxels
   box,         ///< beside the domain's box
   not_finite,  ///< a value, or the probe, is not a finite number
+  parallel,    ///< every place satisfies the criterion of a vortex core
 };
 
-/// NONE ZERO INCOHERENT MASK BOX NOT_FINITE
+/// NONE ZERO INCOHERENT MASK BOX NOT_FINITE PARALLEL
 inline const char* reason_word(Reason reason) {
-  constexpr const char* words[] = {"NONE", "ZERO", "INCOHERENT", "MASK", "BOX", "NOT_FINITE"};
+  constexpr const char* words[] = {"NONE", "ZERO", "INCOHERENT", "MASK", "BOX", "NOT_FINITE", "PARALLEL"};
   return words[static_cast<int>(reason)];
 }
 

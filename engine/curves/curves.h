@@ -47,7 +47,7 @@ using CurveSetPtr = std::shared_ptr<const CurveSet>;
 
 inline constexpr std::size_t kMaxPoints = 1'000'000'000;  ///< More are refused.
 
-/// Private to this room: collects what a reader finds. A point that equals the one before it on its line is left out, and so is a line of
+/// Collects what a reader finds, or what is traced. A point that equals the one before it on its line is left out, and so is a line of
 /// fewer than two points.
 class Builder {
  public:

@@ -93,32 +93,65 @@ double distance2_to_box(const Vec3& x, const Vec3& lo, const Vec3& hi) noexcept 
 
 }  // namespace
 
-NearestOnCurve::NearestOnCurve(CurvePtr curve) : curve_(std::move(curve)) {
-  CATENA_ASSERT(curve_);
-  const auto intervals = static_cast<std::uint32_t>(curve_->knots().size() - 1);
+NearestOnCurve::NearestOnCurve(std::vector<CurvePtr> curves) : curves_(std::move(curves)) {
+  CATENA_ASSERT(!curves_.empty());
+  std::size_t intervals = curves_.size();
+  std::vector<std::uint32_t> lines;
+  for (const CurvePtr& curve : curves_) {
+    intervals += curve->knots().size() - 1;
+    lines.push_back(static_cast<std::uint32_t>(lines.size()));
+  }
   nodes_.reserve(intervals);
-  make(0, intervals);
+  make(lines, 0, lines.size());
 }
 
-std::uint32_t NearestOnCurve::make(std::uint32_t first, std::uint32_t count) {
+/// Curves are parted where they lie apart, by the middles of their ends along the axis that these span.
+void NearestOnCurve::make(std::vector<std::uint32_t>& lines, std::size_t begin, std::size_t end) {
+  if (end - begin == 1) {
+    make(lines[begin], 0, static_cast<std::uint32_t>(curves_[lines[begin]]->knots().size() - 1));
+    return;
+  }
+  const auto middle = [&](std::uint32_t k) { return 0.5 * (curves_[k]->knots().front().p + curves_[k]->knots().back().p); };
+  Vec3 lo = middle(lines[begin]), hi = lo;
+  for (std::size_t k = begin; k < end; ++k) {
+    lo = glm::min(lo, middle(lines[k]));
+    hi = glm::max(hi, middle(lines[k]));
+  }
+  const Vec3 edge = hi - lo;
+  const int axis = edge.x >= edge.y && edge.x >= edge.z ? 0 : edge.y >= edge.z ? 1 : 2;
+  const std::size_t half = begin + (end - begin) / 2;
+  const auto at = [&](std::size_t k) { return lines.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(at(begin), at(half), at(end), [&](std::uint32_t a, std::uint32_t b) { return middle(a)[axis] < middle(b)[axis]; });
   const auto me = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back({Vec3(std::numeric_limits<double>::infinity()), Vec3(-std::numeric_limits<double>::infinity()), first, count, 0});
+  nodes_.push_back({Vec3(std::numeric_limits<double>::infinity()), Vec3(-std::numeric_limits<double>::infinity())});
+  make(lines, begin, half);
+  const auto right = static_cast<std::uint32_t>(nodes_.size());
+  make(lines, half, end);
+  surround(me, right);
+}
+
+/// Of a node whose first child is the next one: its box about both.
+void NearestOnCurve::surround(std::uint32_t parent, std::uint32_t right) {
+  Node& node = nodes_[parent];
+  node.right = right;
+  for (const std::uint32_t child : {parent + 1, right}) {
+    node.lo = glm::min(node.lo, nodes_[child].lo);
+    node.hi = glm::max(node.hi, nodes_[child].hi);
+  }
+}
+
+std::uint32_t NearestOnCurve::make(std::uint32_t line, std::uint32_t first, std::uint32_t count) {
+  const auto me = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({Vec3(std::numeric_limits<double>::infinity()), Vec3(-std::numeric_limits<double>::infinity()), line, first, count, 0});
   if (count > kLeaf) {
     const std::uint32_t half = count / 2;
-    make(first, half);
-    const std::uint32_t right = make(first + half, count - half);
-    Node& node = nodes_[me];
-    node.right = right;
-    for (const std::uint32_t child : {me + 1, right})
-      for (int a = 0; a < 3; ++a) {
-        node.lo[a] = std::min(node.lo[a], nodes_[child].lo[a]);
-        node.hi[a] = std::max(node.hi[a], nodes_[child].hi[a]);
-      }
+    make(line, first, half);
+    surround(me, make(line, first + half, count - half));
     return me;
   }
   Node& node = nodes_[me];
   for (std::uint32_t k = first; k < first + count; ++k) {
-    const Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
+    const Knot &a = curves_[line]->knots()[k], &b = curves_[line]->knots()[k + 1];
     const double third = (b.s - a.s) / 3;
     for (const Vec3& corner : {a.p, a.p + third * a.t, b.p - third * b.t, b.p})
       for (int axis = 0; axis < 3; ++axis) {
@@ -129,12 +162,13 @@ std::uint32_t NearestOnCurve::make(std::uint32_t first, std::uint32_t count) {
   return me;
 }
 
-void NearestOnCurve::look(std::size_t k, const Vec3& x, NearestPlace& best) const noexcept {
-  const Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
+void NearestOnCurve::look(std::size_t line, std::size_t k, const Vec3& x, NearestPlace& best) const noexcept {
+  const Knot &a = curves_[line]->knots()[k], &b = curves_[line]->knots()[k + 1];
   const double h = b.s - a.s, below = dot(a.to(x), a.t), above = dot(b.to(x), b.t);
   const auto offer = [&](double s, const Vec3& p) {
     const Vec3 e = x - p;
     if (!(dot(e, e) < best.distance2)) return;
+    best.line = line;
     best.interval = k;
     best.s = s;
     best.distance2 = dot(e, e);
@@ -147,10 +181,10 @@ void NearestOnCurve::look(std::size_t k, const Vec3& x, NearestPlace& best) cons
   offer(theta >= 1 ? b.s : a.s + theta * h, theta >= 1 ? b.p : piece.at(theta));
 }
 
-NearestPlace NearestOnCurve::search(const Vec3& x, int most) const noexcept {
+NearestPlace NearestOnCurve::search(const Vec3& x, int most, double within) const noexcept {
   NearestPlace best;
-  best.distance2 = std::numeric_limits<double>::infinity();
-  best.s = curve_->knots().front().s;
+  best.distance2 = within * within;
+  best.s = curves_.front()->knots().front().s;
   struct Waiting {
     std::uint32_t node;
     double distance2;
@@ -164,7 +198,7 @@ NearestPlace NearestOnCurve::search(const Vec3& x, int most) const noexcept {
     const Node& node = nodes_[next.node];
     ++best.work;
     if (node.right == 0) {
-      for (std::uint32_t k = node.first; k < node.first + node.count; ++k, ++best.work) look(k, x, best);
+      for (std::uint32_t k = node.first; k < node.first + node.count; ++k, ++best.work) look(node.line, k, x, best);
       continue;
     }
     Waiting near{next.node + 1, distance2_to_box(x, nodes_[next.node + 1].lo, nodes_[next.node + 1].hi)};
@@ -174,6 +208,7 @@ NearestPlace NearestOnCurve::search(const Vec3& x, int most) const noexcept {
     waiting[count++] = far;
     waiting[count++] = near;
   }
+  if (best.distance2 >= within * within) best.distance2 = std::numeric_limits<double>::infinity();
   return best;
 }
 

@@ -143,37 +143,46 @@ inline constexpr int kNearestWork = 512;  ///< Boxes and pieces that a search ma
 
 /// What NearestOnCurve finds.
 struct NearestPlace {
-  std::size_t interval = 0;  ///< the interval between knots
+  std::size_t line = 0;      ///< the curve, of several
+  std::size_t interval = 0;  ///< its interval between knots
   double s = 0;              ///< arc length, within the interval
   double distance2 = 0;      ///< squared, world units
   int work = 0;              ///< boxes and pieces looked at
 };
 
-/// The place of a curve nearest to any point, over the whole curve and in bounded work: a tree of boxes about runs of knot
+/// The place of one or several curves nearest to any point, over all of them and in bounded work: a tree of boxes about runs of knot
 /// intervals (about the Bezier hull of each Hermite piece), nearest box first. A function of the point alone: no memory, so that
 /// the same point gives the same bits. At most kNearestWork boxes and pieces are looked at; where many places are all but
 /// equally near (the centre of a circle) one of them is taken. Made off the tick; asked on any thread, without allocation.
 class NearestOnCurve {
  public:
   /// Builds the tree; off the tick.
-  explicit NearestOnCurve(CurvePtr curve);
-  /// |x| <= 1e150, or squares overflow.
-  NearestPlace at(const Vec3& x) const noexcept { return search(x, kNearestWork); }
+  explicit NearestOnCurve(CurvePtr curve) : NearestOnCurve(std::vector<CurvePtr>{std::move(curve)}) {}
+  /// Of several curves, at least one.
+  explicit NearestOnCurve(std::vector<CurvePtr> curves);
+  /// |x| <= 1e150, or squares overflow. Nothing beyond `within` is looked for: then the distance is infinite.
+  NearestPlace at(const Vec3& x, double within = std::numeric_limits<double>::infinity()) const noexcept {
+    return search(x, kNearestWork, within);
+  }
   /// The same with as much work as it takes, for measurements: of a long line that winds through itself, the bounded search may give a
   /// place that is not the nearest. Off the tick.
-  NearestPlace exact(const Vec3& x) const noexcept { return search(x, std::numeric_limits<int>::max()); }
+  NearestPlace exact(const Vec3& x) const noexcept {
+    return search(x, std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity());
+  }
 
  private:
-  NearestPlace search(const Vec3& x, int most) const noexcept;
+  NearestPlace search(const Vec3& x, int most, double within) const noexcept;
   struct Node {
     Vec3 lo{0.0}, hi{0.0};
-    std::uint32_t first = 0, count = 0;  ///< intervals
-    std::uint32_t right = 0;             ///< the second child; 0: a leaf. The first child is the next node
+    std::uint32_t line = 0, first = 0, count = 0;  ///< of a leaf: intervals
+    std::uint32_t right = 0;                       ///< the second child; 0: a leaf. The first child is the next node
   };
-  std::uint32_t make(std::uint32_t first, std::uint32_t count);
-  void look(std::size_t k, const Vec3& x, NearestPlace& best) const noexcept;
+  void make(std::vector<std::uint32_t>& lines, std::size_t begin, std::size_t end);
+  std::uint32_t make(std::uint32_t line, std::uint32_t first, std::uint32_t count);
+  void surround(std::uint32_t parent, std::uint32_t right);
+  void look(std::size_t line, std::size_t k, const Vec3& x, NearestPlace& best) const noexcept;
 
-  CurvePtr curve_;
+  std::vector<CurvePtr> curves_;
   std::vector<Node> nodes_;
 };
 

@@ -42,6 +42,11 @@ bool same_table(const T& a, const T& b) {
   return same_step && (a.path == b.path || same_file(a.path, b.path));
 }
 
+bool same_curves(const DrawnCurves& a, const DrawnCurves& b) {
+  if (!a.traced || !b.traced) return !a.traced && !b.traced && same_table(a, b);
+  return a.traced->field == b.traced->field && a.traced->options == b.traced->options;
+}
+
 bool same_mesh(const MeshSource& a, const MeshSource& b) { return a.placement == b.placement && same_table(a, b); }
 
 void carry_fields(Scene& old, Scene& fresh) {
@@ -70,6 +75,7 @@ void carry_shapes(Scene& old, Scene& fresh, const Same& is_same) {
       if (source.loaded || !before.loaded || !is_same(before, source)) return;
       source.loaded = before.loaded;
       source.steps.times = before.steps.times;
+      if constexpr (requires { source.traced; }) source.traced = before.traced;
     });
   });
 }
@@ -126,7 +132,7 @@ bool same_sources(const Scene& old, const Scene& fresh) {
     return same_source(a, b) && same_drawing(a, b) && a.labels_table == b.labels_table;
   };
   return all_same<FieldSource>(old, fresh, same_field) && all_same<MeshSource>(old, fresh, same_mesh) &&
-         all_same<DrawnCurves>(old, fresh, same_table<DrawnCurves>) && all_same<DrawnPoints>(old, fresh, same_table<DrawnPoints>);
+         all_same<DrawnCurves>(old, fresh, same_curves) && all_same<DrawnPoints>(old, fresh, same_table<DrawnPoints>);
 }
 
 template <class T>
@@ -205,7 +211,7 @@ void carry_over(Scene& old, Scene& fresh) {
   set_step(fresh, old.time.step);
   carry_fields(old, fresh);
   carry_shapes<MeshSource>(old, fresh, same_mesh);
-  carry_shapes<DrawnCurves>(old, fresh, same_table<DrawnCurves>);
+  carry_shapes<DrawnCurves>(old, fresh, same_curves);
   carry_shapes<DrawnPoints>(old, fresh, same_table<DrawnPoints>);
   carry_transfers(old, fresh);
   // before the lines, which hold their curves

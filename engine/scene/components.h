@@ -11,6 +11,7 @@
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
+#include "engine/flow/vortex_cores.h"
 #include "engine/geometry/color.h"
 #include "engine/geometry/plane.h"
 #include "engine/mesh/load.h"
@@ -96,7 +97,7 @@ struct TransferFunction {
   /// An opacity at a value. At most kMaxAlpha: an alpha of 1 over a length would be an infinite extinction.
   struct OpacityPoint {
     static constexpr double kMaxAlpha = 0.999;  ///< what an alpha of 1 counts as
-    double value, alpha;  ///< the field's unit; 0 to kMaxAlpha over opacity_unit
+    double value, alpha;                        ///< the field's unit; 0 to kMaxAlpha over opacity_unit
   };
   std::vector<ColorPoint> colors;            ///< values rising
   std::vector<OpacityPoint> opacities;       ///< either these
@@ -185,16 +186,25 @@ struct SurfaceMesh {
   std::optional<ColorBy> color_by;  ///< none: `color` everywhere
 };
 
-/// Curves from a file: drawn as tubes, and felt by links that name them.
+/// The core lines of the vortices of a field, as curves.
+struct TracedCores {
+  std::string field;             ///< the name of the vector field
+  json::Node where;              ///< the place that names it, for messages
+  flow::CoreOptions options;     ///< how they are told
+  flow::VortexCoresPtr cores{};  ///< what `loaded` was made of: what a link `vortex_core` feels, too
+};
+
+/// Curves from a file, or traced in a field: drawn as tubes, and felt by links that name them.
 struct DrawnCurves {
-  json::Node where;                 ///< its place in the file, for messages
-  std::string path;                 ///< the file, as the program opens it
-  FileSteps steps;                  ///< of the file, or of the pattern
-  curves::CurveSetPtr loaded;       ///< felt and drawn: one object; none before something asks for it
-  double radius = 0;                ///< of the tubes; 0: fitted
-  std::optional<Color> color;       ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
-  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
-  bool clipped = true;              ///< the clip planes count
+  json::Node where;                   ///< its place in the file, for messages
+  std::string path;                   ///< the file, as the program opens it; empty: they are traced
+  std::optional<TracedCores> traced;  ///< instead of a file
+  FileSteps steps;                    ///< of the file, or of the pattern
+  curves::CurveSetPtr loaded;         ///< felt and drawn: one object; none before something asks for it
+  double radius = 0;                  ///< of the tubes; 0: fitted
+  std::optional<Color> color;         ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
+  std::optional<ColorBy> color_by;    ///< none: `color` everywhere
+  bool clipped = true;                ///< the clip planes count
 };
 
 /// Points from a table: drawn as balls, and felt by links that name them.

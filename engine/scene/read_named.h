@@ -75,17 +75,20 @@ struct FileItem {
   T drawn;
 };
 
-/// Its first keys, "name" and "file"; `file` says what that is.
+/// Its first keys, "name" and "file"; `file` says what that is, and `needs_file` whether it must be there.
 template <class T>
-Table<FileItem<T>> file_table(const std::string& kind, const std::string& file, const std::vector<std::string_view>& endings) {
+Table<FileItem<T>> file_table(const std::string& kind, const std::string& file, const std::vector<std::string_view>& endings,
+                              bool needs_file = true) {
   Table<FileItem<T>> t;
   t.hand(schema::identifier("name", "By which a link names them.").required(),
          [kind](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
            CATENA_TRY(made.name, read_new_name<T>(scene, item, kind, true));
            return Done{};
          });
-  t.hand(schema::file("file", file + ": " + alternatives(endings) + ".").required(),
-         [kind, endings](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
+  const Key key = schema::file("file", file + ": " + alternatives(endings) + ".");
+  t.hand(needs_file ? key.required() : key,
+         [kind, endings, needs_file](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
+           if (!needs_file && item.find("file") == nullptr) return Done{};
            CATENA_TRY(made.drawn.path, read_path(scene, item, kind, made.name, endings, made.drawn.steps));
            return Done{};
          });

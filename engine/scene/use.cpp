@@ -10,6 +10,7 @@
 #include "engine/scene/lines.h"
 #include "engine/scene/read_named.h"
 #include "engine/scene/steps.h"
+#include "engine/scene/traced_cores.h"
 #include "engine/scene/transfer.h"
 
 namespace catena::scene {
@@ -182,6 +183,7 @@ Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json
 }
 
 Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity curves) {
+  if (scene.world.get<DrawnCurves>(curves).traced) return use_traced(scene, curves);
   return load_once<DrawnCurves>(scene, curves, "curves",
                                 [](const DrawnCurves& source) { return curves::load_curves(source.path, source.steps.step); });
 }

@@ -91,6 +91,20 @@ Key any_of(const std::string& name, Keys choices, const std::string& help) {
 }
 Key named(const std::string& name, Role role, const std::string& help) { return text(name, help).as(role); }
 Key file(const std::string& name, const std::string& help) { return text(name, help).as(Role::file); }
+Key core_criterion_key() {
+  return word("criterion", {"sujudi-haimes", "parallel-vectors", "vorticity"}, "By what a core is told.").by_default("\"sujudi-haimes\"");
+}
+
+Key core_length_key() {
+  return number("least_length", "world", "Shorter core lines are left out.").positive().by_default("6 voxels; of a formula 0.02 L");
+}
+
+Key core_swirl_key() {
+  return number("least_swirl", "", "So are weaker ones: the mean swirl of a line, by that of the strongest.")
+      .within(0, 1)
+      .by_default("0.05");
+}
+
 Key line_kind_key() { return word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("\"vector\""); }
 
 const Key* find(const Keys& keys, std::string_view name) {

@@ -176,6 +176,12 @@ Key any_of(const std::string& name, Keys choices, const std::string& help);
 Key named(const std::string& name, Role role, const std::string& help);
 /// A file's name, relative to the scene's file.
 Key file(const std::string& name, const std::string& help);
+/// How the core lines of vortices are traced (engine/flow/vortex_cores.h).
+Key core_criterion_key();
+/// The least length of a core line.
+Key core_length_key();
+/// Its least swirl, of the strongest one's.
+Key core_swirl_key();
 /// "kind" of a vector field: vectors, or lines without a direction.
 Key line_kind_key();
 

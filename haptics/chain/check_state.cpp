@@ -20,7 +20,7 @@ bool is_sane(const Order& order) {
 bool is_sane(const LinkState& link) {
   return is_one_of(link.status, Status::bad_probe) && are_bools(link.started, link.released, link.on) &&
          is_one_of(link.shape.kind, widget::Shape::Kind::point) && link.evaluations >= 0 && link.evaluations <= kMaxCounted &&
-         link.steps >= 0 && link.steps <= kMaxCounted && is_one_of(link.reason, Reason::not_finite);
+         link.steps >= 0 && link.steps <= kMaxCounted && is_one_of(link.reason, Reason::parallel);
 }
 
 bool is_sane(const SingleProxy& single) {

@@ -46,7 +46,7 @@ Outcome add_shape_costs(const scene::Scene& scene, const render::FramePacket& pa
           [&] { return mesh::load_mesh(source.path, source.placement); }, table));
   });
   scene.world.each<scene::DrawnCurves>([&](scene::Entity, const scene::DrawnCurves& source) {
-    if (source.loaded)
+    if (source.loaded && !source.traced)
       keep(add_file(
           source.loaded->name, *source.loaded, fmt::format("{} lines of {} points", source.loaded->lines(), source.loaded->points.size()),
           measure, [&] { return curves::load_curves(source.path); }, table));
