@@ -96,18 +96,9 @@ class SelectedStreamline final : public Constraint {
     out = {ends ? Primitive::Kind::point : Primitive::Kind::line, p, ends ? Vec3(0.0) : direction(derivative)};
     return true;
   }
-  /// J = p' p'^T / (p' . p' - (x - p) . p''), of the cubic that it is on; 0 at an open end.
   PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
     const SelectedMemory& memory = memory_of<SelectedMemory>(state);
-    const flow::Knot &a = curve_->knots()[memory.interval], &b = curve_->knots()[memory.interval + 1];
-    const bool first = memory.interval == 0 && memory.s <= a.s, last = memory.interval + 1 == intervals_ && memory.s >= b.s;
-    if (!curve_->closed() && (first || last)) return {};
-    Vec3 p, tangent;
-    curve_->evaluate_in(memory.interval, memory.s, p, tangent);
-    const double h = b.s - a.s, theta = (memory.s - a.s) / h, squared = dot(tangent, tangent);
-    const flow::Hermite piece(a.p, a.to(b), h, a.t, b.t);
-    const Vec3 bend = (2.0 * piece.c2 + (6 * theta) * piece.c3) / (h * h);
-    return divided(tangent * (dot(tangent, f) / squared), 1 - dot(probe - p, bend) / squared);
+    return pull_back_on_curve(*curve_, memory.interval, memory.s, probe, f);
   }
   double domain_length() const noexcept override { return curve_->domain_length(); }
 
@@ -145,6 +136,19 @@ class SelectedStreamline final : public Constraint {
 };
 
 }  // namespace
+
+PulledBack pull_back_on_curve(const flow::Curve& curve, std::size_t interval, double s, const Vec3& probe, const Vec3& f) noexcept {
+  const auto& knots = curve.knots();
+  const flow::Knot &a = knots[interval], &b = knots[interval + 1];
+  const bool first = interval == 0 && s <= a.s, last = interval + 2 == knots.size() && s >= b.s;
+  if (!curve.closed() && (first || last)) return {};
+  Vec3 p, tangent;
+  curve.evaluate_in(interval, s, p, tangent);
+  const double h = b.s - a.s, theta = (s - a.s) / h, squared = dot(tangent, tangent);
+  const flow::Hermite piece(a.p, a.to(b), h, a.t, b.t);
+  const Vec3 bend = (2.0 * piece.c2 + (6 * theta) * piece.c3) / (h * h);
+  return divided(tangent * (dot(tangent, f) / squared), 1 - dot(probe - p, bend) / squared);
+}
 
 std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve) {
   CATENA_ASSERT(curve && curve->knots().size() >= 2);

@@ -10,6 +10,10 @@
 
 namespace catena::haptics {
 
+/// J^T f of the closest point of a traced curve, at s of an interval: J = p' p'^T / (p' . p' - (x - p) . p''), of the cubic that it is on;
+/// 0 at an open end (rules/pull_back.h).
+PulledBack pull_back_on_curve(const flow::Curve& curve, std::size_t interval, double s, const Vec3& probe, const Vec3& f) noexcept;
+
 /// What the link remembers.
 struct SelectedMemory {
   double s = 0;                ///< arc length of the proxy

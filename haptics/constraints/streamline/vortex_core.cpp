@@ -4,6 +4,7 @@
 #include "engine/flow/vortex_cores.h"
 #include "engine/schema/values.h"
 #include "haptics/constraints/rules/link_keys.h"
+#include "haptics/constraints/streamline/selected.h"
 #include "haptics/constraints/streamline/streamline.h"
 
 namespace catena::haptics {
@@ -46,10 +47,7 @@ class VortexCore final : public Constraint {
     if (!memory.holding) return pass(probe, state);
     const Vec3 way = state.proxy - memory.core;
     const double gap = norm(probe - state.proxy), far = norm(way), travel = state.travel(moved, gap);
-    if (!held) {
-      // from afar it pulls by the ramp
-      if (gap > state.travel(moved, 0)) state.weight = 0;
-    } else if (far > travel) {
+    if (held && far > travel) {
       state.proxy = memory.core + way * (travel / far);
       state.status = Status::budget;
     }
@@ -62,6 +60,20 @@ class VortexCore final : public Constraint {
     if (!memory.holding || radius_ > 0) return false;
     out = {Primitive::Kind::line, memory.core, memory.axis};
     return true;
+  }
+  /// Of the core, J; on the wall of a tube of radius r, e from the core to the probe: J + (r / |e|) (I - e e^T / |e|^2) (I - J).
+  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    const CoreMemory& memory = memory_of<CoreMemory>(state);
+    if (!memory.holding || state.status == Status::free || state.status == Status::budget) return {f};
+    const flow::NearestPlace found = nearest_->at(probe, search_);
+    if (!std::isfinite(found.distance2)) return {f};
+    state.steps += found.work;
+    const flow::Curve& line = *cores_->lines[found.line];
+    const Vec3 e = probe - memory.core, way = direction(e);
+    const Vec3 across = radius_ > 0 ? (f - way * dot(way, f)) * (radius_ / norm(e)) : Vec3(0.0);
+    PulledBack back = pull_back_on_curve(line, found.interval, found.s, probe, f - across);
+    back.force += across;
+    return back;
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const CoreMemory& memory = memory_of<CoreMemory>(state);
