@@ -110,7 +110,7 @@ const Recorded kRecorded[] = {
     {"shapes", kShapes, 0x421d00521f36a7bf},
     {"friction", kFriction, 0xef3f6de4e6c46cdd},
     {"anisotropic", kAnisotropic, 0x533a99e56006ca8c},
-    {"driven", kDriven, 0xd0a43b6f85a41ff2},
+    {"driven", kDriven, 0x09d34e4fa123460e},
     {"modes", kModes, 0x5948f9f4f1804511},
     {"mesh", kMesh, 0x38bd92e22a245e8a},
     {"pipe", kPipe, 0xecb1973a8733ff12},
