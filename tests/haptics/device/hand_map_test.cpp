@@ -51,13 +51,16 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-15) {
 }
 
 TEST(HandMap, SettingsThatSayNothingNeedNoMap) {
-  EXPECT_TRUE(is_identity(DeviceSettings{}));
   auto made = std::make_unique<test::ScriptedDevice>();
+  EXPECT_TRUE(is_identity(made->able, DeviceSettings{}));
   const Device* plain = made.get();
   EXPECT_EQ(with_hand_map(std::move(made), DeviceSettings{}).get(), plain);
   DeviceSettings s;
   s.scale = 2;
-  EXPECT_FALSE(is_identity(s));
+  EXPECT_FALSE(is_identity(DeviceCapabilities{}, s));
+  DeviceCapabilities encoded;
+  encoded.mechanics.encoder_step_m = 1e-5;
+  EXPECT_FALSE(is_identity(encoded, DeviceSettings{}));
 }
 
 TEST(HandMap, WhatIsNotAskedForPassesToTheBit) {

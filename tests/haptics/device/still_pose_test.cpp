@@ -11,9 +11,7 @@ using haptics::StillPose;
 
 constexpr double kStep = 5.5e-5;
 
-Vec3 encoded(const Vec3& x) {
-  return {std::round(x.x / kStep) * kStep, std::round(x.y / kStep) * kStep, std::round(x.z / kStep) * kStep};
-}
+Vec3 encoded(const Vec3& x) { return {std::round(x.x / kStep) * kStep, std::round(x.y / kStep) * kStep, std::round(x.z / kStep) * kStep}; }
 
 TEST(StillPose, TakesTheDitherOffARestingHand) {
   std::mt19937_64 random(1);
@@ -24,7 +22,7 @@ TEST(StillPose, TakesTheDitherOffARestingHand) {
       StillPose pose(kStep, rate);
       const Vec3 at(anywhere(random), anywhere(random), anywhere(random));
       double read = 0, used = 0;
-      Vec3 last_read, last_used;
+      Vec3 last_read(0.0), last_used(0.0);
       for (int i = 0; i < 2 * static_cast<int>(rate); ++i) {
         const Vec3 x = encoded(at + Vec3(noise(random), noise(random), noise(random))), y = pose.follow(x);
         ASSERT_LE(max_abs(y - x), kStep * (1 + 1e-6));

@@ -105,8 +105,8 @@ TEST_F(Growing, TheHandCrossesAStepWithoutAJump) {
     ticks(200, [](int) { return Vec3(0.9, 0, 0); });
     EXPECT_NEAR(norm(force), 300 * 0.05 * (0.1 + 0.15 * step), 0.02) << "the new surface is felt";
   }
-  // a step adds 2.25 N; over a ramp of 20 ticks that is 0.11 N a tick, at its steepest 1.5 times as much
-  EXPECT_LT(largest_step, 0.2);
+  // a step adds 2.25 N; the ramp lets max_force in within 20 ticks, and the hand's own motion adds K |dx|
+  EXPECT_LE(largest_step, 8.0 / 20 + 300 * 0.05 * 0.3 / 200 + 1e-9);
   EXPECT_GT(largest_step, 0.01);
 }
 

@@ -29,7 +29,7 @@ TEST(LimitsFor, TheSimulatedDeviceGetsTheSafeDefaults) {
   DeviceSettings fast;
   fast.rate_hz = 4000;
   limits = limits_for(nominal_capabilities("simulated"), fast);
-  EXPECT_DOUBLE_EQ(limits.max_stiffness_n_per_m, 4000);
+  EXPECT_DOUBLE_EQ(limits.max_stiffness_n_per_m, 2500) << "f_c / step";
 }
 
 TEST(LimitsFor, WhatThePersonSaysHolds) {
