@@ -205,7 +205,7 @@ TEST(StateFuzz, AForgedIndexIsOneSentence) {
       {"link \"d\"", memory(3) + 8, 1ll << 40, 8},  // the interval of a curve
       {"link \"a\"", memory(0) + offsetof(LinkState, started) - offsetof(LinkState, memory), 2, 1},
       {"chain", offsetof(ChainState, passivity) + offsetof(PassivityState, next), 1 << 30, 4},
-      {"chain", offsetof(ChainState, fade) + offsetof(Fade, order), 100, 1},
+      {"chain", offsetof(ChainState, order), 100, 1},
       {"chain", offsetof(ChainState, has_probe), 77, 1},
       {"widgets", offsetof(ChainState, widgets) + offsetof(WidgetsState, engaged), 5, 1},
       {"widgets", offsetof(ChainState, widgets) + offsetof(widget::State, handle), 100, 1},
