@@ -41,10 +41,12 @@ void append_vector(std::string& line, const Vec3& v) {
 std::string tick_header(const LinkColumns& columns, bool turns) {
   std::string line = "t,probe_x,probe_y,probe_z";
   for (const std::string& name : columns.names()) {
-    line += fmt::format(",{0}_x,{0}_y,{0}_z,{0}_active,{0}_status,{0}_evaluations,{0}_reason,{0}_curve", name);
+    line += fmt::format(",{0}_x,{0}_y,{0}_z,{0}_active,{0}_status,{0}_evaluations,{0}_reason", name);
     if (turns) line += fmt::format(",{0}_qw,{0}_qx,{0}_qy,{0}_qz", name);
   }
-  return line + ",force_x,force_y,force_z" + (turns ? ",torque_x,torque_y,torque_z\n" : "\n");
+  line += turns ? ",force_x,force_y,force_z,torque_x,torque_y,torque_z" : ",force_x,force_y,force_z";
+  for (const std::string& name : columns.names()) line += fmt::format(",{}_curve", name);
+  return line + "\n";
 }
 
 void append_tick(std::string& line, const LinkColumns& columns, const exchange::HapticState& state, bool turns) {
@@ -52,7 +54,7 @@ void append_tick(std::string& line, const LinkColumns& columns, const exchange::
   append_vector(line, state.probe);
   for (std::size_t c = 0; c < columns.names().size(); ++c) {
     if (columns.link(c) < 0) {
-      line += turns ? ",,,,,,,,,,,," : ",,,,,,,,";
+      line += turns ? ",,,,,,,,,,," : ",,,,,,,";
       continue;
     }
     const exchange::LinkReport& link = state.links[static_cast<std::size_t>(columns.link(c))];
@@ -63,8 +65,6 @@ void append_tick(std::string& line, const LinkColumns& columns, const exchange::
     line += std::to_string(link.evaluations);
     line += ',';
     line += reason_word(link.reason);
-    line += ',';
-    line += std::to_string(link.curve);
     if (!turns) continue;
     for (const double part : {link.orientation.w, link.orientation.x, link.orientation.y, link.orientation.z}) {
       line += ',';
@@ -73,6 +73,10 @@ void append_tick(std::string& line, const LinkColumns& columns, const exchange::
   }
   append_vector(line, state.force_n);
   if (turns) append_vector(line, state.torque_nm);
+  for (std::size_t c = 0; c < columns.names().size(); ++c) {
+    line += ',';
+    if (columns.link(c) >= 0) line += std::to_string(state.links[static_cast<std::size_t>(columns.link(c))].curve);
+  }
   line += '\n';
 }
 

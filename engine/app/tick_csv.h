@@ -29,7 +29,7 @@ std::vector<std::string> mode_names(const haptics::Program& program);
 
 void append_vector(std::string& line, const Vec3& v);  ///< ",x,y,z"
 
-/// t, the probe, every link's proxy, active, status, evaluations, reason, curve, then the force. Lines end with '\n'.
+/// t, the probe, every link's proxy, active, status, evaluations, reason, then the force, then every link's curve. Lines end with '\n'.
 /// `turns`: the hand has an orientation, and so have the ticks: every link's as a quaternion, and the torque.
 std::string tick_header(const LinkColumns& columns, bool turns = false);
 void append_tick(std::string& line, const LinkColumns& columns, const exchange::HapticState& state, bool turns = false);

@@ -113,12 +113,11 @@ set title 'What one slow closed loop of the hand gains from two links'
 set xlabel 'angle between them (degrees)'
 set ylabel 'energy by K gap^2'
 set output 'energy.png'
-pairs = "plane_then_plane plane_then_line line_then_line sphere_then_line line_then_sphere sphere_then_plane"
+array pair[6] = ["plane then plane", "plane then line", "line then line", "sphere then line", "line then sphere", "sphere then plane"]
 array colour[6] = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf"]
-words(s) = system("echo ".s." | tr _ ' '")
-plot for [i=1:6] 'energy.csv' every ::1 using (strcol(1) eq words(word(pairs, i)) && strcol(3) eq 'paper' ? $2 : NaN):4 \
-    with linespoints linewidth 1.5 pointtype 7 linecolor rgb colour[i] title words(word(pairs, i)).', paper', \
-  '' every ::1 using (strcol(3) eq 'conservative' ? $2 : NaN):4 with points pointtype 2 pointsize 1.4 linecolor rgb '#000000' \
+plot for [i=1:6] 'energy.csv' every 2::1 using (strcol(1) eq pair[i] ? $2 : NaN):4 \
+    with linespoints linewidth 1.5 pointtype 7 linecolor rgb colour[i] title pair[i].', paper', \
+  '' every 2::2 using 2:4 with points pointtype 2 pointsize 1.4 linecolor rgb '#000000' \
     title 'all, conservative'
 )gp";
 

@@ -6,6 +6,7 @@
 /// Accepted: n.n+ > 0.3 and (Armijo on |e + l n|^2 / 2 + l^2 / 2, or |l| halved), else u *= 0.35. Haptic thread.
 #pragma once
 #include "haptics/constraints/isosurface/level.h"
+#include "haptics/constraints/rules/pull_back.h"
 
 namespace catena::haptics {
 
@@ -37,5 +38,24 @@ Curvature measure_curvature(LevelField& field, const LevelPoint& at) noexcept;
 
 /// M u = t in two dimensions, eigenvalues taken as |.| >= least: always a descent direction.
 void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept;
+
+/// J^T f of the closest point of a surface with the unit normal n (rules/pull_back.h); `times` gives B v.
+template <class Times>
+PulledBack pull_back_on_surface(const Vec3& n, double delta, const Times& times, const Vec3& f) noexcept {
+  Vec3 a, b;
+  tangents(n, a, b);
+  const Vec3 ba = times(a), bb = times(b);
+  const double m11 = 1 + delta * dot(a, ba), m12 = 0.5 * delta * (dot(a, bb) + dot(b, ba)), m22 = 1 + delta * dot(b, bb);
+  const auto solved = [&](double least) {
+    double u1, u2;
+    solve_tangent(m11, m12, m22, dot(a, f), dot(b, f), least, u1, u2);
+    return a * u1 + b * u2;
+  };
+  const Vec3 force = solved(kLeastFactor);
+  // both eigenvalues above the bound: nothing is left out
+  const double rest = (m11 - kLeastFactor) * (m22 - kLeastFactor) - m12 * m12;
+  const bool free = m11 >= kLeastFactor && m22 >= kLeastFactor && rest >= 0;
+  return {force, free ? Vec3(0.0) : solved(1e-12) - force};
+}
 
 }  // namespace catena::haptics

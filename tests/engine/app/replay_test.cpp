@@ -141,11 +141,10 @@ TEST(Replay, ColumnsAreThoseOfTheContract) {
       catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string text = test::read_file(folder / "t.csv");
-  EXPECT_EQ(
-      text.substr(0, text.find('\n')),
-      "t,probe_x,probe_y,probe_z,a_x,a_y,a_z,a_active,a_status,a_evaluations,a_reason,a_curve,b_2_x,b_2_y,b_2_z,b_2_active,b_2_status,b_2_"
-      "evaluations,b_2_reason,b_2_curve,"
-      "force_x,force_y,force_z");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "t,probe_x,probe_y,probe_z,a_x,a_y,a_z,a_active,a_status,a_evaluations,a_reason,b_2_x,b_2_y,b_2_z,b_2_active,b_2_status,b_2_"
+            "evaluations,b_2_reason,"
+            "force_x,force_y,force_z,a_curve,b_2_curve");
   const std::string stats = test::read_file(folder / "s.out");
   for (const char* key : {"\"ticks\": 1", "\"tick_ns\"", "\"p50\"", "\"p99\"", "\"p999\"", "\"max\"", "\"evaluations\"", "\"state_hash\""})
     EXPECT_NE(stats.find(key), std::string::npos) << key;
