@@ -65,31 +65,26 @@ class ThinSheet : public testing::TestWithParam<std::tuple<Kind, double>> {
   double step() const { return std::get<1>(GetParam()); }
 };
 
-TEST_P(ThinSheet, OneSidedHoldsOnTheNearFaceAndLetsGoOnce) {
+TEST_P(ThinSheet, OneSidedHoldsOnTheNearFaceHoweverFarBehind) {
   Rig rig(isosurface(sheet(kind()), kHalf, R"(, "free": "above")"));
-  const double reach = 0.02 * 4;
-  bool held = false, through = false;
+  bool held = false;
   double last_gap = 0;
   for (double z = 0.07; z > -0.3; z -= step()) {
     const Vec3 probe(0.31, -0.27, z);
     rig.tick(probe);
     const double gap = norm(rig.state.proxy - probe), depth = kHalf - z;
-    if (std::fabs(depth) < 1e-8 || std::fabs(depth - reach) < 1e-8) continue;  // the grid's values are floats
+    if (std::fabs(depth) < 1e-8) continue;  // the grid's values are floats
     if (depth < 0) {
       EXPECT_EQ(rig.state.status, Status::free) << z;
-    } else if (depth < reach) {
-      EXPECT_EQ(rig.state.status, Status::ok) << z;
-      EXPECT_NEAR(rig.state.proxy.z, kHalf, 1e-8) << z;
-      EXPECT_GE(gap, last_gap);
-      held = true;
-      last_gap = gap;
-    } else {
-      EXPECT_EQ(rig.state.status, Status::free) << z;
-      EXPECT_TRUE(same_bits(rig.state.proxy, probe));
-      through = true;
+      continue;
     }
+    EXPECT_EQ(rig.state.status, Status::ok) << z;
+    EXPECT_NEAR(rig.state.proxy.z, kHalf, 1e-8) << z;
+    EXPECT_GE(gap, last_gap);
+    held = true;
+    last_gap = gap;
   }
-  EXPECT_TRUE(held && through);
+  EXPECT_TRUE(held);
 }
 
 TEST_P(ThinSheet, OneSidedComesBackThroughTheFaceItWasHeldOn) {

@@ -71,6 +71,22 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
   leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
 }
 
+/// One step of the way to the probe from a sheet that holds no more. True: it is there.
+bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
+  const Vec3 way = probe - memory.proxy;
+  const double far = norm(way), travel = travel_of(memory, probe, far, state);
+  memory.holding = memory.sheet = false;
+  memory.gliding = far > travel && !(rules.release > 0 && far >= rules.release);
+  if (!(far > travel)) return true;
+  if (memory.gliding) {
+    leave(memory.proxy + way * (travel / far), 0, Status::budget, state);
+  } else {
+    state.released = true;
+    leave(probe, 0, Status::released, state);
+  }
+  return false;
+}
+
 /// A one-sided probe on the free side: what holds it there, if anything. Held before, the sheet by which it came in; else one that its last
 /// step passed through.
 Hold hold_beyond(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
@@ -157,10 +173,13 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
     state.released = memory.holding = memory.sheet = false;
   }
 
+  if (memory.gliding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
+
   // on the free side: free, or beyond a body that holds
   if (free) {
     hold = hold_beyond(surface, rules, probe, memory, state);
     if (!hold.found) {
+      if (memory.holding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
       memory.holding = memory.sheet = false;
       leave(probe, 0, Status::free, state);
       remember(probe, side, memory, state);

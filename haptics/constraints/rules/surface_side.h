@@ -9,7 +9,8 @@
 /// away, however thin the body is: what lies behind its far side is not free. A probe that comes in and out again within one tick is caught
 /// likewise. A probe that was thrown (further than 0.02 L in one tick, and faster than a hand, constraint.h) is where it is: on the free
 /// side it is free.
-/// Travel: in one tick the proxy moves at most |dx| + slip (constraint.h) along the surface.
+/// Travel: in one tick the proxy moves at most |dx| + slip (constraint.h), but for release: a hold that ends in front of its sheet and far
+/// from it, as on noisy data, glides to the probe so fast, BUDGET.
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/chain/parameter.h"
@@ -93,13 +94,14 @@ struct SideMemory {
   bool holding;         ///< the surface has a point to go on from
   bool settled;         ///< nothing to gain from another tick at the same probe
   bool sheet;           ///< holding a probe that is beyond the body, where the value is that of the free side
+  bool gliding;         ///< holds no more, and is on its way to the probe
   Status status;        ///< of the last tick
   Reason reason;        ///< of the last tick
 };
 
 /// Of a state from a file: see Constraint::is_sane.
 inline bool is_sane(const SideMemory& m) noexcept {
-  return are_bools(m.known, m.fresh, m.holding, m.settled, m.sheet) && is_one_of(m.status, Status::bad_probe) &&
+  return are_bools(m.known, m.fresh, m.holding, m.settled, m.sheet, m.gliding) && is_one_of(m.status, Status::bad_probe) &&
          is_one_of(m.reason, Reason::not_finite);
 }
 
