@@ -146,7 +146,7 @@ TEST(SafeStiffness, IsTheSmallerOfTheTwoBounds) {
   m.delay_s = 0;
   m.encoder_step_m = 4e-5;
   m.friction_n = 0.01;
-  EXPECT_DOUBLE_EQ(safe_stiffness(m, 1e-3).n_per_m(), 500);
+  EXPECT_DOUBLE_EQ(safe_stiffness(m, 1e-3).n_per_m(), 250);
   m.friction_n = 0;
   EXPECT_EQ(safe_stiffness(m, 1e-3).n_per_m(), 0);
   EXPECT_NE(safe_stiffness_text(m, 1e-3).find("without friction"), std::string::npos);
