@@ -138,10 +138,10 @@ Reached cross_dip(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
   return {};
 }
 
-Reached cross_steps(LevelField& field, const Vec3& from, const LevelPoint& to) noexcept {
+Reached cross_steps(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
   const double length = norm(to.p - from);
   const double count = std::min(std::max(std::ceil(length / field.march_step()), 1.0), static_cast<double>(kSegmentSteps));
-  LevelPoint a = field.at(from);
+  LevelPoint a = known != nullptr ? *known : field.at(from);
   for (double i = 1; i <= count && !field.spent(kForTheRest); ++i) {
     const LevelPoint b = i == count ? to : field.at(from + (to.p - from) * (i / count));
     if (a.valid && b.valid) {
@@ -155,9 +155,9 @@ Reached cross_steps(LevelField& field, const Vec3& from, const LevelPoint& to) n
 
 }  // namespace
 
-Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to) noexcept {
+Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
   const bool in_cells = field.cells() != nullptr && norm(to.p - from) <= kMostCells / 3 * field.voxel();
-  return in_cells ? cross_cells(field, from, to) : cross_steps(field, from, to);
+  return in_cells ? cross_cells(field, from, to) : cross_steps(field, from, to, known);
 }
 
 }  // namespace catena::haptics

@@ -28,6 +28,7 @@ constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on 
 struct IsosurfaceMemory {
   SideMemory side;
   LevelPoint at;        // formulas and cubic grids: the point held
+  LevelPoint seen;      // the last probe whose side was asked for
   Curvature curvature;  // formulas
   CellPoint cell;       // linear grids: the point held
   Vec3 normal;
@@ -49,6 +50,8 @@ class LevelSurface final : public Surface {
     here_ = field_.at(at);
     have_here_ = true;
     asked_ = at;
+    before_ = memory_.seen;
+    memory_.seen = here_;
     return {here_.sigma, here_.valid, !here_.finite};
   }
 
@@ -69,7 +72,8 @@ class LevelSurface final : public Surface {
 
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
     const LevelPoint end = look(probe);
-    const Reached reached = first_crossing(field_, from, end);
+    const bool known = before_.valid && same_bits(before_.p, from);
+    const Reached reached = first_crossing(field_, from, end, known ? &before_ : nullptr);
     if (!reached.found) return {};
     return field_.cells() ? settle(reached.at, probe, Curvature{}) : settle_formula(reached.at, probe, Curvature{}, false);
   }
@@ -332,7 +336,7 @@ class LevelSurface final : public Surface {
   IsosurfaceMemory& memory_;
   bool one_sided_;
   double travel_ = std::numeric_limits<double>::infinity();  ///< of this tick, along a wall
-  LevelPoint here_;
+  LevelPoint here_, before_;
   Vec3 asked_{0.0};
   bool have_here_ = false;
 };
@@ -367,8 +371,8 @@ class Isosurface final : public Constraint {
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
-    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) && haptics::is_sane(memory.scan) &&
-           are_bools(memory.walled);
+    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.seen) && haptics::is_sane(memory.cell) &&
+           haptics::is_sane(memory.scan) && are_bools(memory.walled);
   }
   PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
     const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
