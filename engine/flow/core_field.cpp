@@ -47,13 +47,12 @@ bool complex_pair(const Mat3& j, Vec3& axis, double& swirl) {
   return max_abs(axis) > 0;
 }
 
+}  // namespace
+
 void square_to(const Vec3& axis, Vec3& a, Vec3& b) {
-  const Vec3 other = std::fabs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  a = direction(cross(axis, other));
+  a = direction(cross(axis, std::fabs(axis.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
   b = cross(axis, a);
 }
-
-}  // namespace
 
 void NodeBlock::read(const field::VectorGrid& grid, const field::Index3& origin, int nodes) {
   n_ = nodes;

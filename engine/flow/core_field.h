@@ -14,6 +14,9 @@
 
 namespace catena::flow {
 
+/// Two unit vectors square to the unit vector `axis` and to each other.
+void square_to(const Vec3& axis, Vec3& a, Vec3& b);
+
 /// The nodes of a box of a grid, and which of them are corners of a valid cell.
 class NodeBlock {
  public:

@@ -14,11 +14,6 @@ constexpr double kSameCore = 0.5;                // of the spacing: two places a
 constexpr double kLastStep = 0.3;                // of a step: the last one of a line
 constexpr std::size_t kMostCoreSteps = 400'000;  // of a line, each way
 
-void plane_across(const Vec3& along, Vec3& a, Vec3& b) {
-  a = direction(cross(along, std::fabs(along.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
-  b = cross(along, a);
-}
-
 }  // namespace
 
 CoreTracer::CoreTracer(const field::VectorField& field, CoreCriterion criterion, double scale, double step, double spacing, bool has_kinks)
@@ -34,7 +29,7 @@ CoreTracer::Found CoreTracer::correct(Vec3 place, const Vec3& along) {
   Found out;
   const Vec3 from = place;
   Vec3 a, b;
-  plane_across(along, a, b);
+  square_to(along, a, b);
   CoreSample here = flow_.at(place);
   double last = 0;
   for (int i = 0; i < kCoreCorrections; ++i) {

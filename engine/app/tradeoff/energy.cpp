@@ -103,12 +103,7 @@ Gain gain_of(const std::string& chain, const char* force) {
   return result;
 }
 
-constexpr const char* kEnergyScript = R"gp(# gnuplot energy.gp: the plot of figure "energy" from its table
-set datafile separator ','
-set terminal pngcairo size 1200,750 font 'DejaVu Sans,13' linewidth 1.5
-set border linewidth 1.2
-set grid linecolor rgb '#bbbbbb'
-set key outside right top Left reverse spacing 1.3 samplen 2
+constexpr const char* kEnergyScript = R"gp(set key outside right top Left reverse spacing 1.3 samplen 2
 set title 'What one slow closed loop of the hand gains from two links'
 set xlabel 'angle between them (degrees)'
 set ylabel 'energy by K gap^2'
@@ -132,7 +127,7 @@ Outcome figure_energy(ResultFolder& folder) {
         table.add(pair.name).add(degrees).add(force).add(gain.gain).add(gain.left_out).end_row();
       }
   CATENA_CHECK(folder.add("energy.csv", table.text()));
-  CATENA_CHECK(folder.add("energy.gp", kEnergyScript));
+  CATENA_CHECK(folder.add("energy.gp", plot_script("gnuplot energy.gp: the plot of figure \"energy\" from its table", kEnergyScript)));
   return folder.plot("energy.gp", {"energy.png"});
 }
 

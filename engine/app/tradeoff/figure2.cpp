@@ -90,12 +90,7 @@ std::string tremor_table(Progress& progress, double& done) {
   return table.text();
 }
 
-constexpr const char* kFigure2Script = R"gp(# gnuplot figure2.gp: the plots of figure 2 from its tables
-set datafile separator ','
-set terminal pngcairo size 1200,750 font 'DejaVu Sans,13' linewidth 1.5
-set border linewidth 1.2
-set grid linecolor rgb '#bbbbbb'
-methods = "linear euler rk2 rk3 rk4 rkf34 dp54 selected"
+constexpr const char* kFigure2Script = R"gp(methods = "linear euler rk2 rk3 rk4 rkf34 dp54 selected"
 array label[8] = ["linear (Eqs 1-2)", "Euler", "RK2", "RK3", "RK4", "RKF3(4)", "DP5(4)", "selected (traced curve)"]
 array dash[8] = [1, 3, 1, 3, 1, 3, 1, 1]
 array colour[8] = ["#d62728", "#ff7f0e", "#bcbd22", "#2ca02c", "#17becf", "#1f77b4", "#9467bd", "#000000"]
@@ -149,7 +144,7 @@ Outcome figure2(ResultFolder& folder) {
   CATENA_CHECK(folder.add("figure2-drift.csv", drift_table(progress, done)));
   CATENA_CHECK(folder.add("figure2-path.csv", path_table()));
   CATENA_CHECK(folder.add("figure2-tremor.csv", tremor_table(progress, done)));
-  CATENA_CHECK(folder.add("figure2.gp", kFigure2Script));
+  CATENA_CHECK(folder.add("figure2.gp", plot_script("gnuplot figure2.gp: the plots of figure 2 from its tables", kFigure2Script)));
   return folder.plot("figure2.gp", {"figure2-drift.png", "figure2-path.png", "figure2-tremor.png"});
 }
 

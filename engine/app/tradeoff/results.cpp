@@ -15,4 +15,13 @@ Hand::Hand(const std::string& text) : state_(std::make_unique<haptics::ChainStat
 
 std::string to_json(const Vec3& v) { return "[" + to_text(v.x) + ", " + to_text(v.y) + ", " + to_text(v.z) + "]"; }
 
+std::string plot_script(const std::string& about, std::string_view body) {
+  return "# " + about + R"gp(
+set datafile separator ','
+set terminal pngcairo size 1200,750 font 'DejaVu Sans,13' linewidth 1.5
+set border linewidth 1.2
+set grid linecolor rgb '#bbbbbb'
+)gp" + std::string(body);
+}
+
 }  // namespace catena::app

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "engine/app/report/folder.h"
 #include "engine/base/result.h"
@@ -28,6 +29,9 @@ class Hand {
 
 /// "[x, y, z]" as a scene file has it.
 std::string to_json(const Vec3& v);
+
+/// A figure's gnuplot script: `about` as its first line, how its tables are read and its plots look, then `body`.
+std::string plot_script(const std::string& about, std::string_view body);
 
 /// The figures that `catena tradeoff --figure N` measures: tables, a gnuplot script, plots.
 ///   2  drift of the linear follow mode and of higher-order methods from the streamline (section 4)

@@ -181,12 +181,7 @@ std::string virtual_table(Progress& progress, double& done) {
   return table.text();
 }
 
-constexpr const char* kStiffnessScript = R"gp(# gnuplot stiffness.gp: the plots of figure "stiffness" from its tables
-set datafile separator ','
-set terminal pngcairo size 1200,750 font 'DejaVu Sans,13' linewidth 1.5
-set border linewidth 1.2
-set grid linecolor rgb '#bbbbbb'
-set key outside right top Left reverse spacing 1.3 samplen 2
+constexpr const char* kStiffnessScript = R"gp(set key outside right top Left reverse spacing 1.3 samplen 2
 set ylabel 'largest stiffness (N/m)'
 set logscale y
 set format y '10^{%L}'
@@ -235,7 +230,8 @@ Outcome figure_stiffness(ResultFolder& folder) {
   CATENA_CHECK(folder.add("stiffness-damping.csv", damping_table(progress, done)));
   CATENA_CHECK(folder.add("stiffness-delay.csv", delay_table(progress, done)));
   CATENA_CHECK(folder.add("stiffness-virtual.csv", virtual_table(progress, done)));
-  CATENA_CHECK(folder.add("stiffness.gp", kStiffnessScript));
+  CATENA_CHECK(
+      folder.add("stiffness.gp", plot_script("gnuplot stiffness.gp: the plots of figure \"stiffness\" from its tables", kStiffnessScript)));
   return folder.plot("stiffness.gp", {"stiffness-damping.png", "stiffness-delay.png", "stiffness-virtual.png"});
 }
 

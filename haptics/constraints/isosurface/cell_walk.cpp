@@ -9,9 +9,9 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kStill = 1e-13;    // of L: a shorter move is none
-constexpr double kAccepted = 1e-6;  // of L: what may remain where no piece moves any more
-constexpr double kWalkEnded = 3e-8;    // of L: on which a walk has ended
+constexpr double kStill = 1e-13;     // of L: a shorter move is none
+constexpr double kAccepted = 1e-6;   // of L: what may remain where no piece moves any more
+constexpr double kWalkEnded = 3e-8;  // of L: on which a walk has ended
 constexpr int kWalkRounds = 600;
 constexpr double kFarAway = 2;        // voxels
 constexpr int kHalvings = 24;         // to find where a way passes its limit

@@ -9,7 +9,7 @@
 namespace catena::haptics {
 
 /// Where the segment from..to meets the level first; `to` has been asked for already, and what `known` points to, if anything, at `from`. A
-/// way of more than 160 cells, or 64 steps, is looked at by as many steps.
+/// way longer than 53 voxels, which may pass 160 cells, or of more than 64 steps is looked at by 64 steps.
 Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known = nullptr) noexcept;
 
 }  // namespace catena::haptics

@@ -68,8 +68,8 @@ struct GetNumber {
 /// What must agree for the bytes of a state to mean the same.
 std::uint64_t state_layout() {
   Fnv1a layout;
-  for (const std::size_t size : {sizeof(ChainState), sizeof(LinkState), sizeof(Ramp), sizeof(LeftOut), sizeof(PassivityState), sizeof(AlignmentState),
-                                 sizeof(SingleProxy), std::size_t{kMaxLinks}})
+  for (const std::size_t size : {sizeof(ChainState), sizeof(LinkState), sizeof(Ramp), sizeof(LeftOut), sizeof(PassivityState),
+                                 sizeof(AlignmentState), sizeof(SingleProxy), std::size_t{kMaxLinks}})
     layout.add(static_cast<std::uint64_t>(size));
   layout.bytes(__VERSION__, sizeof __VERSION__);
   return layout.value;
