@@ -14,9 +14,10 @@ namespace catena::render {
 namespace {
 
 // Work, in samples of unlit exact rays: a sample that is lit; a voxel in the form of fast rays, where processor or GPU draw, and with its
-// gradient so many times that; a picture of fast rays and their search, as a share of that of exact ones of step 1; and that from which on
-// interpolation is tried.
-constexpr double kLit = 8, kPacking = 4.5, kPackingForGpu = 200, kWithGradient = 2, kFastShare = 1, kWorthTrying = 4e7;
+// gradient so many times that; a picture of fast rays and their search, as a share of that of exact ones of step 1, unlit and lit (a lit
+// fast ray reads its gradient, where an exact one differentiates the cell); and that from which on interpolation is tried.
+constexpr double kLit = 8, kPacking = 4.5, kPackingForGpu = 200, kWithGradient = 2, kFastShare = 0.5, kLitFastShare = 0.3,
+                 kWorthTrying = 4.5e7;
 constexpr std::array<double, 2> kRefine[] = {{1, 3}, {0.4, 1}};  // errors above which every 2nd, every pixel is marched
 constexpr double kFirstExactStep = 1.4, kFirstFastStep = 2;      // voxels
 
@@ -100,7 +101,7 @@ Result<std::optional<QualityChoice>> OnePicture::find() {
     return chosen(exact_rays);
   }
   way_ = ray_way(lattice_.packet());
-  const double packing = work_of_packing(), fast_work = kFastShare * work_of_rays(1);
+  const double packing = work_of_packing(), fast_work = (lattice_.shaded() ? kLitFastShare : kFastShare) * work_of_rays(1);
   const bool exact_first = work_of_rays(kExactSteps[0]) <= packing + fast_work;
   if (exact_first) {
     CATENA_TRY(exact_rays, exact());
