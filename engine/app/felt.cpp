@@ -11,9 +11,14 @@ namespace catena::app {
 
 namespace {
 
-bool holds(exchange::Status status) {
+/// CRITICAL, PARALLEL: every place of the field would hold it.
+bool is_nowhere(const exchange::LinkReport& link) { return link.status == exchange::Status::critical && link.reason == Reason::parallel; }
+
+bool holds(const exchange::LinkReport& link) {
   using exchange::Status;
-  return status != Status::free && status != Status::released && status != Status::no_surface && status != Status::bad_probe;
+  const Status status = link.status;
+  return !is_nowhere(link) && status != Status::free && status != Status::released && status != Status::no_surface &&
+         status != Status::bad_probe;
 }
 
 /// "12.5 mm", or "3 m" from one metre on.
@@ -38,7 +43,8 @@ void Felt::add(const exchange::HapticState& state) {
     ++touch.statuses[exchange::status_word(link.status)];
     touch.max_gap = std::max(touch.max_gap, link.gap);
     touch.max_force_n = std::max(touch.max_force_n, norm(link.force_n));
-    const bool now = holds(link.status);
+    const bool now = holds(link);
+    touch.nowhere = touch.nowhere || is_nowhere(link);
     if (now) touch.held_s += step_s;
     if (now && !touch.holding) ++touch.holds;
     if (touch.holding && link.status == exchange::Status::released) ++touch.let_go;
@@ -47,7 +53,7 @@ void Felt::add(const exchange::HapticState& state) {
 }
 
 std::string Felt::sentence(const Touch& touch, const haptics::Link& link, const haptics::Program& program) const {
-  if (touch.holds == 0) return "not touched";
+  if (touch.holds == 0) return touch.nowhere ? "not touched: CRITICAL, every place of the field would hold it (PARALLEL)" : "not touched";
   const std::string length = hand_length(program.metres_per_unit * touch.max_gap);
   const double share_n = std::min({touch.max_force_n, program.coupling.max_force_n, program.limits.max_force_n});
   const std::string lies_on = printable(link.lies_on);

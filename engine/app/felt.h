@@ -2,7 +2,8 @@
 ///   skin: pressed 12.5 mm deep, own share at most 3.8 N; held 3.88 of 6.00 s. Gap 0.25 units; ticks FREE 2120 OK 3881
 /// "pressed" is said of a link with a free side, "pulled ... off" of all others. The depth is the longest way from the link's probe to its
 /// proxy, in metres of the hand. Of several links each has its own share, limited as the whole force is; springs that pull against each
-/// other give a whole that is smaller. A link holds while its status is none of FREE, RELEASED, NO_SURFACE and BAD_PROBE.
+/// other give a whole that is smaller. A link holds while its status is none of FREE, RELEASED, NO_SURFACE and BAD_PROBE, and
+/// its reason not PARALLEL.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,8 +27,8 @@ class Felt {
  private:
   struct Touch {
     double max_gap = 0, max_force_n = 0, held_s = 0;
-    int holds = 0, let_go = 0;  ///< how often it took hold, and how often it went from holding to RELEASED
-    bool holding = false;
+    int holds = 0, let_go = 0;              ///< how often it took hold, and how often it went from holding to RELEASED
+    bool holding = false, nowhere = false;  ///< nowhere: every place would hold it
     std::map<std::string, std::uint64_t> statuses;
   };
   std::string sentence(const Touch& touch, const haptics::Link& link, const haptics::Program& program) const;

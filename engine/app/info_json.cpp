@@ -137,7 +137,8 @@ Result<std::string> json_of_scene(const std::string& path) {
   const auto count = [](std::size_t n) { return std::uint64_t{n}; };
   JsonObject coupling, drawn, out;
   coupling.add("stiffness_n_per_m", program->coupling.stiffness_n_per_m).add("damping_ns_per_m", program->coupling.damping_ns_per_m);
-  coupling.add("max_force_n", program->coupling.max_force_n);
+  const bool conservative = program->coupling.force == exchange::CouplingForce::conservative;
+  coupling.add("max_force_n", program->coupling.max_force_n).add("force", conservative ? "conservative" : "paper");
   drawn.add("volumes", count(scene.world.count<scene::Volume>())).add("isosurfaces", count(scene.world.count<scene::Isosurface>()));
   drawn.add("slices", count(scene.world.count<scene::Slice>())).add("meshes", count(scene.world.count<scene::SurfaceMesh>()));
   drawn.add("streamlines", count(scene.world.count<scene::StreamlineSet>())).add("glyphs", count(scene.world.count<scene::GlyphSet>()));

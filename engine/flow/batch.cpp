@@ -104,7 +104,9 @@ bool BatchBranch::place(LaneGroup& group, int i, const Vec3& world, double first
   if (!(length > 1e-15) || !(speed(k) > flow_.min_speed)) return false;
   group.q[i] = q;
   group.k[i] = k;
-  group.h[i] = static_cast<float>(sign_ * first_step / length);
+  double step = first_step / length;
+  if (options_.longest_step > 0) step = std::min(step, options_.longest_step / world_length(vector_of(k)));
+  group.h[i] = static_cast<float>(sign_ * step);
   steps_.push_back(raw_step(q, 0, k));
   return true;
 }

@@ -83,6 +83,11 @@ const Table<Coupling>& coupling_table() {
     t.bind(schema::word("force", {"paper", "conservative"},
                         "Of the chain: the paper's sum of pulls, or by virtual work, which slow closed loops take no energy from."),
            &Coupling::force);
+    t.check([](Scene&, const json::Node& node, Coupling& coupling) -> Outcome {
+      if (coupling.force == exchange::CouplingForce::conservative && coupling.method != exchange::CouplingMethod::chain)
+        return json::error_at(*node.find("force"), "a \"conservative\" force is made of a chain; \"method\" \"chain\" was expected");
+      return Done{};
+    });
     return t;
   }();
   return table;

@@ -4,7 +4,8 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kPastSquare = 0.17;  // sin 10 degrees: so far past square to an axis without a sense, the tool turns to its other end
+constexpr double kPastSquare =
+    0.17364817766693033;  // sin 10 degrees: so far past square to an axis without a sense, the tool turns to its other end
 constexpr double kQuarterTurn = 1.5707963267948966;  // radians: the longest way to an axis without a sense
 
 // It constrains: not on the free side, not released, and something is there.

@@ -54,9 +54,10 @@ bool are_sane(const Program& program, const WidgetsState& state) {
 }  // namespace
 
 Outcome check_state(const Program& program, const ChainState& state) {
-  const bool chain = are_bools(state.has_probe) && is_sane(state.order) && is_sane(state.single) && is_sane(state.guard) &&
-                     is_sane(state.passivity) && are_bools(state.switches.link_on) && are_bools(state.switches.mode_on) &&
-                     are_sane(state.indications) && is_finite(state.last_probe) && is_finite(state.force_n);
+  const bool chain = are_bools(state.has_probe) && are_bools(state.left_out.known) && is_sane(state.order) && is_sane(state.single) &&
+                     is_sane(state.guard) && is_sane(state.passivity) && are_bools(state.switches.link_on) &&
+                     are_bools(state.switches.mode_on) && are_sane(state.indications) && is_finite(state.last_probe) &&
+                     is_finite(state.force_n);
   if (!chain) return Error{"the state of the chain is damaged or forged: expected one that a tick leaves"};
   if (!are_sane(program, state.widgets)) return Error{"the state of the widgets is damaged or forged: expected one that a tick leaves"};
   for (std::size_t i = 0; i < program.links.size(); ++i)

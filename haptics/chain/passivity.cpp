@@ -92,7 +92,9 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   for (std::size_t i = 0; i < count; ++i) {
     const LinkState& link = links[i];
     const Vec3& force_n = tick.shares_n[i];
-    const double given_j = dot(state.sent_n[i], move_m);
+    const bool own = conservative && !state.anew && tick.order == state.order;
+    const double given_j = dot(state.sent_n[i], own ? (tick.probes[i] - state.probes[i]) * program.metres_per_unit : move_m);
+    state.probes[i] = tick.probes[i];
     state.given_j[i] += given_j;
     state.sent_n[i] = force_n * sent;
     const bool apart = is_apart(link, max_abs(force_n) > 0);

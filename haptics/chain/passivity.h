@@ -1,7 +1,8 @@
 /// The energy ledger of the links, the passivity observer over all of them, and the controller. World axes, joules of hand.
 ///   work      W_i = S f_i(k-1) . (x_k - x_(k-1)): the force of a tick is held until the next one, so the sum is exact and
 ///             needs no guess at a velocity (the sampled form of Hannaford & Ryu, "Time-domain passivity control of haptic
-///             interfaces", IEEE Trans. Robotics and Automation 18(1), 2002). f_i is the link's share as it was sent.
+///             interfaces", IEEE Trans. Robotics and Automation 18(1), 2002). f_i is the link's share as it was sent; of a conservative
+///             force it pulls at the link's own probe, so that x is p_(i-1) there
 ///   storage   of a conservative force V_i = S/2 f_i . (p_i - p_(i-1)), which is K/2 |S gap|^2; else V_i = S/2 f_i . (p_n - x), with p_n
 ///   the chain's last proxy: their sum is K/2 |S (p_n - x)|^2 where all links
 ///             are equally stiff, and K/2 |S gap|^2 for one link; less where the force is limited
@@ -43,6 +44,7 @@ struct PassivityState {
   std::array<double, kMaxLinks> given_j{};   ///< sum of W_i
   std::array<double, kMaxLinks> stored_j{};  ///< V_i
   std::array<Vec3, kMaxLinks> sent_n{};      ///< f_i, of the last tick
+  std::array<Vec3, kMaxLinks> probes{};      ///< p_(i-1), of the last tick, world units
   std::array<double, kMaxLinks> weights{};   ///< w_i of the last tick
   std::array<bool, kMaxLinks> apart{};       ///< not held: off, let go, or nothing there
   Order order;                               ///< of the last tick
@@ -66,6 +68,7 @@ struct PassivityState {
 /// One tick as the ledger sees it, before and after the guard.
 struct LedgerTick {
   Vec3 move{0.0};                               ///< x_k - x_(k-1), world units
+  const std::array<Vec3, kMaxLinks>& probes;    ///< p_(i-1), world units
   const std::array<Vec3, kMaxLinks>& gaps;      ///< p_i - p_(i-1), world units
   Vec3 reach{0.0};                              ///< p_n - x, world units
   double dt_s = 0;                              ///< since the last tick

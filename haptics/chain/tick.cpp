@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "haptics/chain/begin_link.h"
+#include "haptics/chain/state_hash.h"
 
 namespace catena::haptics {
 
@@ -13,9 +14,11 @@ struct Coupled {
   std::array<Vec3, kMaxLinks> gaps{};      ///< p_i - p_(i-1), world units
   std::array<Vec3, kMaxLinks> shares_n{};  ///< of the force
   Vec3 force_n{0.0};
-  Vec3 left_out_n{0.0};         ///< of a conservative force: what bounds leave out
-  Vec3 reach{0.0};              ///< from the probe to the last proxy, world units
-  double newtons_per_unit = 0;  ///< K S: of the links that run, together
+  Vec3 left_out_n{0.0};                  ///< of a conservative force: what bounds leave out
+  double energy_j = 0;                   ///< likewise: of the springs
+  std::array<Vec3, kMaxLinks> probes{};  ///< p_(i-1), world units
+  Vec3 reach{0.0};                       ///< from the probe to the last proxy, world units
+  double newtons_per_unit = 0;           ///< K S: of the links that run, together
 };
 
 bool is_single(const Program& program) noexcept { return program.coupling.method != CouplingMethod::chain; }
@@ -29,6 +32,13 @@ void switch_off(LinkState& link) noexcept {
 
 double capped(double stiffness, const Limits& limits) noexcept {
   return stiffness > limits.max_stiffness_n_per_m ? limits.max_stiffness_n_per_m : stiffness;
+}
+
+// What a constraint of a plug-in may break: a proxy that is not finite, a status or reason that there is not.
+void keep_sane(const Vec3& incoming, LinkState& link) noexcept {
+  if (is_finite(link.proxy) && is_one_of(link.status, Status::bad_probe) && is_one_of(link.reason, Reason::parallel)) return;
+  link.proxy = incoming;
+  stop_link(link, Status::critical, Reason::not_finite);
 }
 
 // One link that is on: its start, its advance, its weight (the ramp after a switch).
@@ -47,6 +57,7 @@ void advance_link(const Program& program, std::size_t i, const Vec3& incoming, b
   const double newtons_per_unit = link.stiffness_n_per_m * program.metres_per_unit;
   link.slip = newtons_per_unit > 0 ? kSlipPart * program.coupling.max_force_n / newtons_per_unit : std::numeric_limits<double>::infinity();
   spec.constraint->advance(incoming, link, scratch);
+  keep_sane(incoming, link);
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
 
@@ -96,10 +107,12 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
     if (conservative && !program.links[i].stiffness_n_per_m.is_constant())
       link.stiffness_n_per_m =
           capped(program.links[i].stiffness_n_per_m.at(link.proxy, scratch.links[i].stiffness, link.evaluations), program.limits);
+    out.probes[i] = incoming;
     out.gaps[i] = link.proxy - incoming;
     out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
     out.newtons_per_unit += link.stiffness_n_per_m * program.metres_per_unit;
     out.force_n += out.shares_n[i];
+    out.energy_j += 0.5 * program.metres_per_unit * dot(out.shares_n[i], out.gaps[i]);
     incoming = link.proxy;
   }
   if (conservative) {
@@ -182,6 +195,7 @@ void hold_all(const Program& program, double t_s, ChainState& state, exchange::H
   }
   state.force_n = state.told_n = Vec3(0.0);
   state.ramp = Ramp{};
+  state.left_out.known = false;
   // no pose, no force: whatever the clock says
   guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
   suspend(state.passivity);
@@ -252,9 +266,10 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
   for (std::size_t i = 0; i < program.links.size(); ++i) state.alignment.links[i] = out.links[i].orientation;
   guard(program.limits, {force, torque, probe.condition, probe.forces_on, ramp_dt}, state.guard);
-  book(state.left_out, coupled.left_out_n, move * s);
-  settle(program, state.links, {move, coupled.gaps, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum}, state.guard,
-         state.passivity);
+  if (program.coupling.force == CouplingForce::conservative)
+    book(state.left_out, {coupled.force_n, coupled.left_out_n}, coupled.energy_j, move * s);
+  settle(program, state.links, {move, coupled.probes, coupled.gaps, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum},
+         state.guard, state.passivity);
   state.order = order;
   state.last_probe = probe.position;
   state.last_t_s = state.clock_t_s = probe.t_s;
@@ -276,6 +291,7 @@ void rebind(const Program& from, const Program& to, ChainState& state, ChainScra
   scratch = ChainScratch{};
   state.alignment.axes = {};
   state.passivity.anew = true;
+  state.left_out.known = false;
   if (from.coupling.method != to.coupling.method) state.single = SingleProxy{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {
     state.links[i] = LinkState{};

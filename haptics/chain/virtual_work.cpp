@@ -34,4 +34,17 @@ PulledBack virtual_work(const Program& program, const Order& order, const Vec3& 
   return all;
 }
 
+void book(LeftOut& state, const PulledBack& force, double energy_j, const Vec3& move_m) noexcept {
+  const Vec3 whole = force.force + force.left_out;
+  if (state.known) {
+    const double jump = state.energy_j - energy_j - 0.5 * dot(state.force_n + whole, move_m);
+    const double missed = norm(whole - state.force_n) * norm(move_m);
+    state.work_j += 0.5 * dot(state.bounded_n + force.left_out, move_m) + (std::fabs(jump) > missed ? jump : 0);
+  }
+  state.force_n = whole;
+  state.bounded_n = force.left_out;
+  state.energy_j = energy_j;
+  state.known = std::isfinite(energy_j) && is_finite(whole);
+}
+
 }  // namespace catena::haptics

@@ -10,10 +10,16 @@
 
 namespace catena::haptics {
 
-/// The work that the bounds of J leave out: what is returned as `left_out`, over the hand's motion by the trapezoid rule.
+/// The part of the energy that F does not account for: over a closed loop, the work on the hand and this are zero together. It has
+///   what the bounds of J leave out, over the hand's motion by the trapezoid rule, and
+///   the change of E beside -(F + left_out) dx, in ticks where it is more than the trapezoid rule may miss, |d(F + left_out)| |dx|: a proxy
+///   that jumps (to the next straight piece at a concave corner, to another place as near), a link that lets go or is switched, friction
 struct LeftOut {
-  Vec3 force_n{0.0};  ///< of the last tick
-  double work_j = 0;  ///< since the start
+  Vec3 force_n{0.0};    ///< -dE/dx of the last tick, without bounds of J
+  Vec3 bounded_n{0.0};  ///< the part of it that the bounds left out
+  double energy_j = 0;  ///< E of the last tick
+  double work_j = 0;    ///< since the start
+  bool known = false;   ///< the last tick's values mean something
 };
 
 /// F, after the links of this tick have advanced; `gaps` and `shares_n` are p_i - p_(i-1) and g_i by link.
@@ -21,10 +27,7 @@ PulledBack virtual_work(const Program& program, const Order& order, const Vec3& 
                         const std::array<Vec3, kMaxLinks>& shares_n, std::array<LinkState, kMaxLinks>& links,
                         std::array<LinkScratch, kMaxLinks>& scratch) noexcept;
 
-/// Books what a tick leaves out.
-inline void book(LeftOut& state, const Vec3& left_out_n, const Vec3& move_m) noexcept {
-  state.work_j += 0.5 * dot(state.force_n + left_out_n, move_m);
-  state.force_n = left_out_n;
-}
+/// Books what a tick leaves out; `force` as virtual_work returns it, `energy_j` E.
+void book(LeftOut& state, const PulledBack& force, double energy_j, const Vec3& move_m) noexcept;
 
 }  // namespace catena::haptics

@@ -133,7 +133,9 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   CATENA_TRY(const std::string word, json::require_string(link, "type"));
   const ConstraintType* type = find_constraint(word);
   if (!type)
-    return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
+    return json::error_at(
+        *link.find("type"),
+        fmt::format("unknown constraint type \"{}\"; expected one of {}, or one that a --plugin brings", word, known_types()));
   CATENA_CHECK(json::only_keys(link, schema::names_of(common_keys(), type->keys)));
   CATENA_TRY(std::shared_ptr<const Constraint> made,
              type->plugin.empty() ? type->build(link, context) : build_of_plugin(*type, link, context));

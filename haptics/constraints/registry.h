@@ -27,6 +27,7 @@ struct BuildContext {
   std::function<Result<curves::CurveSetPtr>(const json::Node& where, const std::string& name)> curves;
   /// The same of points from a table.
   std::function<Result<curves::PointSetPtr>(const json::Node& where, const std::string& name)> points;
+  double proxy_tolerance = 1e-8;  ///< of L: an iteration ends at the closest point when its step is shorter
 };
 
 /// A type of constraint, as scenes name it and documents describe it.

@@ -59,6 +59,8 @@ Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod meth
   return node;
 }
 
+constexpr double kConservativeTolerance = 1e-10;  // of L: of proxies whose derivative along the probe's way enters the force
+
 }  // namespace
 
 Result<Link> make_link(const json::Node& from, const Coupling& coupling, const BuildContext& context) {
@@ -69,6 +71,7 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
   add_recipe(own, recipe);
   if (coupling.method != CouplingMethod::chain) recipe.add(static_cast<int>(coupling.method));
   BuildContext noting = context;
+  if (coupling.force == CouplingForce::conservative) noting.proxy_tolerance = kConservativeTolerance;
   noting.field = [&](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
     CATENA_TRY(field::AnyField field, context.field(where, name));
     recipe.add(field.get()->version());

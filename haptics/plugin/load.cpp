@@ -1,17 +1,23 @@
 #include "haptics/plugin/load.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sys/auxv.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cfenv>
+#include <csignal>
 #include <cstring>
 #include <exception>
 #include <filesystem>
 
 #include "engine/base/hash.h"
+#include "engine/base/machine_failure.h"
 #include "engine/base/text.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/plugin/file.h"
@@ -22,6 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
+constexpr unsigned kTrialSeconds = 10;
+constexpr int kThrew = 100;  // exit code of a trial
 
 std::vector<Loaded>& list_of_loaded() {
   static std::vector<Loaded> list;
@@ -95,6 +103,34 @@ Result<std::vector<ConstraintType>> types_of(const Entry& entry) {
   return types;
 }
 
+/// Runs the library's own initialisers in a process of their own first: they may throw, crash or hang.
+Outcome try_library(const std::string& path) {
+  const pid_t child = ::fork();
+  if (child < 0) return system_error("a process to try the plug-in in", errno);
+  if (child == 0) {
+    const rlimit none{0, 0};
+    ::setrlimit(RLIMIT_CORE, &none);
+    ::alarm(kTrialSeconds);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);  // the dynamic linker has words of its own
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
+    void* (*volatile const open)(const char*, int) = ::dlopen;  // which throws nothing as it is declared
+    try {
+      open(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    } catch (...) {
+      ::_exit(kThrew);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Done{};
+  const std::string how = !WIFSIGNALED(status)          ? WEXITSTATUS(status) == kThrew ? "throws an exception" : "ends the program"
+                          : WTERMSIG(status) == SIGALRM ? fmt::format("does not come back within {} s", kTrialSeconds)
+                                                        : fmt::format("crashes (signal {})", WTERMSIG(status));
+  return Error{how + " as it is loaded; a library that can be loaded was expected"};
+}
+
 /// Runs the library's own initialisers.
 Result<const Entry*> open_library(const std::string& path, const Statement& stated) {
   std::fenv_t rounding;  // a library that was linked with -ffast-math turns small numbers to 0 in the whole thread
@@ -125,6 +161,7 @@ Outcome load_checked(const fs::path& path) {
   if (!file) return failed(file.error().message);
   if (const Outcome same = check_statement(file->statement); !same) return failed(same.error().message);
   if (file->links_catena) return failed("links libcatena.so, a second Catena; the target catena::plugin was expected in its place");
+  if (const Outcome tried = try_library(path.string()); !tried) return caused_by(failed(tried.error().message), tried.error());
   const auto entry = open_library(path.string(), file->statement);
   if (!entry) return failed(entry.error().message);
   auto types = types_of(**entry);

@@ -32,6 +32,12 @@ bool check(const std::string& bytes) {
 
 TEST(PluginFuzz, TheSeedIsValid) { EXPECT_TRUE(check(seed())); }
 
+TEST(PluginFuzz, AnotherProcessorsIsNoneOfThisMachine) {
+  std::string bytes = seed();
+  bytes[18] = static_cast<char>(bytes[18] + 1);  // e_machine
+  EXPECT_FALSE(check(bytes));
+}
+
 TEST(PluginFuzz, EveryPieceOfTheHeadAndOfTheSections) {
   constexpr std::size_t kHead = 64;
   for (std::size_t n = 0; n <= kHead; ++n) EXPECT_FALSE(check(seed().substr(0, n)));

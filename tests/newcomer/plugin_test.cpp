@@ -158,7 +158,9 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
 }
 
 TEST_F(Plugin, WhatItGivesIsChecked) {
-  const std::pair<const char*, const char*> all[] = {{"throws", "threw an exception (no such luck)"},
+  const std::pair<const char*, const char*> all[] = {{"throws early", "strange.so: throws an exception as it is loaded"},
+                                                     {"crashes early", "strange.so: crashes (signal 6) as it is loaded"},
+                                                     {"throws", "threw an exception (no such luck)"},
                                                      {"throws a number", "threw an exception"},
                                                      {"no word", "gives a type the name \"\""},
                                                      {"no name", "gives a type the name \"Two Words\""},

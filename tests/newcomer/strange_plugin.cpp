@@ -15,6 +15,15 @@ std::string wrong() {
   return said == nullptr ? "" : said;
 }
 
+/// Before main.
+struct Early {
+  Early() {
+    if (wrong() == "throws early") throw std::runtime_error("no such luck");
+    if (wrong() == "crashes early") std::abort();
+  }
+};
+const Early early;
+
 Result<std::shared_ptr<const Constraint>> build_strange(const json::Node&, const BuildContext&) {
   if (wrong() == "build throws") throw std::runtime_error("no such luck");
   return std::shared_ptr<const Constraint>();

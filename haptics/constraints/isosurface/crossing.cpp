@@ -160,4 +160,11 @@ Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to
   return in_cells ? cross_cells(field, from, to) : cross_steps(field, from, to, known);
 }
 
+bool stays_on_side(const LevelField& field, const LevelPoint& a, const LevelPoint& b) noexcept {
+  const Vec3 way = b.p - a.p;
+  if (!a.valid || !b.valid || other_side(a.sigma, b.sigma) || norm(way) > field.march_step()) return false;
+  const double side = a.sigma < 0 ? -1 : 1;
+  return !(side * dot(a.n, way) < 0 && side * dot(b.n, way) > 0);
+}
+
 }  // namespace catena::haptics

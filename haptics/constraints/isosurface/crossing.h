@@ -12,4 +12,7 @@ namespace catena::haptics {
 /// way longer than 53 voxels, which may pass 160 cells, or of more than 64 steps is looked at by 64 steps.
 Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known = nullptr) noexcept;
 
+/// Whether the way between two places on the same side of a formula's level, at most one step long, leaves no room for a convex dip.
+bool stays_on_side(const LevelField& field, const LevelPoint& a, const LevelPoint& b) noexcept;
+
 }  // namespace catena::haptics

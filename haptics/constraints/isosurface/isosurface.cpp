@@ -23,6 +23,8 @@ constexpr int kQuickRefusals = 8;    // in a row, likewise
 constexpr int kSight = 16;           // fetches on the line of sight
 constexpr int kForLevel = 12;        // fetches kept for the way back to the level
 constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
+constexpr int kStepsAlong = 16;      // of a surface, to tell whether two of its places belong together,
+constexpr double kThere = 1e-4;      // of L: which the last of them reaches
 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
 struct IsosurfaceMemory {
@@ -43,8 +45,8 @@ bool is_thrown(const SideMemory& side, const Vec3& probe, double length) noexcep
 
 class LevelSurface final : public Surface {
  public:
-  LevelSurface(const LevelField& field, const PieceFrames& frames, const SideRules& rules, IsosurfaceMemory& memory)
-      : field_(field), frames_(frames), memory_(memory), one_sided_(rules.free != FreeSide::none) {}
+  LevelSurface(const LevelField& field, const PieceFrames& frames, double tolerance, const SideRules& rules, IsosurfaceMemory& memory)
+      : field_(field), frames_(frames), tolerance_(tolerance), memory_(memory), one_sided_(rules.free != FreeSide::none) {}
 
   SideValue side(const Vec3& at) noexcept override {
     here_ = field_.at(at);
@@ -71,8 +73,9 @@ class LevelSurface final : public Surface {
   }
 
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
-    const LevelPoint end = look(probe);
     const bool known = before_.valid && same_bits(before_.p, from);
+    if (known && !field_.cells() && have_here_ && same_bits(asked_, probe) && stays_on_side(field_, before_, here_)) return {};
+    const LevelPoint end = look(probe);
     const Reached reached = first_crossing(field_, from, end, known ? &before_ : nullptr);
     if (!reached.found) return {};
     return field_.cells() ? settle(reached.at, probe, Curvature{}) : settle_formula(reached.at, probe, Curvature{}, false);
@@ -102,13 +105,29 @@ class LevelSurface final : public Surface {
     return norm(before - met) >= norm(before - held) - kOnLevel * field_.length();
   }
 
+  /// Whether a hand, fast as it may be, makes the probe's step: what holds it must not change to another body.
+  bool is_of_a_hand(const Vec3& probe) const noexcept { return norm(probe - memory_.side.probe) <= field_.state().hand_step; }
+
+  /// Whether steps along the surface lead from one of its places to the other.
+  bool leads_to(LevelPoint at, const LevelPoint& to) noexcept {
+    for (int i = 0; i < kStepsAlong && !field_.spent(kForLevel); ++i) {
+      const Vec3 way = to.p - at.p;
+      if (norm(way) <= kThere * field_.length()) return true;
+      const Vec3 along = equation::tangential(way, at.n);
+      const LevelPoint next = relevelled(field_.at(at.p + along * (i < kStepsAlong / 2 ? 2.0 / kStepsAlong : 1.0)));
+      if (!usable(next) || dot(next.n, at.n) < 0.5) return false;
+      at = next;
+    }
+    return false;
+  }
+
   Hold slide_grid(const Vec3& probe, double travel) noexcept {
     CellPoint cell = memory_.cell;
     const Vec3 held = world_of(*field_.cells(), cell);
     // a probe that was thrown goes far along the surface first as if it were smooth
     if (is_thrown(memory_.side, probe, field_.length())) {
       const LevelPoint start = field_.at(held);
-      if (start.valid && !start.plateau) cell = leap(cell, start, probe);
+      if (start.valid && !start.plateau && !is_of_a_hand(probe)) cell = leap(cell, start, probe);
     }
     TravelLimit limit{held, travel + memory_.owed, false, {}, Vec3(0.0)};
     WalkResult walk = walk_cells(field_, frames_, probe, cell, &limit);
@@ -128,7 +147,9 @@ class LevelSurface final : public Surface {
     const Curvature curvature = memory_.curvature;
     travel_ = travel;
     const Hold hold = settle_formula(from, probe, curvature, false);
-    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) return hold;
+    const bool far = is_thrown(memory_.side, probe, field_.length()) && is_of_a_hand(probe);
+    const auto is_other_body = [&](const LevelPoint& at) { return far && !leads_to(from, at); };
+    if ((!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) && !is_other_body(memory_.at)) return hold;
     memory_.at = from;
     if (Hold wall; hold_along(from, probe, wall)) return wall;
 
@@ -137,7 +158,7 @@ class LevelSurface final : public Surface {
     LevelPoint at = from;
     for (double step = travel; step > 0.1 * travel && !field_.spent(kForLevel); step *= 0.5) {
       const LevelPoint ahead = relevelled(field_.at(from.p + way * step));
-      if (!usable(ahead) || norm(ahead.p - from.p) > travel || !(norm(probe - ahead.p) < norm(e))) continue;
+      if (!usable(ahead) || norm(ahead.p - from.p) > travel || !(norm(probe - ahead.p) < norm(e)) || is_other_body(ahead)) continue;
       at = ahead;
       break;
     }
@@ -274,7 +295,7 @@ class LevelSurface final : public Surface {
 
   int quick_of_grid() const noexcept { return field_.state().most <= kThrownWork ? kThrownQuick : kQuickOfGrids; }
   ClosestGoal goal(int most) noexcept {
-    return {1e-10 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
+    return {tolerance_ * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
             kQuickRefusals};
   }
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
@@ -333,6 +354,7 @@ class LevelSurface final : public Surface {
 
   LevelField field_;
   const PieceFrames& frames_;
+  const double tolerance_;
   IsosurfaceMemory& memory_;
   bool one_sided_;
   double travel_ = std::numeric_limits<double>::infinity();  ///< of this tick, along a wall
@@ -343,8 +365,8 @@ class LevelSurface final : public Surface {
 
 class Isosurface final : public Constraint {
  public:
-  Isosurface(field::ScalarFieldPtr field, double level, const SideSpec& rules)
-      : field_(std::move(field)), level_(level), rules_(rules), frames_(field_->mapping()) {}
+  Isosurface(field::ScalarFieldPtr field, double level, const SideSpec& rules, double tolerance)
+      : field_(std::move(field)), level_(level), rules_(rules), tolerance_(tolerance), frames_(field_->mapping()) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     memory_of<IsosurfaceMemory>(state).scan = Scan{};
@@ -357,7 +379,7 @@ class Isosurface final : public Constraint {
     memory = IsosurfaceMemory{};
     memory.scan = scan;
     const SideRules rules = rules_.at(probe, state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, rules, memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
     start_on(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
@@ -366,7 +388,7 @@ class Isosurface final : public Constraint {
     const SideMemory& side = memory.side;
     const bool finishes = side.fresh && side.status == Status::budget;
     if (field_->grid() != nullptr && (finishes || is_thrown(side, probe, field_->length()))) state.most = kThrownWork;
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, rules, memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }
   bool is_sane(const LinkState& state) const noexcept override {
@@ -408,6 +430,7 @@ class Isosurface final : public Constraint {
   field::ScalarFieldPtr field_;
   double level_;
   SideSpec rules_;
+  double tolerance_;
   PieceFrames frames_;
 };
 
@@ -415,7 +438,7 @@ Result<std::shared_ptr<const Constraint>> build_isosurface(const json::Node& lin
   CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "an isosurface", context));
   CATENA_TRY(const double level, require_level(link, "field", *field));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
-  return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(field, level, rules));
+  return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(field, level, rules, context.proxy_tolerance));
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ class Snap final : public Constraint {
       state.released = false;
       state.limit = 0;
       inner_->advance(probe, state, scratch);
-      const bool stays = state.status != Status::no_surface && !(norm(probe - state.proxy) >= distances.release);
+      const bool stays =
+          state.status != Status::no_surface && state.status != Status::released && !(norm(probe - state.proxy) >= distances.release);
       if (stays) return hold(memory, distances, state);
       return stay_apart(memory, distances, probe, Status::released, state);
     }

@@ -189,8 +189,13 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
   }
   memory.sheet = free;
 
-  // nothing is known of the side here: what is held stays held, what is free stays free
+  // nothing is known of the side here: what is held stays held, what is free stays free unless the step went through a sheet
   if (one_sided && !side.known && !memory.holding) {
+    if (surface.may_be_thin() && memory.fresh && memory.known && memory.status == Status::free && !is_thrown(surface, probe, memory, state))
+      hold = surface.cross(memory.probe, probe);
+    have_hold = hold.found;
+  }
+  if (one_sided && !side.known && !memory.holding && !have_hold) {
     if (side.broken)
       leave_broken(probe, state);
     else

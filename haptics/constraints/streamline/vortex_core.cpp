@@ -11,11 +11,13 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kFarthestProbe = 1e100;  // squares of what lies beyond lose their meaning
+constexpr double kNearer = 0.7;           // of the distance of the core held: one nearer than that takes its place
 
 struct CoreMemory {
   Vec3 probe{0.0};       ///< the last one
   Vec3 core{0.0};        ///< the place on the core, or on the way to it
   Vec3 axis{0.0};        ///< of the core there, unit
+  std::uint32_t line;    ///< of the cores
   bool holding = false;  ///< core and axis mean something
   bool fresh = false;    ///< `probe` means something
 };
@@ -25,6 +27,8 @@ class VortexCore final : public Constraint {
   VortexCore(flow::VortexCoresPtr cores, double radius, double search, double length)
       : cores_(std::move(cores)), radius_(radius), search_(search), length_(length) {
     if (!cores_->lines.empty()) nearest_.emplace(cores_->lines);
+    if (cores_->lines.size() > 1)
+      for (const flow::CurvePtr& line : cores_->lines) by_line_.emplace_back(line);
   }
 
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
@@ -43,8 +47,10 @@ class VortexCore final : public Constraint {
     memory.probe = probe;
     memory.fresh = true;
     const bool held = memory.holding;
+    state.released = false;
     memory.holding = nearest_ && max_abs(probe) < kFarthestProbe && find(probe, memory, state);
-    if (!memory.holding) return pass(probe, state);
+    if (!memory.holding) return state.released ? let_go(probe, state) : pass(probe, state);
+    state.curve = static_cast<std::int32_t>(memory.line);
     const Vec3 way = state.proxy - memory.core;
     const double gap = norm(probe - state.proxy), far = norm(way), travel = state.travel(moved, gap);
     if (held && far > travel) {
@@ -65,10 +71,10 @@ class VortexCore final : public Constraint {
   PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
     const CoreMemory& memory = memory_of<CoreMemory>(state);
     if (!memory.holding || state.status == Status::free || state.status == Status::budget) return {f};
-    const flow::NearestPlace found = nearest_->at(probe, search_);
+    const flow::NearestPlace found = on_line(memory.line, probe);
     if (!std::isfinite(found.distance2)) return {f};
     state.steps += found.work;
-    const flow::Curve& line = *cores_->lines[found.line];
+    const flow::Curve& line = *cores_->lines[memory.line];
     const Vec3 e = probe - memory.core, way = direction(e);
     const Vec3 across = radius_ > 0 ? (f - way * dot(way, f)) * (radius_ / norm(e)) : Vec3(0.0);
     PulledBack back = pull_back_on_curve(line, found.interval, found.s, probe, f - across);
@@ -77,7 +83,7 @@ class VortexCore final : public Constraint {
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const CoreMemory& memory = memory_of<CoreMemory>(state);
-    return are_bools(memory.holding, memory.fresh);
+    return are_bools(memory.holding, memory.fresh) && (!memory.holding || memory.line < cores_->lines.size());
   }
   bool has_primitive() const noexcept override { return radius_ == 0; }
   double domain_length() const noexcept override { return length_; }
@@ -90,12 +96,33 @@ class VortexCore final : public Constraint {
     stop_link(state, cores_->everywhere ? Status::critical : Status::no_surface, cores_->everywhere ? Reason::parallel : Reason::none);
   }
 
-  /// The nearest place of all cores: sets proxy and status.
+  /// For a tick, before another core takes hold.
+  void let_go(const Vec3& probe, LinkState& state) const noexcept {
+    state.proxy = probe;
+    state.residual = 0;
+    state.status = Status::released;
+  }
+  /// The nearest place of one core.
+  flow::NearestPlace on_line(std::uint32_t line, const Vec3& probe) const noexcept {
+    return (by_line_.empty() ? *nearest_ : by_line_[line]).at(probe, search_);
+  }
+
+  /// The nearest place of the core held, or of all where none is held or another one is much nearer: sets line, proxy and status. False:
+  /// nothing is within `search`, or the core held has been let go for another one.
   bool find(const Vec3& probe, CoreMemory& memory, LinkState& state) const noexcept {
-    const flow::NearestPlace found = nearest_->at(probe, search_);
+    flow::NearestPlace found = nearest_->at(probe, search_);
     state.steps += found.work;
     if (!std::isfinite(found.distance2)) return false;
-    const flow::Curve& line = *cores_->lines[found.line];
+    if (memory.holding && found.line != memory.line) {
+      const flow::NearestPlace held = on_line(memory.line, probe);
+      state.steps += held.work;
+      state.released = found.distance2 < kNearer * kNearer * held.distance2;
+      if (state.released) return false;
+      found = held;
+    } else {
+      memory.line = static_cast<std::uint32_t>(found.line);
+    }
+    const flow::Curve& line = *cores_->lines[memory.line];
     Vec3 derivative;
     line.evaluate_in(found.interval, found.s, state.proxy, derivative);
     memory.axis = direction(derivative);
@@ -123,6 +150,7 @@ class VortexCore final : public Constraint {
 
   flow::VortexCoresPtr cores_;
   std::optional<flow::NearestOnCurve> nearest_;
+  std::vector<flow::NearestOnCurve> by_line_;  ///< of more than one core
   double radius_, search_, length_;
 };
 

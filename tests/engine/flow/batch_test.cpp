@@ -183,6 +183,18 @@ TEST(Batch, TheLengthIsMetExactly) {
   }
 }
 
+TEST(Batch, NoStepIsLongerThanAskedFor) {
+  const auto grid = sampled("abc");
+  BatchOptions options;
+  options.length = 0.3;
+  options.longest_step = 0.03;
+  for (const auto& line : BatchTracer(Flow{grid.get()}, options).trace(places(5, 0.5))) {
+    ASSERT_TRUE(line);
+    const auto knots = (*line)->knots();
+    for (std::size_t k = 1; k < knots.size(); ++k) ASSERT_LE(knots[k].s - knots[k - 1].s, 0.0301 * grid->longest_edge()) << knots[k].s;
+  }
+}
+
 TEST(Batch, FieldScalesFromTinyToHugeGiveTheSameLines) {
   const auto made = [](double scale) {
     return grid_of({}, {24, 24, 24}, [scale](const Vec3& p) { return scale * Vec3(1 + 0.1 * p.y, 2 - 0.1 * p.x, 0.5); });

@@ -42,8 +42,10 @@ struct Fields {
   std::map<std::string, mesh::MeshPtr> meshes;
   std::map<std::string, curves::CurveSetPtr> curves;
   std::map<std::string, curves::PointSetPtr> points;
+  double proxy_tolerance = BuildContext().proxy_tolerance;
   BuildContext context() const {
     BuildContext c;
+    c.proxy_tolerance = proxy_tolerance;
     c.field = [this](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
       const auto it = named.find(name);
       if (it == named.end()) return json::error_at(where, "no field " + name);

@@ -139,5 +139,48 @@ TEST(ThinBodies, AFastHandIsCaughtHoweverThinTheBodyIs) {
   }
 }
 
+// The sheet lies one voxel before the end of what is known: the hand's step leads from in front of it to where nothing is known.
+TEST(ThinBodies, AFastHandIsCaughtBeforeMaskedCellsAndValuesThatAreNone) {
+  const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
+  for (const bool masked : {true, false}) {
+    std::vector<std::uint8_t> valid;
+    for (int i = 0; i < 21 * 21 * 21; ++i) valid.push_back(i / (21 * 21) >= 9);
+    Fields fields;
+    fields.named["f"].scalar = grid_of(
+        mapping, {21, 21, 21}, [&](const Vec3& x) { return !masked && x.z < -0.15 ? std::nan("") : x.z; },
+        masked ? valid : std::vector<std::uint8_t>{});
+    Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "above"})", fields));
+    rig.state.hand_step = 0.5;
+    rig.tick({0.1, 0.2, 0.14});
+    ASSERT_EQ(rig.tick({0.12, 0.2, -0.3}).status, Status::ok) << masked;
+    EXPECT_NEAR(rig.state.proxy.z, 0, 1e-6);
+  }
+}
+
+// Two balls with a gap: steps of a hand lead from one towards the other, and what is held stays.
+TEST(ThinBodies, AStepOfAHandNeverLeadsToAnotherBody) {
+  Random random(9);
+  int stayed = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double gap = random.in(0.15, 0.4), radius = 0.35, centre = radius + gap / 2;
+    Fields fields;
+    const auto mapping = field::Mapping::from_linear(Mat3(0.13), Vec3(-1.5));
+    const auto balls = [&](const Vec3& x) { return std::min(norm(x - Vec3(-centre, 0, 0)), norm(x - Vec3(centre, 0, 0))) - radius; };
+    const auto grid = grid_of(mapping, {24, 24, 24}, balls);
+    fields.named["f"].scalar = i % 2 ? *grid->cubic() : grid;
+    Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0})", fields));
+    rig.state.hand_step = 1;
+    Vec3 x(random.in(-0.6, -0.1), random.in(-0.3, 0.3), random.in(-0.3, 0.3));
+    if (rig.tick(x); !(rig.state.proxy.x < 0)) continue;
+    const Vec3 way = direction(Vec3(1, random.in(-0.4, 0.4), random.in(-0.4, 0.4))) * random.in(0.1, 0.5);
+    for (int k = 0; k < 4; ++k) {
+      rig.tick(x += way);
+      ASSERT_LT(rig.state.proxy.x, 0) << i << " " << k;
+    }
+    ++stayed;
+  }
+  EXPECT_GT(stayed, 300);
+}
+
 }  // namespace thin_bodies_test
 }  // namespace catena::haptics::tests

@@ -176,6 +176,36 @@ TEST(VortexCore, SnapsAndReleases) {
   EXPECT_EQ(rig.tick({0.31, 0, 0.2}).status, Status::released);
 }
 
+TEST(VortexCore, AnotherCoreTakesHoldAfterATickThatIsReleased) {
+  // two vortices along z, at x = -0.6 and 0.6
+  const auto turn = [](const Vec3& p, double x) {
+    const Vec3 e(p.x - x, p.y, 0);
+    return catena::test::swirl_rate(dot(e, e), 0.2) * Vec3(-e.y, e.x, 0);
+  };
+  const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.2));
+  const auto field = catena::test::grid_of(mapping, {25, 25, 25}, [&](const Vec3& p) { return turn(p, -0.6) + turn(p, 0.6); });
+  for (const char* rules : {R"(, "search": 2)", R"(, "search": 2, "snap": 1, "release": 3)"}) {
+    Rig rig(core_of(field, rules));
+    int curve = -1, released = 0;
+    for (int i = 0; i <= 400; ++i) {
+      rig.tick({-0.6 + 0.003 * i, 0.05, 0.1});
+      if (rig.state.status == Status::released) {
+        ++released;
+        EXPECT_GT(i, 200);
+        EXPECT_EQ(rig.state.curve, -1);
+        EXPECT_EQ(rig.state.proxy, Vec3(-0.6 + 0.003 * i, 0.05, 0.1));
+        curve = -1;
+        continue;
+      }
+      ASSERT_EQ(rig.state.status, Status::ok) << i;
+      ASSERT_TRUE(curve < 0 || curve == rig.state.curve) << i;
+      curve = rig.state.curve;
+      ASSERT_NEAR(rig.state.proxy.x, released > 0 ? 0.6 : -0.6, 0.05);
+    }
+    EXPECT_EQ(released, 1) << rules;
+  }
+}
+
 TEST(VortexCore, OnRealDataIsBoundedAndRests) {
   const std::string path = catena::test::shared_data("combustor_cfd.vdb");
   if (path.empty()) GTEST_SKIP() << "combustor_cfd.vdb is not beside the checkout";
@@ -197,7 +227,7 @@ TEST(VortexCore, OnRealDataIsBoundedAndRests) {
       ASSERT_TRUE(is_finite(rig.state.proxy));
       work.add(rig.state.work());
       held += rig.state.status != Status::no_surface;
-      if (i % 10 > 0) continue;
+      if (i % 10 > 0 || rig.state.status == Status::released) continue;
       const Vec3 rest = rig.state.proxy;
       rig.tick(x);
       ASSERT_TRUE(same_bits(rig.state.proxy, rest));
