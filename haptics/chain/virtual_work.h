@@ -1,5 +1,5 @@
 /// The conservative force of a chain (coupling.force), by virtual work. The paper's sum of pulls is not the gradient of any energy: along
-/// slow closed loops of the hand it gives or takes up to 0.7 K gap^2 a loop (two planes at 45 degrees). With
+/// slow closed loops of the hand it gives or takes 0.7 K gap^2 a loop (a plane and a line). With
 ///   E = 1/2 sum k_i |S (p_i - p_(i-1))|^2,   p_i = P_i(p_(i-1)),   g_i = w_i k_i S (p_i - p_(i-1)),   J_i = dP_i at p_(i-1)
 ///   F = -dE/dx = g_1 + J_1^T (g_2 + h_1 + J_2^T (g_3 + h_2 + ...)),   h_i = -1/2 S |p_i - p_(i-1)|^2 grad k_i
 /// each later pull goes back through the projections before it (Constraint::pull_back). Links that are no projections (friction, forces)
