@@ -112,11 +112,16 @@ Outcome describe_scene(const std::string& path) {
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const haptics::ConstraintType* type = haptics::find_constraint(link.type);
     const haptics::ReadyMode* mode = haptics::find_ready_mode(link.type);
-    fmt::print("link {}: {} ({})\n", printable(link.name), printable(link.type), type ? type->paper : mode ? mode->paper : "");
+    const std::string from = type != nullptr && !type->plugin.empty() ? "plug-in " + printable(type->plugin)
+                             : type != nullptr                        ? type->paper
+                             : mode != nullptr                        ? mode->paper
+                                                                      : "";
+    fmt::print("link {}: {} ({})\n", printable(link.name), printable(link.type), from);
   });
   CATENA_CHECK(describe_widgets(scene));
-  fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", readable(program->coupling.stiffness_n_per_m),
-             readable(program->coupling.damping_ns_per_m), readable(program->coupling.max_force_n));
+  fmt::print("coupling: {} N/m, {} N s/m, at most {} N{}\n", readable(program->coupling.stiffness_n_per_m),
+             readable(program->coupling.damping_ns_per_m), readable(program->coupling.max_force_n),
+             program->coupling.force == exchange::CouplingForce::conservative ? ", conservative" : "");
   if (scene.workspace.given)
     fmt::print("workspace: 1 world unit is {} m of the hand\n", readable(scene.workspace.metres_per_unit));
   else

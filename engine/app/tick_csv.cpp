@@ -75,7 +75,9 @@ void append_tick(std::string& line, const LinkColumns& columns, const exchange::
   if (turns) append_vector(line, state.torque_nm);
   for (std::size_t c = 0; c < columns.names().size(); ++c) {
     line += ',';
-    if (columns.link(c) >= 0) line += std::to_string(state.links[static_cast<std::size_t>(columns.link(c))].curve);
+    if (columns.link(c) < 0) continue;
+    const std::int32_t curve = state.links[static_cast<std::size_t>(columns.link(c))].curve;
+    if (curve != exchange::kUnknownCurve) line += std::to_string(curve);
   }
   line += '\n';
 }

@@ -56,6 +56,8 @@ const char* condition_word(Condition condition);  ///< NORMAL LATE NO_DEVICE WAT
 enum class ForceState : std::uint8_t { on, off, ramping_in, held, ramping_out, stopped };
 const char* force_state_word(ForceState state);  ///< ON OFF RAMPING_IN HELD RAMPING_OUT STOPPED
 
+inline constexpr std::int32_t kUnknownCurve = -2;  ///< LinkReport::curve, where it was not kept
+
 /// What a tick says of a link.
 struct LinkReport {
   Vec3 proxy{0.0};                ///< world units
@@ -69,7 +71,7 @@ struct LinkReport {
   double booked_j = 0;            ///< given to the hand and stored for it beyond what it put in; a switch or snap shows as a jump
   double leaving = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
   std::int32_t evaluations = 0;   ///< field fetches of this tick
-  std::int32_t curve = -1;        ///< the line of a file that it holds to; -1: none; not in recordings
+  std::int32_t curve = -1;        ///< the line that it holds to; -1: none; kUnknownCurve as it comes from a recording
   Status status = Status::ok;     ///< how the link is
   bool active = false;            ///< enabled and not released
   bool left = false;              ///< the hand has left the feature: leaving >= 1, or let go

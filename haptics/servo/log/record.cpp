@@ -89,8 +89,9 @@ bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
   link.active = byte_of(packed, 5) == 1;
   link.left = byte_of(packed, 6) == 1;
   link.reason = static_cast<Reason>(byte_of(packed, 7));
+  link.curve = exchange::kUnknownCurve;
   return byte_of(packed, 4) <= static_cast<std::uint8_t>(exchange::Status::bad_probe) && byte_of(packed, 5) <= 1 &&
-         byte_of(packed, 6) <= 1 && byte_of(packed, 7) <= static_cast<std::uint8_t>(Reason::not_finite);
+         byte_of(packed, 6) <= 1 && byte_of(packed, 7) <= static_cast<std::uint8_t>(Reason::parallel);
 }
 
 void pack_widget(const WidgetReport& widget, std::uint64_t* words) noexcept {

@@ -50,6 +50,8 @@ const Felt kFelt[] = {
             {"name": "case", "type": "box", "center": [0, 0, 0], "size": [0.9, 0.8, 0.7], "free": "below", "release": 0.3}]})"},
     {"Mesh", R"({"fields": {}, "meshes": [{"name": "wedge", "file": "wedge.obj", "scale": 2.6}],
   "chain": [{"name": "touch", "type": "mesh", "mesh": "wedge", "free": "above", "release": 0.3}]})"},
+    {"Beltrami", R"({"fields": {"v": {"analytic": "abc"}},
+  "chain": [{"name": "core", "type": "vortex_core", "field": "v", "criterion": "vorticity"}]})"},
     {"Balance", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})"},
@@ -102,6 +104,16 @@ std::uint64_t record_session(const std::string& log, const std::string& scene_pa
   return hash;
 }
 
+/// A tick table without the cells of its last columns, which a recording does not keep.
+std::string without_curves(const std::string& path) {
+  const test::Table table = test::Table::read(path);
+  std::string text;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (const std::string& column : table.header())
+      if (!column.ends_with("_curve")) text += table.word(row, column) + (column == "t" ? "\n" : ",");
+  return text;
+}
+
 class RecordedScene : public testing::TestWithParam<Felt> {};
 
 TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
@@ -119,7 +131,7 @@ TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
 
   const auto exported = catena_program({"export", folder / "l.catlog", "-o", folder / "e.csv", "--details", folder / "ed.csv"});
   ASSERT_EQ(exported.exit_code, 0) << exported.err;
-  EXPECT_EQ(test::read_file(folder / "e.csv"), test::read_file(folder / "t.csv"));
+  EXPECT_EQ(without_curves(folder / "e.csv"), without_curves(folder / "t.csv"));
   const test::Table details = test::Table::read(folder / "d.csv"), all = test::Table::read(folder / "ed.csv");
   ASSERT_EQ(details.rows(), 1200u);
   ASSERT_EQ(all.rows(), 1200u);
