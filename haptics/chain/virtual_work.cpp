@@ -38,8 +38,9 @@ void book(LeftOut& state, const PulledBack& force, double energy_j, const Vec3& 
   const Vec3 whole = force.force + force.left_out;
   if (state.known) {
     const double jump = state.energy_j - energy_j - 0.5 * dot(state.force_n + whole, move_m);
-    const double missed = norm(whole - state.force_n) * norm(move_m);
-    state.work_j += 0.5 * dot(state.bounded_n + force.left_out, move_m) + (std::fabs(jump) > missed ? jump : 0);
+    const Vec3 turned = whole - state.force_n;
+    const double missed2 = dot(turned, turned) * dot(move_m, move_m);
+    state.work_j += 0.5 * dot(state.bounded_n + force.left_out, move_m) + (jump * jump > missed2 ? jump : 0);
   }
   state.force_n = whole;
   state.bounded_n = force.left_out;
