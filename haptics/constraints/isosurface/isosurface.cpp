@@ -14,7 +14,6 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kSearchRadius = 2;  // of L
-constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
 constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
 constexpr int kQuick = 200;          // fetches before a formula asks for the descent
 constexpr int kQuickOfGrids = 60;    // likewise: a cubic grid's cost more, and walls may be the reason
@@ -39,8 +38,8 @@ struct IsosurfaceMemory {
   double owed;  // of the way that a walk out of budget was allowed and has not gone
 };
 
-bool is_thrown(const SideMemory& side, const Vec3& probe, double length) noexcept {
-  return side.fresh && norm(probe - side.probe) > kThrown * length;
+bool is_long_step(const SideMemory& side, const Vec3& probe, double length) noexcept {
+  return side.fresh && norm(probe - side.probe) > kLongStep * length;
 }
 
 class LevelSurface final : public Surface {
@@ -125,7 +124,7 @@ class LevelSurface final : public Surface {
     CellPoint cell = memory_.cell;
     const Vec3 held = world_of(*field_.cells(), cell);
     // a probe that was thrown goes far along the surface first as if it were smooth
-    if (is_thrown(memory_.side, probe, field_.length())) {
+    if (is_long_step(memory_.side, probe, field_.length())) {
       const LevelPoint start = field_.at(held);
       if (start.valid && !start.plateau && !is_of_a_hand(probe)) cell = leap(cell, start, probe);
     }
@@ -147,7 +146,7 @@ class LevelSurface final : public Surface {
     const Curvature curvature = memory_.curvature;
     travel_ = travel;
     const Hold hold = settle_formula(from, probe, curvature, false);
-    const bool far = is_thrown(memory_.side, probe, field_.length()) && is_of_a_hand(probe);
+    const bool far = is_long_step(memory_.side, probe, field_.length()) && is_of_a_hand(probe);
     const auto is_other_body = [&](const LevelPoint& at) { return far && !leads_to(from, at); };
     if ((!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) && !is_other_body(memory_.at)) return hold;
     memory_.at = from;
@@ -179,7 +178,7 @@ class LevelSurface final : public Surface {
     Scan& scan = memory_.scan;
     if (scan.nothing && same_bits(scan.probe, start.p)) return {};
     if (scan.met && same_bits(scan.probe, start.p)) return {true, field_.at(scan.nearest)};
-    const bool goes_on = scan.open && norm(scan.probe - start.p) <= kThrown * field_.length();
+    const bool goes_on = scan.open && norm(scan.probe - start.p) <= kLongStep * field_.length();
     LevelPoint centre = start;
     if (!goes_on) {
       const Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
@@ -387,7 +386,7 @@ class Isosurface final : public Constraint {
     const SideRules rules = rules_.now(state, scratch);
     const SideMemory& side = memory.side;
     const bool finishes = side.fresh && side.status == Status::budget;
-    if (field_->grid() != nullptr && (finishes || is_thrown(side, probe, field_->length()))) state.most = kThrownWork;
+    if (field_->grid() != nullptr && (finishes || is_long_step(side, probe, field_->length()))) state.most = kThrownWork;
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }

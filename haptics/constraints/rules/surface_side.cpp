@@ -8,7 +8,6 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kHandStep = 0.02;  // of L: a step that a hand makes, however short the tick
 constexpr double kInFront = 1e-11;  // of L: round-off of a probe in front of what holds it
 
 bool is_free(const SideRules& rules, double value) {
@@ -23,7 +22,7 @@ double in_front(const Surface& surface, const SideRules& rules, const Vec3& prob
 
 /// Whether a hand may have made the last step.
 bool is_thrown(const Surface& surface, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
-  return memory.fresh && norm(probe - memory.probe) > std::max(kHandStep * surface.domain_length(), state.hand_step);
+  return memory.fresh && norm(probe - memory.probe) > std::max(kLongStep * surface.domain_length(), state.hand_step);
 }
 
 /// Passes the probe through where the field is not finite.
@@ -87,8 +86,8 @@ bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkSt
   return false;
 }
 
-/// A one-sided probe on the free side: what holds it there, if anything. Held before, the sheet by which it came in; else one that its last
-/// step passed through.
+/// A one-sided probe on the free side, or where nothing is known of the side: what holds it there, if anything. Held before, the sheet by
+/// which it came in; else one that its last step passed through.
 Hold hold_beyond(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
   if (is_thrown(surface, probe, memory, state)) return {};
   Hold hold;
@@ -191,17 +190,16 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
 
   // nothing is known of the side here: what is held stays held, what is free stays free unless the step went through a sheet
   if (one_sided && !side.known && !memory.holding) {
-    if (surface.may_be_thin() && memory.fresh && memory.known && memory.status == Status::free && !is_thrown(surface, probe, memory, state))
-      hold = surface.cross(memory.probe, probe);
-    have_hold = hold.found;
-  }
-  if (one_sided && !side.known && !memory.holding && !have_hold) {
-    if (side.broken)
-      leave_broken(probe, state);
-    else
-      leave(probe, 0, Status::free, state);
-    remember(probe, side, memory, state);
-    return;
+    hold = hold_beyond(surface, rules, probe, memory, state);
+    if (!hold.found) {
+      if (side.broken)
+        leave_broken(probe, state);
+      else
+        leave(probe, 0, Status::free, state);
+      remember(probe, side, memory, state);
+      return;
+    }
+    have_hold = true;
   }
 
   // hold

@@ -18,6 +18,8 @@
 
 namespace catena::haptics {
 
+inline constexpr double kLongStep = 0.02;  ///< of L: a longer step of a probe in one tick is a long one, made by a hand or thrown.
+
 /// Which side is free: none, or that where the value is above or below the level.
 enum class FreeSide { none, above, below };
 

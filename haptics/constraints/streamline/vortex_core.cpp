@@ -33,6 +33,7 @@ class VortexCore final : public Constraint {
 
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
     memory_of<CoreMemory>(state) = CoreMemory{};
+    state.released = false;
     pass(probe, state);
   }
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
@@ -49,7 +50,7 @@ class VortexCore final : public Constraint {
     const bool held = memory.holding;
     state.released = false;
     memory.holding = nearest_ && max_abs(probe) < kFarthestProbe && find(probe, memory, state);
-    if (!memory.holding) return state.released ? let_go(probe, state) : pass(probe, state);
+    if (!memory.holding) return pass(probe, state);
     state.curve = static_cast<std::int32_t>(memory.line);
     const Vec3 way = state.proxy - memory.core;
     const double gap = norm(probe - state.proxy), far = norm(way), travel = state.travel(moved, gap);
@@ -89,19 +90,16 @@ class VortexCore final : public Constraint {
   double domain_length() const noexcept override { return length_; }
 
  private:
-  /// There is no core here, or every place is one.
+  /// There is no core here, every place is one, or the core held has been let go for another one.
   void pass(const Vec3& probe, LinkState& state) const noexcept {
     state.proxy = probe;
     state.residual = 0;
-    stop_link(state, cores_->everywhere ? Status::critical : Status::no_surface, cores_->everywhere ? Reason::parallel : Reason::none);
+    if (state.released)
+      state.status = Status::released;
+    else
+      stop_link(state, cores_->everywhere ? Status::critical : Status::no_surface, cores_->everywhere ? Reason::parallel : Reason::none);
   }
 
-  /// For a tick, before another core takes hold.
-  void let_go(const Vec3& probe, LinkState& state) const noexcept {
-    state.proxy = probe;
-    state.residual = 0;
-    state.status = Status::released;
-  }
   /// The nearest place of one core.
   flow::NearestPlace on_line(std::uint32_t line, const Vec3& probe) const noexcept {
     return (by_line_.empty() ? *nearest_ : by_line_[line]).at(probe, search_);

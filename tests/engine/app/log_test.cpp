@@ -131,7 +131,14 @@ TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
 
   const auto exported = catena_program({"export", folder / "l.catlog", "-o", folder / "e.csv", "--details", folder / "ed.csv"});
   ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  const test::Table exported_ticks = test::Table::read(folder / "e.csv");
+  EXPECT_EQ(exported_ticks.header(), test::Table::read(folder / "t.csv").header());
   EXPECT_EQ(without_curves(folder / "e.csv"), without_curves(folder / "t.csv"));
+  for (const std::string& column : exported_ticks.header()) {
+    if (column.ends_with("_curve")) {
+      EXPECT_EQ(exported_ticks.word(0, column), "") << column;
+    }
+  }
   const test::Table details = test::Table::read(folder / "d.csv"), all = test::Table::read(folder / "ed.csv");
   ASSERT_EQ(details.rows(), 1200u);
   ASSERT_EQ(all.rows(), 1200u);
