@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "engine/scene/scene.h"
+#include "haptics/build/build_program.h"
 #include "haptics/chain/tick.h"
 #include "haptics/constraints/registry.h"
-#include "haptics/extract/extract.h"
 
 using namespace catena;
 using namespace catena::haptics;
@@ -19,7 +19,7 @@ class Ball final : public Constraint {
     const Vec3 away = direction(probe);
     if (!(max_abs(away) > 0)) return;  // at the centre every direction is as good: the proxy stays
     state.proxy = radius_ * away;
-    state.status = Status::ok;
+    state.status = LinkStatus::ok;
   }
 
  private:
@@ -32,22 +32,22 @@ ConstraintType ball_type() {
   type.help = "Holds the proxy on a ball.";
   type.keys = {schema::number("radius", "world", "The ball's radius.").positive().required()};
   type.build = [](const json::Node& link, const BuildContext&) -> Result<std::shared_ptr<const Constraint>> {
-    CATENA_TRY(const double radius, json::require_number(link, "radius", json::Range::positive));
+    CATENA_TRY(const double radius, json::require_number(link, "radius", json::NumberRange::positive));
     return std::shared_ptr<const Constraint>(std::make_shared<Ball>(radius));
   };
   return type;
 }
 
 Outcome run() {
-  add_constraint(ball_type());
+  register_constraint(ball_type());
   CATENA_TRY(scene::Scene scene, scene::parse_scene(R"({"chain": [{"name": "skin", "type": "ball", "radius": 0.5}],
     "workspace": {"metres_per_unit": 0.05}})",
                                                     "constraint.json"));
-  CATENA_TRY(const std::shared_ptr<const Program> program, extract_program(scene));
+  CATENA_TRY(const std::shared_ptr<const HapticProgram> program, build_program(scene));
 
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   for (int i = 0; i <= 1000; ++i) tick(*program, {i * 1e-3, Vec3(1 - 0.8e-3 * i, 0, 0)}, state, scratch, out);
   std::printf("probe at %.3f, proxy at %.3f, force %.3f N\n", out.probe.x, out.links[0].proxy.x, out.force_n.x);
   return Done{};

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "engine/scene/scene.h"
+#include "haptics/build/build_program.h"
 #include "haptics/device/device.h"
-#include "haptics/extract/extract.h"
-#include "haptics/servo/limits_for.h"
+#include "haptics/servo/device_limits.h"
 #include "haptics/servo/servo.h"
 
 using namespace catena;
@@ -46,7 +46,7 @@ Outcome run() {
     "normal": [0, 0, 1], "free": "above"}]})",
                                                     "device"));
   // what this mechanism may be asked for: its safe stiffness, its force, its passivity
-  CATENA_TRY(const std::shared_ptr<const Program> program, extract_program(scene, limits_for(device.capabilities(), {})));
+  CATENA_TRY(const std::shared_ptr<const HapticProgram> program, build_program(scene, compute_device_limits(device.capabilities(), {})));
   ServoOptions options;
   options.paced = false;  // a simulated device needs no clock; a real one has true, which is the default
   options.max_ticks = 3000;
@@ -54,7 +54,7 @@ Outcome run() {
   CATENA_CHECK(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
-  exchange::HapticState state;
+  HapticState state;
   servo.take(state);
   std::printf("after %llu ticks the hand is at %.5f m, the floor pushes with %.3f N\n", static_cast<unsigned long long>(state.tick),
               state.probe.z, state.force_n.z);

@@ -67,14 +67,14 @@ struct Host {
   }
 
   // What Catena asks for is there already.
-  vk::VulkanMaker lend() {
-    vk::VulkanMaker maker;
+  vk::VulkanProvider lend() {
+    vk::VulkanProvider maker;
     maker.instance = [this](const VkInstanceCreateInfo&, VkInstance* out) { return *out = instance, VK_SUCCESS; };
     maker.physical = [this](VkInstance, VkPhysicalDevice* out) { return *out = physical, VK_SUCCESS; };
     maker.device = [this](VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice* out) { return *out = device, VK_SUCCESS; };
     maker.queue_family = family;
     maker.queue_lock = &queue;
-    maker.keeps_them = true;
+    maker.keeps_ownership = true;
     return maker;
   }
 };
@@ -92,7 +92,7 @@ Outcome run() {
   CATENA_CHECK(renderer->draw(packet));
 
   // the picture, ready for a blit or a copy by the program's own commands; they wait for `value` of the timeline semaphore
-  const render::DrawnImage image = renderer->image();
+  const render::RenderedImage image = renderer->image();
   std::uint64_t reached = 0;
   CATENA_VK(vkGetSemaphoreCounterValue(host.device, image.timeline, &reached), "look at the timeline");
   std::printf("an image of %u x %u, %s, timeline %s\n", image.extent.width, image.extent.height,

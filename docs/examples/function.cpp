@@ -2,10 +2,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/field/function.h"
+#include "engine/field/callable_field.h"
 #include "engine/scene/scene.h"
+#include "haptics/build/build_program.h"
 #include "haptics/chain/tick.h"
-#include "haptics/extract/extract.h"
 
 using namespace catena;
 
@@ -19,18 +19,18 @@ double floor_value(const Vec3& p, Vec3& gradient) {
 Outcome run() {
   scene::FieldOverride given;
   given.name = "floor";
-  given.given.scalar = field::make_function("floor", {Vec3(-1.0), Vec3(1.0)}, floor_value);
+  given.given.scalar = field::make_callable_field("floor", {Vec3(-1.0), Vec3(1.0)}, floor_value);
   CATENA_TRY(scene::Scene scene,
              scene::parse_scene(R"({"chain": [{"name": "skin", "type": "isosurface", "field": "floor", "level": 0, "free": "above"}]})",
                                 "function", {given}));
-  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene));
 
   // from above down to z = -0.2, where the floor is at 0.25
   haptics::ChainState state;
   haptics::ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   for (int i = 0; i <= 1000; ++i) haptics::tick(*program, {i * 1e-3, Vec3(std::acos(-1.0) / 6, 0, 0.8 - 1e-3 * i)}, state, scratch, out);
-  std::printf("%s: proxy %.4f %.4f %.4f\n", exchange::status_word(out.links[0].status), out.links[0].proxy.x, out.links[0].proxy.y,
+  std::printf("%s: proxy %.4f %.4f %.4f\n", to_string(out.links[0].status), out.links[0].proxy.x, out.links[0].proxy.y,
               out.links[0].proxy.z);
   return Done{};
 }

@@ -9,15 +9,15 @@
 #include <thread>
 
 #include "engine/base/json.h"
-#include "engine/field/analytic.h"
-#include "engine/flow/curve.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/geometry/flow/curve.h"
+#include "haptics/build/build_program.h"
 #include "haptics/chain/tick.h"
-#include "haptics/extract/extract.h"
 
 using namespace catena;
 using namespace catena::haptics;
 
-Result<std::shared_ptr<const Program>> make_program() {
+Result<std::shared_ptr<const HapticProgram>> make_program() {
   std::map<std::string, field::AnyField> fields;
   CATENA_TRY(fields["flow"], field::make_analytic("helix"));
   CATENA_TRY(fields["ball"], field::make_analytic("sphere"));
@@ -30,15 +30,15 @@ Result<std::shared_ptr<const Program>> make_program() {
   };
   context.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };
 
-  auto program = std::make_shared<Program>();
-  program->metres_per_unit = 0.05;
+  auto program = std::make_shared<HapticProgram>();
+  program->meters_per_unit = 0.05;
   for (const char* words : {R"({"name": "line", "type": "streamline", "field": "flow", "seed": [0.6, 0, -1.2]})",
                             R"({"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.3})"}) {
     CATENA_TRY(const json::Node node, json::parse(words, "own_loop"));
-    CATENA_TRY(Link link, make_link(node, program->coupling, context));
+    CATENA_TRY(Link link, build_link(node, program->coupling, context));
     program->links.push_back(std::move(link));
   }
-  return std::shared_ptr<const Program>(program);
+  return std::shared_ptr<const HapticProgram>(program);
 }
 
 int main() {
@@ -48,7 +48,7 @@ int main() {
   // What a tick changes: plain memory, allocated before the loop.
   const auto state = std::make_unique<ChainState>();
   const auto scratch = std::make_unique<ChainScratch>();
-  exchange::HapticState out;
+  HapticState out;
   auto next = std::chrono::steady_clock::now();
   for (int i = 0; i < 500; ++i) {
     const double t_s = i * 1e-3;
@@ -58,8 +58,8 @@ int main() {
     std::this_thread::sleep_until(next);
   }
   for (int i = 0; i < out.link_count; ++i)
-    std::printf("%s: %s, proxy %.4f %.4f %.4f\n", (*program)->links[i].name.c_str(), exchange::status_word(out.links[i].status),
-                out.links[i].proxy.x, out.links[i].proxy.y, out.links[i].proxy.z);
+    std::printf("%s: %s, proxy %.4f %.4f %.4f\n", (*program)->links[i].name.c_str(), to_string(out.links[i].status), out.links[i].proxy.x,
+                out.links[i].proxy.y, out.links[i].proxy.z);
   std::printf("force %.4f %.4f %.4f N\n", out.force_n.x, out.force_n.y, out.force_n.z);
   return 0;
 }

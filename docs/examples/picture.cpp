@@ -13,7 +13,7 @@ Outcome draw(const std::string& path, const std::string& out) {
   CATENA_TRY(const render::FramePacket packet, render::make_frame(scene, 320, 240));
   CATENA_TRY(const auto renderer, render::Renderer::create({}));
   CATENA_CHECK(renderer->draw(packet));
-  CATENA_TRY(const render::Picture picture, renderer->read_back());
+  CATENA_TRY(const render::Image8 picture, renderer->read_back());
   return render::write_png(out, picture, false);
 }
 

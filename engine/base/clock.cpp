@@ -13,7 +13,7 @@ std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::int64_t processor_ns() {
+std::int64_t process_cpu_ns() {
   timespec t{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return std::int64_t{1'000'000'000} * t.tv_sec + t.tv_nsec;

@@ -68,19 +68,19 @@ struct Reader {
 
 }  // namespace
 
-const std::vector<double>* Table::find(std::string_view column) const {
+const std::vector<double>* NumberTable::find(std::string_view column) const {
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (columns[i] == column) return &values[i];
   return nullptr;
 }
 
-Result<Table> parse_csv(std::string_view text, const std::string& file, const std::vector<std::string_view>& required,
-                        const std::vector<std::string_view>& optional) {
+Result<NumberTable> parse_csv(std::string_view text, const std::string& file, const std::vector<std::string_view>& required,
+                              const std::vector<std::string_view>& optional) {
   Reader reader{file, required, optional};
   reader.all = required;
   for (std::string_view group : optional)
     for (std::string_view name : columns_of(group)) reader.all.push_back(name);
-  text = without_bom(text);
+  text = strip_bom(text);
 
   // blank lines at the end do not count
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
@@ -92,7 +92,7 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
   if (last_line) return reader.error(1, "holds a header only; at least one row of numbers was expected");
 
   // the table's columns in the order asked; where each cell of a row goes
-  Table table;
+  NumberTable table;
   table.file = file;
   std::vector<std::size_t> slots(names.size(), kNotAsked);
   for (std::string_view name : reader.all) {
@@ -103,8 +103,8 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
   }
   table.values.resize(table.columns.size());
   const auto rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
-  CATENA_CHECK(ask_for_text_memory(one_line(file + ": a table of " + std::to_string(rows) + " rows"),
-                                   static_cast<double>(text.size() + rows * names.size() * sizeof(double))));
+  CATENA_CHECK(check_text_memory_available(one_line(file + ": a table of " + std::to_string(rows) + " rows"),
+                                           static_cast<double>(text.size() + rows * names.size() * sizeof(double))));
   for (auto& column : table.values) column.reserve(rows);
 
   for (int line = 2; !last_line; ++line) {
@@ -126,46 +126,47 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
   return table;
 }
 
-Result<Table> read_csv(const std::string& path, const std::vector<std::string_view>& required,
-                       const std::vector<std::string_view>& optional) {
-  CATENA_TRY(const std::string text, read_text(path, "a CSV file with the header " + header_words(required, optional)));
+Result<NumberTable> read_csv(const std::string& path, const std::vector<std::string_view>& required,
+                             const std::vector<std::string_view>& optional) {
+  CATENA_TRY(const std::string text, read_text_file(path, "a CSV file with the header " + header_words(required, optional)));
   return parse_csv(text, path, required, optional);
 }
 
 namespace {
 
-Error row_error(const Table& table, std::size_t row, const std::string& what) {
-  return Error{table.file + ":" + std::to_string(table.line(row)) + ": " + what};
+Error row_error(const NumberTable& table, std::size_t row, const std::string& what) {
+  return Error{table.file + ":" + std::to_string(table.line_number(row)) + ": " + what};
 }
 
-Outcome read_orientation(const Table& table, std::size_t row, ProbeRow& to) {
+Outcome read_orientation(const NumberTable& table, std::size_t row, ProbePathRow& to) {
   const std::vector<double>* w = table.find("qw");
   if (w == nullptr) return Done{};
   const Quat q((*w)[row], (*table.find("qx"))[row], (*table.find("qy"))[row], (*table.find("qz"))[row]);
   const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   if (!(std::fabs(length - 1) <= 1e-3))
     return row_error(table, row, "qw,qx,qy,qz has the length " + to_text(length) + "; a unit quaternion was expected");
-  to.orientation = normalised(q);
+  to.orientation = normalized(q);
   to.has_orientation = true;
   return Done{};
 }
 
-Vec3 position_of(const Table& table, std::size_t first_column, std::size_t row) {
+Vec3 position_of(const NumberTable& table, std::size_t first_column, std::size_t row) {
   return {table.values[first_column][row], table.values[first_column + 1][row], table.values[first_column + 2][row]};
 }
 
 /// Beside the table, and later without it beside what becomes of each row: a sample for the tick and the figures of that tick.
-Outcome ask_for_rows(const Table& table, std::size_t row_bytes) {
+Outcome ask_for_rows(const NumberTable& table, std::size_t row_bytes) {
   constexpr std::size_t kLater = 128;
-  return ask_for_text_memory(one_line(table.file + ": a table of " + std::to_string(table.rows()) + " rows"),
-                             static_cast<double>(table.rows() * (row_bytes + std::max(kLater, table.columns.size() * sizeof(double)))));
+  return check_text_memory_available(
+      one_line(table.file + ": a table of " + std::to_string(table.rows()) + " rows"),
+      static_cast<double>(table.rows() * (row_bytes + std::max(kLater, table.columns.size() * sizeof(double)))));
 }
 
-Result<std::vector<ProbeRow>> probe_rows(const Table& table) {
-  CATENA_CHECK(ask_for_rows(table, sizeof(ProbeRow)));
+Result<std::vector<ProbePathRow>> probe_rows(const NumberTable& table) {
+  CATENA_CHECK(ask_for_rows(table, sizeof(ProbePathRow)));
   const std::vector<double>& t = table.values[0];
   const std::vector<double>* buttons = table.find("buttons");
-  std::vector<ProbeRow> rows(table.rows());
+  std::vector<ProbePathRow> rows(table.rows());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (i > 0 && !(t[i] > t[i - 1]))
       return row_error(table, i, "t is " + to_text(t[i]) + " after " + to_text(t[i - 1]) + "; strictly rising t was expected");
@@ -181,7 +182,7 @@ Result<std::vector<ProbeRow>> probe_rows(const Table& table) {
   return rows;
 }
 
-Result<std::vector<Vec3>> seed_rows(const Table& table) {
+Result<std::vector<Vec3>> seed_rows(const NumberTable& table) {
   CATENA_CHECK(ask_for_rows(table, sizeof(Vec3)));
   std::vector<Vec3> seeds(table.rows());
   for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = position_of(table, 0, i);
@@ -190,23 +191,23 @@ Result<std::vector<Vec3>> seed_rows(const Table& table) {
 
 }  // namespace
 
-Result<std::vector<ProbeRow>> read_probe_path(const std::string& path) {
-  CATENA_TRY(const Table table, read_csv(path, {"t", "x", "y", "z"}, {"buttons", "qw,qx,qy,qz"}));
+Result<std::vector<ProbePathRow>> read_probe_path(const std::string& path) {
+  CATENA_TRY(const NumberTable table, read_csv(path, {"t", "x", "y", "z"}, {"buttons", "qw,qx,qy,qz"}));
   return probe_rows(table);
 }
 
-Result<std::vector<ProbeRow>> parse_probe_path(std::string_view text, const std::string& file) {
-  CATENA_TRY(const Table table, parse_csv(text, file, {"t", "x", "y", "z"}, {"buttons", "qw,qx,qy,qz"}));
+Result<std::vector<ProbePathRow>> parse_probe_path(std::string_view text, const std::string& file) {
+  CATENA_TRY(const NumberTable table, parse_csv(text, file, {"t", "x", "y", "z"}, {"buttons", "qw,qx,qy,qz"}));
   return probe_rows(table);
 }
 
 Result<std::vector<Vec3>> read_seeds(const std::string& path) {
-  CATENA_TRY(const Table table, read_csv(path, {"x", "y", "z"}));
+  CATENA_TRY(const NumberTable table, read_csv(path, {"x", "y", "z"}));
   return seed_rows(table);
 }
 
 Result<std::vector<Vec3>> parse_seeds(std::string_view text, const std::string& file) {
-  CATENA_TRY(const Table table, parse_csv(text, file, {"x", "y", "z"}));
+  CATENA_TRY(const NumberTable table, parse_csv(text, file, {"x", "y", "z"}));
   return seed_rows(table);
 }
 

@@ -130,7 +130,7 @@ double fence(double shown, double beyond, double length) {
   return beyond > shown ? std::min(half, shown + reach) : std::max(half, shown - reach);
 }
 
-void add_beyond(DisplayRange::Beyond& beyond, double value, std::uint64_t count, bool low) {
+void add_beyond(DisplayRange::Outliers& beyond, double value, std::uint64_t count, bool low) {
   if (beyond.count == 0) beyond.nearest = beyond.farthest = value;
   beyond.nearest = low ? std::max(beyond.nearest, value) : std::min(beyond.nearest, value);
   beyond.farthest = low ? std::min(beyond.farthest, value) : std::max(beyond.farthest, value);
@@ -155,11 +155,16 @@ DisplayRange range_of_all(std::span<const T> values) {
   return counter.range();
 }
 
-std::string count_text(const DisplayRange::Beyond& beyond, std::string_view noun) {
+std::string count_text(const DisplayRange::Outliers& beyond, std::string_view noun) {
   if (beyond.nearest == beyond.farthest)
-    return fmt::format("{}{} of {}", beyond.count, noun.empty() ? "" : beyond.count == 1 ? " value" : " values", readable(beyond.nearest));
-  return fmt::format("{}{} of {} to {}", beyond.count, noun.empty() ? "" : " values", readable(std::min(beyond.nearest, beyond.farthest)),
-                     readable(std::max(beyond.nearest, beyond.farthest)));
+    return fmt::format("{}{} of {}", beyond.count,
+                       noun.empty()        ? ""
+                       : beyond.count == 1 ? " value"
+                                           : " values",
+                       format_readable(beyond.nearest));
+  return fmt::format("{}{} of {} to {}", beyond.count, noun.empty() ? "" : " values",
+                     format_readable(std::min(beyond.nearest, beyond.farthest)),
+                     format_readable(std::max(beyond.nearest, beyond.farthest)));
 }
 
 std::string beyond_text(const DisplayRange& range) {
@@ -171,27 +176,27 @@ std::string beyond_text(const DisplayRange& range) {
 }  // namespace
 
 RangeCounter::RangeCounter(const DisplayRange& of_sample)
-    : counted_{kNone, -kNone, of_sample.least, of_sample.most, 0, {}, {}}, from_(-kNone), to_(kNone) {
+    : counted_{kNone, -kNone, of_sample.data_min, of_sample.data_max, 0, {}, {}}, lower_fence_(-kNone), upper_fence_(kNone) {
   const double length = of_sample.hi - of_sample.lo;
-  if (of_sample.below.count > 0) from_ = fence(of_sample.lo, of_sample.below.nearest, length);
-  if (of_sample.above.count > 0) to_ = fence(of_sample.hi, of_sample.above.nearest, length);
+  if (of_sample.below.count > 0) lower_fence_ = fence(of_sample.lo, of_sample.below.nearest, length);
+  if (of_sample.above.count > 0) upper_fence_ = fence(of_sample.hi, of_sample.above.nearest, length);
 }
 
 void RangeCounter::add(double value, std::uint64_t count) {
   if (!std::isfinite(value)) return;
   counted_.count += count;
-  if (value < from_) return add_beyond(counted_.below, value, count, true);
-  if (value > to_) return add_beyond(counted_.above, value, count, false);
+  if (value < lower_fence_) return add_beyond(counted_.below, value, count, true);
+  if (value > upper_fence_) return add_beyond(counted_.above, value, count, false);
   counted_.lo = std::min(counted_.lo, value);
   counted_.hi = std::max(counted_.hi, value);
 }
 
-void RangeCounter::join(const RangeCounter& part) {
+void RangeCounter::merge(const RangeCounter& part) {
   counted_.count += part.counted_.count;
   counted_.lo = std::min(counted_.lo, part.counted_.lo);
   counted_.hi = std::max(counted_.hi, part.counted_.hi);
   for (const auto side : {&DisplayRange::below, &DisplayRange::above}) {
-    const DisplayRange::Beyond& beyond = part.counted_.*side;
+    const DisplayRange::Outliers& beyond = part.counted_.*side;
     if (beyond.count == 0) continue;
     add_beyond(counted_.*side, beyond.nearest, beyond.count, side == &DisplayRange::below);
     add_beyond(counted_.*side, beyond.farthest, 0, side == &DisplayRange::below);
@@ -234,24 +239,24 @@ DisplayRange display_range(std::vector<float> sample, double least, double most)
 DisplayRange display_range(std::span<const double> values) { return range_of_all(values); }
 DisplayRange display_range(std::span<const float> values) { return range_of_all(values); }
 
-std::string range_text(const DisplayRange& range) {
-  const std::string shown = readable(range.lo) + " .. " + readable(range.hi);
-  return range.is_cut() ? shown + " (" + beyond_text(range) + ")" : shown;
+std::string format_range(const DisplayRange& range) {
+  const std::string shown = format_readable(range.lo) + " .. " + format_readable(range.hi);
+  return range.has_outliers() ? shown + " (" + beyond_text(range) + ")" : shown;
 }
 
-std::string beyond_note(const DisplayRange& range) {
+std::string outlier_note(const DisplayRange& range) {
   constexpr std::uint64_t kFewValues = 10;  // that are outliers and no code for missing data
-  if (!range.is_cut()) return {};
+  if (!range.has_outliers()) return {};
   std::string text = fmt::format("{} the others, {} .. {}, which colours span where no range is stated", beyond_text(range),
-                                 readable(range.lo), readable(range.hi));
-  for (const DisplayRange::Beyond& beyond : {range.below, range.above}) {
+                                 format_readable(range.lo), format_readable(range.hi));
+  for (const DisplayRange::Outliers& beyond : {range.below, range.above}) {
     const double share = static_cast<double>(beyond.count) / static_cast<double>(std::max<std::uint64_t>(range.count, 1));
     if (beyond.count == 0 || beyond.nearest != beyond.farthest) continue;
     if (share >= kManyShare && beyond.count >= kFewValues)
       text += fmt::format("; {:.3g} % of the values are exactly {}: perhaps missing data, which a mask (\"valid\") leaves out", 100 * share,
-                          readable(beyond.nearest));
+                          format_readable(beyond.nearest));
     else if (is_fill_value(static_cast<float>(beyond.nearest)))
-      text += fmt::format("; {} often stands for missing data", readable(beyond.nearest));
+      text += fmt::format("; {} often stands for missing data", format_readable(beyond.nearest));
   }
   return text;
 }

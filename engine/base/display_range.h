@@ -24,20 +24,20 @@ namespace catena {
 /// The range of values that a picture shows, and what lies beyond it.
 struct DisplayRange {
   /// The values beyond one end.
-  struct Beyond {
+  struct Outliers {
     std::uint64_t count = 0;           ///< 0: no value lies beyond this end
     double nearest = 0, farthest = 0;  ///< of them; equal: they all have this value
   };
-  double lo = 0, hi = 0;       ///< what is shown
-  double least = 0, most = 0;  ///< of all finite values
-  std::uint64_t count = 0;     ///< finite values
-  Beyond below{};              ///< lo
-  Beyond above{};              ///< hi
+  double lo = 0, hi = 0;              ///< what is shown
+  double data_min = 0, data_max = 0;  ///< of all finite values
+  std::uint64_t count = 0;            ///< finite values
+  Outliers below{};                   ///< lo
+  Outliers above{};                   ///< hi
 
   /// Whether values lie beyond either end.
-  bool is_cut() const { return below.count > 0 || above.count > 0; }
+  bool has_outliers() const { return below.count > 0 || above.count > 0; }
   /// Whether a value belongs to those shown.
-  bool shows(double value) const {
+  bool contains(double value) const {
     return std::isfinite(value) && (below.count == 0 || value > below.nearest) && (above.count == 0 || value < above.nearest);
   }
 };
@@ -57,13 +57,13 @@ class RangeCounter {
   /// A finite value; others do not count.
   void add(double value, std::uint64_t count = 1);
   /// Adds what another counter of the same sample has counted.
-  void join(const RangeCounter& part);
+  void merge(const RangeCounter& part);
   /// Of all values that were added.
   DisplayRange range() const;
 
  private:
   DisplayRange counted_;
-  double from_, to_;  ///< fences
+  double lower_fence_, upper_fence_;  ///< fences
 };
 
 /// Of all values.
@@ -72,9 +72,9 @@ DisplayRange display_range(std::span<const double> values);
 DisplayRange display_range(std::span<const float> values);
 
 /// "0 .. 1 (1 value of 1e20 beyond)"
-std::string range_text(const DisplayRange& range);
+std::string format_range(const DisplayRange& range);
 /// A sentence without an end on what lies beyond, for notes; empty where nothing does. Of a value that many have: that it may mean missing
 /// data.
-std::string beyond_note(const DisplayRange& range);
+std::string outlier_note(const DisplayRange& range);
 
 }  // namespace catena

@@ -7,11 +7,11 @@
 #include <cerrno>
 #include <utility>
 
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena {
 
-Result<FolderLock> FolderLock::take(const std::string& folder) {
+Result<FolderLock> FolderLock::acquire(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return system_error(folder + ": cannot read the folder", errno);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return FolderLock(descriptor);

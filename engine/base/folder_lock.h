@@ -11,7 +11,7 @@ namespace catena {
 class FolderLock {
  public:
   /// An error where another process has it, or this one already: "FOLDER: another session writes to it; ...".
-  static Result<FolderLock> take(const std::string& folder);
+  static Result<FolderLock> acquire(const std::string& folder);
   ~FolderLock();
   /// Takes the lock over; `other` holds none then.
   FolderLock(FolderLock&& other) noexcept;

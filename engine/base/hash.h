@@ -11,7 +11,7 @@ struct Fnv1a {
   std::uint64_t value = 0xcbf29ce484222325ull;  ///< the hash of what was fed so far
 
   /// Feeds `size` bytes.
-  void bytes(const void* data, std::size_t size) {
+  void add_bytes(const void* data, std::size_t size) {
     const auto* p = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) value = (value ^ p[i]) * 0x100000001b3ull;
   }
@@ -19,14 +19,14 @@ struct Fnv1a {
   template <class T>
   void add(const T& item) {
     static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>, "no padding, please");
-    bytes(&item, sizeof item);
+    add_bytes(&item, sizeof item);
   }
 };
 
 /// The hash of `size` bytes at once.
-inline std::uint64_t hash_of(const void* data, std::size_t size) {
+inline std::uint64_t hash_bytes(const void* data, std::size_t size) {
   Fnv1a hash;
-  hash.bytes(data, size);
+  hash.add_bytes(data, size);
   return hash.value;
 }
 

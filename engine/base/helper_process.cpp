@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "engine/base/machine_failure.h"
 #include "engine/base/result.h"
+#include "engine/base/system_failure.h"
 
 namespace catena {
 namespace {
@@ -62,7 +62,7 @@ std::filesystem::path program_itself() {
 
 }  // namespace
 
-std::string too_few_descriptors() {
+std::string descriptor_limit_message() {
   rlimit limit{};
   ::getrlimit(RLIMIT_NOFILE, &limit);
   return "at most " + std::to_string(limit.rlim_cur) + " files may be open at a time (ulimit -n), expected at least " +
@@ -88,7 +88,7 @@ std::string helper_path(const std::string& name) {
   return places.front().string();
 }
 
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
   if (this != &other) {
     close();
     fd_ = other.fd_;
@@ -97,23 +97,23 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
   return *this;
 }
 
-void Descriptor::close() {
+void FileDescriptor::close() {
   if (fd_ >= 0) ::close(fd_);
   fd_ = -1;
 }
 
 Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<const int> descriptors) {
   const auto failed = [&](int code) {
-    if (code == EINVAL || too_many_files(code))
-      return Error{path + ": this part of Catena cannot be started: " + too_few_descriptors(), true};
-    return Error{path + ": this part of Catena cannot be started (" + cause_of(code) + ")" +
-                     (is_machine_failure(code) ? ": this machine does not give what is needed"
-                                               : ": expected it beside the program, as the package catena installs it"),
+    if (code == EINVAL || is_too_many_open_files(code))
+      return Error{path + ": this part of Catena cannot be started: " + descriptor_limit_message(), true};
+    return Error{path + ": this part of Catena cannot be started (" + describe_errno(code) + ")" +
+                     (is_system_failure(code) ? ": this machine does not give what is needed"
+                                              : ": expected it beside the program, as the package catena installs it"),
                  true};
   };
   // the descriptors: out of the way first, so that none overwrites another
   Plan plan;
-  std::vector<Descriptor> away;
+  std::vector<FileDescriptor> away;
   for (const int fd : descriptors) {
     away.emplace_back(::fcntl(fd, F_DUPFD_CLOEXEC, kAway));
     if (!away.back()) return failed(errno);
@@ -121,7 +121,7 @@ Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<co
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (standard != STDERR_FILENO || !kKeepsErrors) posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   int next = kFirstDescriptor;
-  for (const Descriptor& fd : away) posix_spawn_file_actions_adddup2(&plan.files, fd.get(), next++);
+  for (const FileDescriptor& fd : away) posix_spawn_file_actions_adddup2(&plan.files, fd.get(), next++);
   posix_spawn_file_actions_addclosefrom_np(&plan.files, next);
   // signals as a new program has them
   sigset_t all, none;
@@ -146,9 +146,9 @@ HelperProcess::~HelperProcess() {
   if (pid_ > 0) wait(0);
 }
 
-HelperEnd HelperProcess::wait(double limit_s, const std::function<void(double)>& while_waiting) {
+ProcessExit HelperProcess::wait(double limit_s, const std::function<void(double)>& while_waiting) {
   const std::int64_t start = now_ns(), until = start + static_cast<std::int64_t>(1e9 * limit_s);
-  const Descriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
+  const FileDescriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
   int status = 0;
   rusage used{};
   bool too_long = false;
@@ -172,9 +172,9 @@ HelperEnd HelperProcess::wait(double limit_s, const std::function<void(double)>&
   pid_ = -1;
   const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
   const double cpu_s = seconds(used.ru_utime) + seconds(used.ru_stime);
-  if (too_long) return {HelperEnd::How::too_long, SIGKILL, cpu_s};
-  if (WIFSIGNALED(status)) return {HelperEnd::How::killed, WTERMSIG(status), cpu_s};
-  return {HelperEnd::How::exited, WIFEXITED(status) ? WEXITSTATUS(status) : 0, cpu_s};
+  if (too_long) return {ProcessExit::Cause::timed_out, SIGKILL, cpu_s};
+  if (WIFSIGNALED(status)) return {ProcessExit::Cause::killed, WTERMSIG(status), cpu_s};
+  return {ProcessExit::Cause::exited, WIFEXITED(status) ? WEXITSTATUS(status) : 0, cpu_s};
 }
 
 }  // namespace catena

@@ -1,6 +1,6 @@
-/// Programs of Catena that do one thing in a process of their own. They lie beside the program that starts them or in the libexec folder
-/// of what is installed, get no environment and no descriptors but the ones that they are given, and die with the thread that started them
-/// (they ask for that themselves).
+/// ProgramLookup of Catena that do one thing in a process of their own. They lie beside the program that starts them or in the libexec
+/// folder of what is installed, get no environment and no descriptors but the ones that they are given, and die with the thread that
+/// started them (they ask for that themselves).
 #pragma once
 #include <sys/types.h>
 
@@ -18,10 +18,10 @@ namespace catena {
 std::string helper_path(const std::string& name);
 
 /// "at most 6 files may be open at a time (ulimit -n), expected at least 128": for an error of the machine.
-std::string too_few_descriptors();
+std::string descriptor_limit_message();
 
-struct HelperEnd {
-  enum class How { exited, killed, too_long } how = How::exited;
+struct ProcessExit {
+  enum class Cause { exited, killed, timed_out } cause = Cause::exited;
   int code = 0;      ///< of the exit, or the signal's number
   double cpu_s = 0;  ///< processor time that it took
 };
@@ -36,7 +36,7 @@ class HelperProcess {
   ~HelperProcess();  ///< kills what still runs
 
   /// Waits for its end, at most so long; then it is killed. `while_waiting` is called about once a second with the seconds so far.
-  HelperEnd wait(double limit_s, const std::function<void(double)>& while_waiting = {});
+  ProcessExit wait(double limit_s, const std::function<void(double)>& while_waiting = {});
 
  private:
   explicit HelperProcess(pid_t pid) : pid_(pid) {}
@@ -44,12 +44,12 @@ class HelperProcess {
 };
 
 /// A descriptor with one owner.
-class Descriptor {
+class FileDescriptor {
  public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
-  Descriptor& operator=(Descriptor&& other) noexcept;
-  ~Descriptor() { close(); }
+  explicit FileDescriptor(int fd = -1) : fd_(fd) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept;
+  ~FileDescriptor() { close(); }
   void close();
   int get() const { return fd_; }
   int release() { return std::exchange(fd_, -1); }

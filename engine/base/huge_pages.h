@@ -5,7 +5,7 @@
 
 namespace catena {
 
-inline constexpr std::size_t kLeastForHugePages = std::size_t{4} << 20;  ///< bytes; less is left alone
+inline constexpr std::size_t kMinHugePageBytes = std::size_t{4} << 20;  ///< bytes; less is left alone
 
 /// `bytes` from `start` on, mapped and private.
 void prefer_huge_pages(void* start, std::size_t bytes);

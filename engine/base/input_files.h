@@ -18,17 +18,17 @@ struct FileId {
   std::uint64_t device = 0, inode = 0;
   auto operator<=>(const FileId&) const = default;
 };
-FileId id_of(const struct stat& about);
+FileId to_file_id(const struct stat& about);
 /// When a file was last changed, in nanoseconds since 1970.
-std::int64_t changed_ns(const struct stat& about);
+std::int64_t modified_ns(const struct stat& about);
 /// Nothing: there is no regular file of that name.
-std::optional<FileId> file_id(const std::string& path);
+std::optional<FileId> find_file_id(const std::string& path);
 
 /// From now on these files count as inputs.
-void add_inputs(const std::vector<FileId>& files);
-/// From now on check_no_input refuses. The program says so at its start; the library does not, since its callers may write what they read.
+void register_inputs(const std::vector<FileId>& files);
+/// From now on check_not_input refuses. The program says so at its start; the library does not, since its callers may write what they read.
 void protect_inputs(bool protect);
 /// Error: "PATH: is also an input: expected another name for the output".
-Outcome check_no_input(const std::string& path);
+Outcome check_not_input(const std::string& path);
 
 }  // namespace catena

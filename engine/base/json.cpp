@@ -136,7 +136,7 @@ bool is_json_number(std::string_view text) {
   return i == text.size();
 }
 
-/// jsoncpp's report is "* Line 3, Column 5\n  MESSAGE\n..."; its first error is the one that helps.
+/// jsoncpp's report is "* Line 3, FieldArray 5\n  MESSAGE\n..."; its first error is the one that helps.
 Error first_error(const std::string& file, const std::string& report) {
   int line = 1;
   const std::size_t at = report.find("Line ");
@@ -225,7 +225,7 @@ class Converter {
   }
 
   std::string_view text_;
-  std::size_t skipped_;  ///< the byte order mark before text_
+  std::size_t skipped_;  ///< the byte order mark before has_text_
   Lines lines_;
   std::shared_ptr<const std::string> file_;
 };
@@ -238,25 +238,25 @@ const Node* Node::find(std::string_view key) const {
   return nullptr;
 }
 
-const Node& member_or(const Node& object, std::string_view key) {
+const Node& member_or_parent(const Node& object, std::string_view key) {
   const Node* member = object.find(key);
   return member == nullptr ? object : *member;
 }
 
 Error error_at(const Node& node, const std::string& what) { return error_on_line(node.file ? *node.file : "", node.line, what); }
 
-bool same_value(const Node& a, const Node& b) {
-  const auto same_member = [](const auto& x, const auto& y) { return x.first == y.first && same_value(x.second, y.second); };
+bool is_equal_value(const Node& a, const Node& b) {
+  const auto same_member = [](const auto& x, const auto& y) { return x.first == y.first && is_equal_value(x.second, y.second); };
   return a.kind == b.kind && a.boolean == b.boolean && a.number == b.number && a.string == b.string &&
-         std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), same_value) &&
+         std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), is_equal_value) &&
          std::equal(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(), same_member);
 }
 
 Result<Node> parse(std::string_view text, const std::string& file) {
   const std::size_t whole = text.size();
-  text = without_bom(text);
+  text = strip_bom(text);
   const Shape shape = shape_of(text);
-  CATENA_CHECK(ask_for_text_memory(one_line(file), bytes_to_parse(text, shape)));
+  CATENA_CHECK(check_text_memory_available(one_line(file), bytes_to_parse(text, shape)));
   const Lines lines(text);
   if (const std::size_t at = shape.too_deep_at; at != std::string_view::npos)
     return error_on_line(file, lines.at(at), "nests too deep; at most " + std::to_string(kDeepest) + " levels were expected");
@@ -283,7 +283,7 @@ Result<Node> parse(std::string_view text, const std::string& file) {
 }
 
 Result<Node> read(const std::string& path) {
-  CATENA_TRY(const std::string text, read_text(path, "a JSON file", kMaxJsonBytes));
+  CATENA_TRY(const std::string text, read_text_file(path, "a JSON file", kMaxJsonBytes));
   return parse(text, path);
 }
 

@@ -41,30 +41,30 @@ Result<Node> parse(std::string_view text, const std::string& file);
 Result<Node> read(const std::string& path);
 
 /// The member, or the object that lacks it: where a message points.
-const Node& member_or(const Node& object, std::string_view key);
+const Node& member_or_parent(const Node& object, std::string_view key);
 
 /// The same kinds, values, items and members in the same order, wherever they stand.
-bool same_value(const Node& a, const Node& b);
+bool is_equal_value(const Node& a, const Node& b);
 
 /// "scene.json:12: WHAT" at the node's place; without the line where it is 0, without the file where there is none.
 Error error_at(const Node& node, const std::string& what);
 
 /// An error for the first member whose key is not in `keys`, naming the nearest allowed ones.
-Outcome only_keys(const Node& object, std::initializer_list<std::string_view> keys);
+Outcome check_known_keys(const Node& object, std::initializer_list<std::string_view> keys);
 /// The same for keys that are known at run time only.
-Outcome only_keys(const Node& object, const std::vector<std::string_view>& keys);
+Outcome check_known_keys(const Node& object, const std::vector<std::string_view>& keys);
 /// An error unless the node is an object; `what` stands for it in the message.
 Outcome expect_object(const Node& node, std::string_view what);
 
-/// Typed readers of one member. `require_*` need the key; `get_*` give the fallback when it is absent.
+/// TypedSlot readers of one member. `require_*` need the key; `get_*` give the fallback when it is absent.
 /// All numbers must be finite. `what` in the messages is the key.
-enum class Range { any, positive, not_negative };
+enum class NumberRange { any, positive, non_negative };
 /// The number under `key`, which must be there.
-Result<double> require_number(const Node& object, std::string_view key, Range range = Range::any);
+Result<double> require_number(const Node& object, std::string_view key, NumberRange range = NumberRange::any);
 /// The number under `key`, or `fallback` where there is none.
-Result<double> get_number(const Node& object, std::string_view key, double fallback, Range range = Range::any);
+Result<double> get_number(const Node& object, std::string_view key, double fallback, NumberRange range = NumberRange::any);
 /// The number under `key`, or nothing where there is none.
-Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, Range range = Range::any);
+Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, NumberRange range = NumberRange::any);
 /// The whole number under `key`, from `least` to `most`, or `fallback`.
 Result<int> get_integer(const Node& object, std::string_view key, int fallback, int least, int most);
 /// The boolean under `key`, or `fallback`.
@@ -82,7 +82,7 @@ Result<Vec3> get_vec3(const Node& object, std::string_view key, const Vec3& fall
 /// The three numbers under `key`, or nothing where there are none.
 Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_view key);
 /// A node itself as a number, a vector of three numbers, or rows of `width` numbers.
-Result<double> as_number(const Node& node, std::string_view what, Range range = Range::any);
+Result<double> as_number(const Node& node, std::string_view what, NumberRange range = NumberRange::any);
 /// The node as three finite numbers.
 Result<Vec3> as_vec3(const Node& node, std::string_view what);
 /// The node as a string.

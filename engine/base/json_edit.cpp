@@ -101,10 +101,10 @@ Result<std::string> set_value(std::string_view text, const std::string& file, st
   }
   for (std::size_t i = w.steps.size() - 1; i > w.taken; --i) {
     const std::string& step = w.steps[i];
-    put = step == "-" || step == "0" ? "[" + put + "]" : "{" + string_text(step) + ": " + put + "}";
+    put = step == "-" || step == "0" ? "[" + put + "]" : "{" + serialize_string(step) + ": " + put + "}";
   }
-  const std::string key = w.at->kind == Kind::object ? string_text(w.steps[w.taken]) : "";
-  return checked(appended(text, root, *w.at, key, put), file);
+  const std::string key = w.at->kind == Kind::object ? serialize_string(w.steps[w.taken]) : "";
+  return checked(with_item_appended(text, root, *w.at, key, put), file);
 }
 
 Result<std::string> insert_item(std::string_view text, const std::string& file, std::string_view pointer, std::string_view value) {
@@ -114,8 +114,8 @@ Result<std::string> insert_item(std::string_view text, const std::string& file, 
   const Node* array = w.arrived() ? w.parent : w.taken + 1 == w.steps.size() ? w.at : nullptr;
   if (array == nullptr || array->kind != Kind::array)
     return error_at(root, in_quotes(pointer) + " is no item of an array; a place in one was expected");
-  if (!w.arrived()) return checked(appended(text, root, *array, "", put), file);
-  return checked(inserted(text, w.at->begin, put), file);
+  if (!w.arrived()) return checked(with_item_appended(text, root, *array, "", put), file);
+  return checked(with_item_inserted(text, w.at->begin, put), file);
 }
 
 Result<std::string> remove_value(std::string_view text, const std::string& file, std::string_view pointer) {
@@ -123,7 +123,7 @@ Result<std::string> remove_value(std::string_view text, const std::string& file,
   CATENA_TRY(const Walk w, walk(root, pointer));
   if (!w.arrived() || w.parent == nullptr)
     return error_at(*w.at, in_quotes(pointer) + " is not there; a member or an item to remove was expected");
-  return checked(without_item(text, *w.parent, w.index), file);
+  return checked(with_item_removed(text, *w.parent, w.index), file);
 }
 
 const Node* find_value(const Node& root, std::string_view pointer) {
@@ -131,13 +131,13 @@ const Node* find_value(const Node& root, std::string_view pointer) {
   return w && w->arrived() ? w->at : nullptr;
 }
 
-std::string pointer_step(std::string_view key) {
+std::string escape_pointer_token(std::string_view key) {
   std::string out;
   for (const char c : key) out += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
   return out;
 }
 
-std::string string_text(std::string_view text) {
+std::string serialize_string(std::string_view text) {
   constexpr char digits[] = "0123456789abcdef";
   std::string out = "\"";
   for (const char c : text) {
@@ -154,12 +154,12 @@ std::string string_text(std::string_view text) {
   return out + "\"";
 }
 
-std::string number_text(double value) {
+std::string serialize_number(double value) {
   CATENA_ASSERT(std::isfinite(value));
   return to_text(value);
 }
 
-std::string node_text(const Node& node) {
+std::string serialize_node(const Node& node) {
   std::string text;
   const auto next = [&] { text += text.size() > 1 ? ", " : ""; };
   switch (node.kind) {
@@ -168,16 +168,16 @@ std::string node_text(const Node& node) {
     case Kind::boolean:
       return node.boolean ? "true" : "false";
     case Kind::number:
-      return number_text(node.number);
+      return serialize_number(node.number);
     case Kind::string:
-      return string_text(node.string);
+      return serialize_string(node.string);
     case Kind::array:
       text = "[";
-      for (const Node& item : node.items) next(), text += node_text(item);
+      for (const Node& item : node.items) next(), text += serialize_node(item);
       return text + "]";
     case Kind::object:
       text = "{";
-      for (const auto& [key, member] : node.members) next(), text += string_text(key) + ": " + node_text(member);
+      for (const auto& [key, member] : node.members) next(), text += serialize_string(key) + ": " + serialize_node(member);
       return text + "}";
   }
   return text;

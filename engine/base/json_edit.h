@@ -23,21 +23,22 @@ Result<std::string> remove_value(std::string_view text, const std::string& file,
 const Node* find_value(const Node& root, std::string_view pointer);
 
 /// One step of a pointer: a key with "~" and "/" escaped.
-std::string pointer_step(std::string_view key);
+std::string escape_pointer_token(std::string_view key);
 /// `text` as a JSON string in quotes that reads back byte for byte.
-std::string string_text(std::string_view text);
+std::string serialize_string(std::string_view text);
 /// The node as JSON on one line, without its comments.
-std::string node_text(const Node& node);
+std::string serialize_node(const Node& node);
 /// A finite number, the shortest text that reads back to the same double.
-std::string number_text(double value);
+std::string serialize_number(double value);
 
 /// The layout of JSON text about a container that json::parse has read: items put in and taken out with their commas, blanks and lines, as
 /// json_edit.h says. The text must be the one that was parsed. Inside this room only.
 
 /// A new last item of `container`, which is in `root`; `key` in quotes, or empty in an array.
-std::string appended(std::string_view text, const Node& root, const Node& container, const std::string& key, const std::string& value);
+std::string with_item_appended(std::string_view text, const Node& root, const Node& container, const std::string& key,
+                               const std::string& value);
 /// A new item before the one that begins there.
-std::string inserted(std::string_view text, std::size_t before, const std::string& value);
-std::string without_item(std::string_view text, const Node& container, std::size_t index);
+std::string with_item_inserted(std::string_view text, std::size_t before, const std::string& value);
+std::string with_item_removed(std::string_view text, const Node& container, std::size_t index);
 
 }  // namespace catena::json

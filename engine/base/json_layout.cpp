@@ -142,7 +142,8 @@ Cut tidy(std::string_view text, Cut cut) {
 
 }  // namespace
 
-std::string appended(std::string_view text, const Node& root, const Node& container, const std::string& key, const std::string& value) {
+std::string with_item_appended(std::string_view text, const Node& root, const Node& container, const std::string& key,
+                               const std::string& value) {
   const std::vector<Item> items = items_of(text, container);
   if (items.empty()) return into_empty(text, root, container, key.empty() ? value : key + ": " + value);
   const Item& last = items.back();
@@ -162,13 +163,13 @@ std::string appended(std::string_view text, const Node& root, const Node& contai
   return out.insert(last.end, "," + gap + item);
 }
 
-std::string inserted(std::string_view text, std::size_t before, const std::string& value) {
+std::string with_item_inserted(std::string_view text, std::size_t before, const std::string& value) {
   std::string gap = " ";
   if (starts_line(text, before)) gap = std::string(line_end_of(text)) + std::string(indentation(text, before));
   return std::string(text).insert(before, value + "," + gap);
 }
 
-std::string without_item(std::string_view text, const Node& container, std::size_t index) {
+std::string with_item_removed(std::string_view text, const Node& container, std::size_t index) {
   const std::vector<Item> items = items_of(text, container);
   const Item& item = items[index];
   std::string out(text);

@@ -24,13 +24,13 @@ std::string shown(const Node& node) {
   return "null";
 }
 
-const char* range_words(Range range) {
+const char* range_words(NumberRange range) {
   switch (range) {
-    case Range::any:
+    case NumberRange::any:
       return "a finite number";
-    case Range::positive:
+    case NumberRange::positive:
       return "a finite number > 0";
-    case Range::not_negative:
+    case NumberRange::non_negative:
       return "a finite number >= 0";
   }
   return "a finite number";
@@ -48,19 +48,19 @@ Error missing(const Node& object, std::string_view key, const std::string& expec
 
 }  // namespace
 
-Outcome only_keys(const Node& object, const std::vector<std::string_view>& keys) {
+Outcome check_known_keys(const Node& object, const std::vector<std::string_view>& keys) {
   for (const auto& [name, value] : object.members) {
     bool known = false;
     for (std::string_view key : keys) known = known || key == name;
     if (known) continue;
     return error_at(value,
-                    "unknown key " + in_quotes(name) + " " + place_words(object) + "; known: " + joined(keys) + suggestion(name, keys));
+                    "unknown key " + in_quotes(name) + " " + place_words(object) + "; known: " + join_words(keys) + suggestion(name, keys));
   }
   return Done{};
 }
 
-Outcome only_keys(const Node& object, std::initializer_list<std::string_view> keys) {
-  return only_keys(object, std::vector<std::string_view>(keys));
+Outcome check_known_keys(const Node& object, std::initializer_list<std::string_view> keys) {
+  return check_known_keys(object, std::vector<std::string_view>(keys));
 }
 
 Outcome expect_object(const Node& node, std::string_view what) {
@@ -70,24 +70,24 @@ Outcome expect_object(const Node& node, std::string_view what) {
 
 // ---- numbers ----
 
-Result<double> as_number(const Node& node, std::string_view what, Range range) {
-  const bool good = node.kind == Kind::number && std::isfinite(node.number) && !(range == Range::positive && node.number <= 0) &&
-                    !(range == Range::not_negative && node.number < 0);
+Result<double> as_number(const Node& node, std::string_view what, NumberRange range) {
+  const bool good = node.kind == Kind::number && std::isfinite(node.number) && !(range == NumberRange::positive && node.number <= 0) &&
+                    !(range == NumberRange::non_negative && node.number < 0);
   if (!good) return unlike(node, what, range_words(range));
   return node.number;
 }
 
-Result<double> require_number(const Node& object, std::string_view key, Range range) {
+Result<double> require_number(const Node& object, std::string_view key, NumberRange range) {
   if (const Node* node = object.find(key)) return as_number(*node, key, range);
   return missing(object, key, range_words(range));
 }
 
-Result<double> get_number(const Node& object, std::string_view key, double fallback, Range range) {
+Result<double> get_number(const Node& object, std::string_view key, double fallback, NumberRange range) {
   if (const Node* node = object.find(key)) return as_number(*node, key, range);
   return fallback;
 }
 
-Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, Range range) {
+Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, NumberRange range) {
   const Node* node = object.find(key);
   if (node == nullptr) return std::optional<double>();
   CATENA_TRY(const double value, as_number(*node, key, range));
@@ -133,7 +133,7 @@ Result<int> get_choice(const Node& object, std::string_view key, int fallback, c
   if (node->kind == Kind::string)
     for (std::size_t i = 0; i < words.size(); ++i)
       if (node->string == words[i]) return static_cast<int>(i);
-  return unlike(*node, key, "one of " + joined(words));
+  return unlike(*node, key, "one of " + join_words(words));
 }
 
 // ---- vectors and tables ----
@@ -188,7 +188,7 @@ Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_v
 Result<Mat3> as_rotation(const Node& node, std::string_view what) {
   const std::string expected = "three orthonormal rows of three numbers, or {\"axis\": [x, y, z], \"angle_deg\": a}, were expected";
   if (node.kind == Kind::object) {
-    CATENA_CHECK(only_keys(node, {"axis", "angle_deg"}));
+    CATENA_CHECK(check_known_keys(node, {"axis", "angle_deg"}));
     CATENA_TRY(const Vec3 axis, require_vec3(node, "axis"));
     if (norm(axis) == 0) return error_at(*node.find("axis"), "\"axis\" is zero; a vector other than [0, 0, 0] was expected");
     CATENA_TRY(const double angle_deg, require_number(node, "angle_deg"));

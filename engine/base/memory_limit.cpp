@@ -11,7 +11,7 @@
 #include <fstream>
 #include <limits>
 
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena {
 namespace {
@@ -40,7 +40,7 @@ std::uint64_t free_in_the_group() {
 
 /// What the limit on addresses leaves of them. Without /proc nothing is known of those in use, and half is taken for free.
 std::uint64_t free_addresses() {
-  const auto limit = limit_in_force(RLIMIT_AS);
+  const auto limit = resource_limit(RLIMIT_AS);
   if (!limit) return kNoLimit;
   std::uint64_t pages = 0;
   if (!(std::ifstream("/proc/self/statm") >> pages)) return *limit / 2;
@@ -55,49 +55,49 @@ void set_memory_limit(std::optional<std::uint64_t> bytes, bool of_addresses) {
   chosen_of_addresses = of_addresses;
 }
 
-bool memory_is_of_addresses() {
+bool memory_limit_is_address_space() {
   if (chosen_limit != kNoLimit) return chosen_of_addresses;
   const std::uint64_t addresses = free_addresses();
   return addresses != kNoLimit && addresses <= std::min(free_on_the_machine(), free_in_the_group()) / 4 * 3;
 }
 
-std::uint64_t memory_refusals() { return refusals; }
+std::uint64_t memory_refusal_count() { return refusals; }
 
-std::optional<std::uint64_t> stated_memory() {
+std::optional<std::uint64_t> memory_limit() {
   const std::uint64_t limit = chosen_limit;
   return limit == kNoLimit ? std::nullopt : std::optional(limit);
 }
 
-std::uint64_t allowed_memory() {
+std::uint64_t available_memory() {
   const std::uint64_t limit = chosen_limit, held = held_bytes;
   if (limit != kNoLimit) return limit > held ? limit - held : 0;
   const std::uint64_t available = std::min(free_on_the_machine(), free_in_the_group());
   return std::min(available == kNoLimit ? available : available / 4 * 3, free_addresses());
 }
 
-Outcome ask_for_memory(const std::string& what, double bytes, std::uint64_t allowed) {
+Outcome check_memory_available(const std::string& what, double bytes, std::uint64_t allowed) {
   if (bytes <= static_cast<double>(allowed)) return Done{};
   ++refusals;
   constexpr double kMegabyte = 1e6;
-  const bool of_addresses = memory_is_of_addresses();
+  const bool of_addresses = memory_limit_is_address_space();
   return Error{fmt::format("{} needs {:.0f} MB of memory, expected at most {:.0f} MB ({})", what, std::ceil(bytes / kMegabyte),
                            std::floor(static_cast<double>(allowed) / kMegabyte),
                            of_addresses ? "ulimit -v allows no more" : "--memory MB allows more"),
                of_addresses};
 }
 
-Outcome ask_for_memory(const std::string& what, double bytes) { return ask_for_memory(what, bytes, allowed_memory()); }
+Outcome check_memory_available(const std::string& what, double bytes) { return check_memory_available(what, bytes, available_memory()); }
 
-Outcome ask_for_text_memory(const std::string& what, double bytes) {
+Outcome check_text_memory_available(const std::string& what, double bytes) {
   constexpr double kAlwaysAllowed = 1e6;
   if (bytes <= kAlwaysAllowed) return Done{};
-  return ask_for_memory(what, bytes);
+  return check_memory_available(what, bytes);
 }
 
-HeldMemory::HeldMemory(std::uint64_t bytes) : bytes_(bytes) { held_bytes += bytes; }
-HeldMemory::~HeldMemory() { held_bytes -= bytes_; }
+MemoryReservation::MemoryReservation(std::uint64_t bytes) : bytes_(bytes) { held_bytes += bytes; }
+MemoryReservation::~MemoryReservation() { held_bytes -= bytes_; }
 
-void keep_freed_memory() {
+void retain_freed_memory() {
 #if defined(__GLIBC__)
   ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // setting the one ends the allocator's own choice of the other

@@ -11,7 +11,7 @@
 
 namespace catena {
 
-void append_text(std::string& out, double value) {
+void append_number(std::string& out, double value) {
   char buffer[40];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
   out.append(buffer, end);
@@ -19,14 +19,14 @@ void append_text(std::string& out, double value) {
 
 std::string to_text(double value) {
   std::string out;
-  append_text(out, value);
+  append_number(out, value);
   return out;
 }
 
-std::string readable(double value, int digits) {
+std::string format_readable(double value, int digits) {
   constexpr double kMostWritten = 1e10, kMostFixed = 1e7, kLeastFixed = 1e-4;
   if (!std::isfinite(value) || value == 0) return to_text(value + 0.0);
-  const double rounded = rounded_to(value, digits), size = std::fabs(rounded);
+  const double rounded = round_to_digits(value, digits), size = std::fabs(rounded);
   if (value == std::floor(value) && std::fabs(value) < kMostWritten && (size < kMostFixed || rounded != value))
     return fmt::format("{:.0f}", value);
   char buffer[40];
@@ -38,7 +38,7 @@ std::string readable(double value, int digits) {
   return fixed ? text : text.substr(0, e) + "e" + std::to_string(std::atoi(text.c_str() + e + 1));
 }
 
-double rounded_to(double value, int digits) {
+double round_to_digits(double value, int digits) {
   return std::isfinite(value) ? parse_double(fmt::format("{:.{}g}", value, digits)).value_or(value) : value;
 }
 
@@ -125,7 +125,7 @@ std::size_t most_digits(const std::vector<std::string>& labels) {
 
 }  // namespace
 
-std::vector<Tick> nice_ticks(double lo, double hi, int about) {
+std::vector<AxisTick> nice_ticks(double lo, double hi, int about) {
   CATENA_ASSERT(about >= 2);
   if (!std::isfinite(lo) || !std::isfinite(hi)) return {};
   if (lo > hi) std::swap(lo, hi);
@@ -148,7 +148,7 @@ std::vector<Tick> nice_ticks(double lo, double hi, int about) {
   const std::size_t digits = most_digits(fixed);
   const bool plain = readable && (digits <= kMaxFixed || digits <= most_digits(scientific));
   const std::vector<std::string>& labels = plain ? fixed : scientific;
-  std::vector<Tick> ticks;
+  std::vector<AxisTick> ticks;
   for (const std::string& label : labels) ticks.push_back({parse_double(label).value_or(0), label});
   return ticks;
 }

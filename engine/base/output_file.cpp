@@ -11,8 +11,8 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/base/machine_failure.h"
 #include "engine/base/result.h"
+#include "engine/base/system_failure.h"
 
 namespace catena {
 
@@ -55,12 +55,12 @@ Outcome check_place(const std::string& path) {
 
 }  // namespace
 
-bool same_file(const std::string& a, const std::string& b) {
+bool is_same_file(const std::string& a, const std::string& b) {
   const auto first = identity_of(a);
   return first && first == identity_of(b);
 }
 
-bool lies_within(const std::string& place, const std::string& folder) {
+bool is_path_within(const std::string& place, const std::string& folder) {
   std::error_code code;
   const fs::path inner = fs::weakly_canonical(fs::absolute(place, code), code),
                  outer = fs::weakly_canonical(fs::absolute(folder, code), code);
@@ -68,12 +68,12 @@ bool lies_within(const std::string& place, const std::string& folder) {
   return !code && end == outer.end() && inner != outer;
 }
 
-Outcome check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
+Outcome check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<std::string>& inputs) {
   std::map<Identity, const std::string*> read;
   for (const std::string& input : inputs)
     if (const auto identity = identity_of(input)) read.emplace(*identity, &input);
-  std::map<Identity, const Output*> written;
-  for (const Output& output : outputs) {
+  std::map<Identity, const PlannedOutput*> written;
+  for (const PlannedOutput& output : outputs) {
     if (output.path.empty()) continue;
     CATENA_CHECK(check_place(output.path));
     const auto identity = identity_of(output.path);
@@ -109,18 +109,21 @@ Result<int> open_directly(const std::string& path) {
 
 }  // namespace
 
-bool written_directly(const std::string& path) {
+bool is_written_directly(const std::string& path) {
   std::error_code ignored;
   const auto status = fs::status(path, ignored);
   return fs::exists(status) && !fs::is_regular_file(status);
 }
 
-OutputFile::OutputFile(std::string path, std::optional<PartFile> part, std::FILE* file)
-    : path_(std::move(path)), part_(std::move(part)), file_(file) {}
+OutputFile::OutputFile(std::string path, std::optional<TemporaryFile> part, std::FILE* file)
+    : path_(std::move(path)), temporary_(std::move(part)), file_(file) {}
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), part_(std::move(other.part_)), file_(std::exchange(other.file_, nullptr)), error_(other.error_) {
-  other.part_.reset();
+    : path_(std::move(other.path_)),
+      temporary_(std::move(other.temporary_)),
+      file_(std::exchange(other.file_, nullptr)),
+      error_(other.error_) {
+  other.temporary_.reset();
 }
 
 OutputFile::~OutputFile() {
@@ -128,7 +131,7 @@ OutputFile::~OutputFile() {
 }
 
 Result<OutputFile> OutputFile::open(const std::string& name) {
-  if (written_directly(name)) {
+  if (is_written_directly(name)) {
     CATENA_TRY(const int descriptor, open_directly(name));
     std::FILE* const file = ::fdopen(descriptor, "wb");
     if (file == nullptr) return cannot_write(name, errno);
@@ -141,7 +144,7 @@ Result<OutputFile> OutputFile::open(const std::string& name) {
     path = fs::weakly_canonical(name, code).string();
     if (code) return cannot_write(name, code.value());
   }
-  CATENA_TRY(PartFile part, PartFile::create(path));
+  CATENA_TRY(TemporaryFile part, TemporaryFile::create(path));
   // the stream has a descriptor of its own: the part's keeps the lock until the end
   const int own = ::fcntl(part.descriptor(), F_DUPFD_CLOEXEC, 0);
   std::FILE* const file = own < 0 ? nullptr : ::fdopen(own, "wb");
@@ -162,8 +165,8 @@ void OutputFile::seek(std::uint64_t position) {
 }
 
 void OutputFile::sync() {
-  if (error_ != 0 || !part_) return;
-  if (std::fflush(file_) != 0 || ::fsync(part_->descriptor()) != 0) error_ = errno;
+  if (error_ != 0 || !temporary_) return;
+  if (std::fflush(file_) != 0 || ::fsync(temporary_->descriptor()) != 0) error_ = errno;
 }
 
 Outcome OutputFile::finish() {
@@ -179,7 +182,7 @@ Outcome OutputFile::finish() {
 
 Outcome OutputFile::commit() {
   CATENA_CHECK(finish());
-  return part_ ? part_->commit() : Outcome(Done{});
+  return temporary_ ? temporary_->commit() : Outcome(Done{});
 }
 
 Outcome commit_all(const std::vector<OutputFile*>& files) {

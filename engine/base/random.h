@@ -8,7 +8,7 @@
 namespace catena {
 
 /// Mixes the bits of a number (splitmix64, by S. Vigna).
-inline std::uint64_t mixed_bits(std::uint64_t x) {
+inline std::uint64_t mix_bits(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -21,7 +21,7 @@ class Random {
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
   std::uint64_t next() {
-    const std::uint64_t out = mixed_bits(state_);
+    const std::uint64_t out = mix_bits(state_);
     state_ += 0x9e3779b97f4a7c15u;
     return out;
   }

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "engine/base/tell.h"
+#include "engine/base/console.h"
 
 namespace catena {
 
@@ -12,7 +12,7 @@ namespace {
 std::atomic<bool> spoken{false};
 }  // namespace
 
-bool assertion_has_spoken() noexcept { return spoken; }
+bool assertion_was_reported() noexcept { return spoken; }
 
 void assertion_failed(const char* expression, const char* file, int line) {
   std::fprintf(stderr, "catena: a bug: %s at %s:%d\n", expression, file, line);

@@ -19,8 +19,8 @@ namespace catena {
 
 /// Why something could not be done.
 struct Error {
-  std::string message;   ///< one line: file, line, what, and what was expected
-  bool machine = false;  ///< this machine does not give what is needed (a thread, memory): no fault of the input
+  std::string message;          ///< one line: file, line, what, and what was expected
+  bool system_failure = false;  ///< this machine does not give what is needed (a thread, memory): no fault of the input
 };
 
 /// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick. Asking for the one
@@ -79,7 +79,7 @@ using Outcome = Result<Done>;
   auto temporary = (expression);                        \
   if (!temporary) return temporary.error();             \
   declaration = std::move(*temporary)
-/// CATENA_TRY(const double x, number_of(text)): takes the value out of a Result, or returns its error from the function around it.
+/// CATENA_TRY(const double x, read_number(text)): takes the value out of a Result, or returns its error from the function around it.
 #define CATENA_TRY(declaration, expression) CATENA_TRY_(CATENA_CONCAT(try_result_, __LINE__), declaration, expression)
 /// Goes on where an Outcome or Result is a success, or returns its error from the function around it.
 #define CATENA_CHECK(expression) \
@@ -89,6 +89,6 @@ namespace catena {
 
 /// Whether a file cannot be opened because this process, or the machine, may have no more open (EMFILE, ENFILE of errno): an error of the
 /// machine, not of the file.
-inline bool too_many_files(int code) { return code == EMFILE || code == ENFILE; }
+inline bool is_too_many_open_files(int code) { return code == EMFILE || code == ENFILE; }
 
 }  // namespace catena

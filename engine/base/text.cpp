@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/result.h"
+#include "engine/base/system_failure.h"
 
 namespace catena {
 
@@ -37,13 +37,13 @@ struct Closer {
 
 }  // namespace
 
-Result<std::string> read_text(const std::string& path, std::string_view expected, std::uint64_t most_bytes) {
+Result<std::string> read_text_file(const std::string& path, std::string_view expected, std::uint64_t most_bytes) {
   const auto failed = [&](const std::string& why) {
     return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")};
   };
   const auto unreadable = [&](int why) {
-    Error error = failed("cannot be read: " + cause_of(why));
-    error.machine = is_machine_failure(why);
+    Error error = failed("cannot be read: " + describe_errno(why));
+    error.system_failure = is_system_failure(why);
     return error;
   };
   const auto too_large = [&](std::uint64_t bytes) {
@@ -67,7 +67,7 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   const std::uint64_t on_disk = 512 * static_cast<std::uint64_t>(about.st_blocks);
   if (size > kLarge && on_disk < size / kMostRatio)
     return failed("is " + size_in_words(size) + " large, with " + size_in_words(on_disk) + " on the disk and nothing else");
-  CATENA_CHECK(ask_for_text_memory(one_line(path), static_cast<double>(size)));
+  CATENA_CHECK(check_text_memory_available(one_line(path), static_cast<double>(size)));
   std::string text;
   text.reserve(size);
   char buffer[1 << 16];
@@ -82,7 +82,7 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   }
 }
 
-std::string_view without_bom(std::string_view text) {
+std::string_view strip_bom(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   return text;
 }
@@ -125,7 +125,7 @@ bool is_control(std::uint32_t c) {
 
 }  // namespace
 
-std::string printable(std::string_view text) {
+std::string sanitize_for_terminal(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
@@ -140,20 +140,20 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-std::string alternatives(const std::vector<std::string_view>& words) {
+std::string join_alternatives(const std::vector<std::string_view>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) text.append(i == 0 ? "" : i + 1 < words.size() ? ", " : " or ").append(words[i]);
   return text;
 }
 
-bool has_ending(std::string_view name, std::string_view lower_case) {
+bool has_extension(std::string_view name, std::string_view lower_case) {
   if (name.size() < lower_case.size()) return false;
   name.remove_prefix(name.size() - lower_case.size());
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
   return std::equal(name.begin(), name.end(), lower_case.begin(), [&](char a, char b) { return lower(a) == b; });
 }
 
-std::string joined(const std::vector<std::string_view>& words, std::size_t most) {
+std::string join_words(const std::vector<std::string_view>& words, std::size_t most) {
   std::string out;
   const std::size_t shown = std::min(words.size(), most);
   for (std::size_t i = 0; i < shown; ++i) out.append(i == 0 ? "" : ", ").append(words[i]);
@@ -161,7 +161,7 @@ std::string joined(const std::vector<std::string_view>& words, std::size_t most)
   return out;
 }
 
-std::string without_addresses(std::string text) {
+std::string strip_addresses(std::string text) {
   const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
   constexpr std::size_t kLeastDigits = 6;
   for (std::size_t at = 0; (at = text.find("0x", at)) != std::string::npos;) {
@@ -180,7 +180,7 @@ std::string without_addresses(std::string text) {
   return text;
 }
 
-std::string cut_to(std::string text, std::size_t most) {
+std::string truncate_utf8(std::string text, std::size_t most) {
   if (text.size() <= most) return text;
   std::size_t end = most - std::min<std::size_t>(most, 3);
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
@@ -206,7 +206,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 }  // namespace
 
-std::string free_name(const std::string& name, const std::function<bool(const std::string&)>& is_taken) {
+std::string make_unique_name(const std::string& name, const std::function<bool(const std::string&)>& is_taken) {
   std::string free = name;
   for (int n = 2; is_taken(free); ++n) free = name + "_" + std::to_string(n);
   return free;

@@ -7,13 +7,13 @@
 #include <cerrno>
 #include <cstring>
 
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena {
 
-int thread_refusal() {
-  if (!limit_in_force(RLIMIT_AS)) return EAGAIN;
-  if (!limit_in_force(RLIMIT_NPROC)) return ENOMEM;
+int thread_start_errno() {
+  if (!resource_limit(RLIMIT_AS)) return EAGAIN;
+  if (!resource_limit(RLIMIT_NPROC)) return ENOMEM;
   std::size_t stack = 8u << 20;
   if (pthread_attr_t attributes; pthread_getattr_default_np(&attributes) == 0) {
     pthread_attr_getstacksize(&attributes, &stack);
@@ -25,15 +25,15 @@ int thread_refusal() {
   return EAGAIN;
 }
 
-bool is_thread_refusal(const std::exception& thrown) {
+bool is_thread_start_failure(const std::exception& thrown) {
   const auto* error = dynamic_cast<const std::system_error*>(&thrown);
   return (error != nullptr && error->code() == std::errc::resource_unavailable_try_again) ||
          std::strstr(thrown.what(), "pthread_create") != nullptr || std::strstr(thrown.what(), std::strerror(EAGAIN)) != nullptr;
 }
 
-Error no_thread(const std::string& what, const std::system_error& error) {
-  const int code = is_thread_refusal(error) ? thread_refusal() : error.code().value();
-  return {what + ": no other thread can be started: " + cause_of(code), true};
+Error thread_start_error(const std::string& what, const std::system_error& error) {
+  const int code = is_thread_start_failure(error) ? thread_start_errno() : error.code().value();
+  return {what + ": no other thread can be started: " + describe_errno(code), true};
 }
 
 }  // namespace catena

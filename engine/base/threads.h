@@ -15,12 +15,12 @@ namespace catena {
 
 /// Why a thread could not be started, a code of errno: ENOMEM where this process gets no addresses for another stack, else EAGAIN.
 /// pthread_create answers EAGAIN to both. To be asked at once, before anything is freed.
-int thread_refusal();
+int thread_start_errno();
 /// Whether an exception says that a thread could not be started: of the standard library, TBB or ITK.
-bool is_thread_refusal(const std::exception& thrown);
+bool is_thread_start_failure(const std::exception& thrown);
 
 /// "the servo: no other thread can be started: CAUSE": an Error of the machine.
-Error no_thread(const std::string& what, const std::system_error& error);
+Error thread_start_error(const std::string& what, const std::system_error& error);
 
 /// `what` needs it: "the servo". Out of memory is still std::bad_alloc.
 template <class Body>
@@ -28,7 +28,7 @@ Result<std::thread> start_thread(const std::string& what, Body&& body) {
   try {
     return std::thread(std::forward<Body>(body));
   } catch (const std::system_error& error) {
-    return no_thread(what, error);
+    return thread_start_error(what, error);
   }
 }
 

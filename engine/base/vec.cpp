@@ -2,9 +2,9 @@
 
 namespace catena {
 
-Quat normalised(const Quat& q) noexcept {
+Quat normalized(const Quat& q) noexcept {
   const double m = std::fmax(max_abs({q.x, q.y, q.z}), std::fabs(q.w));
-  if (!(m > 0) || !is_finite(q)) return kNoRotation;
+  if (!(m > 0) || !is_finite(q)) return kIdentityRotation;
   const Quat r(q.w / m, q.x / m, q.y / m, q.z / m);
   const double n = std::sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
   return {r.w / n, r.x / n, r.y / n, r.z / n};
@@ -22,9 +22,9 @@ Vec3 rotation_vector(const Quat& q) noexcept {
   return u * (2 * std::atan2(s, std::fabs(q.w)) / s);
 }
 
-Quat rotation_of(const Vec3& v) noexcept {
+Quat rotation_from_vector(const Vec3& v) noexcept {
   const double angle = norm(v);
-  if (!(angle > 0) || !std::isfinite(angle)) return kNoRotation;
+  if (!(angle > 0) || !std::isfinite(angle)) return kIdentityRotation;
   const Vec3 u = direction(v) * std::sin(0.5 * angle);
   return {std::cos(0.5 * angle), u.x, u.y, u.z};
 }
@@ -32,18 +32,18 @@ Quat rotation_of(const Vec3& v) noexcept {
 Quat shortest_arc(const Vec3& a, const Vec3& b) noexcept {
   // |a + b| and |a - b| are exact near both ends, the axis is kept square to a: what is lost in a x b does not matter then
   const double c = 0.5 * norm(a + b), s = 0.5 * norm(b - a);
-  if (!(s > 0)) return kNoRotation;
+  if (!(s > 0)) return kIdentityRotation;
   Vec3 axis = cross(a, b);
   axis = direction(axis - a * dot(a, axis));
   axis = direction(axis - a * dot(a, axis));
   if (!(max_abs(axis) > 0)) {
-    if (c > 0.5) return kNoRotation;
+    if (c > 0.5) return kIdentityRotation;
     const Vec3 other = std::fabs(a.x) <= std::fabs(a.y) && std::fabs(a.x) <= std::fabs(a.z) ? Vec3(1, 0, 0)
                        : std::fabs(a.y) <= std::fabs(a.z)                                   ? Vec3(0, 1, 0)
                                                                                             : Vec3(0, 0, 1);
     axis = direction(cross(a, other));
   }
-  return normalised({c, axis.x * s, axis.y * s, axis.z * s});
+  return normalized({c, axis.x * s, axis.y * s, axis.z * s});
 }
 
 }  // namespace catena

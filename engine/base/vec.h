@@ -46,19 +46,19 @@ inline Vec3 direction(const Vec3& v) {
 
 using Quat = glm::dquat;  ///< Quat(w, x, y, z); the identity is Quat(1, 0, 0, 0)
 
-inline const Quat kNoRotation{1.0, 0.0, 0.0, 0.0};  ///< The rotation that turns nothing.
+inline const Quat kIdentityRotation{1.0, 0.0, 0.0, 0.0};  ///< The rotation that turns nothing.
 
 /// Whether all components are finite.
 inline bool is_finite(const Quat& q) { return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z); }
 
 /// Unit length; what is zero or not finite is no rotation.
-Quat normalised(const Quat& q) noexcept;
+Quat normalized(const Quat& q) noexcept;
 /// v turned by the unit quaternion q: v + 2 w (u x v) + 2 u x (u x v), u its vector part.
 Vec3 rotate(const Quat& q, const Vec3& v) noexcept;
 /// log: the rotation vector of a unit quaternion, the shorter way round: |.| <= pi. q and -q are the same rotation.
 Vec3 rotation_vector(const Quat& q) noexcept;
 /// exp: the rotation about v by |v| radians.
-Quat rotation_of(const Vec3& v) noexcept;
+Quat rotation_from_vector(const Vec3& v) noexcept;
 /// The smallest rotation that turns the unit vector a onto the unit vector b. Opposite ones: half a turn about an axis square to a,
 /// the same for the same a.
 Quat shortest_arc(const Vec3& a, const Vec3& b) noexcept;

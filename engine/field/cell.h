@@ -25,7 +25,7 @@ struct ScalarCell {
   double value(const Vec3& f) const;
   Vec3 gradient(const Vec3& f) const;  ///< by index
   /// Mixed second derivatives by index; the diagonal of a trilinear function is zero. Returns (d2/dydz, d2/dxdz, d2/dxdy).
-  Vec3 mixed_second(const Vec3& f) const;
+  Vec3 mixed_second_derivatives(const Vec3& f) const;
   /// Both in one pass; `gradient` is by index.
   void value_and_gradient(const Vec3& f, double& value, Vec3& gradient) const;
 };

@@ -55,7 +55,7 @@ inline void cubic_values(const T* rows, const CubicWeights& w, double* value, do
   }
 }
 
-/// Within the cell.
+/// CellFinder the cell.
 template <int C>
 CubicValue<C> cubic_within(const CubicSamples<C>& samples, const Vec3& f) {
   const CubicWeights x(f.x), y(f.y), z(f.z);

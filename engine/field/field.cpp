@@ -13,21 +13,23 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
   index_box_ = index_box;
   version_ = next_version.fetch_add(1);
   const Vec3 size = index_box.hi - index_box.lo;
-  length_ = longest_edge_ = 0;
+  domain_length_ = max_voxel_edge_ = 0;
   for (int a = 0; a < 3; ++a) {
     const double edge = norm(mapping.world_from_index_linear[a]);
-    longest_edge_ = std::max(longest_edge_, edge);
-    length_ = std::max(length_, edge * size[a]);
+    max_voxel_edge_ = std::max(max_voxel_edge_, edge);
+    domain_length_ = std::max(domain_length_, edge * size[a]);
   }
 }
 
-std::string why_no_surface(const ScalarField& field, const std::string& name) {
+std::string no_surface_hint(const ScalarField& field, const std::string& name) {
   if (field.interpolation() != Interpolation::nearest) return {};
   return "field \"" + name + "\" is read by its nearest voxels: it has no surface of its own; a field {\"label\": NUMBER, \"of\": \"" +
          name + "\"} at level 0.5, or \"interpolation\": \"linear\", was expected";
 }
 
-Reason Field::why_outside(const Vec3& world, Cursor&) const noexcept { return is_finite(world) ? Reason::mask : Reason::not_finite; }
+SampleStatus Field::status_outside(const Vec3& world, Cursor&) const noexcept {
+  return is_finite(world) ? SampleStatus::masked : SampleStatus::not_finite;
+}
 
 LineSample VectorField::sample_line(const Vec3& world, Cursor& cursor) const noexcept {
   const VectorSample here = sample(world, cursor);

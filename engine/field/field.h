@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/reason.h"
+#include "engine/base/sample_status.h"
 #include "engine/base/vec.h"
 #include "engine/field/cell.h"
-#include "engine/field/line_axis.h"
+#include "engine/field/line_field.h"
 #include "engine/field/mapping.h"
 
 namespace catena::field {
@@ -65,14 +65,14 @@ class Field {
   const Box& index_box() const { return index_box_; }                                ///< of voxel centres; no grid: of the domain, world
   Vec3 corner(int i) const { return world_corner(mapping_, index_box_, i); }         ///< of the domain, world: i + 2 j + 4 k by index
   Bounds world_bounds() const { return field::world_bounds(mapping_, index_box_); }  ///< of all eight
-  double length() const { return length_; }              ///< L: the longest edge of the domain box, world units; 4 for make_analytic()
-  double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units; no grid: 1
+  double domain_length() const { return domain_length_; }    ///< L: the longest edge of the domain box, world units; 4 for make_analytic()
+  double max_voxel_edge() const { return max_voxel_edge_; }  ///< of a voxel, world units; no grid: 1
   /// Whether it is sampled on a grid (then grid() gives it) rather than a formula or a function.
   virtual bool is_grid() const noexcept { return false; }
   /// Memory that it holds, bytes; 0 of a formula.
   virtual std::size_t bytes() const noexcept { return 0; }
   /// Why a sample at this place is not inside: box, mask or not_finite; none where it is. Here: a formula, which has no box.
-  virtual Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept;
+  virtual SampleStatus status_outside(const Vec3& world, Cursor& cursor) const noexcept;
 
  protected:
   /// For classes that derive from it: their constructor calls it once.
@@ -83,7 +83,7 @@ class Field {
   std::uint64_t version_ = 0;
   Mapping mapping_;
   Box index_box_;
-  double length_ = 0, longest_edge_ = 0;
+  double domain_length_ = 0, max_voxel_edge_ = 0;
 };
 
 class ScalarGrid;
@@ -116,7 +116,7 @@ class VectorField : public Field {
 };
 
 /// What to do where a field that is read by its nearest voxels cannot have a surface: empty for other fields.
-std::string why_no_surface(const ScalarField& field, const std::string& name);
+std::string no_surface_hint(const ScalarField& field, const std::string& name);
 
 /// Fields are shared and never change.
 using ScalarFieldPtr = std::shared_ptr<const ScalarField>;
@@ -129,7 +129,7 @@ struct AnyField {
   VectorFieldPtr vector;             ///< set: it is a vector field
   std::vector<double> times{};       ///< of the file's steps in time; one, or empty: it has one step
   std::string time_unit{};           ///< of `times`: "s", "hours since 2001-01-01"; empty: not stated
-  std::int64_t newest_ns = 0;        ///< when the youngest file that was read was last changed, since 1970; 0: not known
+  std::int64_t newest_mtime_ns = 0;  ///< when the youngest file that was read was last changed, since 1970; 0: not known
   std::vector<std::string> notes{};  ///< what is not as it was in the file: sentences without an end
   /// What both kinds share; null where neither is set.
   const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }

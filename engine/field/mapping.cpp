@@ -20,20 +20,20 @@ Mapping Mapping::from_linear(const Mat3& world_from_index, const Vec3& origin) {
   return m;
 }
 
-double Mapping::smallest_edge() const {
+double Mapping::min_voxel_edge() const {
   const Mat3& j = world_from_index_linear;
   return std::min(std::min(norm(j[0]), norm(j[1])), norm(j[2]));
 }
 
-bool Mapping::is_sound() const {
-  return is_finite(origin) && is_finite(index_from_world(Vec3(1.0))) && smallest_edge() > 0 && is_finite(world_from_index(Vec3(1.0)));
+bool Mapping::is_invertible() const {
+  return is_finite(origin) && is_finite(index_from_world(Vec3(1.0))) && min_voxel_edge() > 0 && is_finite(world_from_index(Vec3(1.0)));
 }
 
 Vec3 world_corner(const Mapping& mapping, const Box& box, int i) { return mapping.world_from_index(Bounds{box.lo, box.hi}.corner(i)); }
 
 Bounds world_bounds(const Mapping& mapping, const Box& box) {
   Bounds bounds;
-  for (int i = 0; i < 8; ++i) bounds.add(world_corner(mapping, box, i));
+  for (int i = 0; i < 8; ++i) bounds.extend(world_corner(mapping, box, i));
   return bounds;
 }
 

@@ -1,8 +1,8 @@
 /// The linear map between the index space of a grid and the world: world = J index + origin. Anisotropic voxels, rotations,
 /// shears and negative origins are all just J. Analytic fields have J = 1, origin = 0.
 #pragma once
+#include "engine/base/bounds.h"
 #include "engine/base/vec.h"
-#include "engine/geometry/bounds.h"
 
 namespace catena::field {
 
@@ -12,7 +12,7 @@ struct Mapping {
   Mat3 index_from_world_linear{1.0};  ///< J^-1
   Vec3 origin{0.0};                   ///< world position of index (0, 0, 0)
 
-  /// The map of J and the origin. A J that cannot be inverted gives one that is not is_sound().
+  /// The map of J and the origin. A J that cannot be inverted gives one that is not is_invertible().
   static Mapping from_linear(const Mat3& world_from_index, const Vec3& origin);
 
   /// The world place of an index place.
@@ -20,9 +20,9 @@ struct Mapping {
   /// The index place of a world place.
   Vec3 index_from_world(const Vec3& world) const { return index_from_world_linear * (world - origin); }
   /// A covector: gradient_world = J^-T gradient_index.
-  Vec3 world_gradient(const Vec3& g) const { return g * index_from_world_linear; }
-  double smallest_edge() const;  ///< of a voxel, world units
-  bool is_sound() const;         ///< finite, and can be inverted
+  Vec3 world_from_index_gradient(const Vec3& g) const { return g * index_from_world_linear; }
+  double min_voxel_edge() const;  ///< of a voxel, world units
+  bool is_invertible() const;     ///< finite, and can be inverted
 };
 
 /// A box in index space (grids: voxel centres lo..hi, both included; analytic fields: world coordinates).

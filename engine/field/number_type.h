@@ -12,29 +12,30 @@
 namespace catena::field {
 
 /// What becomes of numbers that a 32-bit float does not hold.
-struct Rounding {
-  bool any = false;          ///< a number is rounded (one that is scaled does not count)
-  std::uint64_t beyond = 0;  ///< finite numbers that are too large: they become infinite, which is a hole
+struct RoundingLoss {
+  bool has_rounded = false;          ///< a number is rounded (one that is scaled does not count)
+  std::uint64_t overflow_count = 0;  ///< finite numbers that are too large: they become infinite, which is a hole
 };
 
 /// What a note says of it, sentences without an end; `type`: the word of the file's numbers.
-inline std::vector<std::string> notes_of(const Rounding& rounding, std::string_view type) {
+inline std::vector<std::string> rounding_notes(const RoundingLoss& rounding, std::string_view type) {
   std::vector<std::string> notes;
-  if (rounding.any) notes.push_back("values of type " + std::string(type) + " are rounded to 32-bit floats");
-  if (rounding.beyond == 1) notes.push_back("1 value is beyond 32-bit floats: it is a hole");
-  if (rounding.beyond > 1) notes.push_back(std::to_string(rounding.beyond) + " values are beyond 32-bit floats: they are holes");
+  if (rounding.has_rounded) notes.push_back("values of type " + std::string(type) + " are rounded to 32-bit floats");
+  if (rounding.overflow_count == 1) notes.push_back("1 value is beyond 32-bit floats: it is a hole");
+  if (rounding.overflow_count > 1)
+    notes.push_back(std::to_string(rounding.overflow_count) + " values are beyond 32-bit floats: they are holes");
   return notes;
 }
 
 struct NumberType {
-  std::string_view word;
+  std::string_view name;
   std::size_t bytes;
   /// out[i] = slope * in[i] + inter, computed in double; `in` in the machine's byte order, of any alignment.
-  void (*decode)(const std::byte* in, std::size_t count, double slope, double inter, float* out, Rounding& rounding);
+  void (*decode)(const std::byte* in, std::size_t count, double slope, double inter, float* out, RoundingLoss& rounding);
 };
 
 template <class T>
-void decode_numbers(const std::byte* in, std::size_t count, double slope, double inter, float* out, Rounding& rounding) {
+void decode_numbers(const std::byte* in, std::size_t count, double slope, double inter, float* out, RoundingLoss& rounding) {
   const bool plain = slope == 1 && inter == 0;
   for (std::size_t i = 0; i < count; ++i) {
     T v;
@@ -42,12 +43,12 @@ void decode_numbers(const std::byte* in, std::size_t count, double slope, double
     const double number = slope * static_cast<double>(v) + inter;
     out[i] = static_cast<float>(number);
     if (static_cast<double>(out[i]) == number || std::isnan(number)) continue;
-    rounding.any = rounding.any || plain;
-    rounding.beyond += std::isinf(out[i]);
+    rounding.has_rounded = rounding.has_rounded || plain;
+    rounding.overflow_count += std::isinf(out[i]);
   }
 }
 
-inline std::optional<NumberType> number_type(std::string_view word) {
+inline std::optional<NumberType> find_number_type(std::string_view word) {
   static constexpr NumberType types[] = {
       {"float32", 4, decode_numbers<float>},        {"float64", 8, decode_numbers<double>},
       {"uint8", 1, decode_numbers<std::uint8_t>},   {"int8", 1, decode_numbers<std::int8_t>},
@@ -56,7 +57,7 @@ inline std::optional<NumberType> number_type(std::string_view word) {
       {"uint64", 8, decode_numbers<std::uint64_t>}, {"int64", 8, decode_numbers<std::int64_t>},
   };
   for (const NumberType& t : types)
-    if (t.word == word) return t;
+    if (t.name == word) return t;
   return std::nullopt;
 }
 

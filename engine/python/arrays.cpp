@@ -4,8 +4,8 @@
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
-#include "engine/field/from_layers.h"
-#include "engine/field/load.h"
+#include "engine/field/grid/grid_from_slices.h"
+#include "engine/io/volume/load_field.h"
 #include "engine/python/module.h"
 
 namespace catena::python {
@@ -86,7 +86,7 @@ Voxels voxels_of(const py::array& array, const std::string& axes, const std::str
   const int axes_of_voxels = static_cast<int>(array.ndim()) - (vectors ? 1 : 0);
   const py::ssize_t last = array.ndim() > 0 ? array.shape(array.ndim() - 1) : 0;
   if (axes_of_voxels < 1 || axes_of_voxels > 3 || (vectors && last != 2 && last != 3))
-    throw Failure(Error{name + ": the array has the shape " + shape_of(array) +
+    throw Failure(Error{name + ": the array has the shape " + format_shape(array) +
                         (vectors ? "; one to three dimensions and a last one of 2 or 3 components were expected for vectors"
                                  : "; one to three dimensions were expected, or a fourth of 2 or 3 components for vectors")});
   int size[3] = {2, 2, 2};
@@ -107,7 +107,7 @@ Voxels voxels_of(const py::array& array, const std::string& axes, const std::str
 
 field::Mapping mapping_of(const py::object& affine, const std::string& name) {
   if (affine.is_none()) return {};
-  const Numbers m = numbers_of(affine, name + ": affine");
+  const NumberArray m = to_numbers(affine, name + ": affine");
   if (m.ndim() != 2 || m.shape(0) != 4 || m.shape(1) != 4)
     throw Failure(Error{name + ": the affine is no 4 x 4 matrix; the map from (i, j, k, 1) to the world was expected"});
   for (int column = 0; column < 4; ++column)
@@ -130,11 +130,11 @@ Field with_interpolation(Field field, const std::string& words, const std::strin
   if (chosen == field::Interpolation::linear) return field;
   if (field.any.vector) {
     if (chosen == field::Interpolation::nearest) throw Failure(Error{name + ": vectors are not read by the nearest voxel"});
-    field.any.vector = take(field.any.vector->grid()->cubic());
+    field.any.vector = unwrap(field.any.vector->grid()->as_cubic());
   } else if (chosen == field::Interpolation::cubic) {
-    field.any.scalar = take(field.any.scalar->grid()->cubic());
+    field.any.scalar = unwrap(field.any.scalar->grid()->as_cubic());
   } else {
-    field.any.scalar = field.any.scalar->grid()->interpolated(chosen);
+    field.any.scalar = field.any.scalar->grid()->with_interpolation(chosen);
   }
   return field;
 }
@@ -149,16 +149,16 @@ Field from_array(const py::array& array, const std::string& axes, const py::obje
   voxels.swapped = array.dtype().byteorder() == '>';
   const field::Mapping mapping = mapping_of(affine, name);
   const py::gil_scoped_release unlocked;
-  field::Layers layers;
+  field::SliceSource layers;
   layers.size = voxels.size;
-  layers.vectors = vectors;
+  layers.is_vector = vectors;
   layers.read = [&](int z, std::span<float> out) { reader(voxels, z, out); };
-  return with_interpolation({take(field::make_grid(name, mapping, layers))}, interpolation, name);
+  return with_interpolation({unwrap(field::make_grid_from_slices(name, mapping, layers))}, interpolation, name);
 }
 
 }  // namespace
 
-Field field_of(const py::handle& value, const std::string& name) {
+Field to_field(const py::handle& value, const std::string& name) {
   if (py::isinstance<Field>(value)) return py::cast<Field>(value);
   return py::cast<Field>(py::module_::import("catena").attr("field")(value, py::arg("name") = name));
 }
@@ -169,13 +169,13 @@ void add_arrays(py::module_& m) {
   m.def(
       "_from_file",
       [](const py::object& file, const std::string& grid, int step, const std::string& interpolation) {
-        const std::string path = path_of(file);
+        const std::string path = to_path(file);
         const py::gil_scoped_release unlocked;
         field::LoadRequest request;
         request.path = path;
         request.grid = grid;
         request.step = step;
-        return with_interpolation({take(field::load(request))}, interpolation, path);
+        return with_interpolation({unwrap(field::load(request))}, interpolation, path);
       },
       py::arg("path"), py::arg("grid"), py::arg("step"), py::arg("interpolation"));
 }

@@ -8,21 +8,19 @@
 #include <span>
 
 #include "engine/python/module.h"
+#include "haptics/build/build_program.h"
 #include "haptics/chain/tick.h"
 #include "haptics/device/registry.h"
-#include "haptics/extract/extract.h"
-#include "haptics/servo/limits_for.h"
+#include "haptics/servo/device_limits.h"
 
 namespace catena::python {
 namespace {
 
-using exchange::HapticState;
-
 /// As `replay`: a scene that names its device is felt as that device would give it.
-haptics::Limits limits_of(const scene::Scene& scene) {
+haptics::DeviceLimits limits_of(const scene::Scene& scene) {
   if (!scene.device) return {};
-  const haptics::DeviceSettings settings = take(haptics::read_device_settings(*scene.device, scene.path));
-  return haptics::limits_for(haptics::nominal_capabilities(settings.type), settings);
+  const haptics::DeviceSettings settings = unwrap(haptics::read_device_settings(*scene.device, scene.path));
+  return haptics::compute_device_limits(haptics::nominal_capabilities(settings.type), settings);
 }
 
 /// N ticks as arrays.
@@ -56,7 +54,7 @@ struct Rows {
     *t++ = state.t_s;
     put(forces, state.force_n);
     for (int i = 0; i < state.link_count; ++i) {
-      const exchange::LinkReport& link = state.links[static_cast<std::size_t>(i)];
+      const LinkReport& link = state.links[static_cast<std::size_t>(i)];
       put(proxies, link.proxy);
       put(link_forces, link.force_n);
       *gaps++ = link.gap;
@@ -69,9 +67,9 @@ class Chain {
  public:
   Chain(const py::object& scene, const py::object& fields, double rate_hz) : rate_hz_(rate_hz) {
     if (!(rate_hz > 0) || !std::isfinite(rate_hz)) throw Failure(Error{"rate_hz is not positive; ticks a second were expected"});
-    scene::Scene read = scene_of(scene, fields);
+    scene::Scene read = to_scene(scene, fields);
     const py::gil_scoped_release unlocked;
-    program_ = take(haptics::extract_program(read, limits_of(read)));
+    program_ = unwrap(haptics::build_program(read, limits_of(read)));
     reset();
   }
 
@@ -86,10 +84,10 @@ class Chain {
   }
 
   Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
-    const Numbers places = rows_of(positions, "positions");  // read where they lie
+    const NumberArray places = to_rows(positions, "positions");  // read where they lie
     const auto count = static_cast<std::size_t>(places.size() / 3);
     // none: evenly, and nothing is pressed
-    const Numbers column_t = times.is_none() ? Numbers() : column(times, count, "t");
+    const NumberArray column_t = times.is_none() ? NumberArray() : column(times, count, "t");
     const std::span<const double> t(column_t.data(), times.is_none() ? 0 : count);
     const std::vector<std::uint32_t> pressed =
         buttons.is_none() ? std::vector<std::uint32_t>() : buttons_of(column(buttons, count, "buttons"));
@@ -119,7 +117,7 @@ class Chain {
     for (const haptics::Link& link : program_->links) names.push_back(link.name);
     return names;
   }
-  double metres_per_unit() const { return program_->metres_per_unit; }
+  double metres_per_unit() const { return program_->meters_per_unit; }
   std::uint64_t ticks() const {
     const std::lock_guard turn(turn_);
     return ticks_;
@@ -143,13 +141,13 @@ class Chain {
     }
   }
 
-  static Numbers column(const py::object& from, std::size_t rows, const std::string& what) {
-    Numbers array = numbers_of(from, what);
+  static NumberArray column(const py::object& from, std::size_t rows, const std::string& what) {
+    NumberArray array = to_numbers(from, what);
     if (array.size() != static_cast<py::ssize_t>(rows))
       throw Failure(Error{what + " does not have one number for each position; " + std::to_string(rows) + " were expected"});
     return array;
   }
-  static std::vector<std::uint32_t> buttons_of(const Numbers& numbers) {
+  static std::vector<std::uint32_t> buttons_of(const NumberArray& numbers) {
     std::vector<std::uint32_t> all;
     for (const double number : std::span(numbers.data(), static_cast<std::size_t>(numbers.size()))) {
       if (!(number >= 0 && number <= 4294967295.0) || number != std::floor(number))
@@ -161,7 +159,7 @@ class Chain {
 
   mutable std::mutex turn_;  ///< of the threads that tick
   double rate_hz_;
-  std::shared_ptr<const haptics::Program> program_;
+  std::shared_ptr<const haptics::HapticProgram> program_;
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;
   haptics::StateHash hash_;
@@ -195,7 +193,7 @@ void add_chain(py::module_& m) {
       .def(
           "step",
           [](Chain& chain, const Points& position) {
-            vec3_of(position, "position");
+            to_vec3(position, "position");
             return chain.run(position, py::none(), py::none());
           },
           py::arg("position"), "One tick: run() of one position.\n\nposition: (3,), world units. Returns Ticks with N = 1.")
@@ -207,8 +205,7 @@ void add_chain(py::module_& m) {
           "state_hash", &Chain::state_hash,
           "A number of all that the ticks said, to the bit: `catena replay --stats` has it too, as f\"{state_hash:016x}\".");
   py::list words;
-  for (int i = 0; i <= static_cast<int>(exchange::Status::bad_probe); ++i)
-    words.append(exchange::status_word(static_cast<exchange::Status>(i)));
+  for (int i = 0; i <= static_cast<int>(LinkStatus::bad_probe); ++i) words.append(to_string(static_cast<LinkStatus>(i)));
   m.attr("STATUSES") = py::tuple(words);
 }
 

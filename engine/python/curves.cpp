@@ -1,7 +1,7 @@
 /// catena.trace: streamlines through seeds, as the hand feels them and the picture shows them.
 #include <cmath>
 
-#include "engine/flow/curve.h"
+#include "engine/geometry/flow/curve.h"
 #include "engine/python/module.h"
 
 namespace catena::python {
@@ -15,12 +15,12 @@ template <class Get>
 py::array_t<double> of_knots(const Curve& curve, Get get) {
   std::vector<Vec3> all;
   for (const flow::Knot& knot : curve.curve->knots()) all.push_back(get(knot));
-  return array_of(all);
+  return to_array(all);
 }
 
 std::vector<Curve> trace(const Field& field, const Points& seeds, double length, bool line, double min_speed, double tolerance) {
   if (!field.any.vector) throw Failure(Error{"a scalar field has no streamlines; a vector field was expected"});
-  const std::vector<Vec3> places = points_of(seeds, "seeds");
+  const std::vector<Vec3> places = to_points(seeds, "seeds");
   for (const auto& [what, value] : {std::pair{"length", length}, {"min_speed", min_speed}, {"tolerance", tolerance}})
     if (!(value >= 0) || !std::isfinite(value))
       throw Failure(Error{std::string(what) + " is " + std::to_string(value) + "; a finite number, 0 or more, was expected"});
@@ -38,10 +38,10 @@ std::vector<Curve> trace(const Field& field, const Points& seeds, double length,
 }
 
 py::array_t<double> at(const Curve& curve, const py::object& lengths) {
-  const Numbers s = numbers_of(lengths, "s");
+  const NumberArray s = to_numbers(lengths, "s");
   std::vector<Vec3> places;
   for (py::ssize_t i = 0; i < s.size(); ++i) places.push_back(curve.curve->position(s.data()[i]));
-  return array_of(places);
+  return to_array(places);
 }
 
 }  // namespace
@@ -64,10 +64,12 @@ void add_curves(py::module_& m) {
           },
           "(K,): arc length of the knots from the seed, signed, world units.")
       .def_property_readonly(
-          "closed", [](const Curve& c) { return c.curve->closed(); }, "True where it came back to its seed.")
+          "closed", [](const Curve& c) { return c.curve->is_closed(); }, "True where it came back to its seed.")
       .def_property_readonly(
           "ends",
-          [](const Curve& c) { return py::make_tuple(flow::end_word(c.curve->first_end().end), flow::end_word(c.curve->last_end().end)); },
+          [](const Curve& c) {
+            return py::make_tuple(flow::to_string(c.curve->first_end().termination), flow::to_string(c.curve->last_end().termination));
+          },
           "How it ends upstream and downstream: BOUNDARY, CRITICAL, LENGTH, LAP or INCOHERENT.")
       .def(
           "at", at, py::arg("s"),

@@ -2,8 +2,8 @@
 #include <limits>
 #include <optional>
 
-#include "engine/field/analytic.h"
-#include "engine/field/load.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/io/volume/load_field.h"
 #include "engine/python/module.h"
 
 namespace catena::python {
@@ -12,7 +12,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 py::array_t<double> sample(const Field& field, const Points& points) {
-  const std::vector<Vec3> places = points_of(points, "points");
+  const std::vector<Vec3> places = to_points(points, "points");
   const auto count = static_cast<py::ssize_t>(places.size());
   py::array_t<double> values = field.any.vector ? py::array_t<double>({count, py::ssize_t(3)}) : py::array_t<double>(count);
   double* to = values.mutable_data();
@@ -32,7 +32,7 @@ py::array_t<double> sample(const Field& field, const Points& points) {
 
 py::array_t<double> gradient(const Field& field, const Points& points) {
   if (!field.any.scalar) throw Failure(Error{"a vector field has no gradient here; a scalar field was expected"});
-  std::vector<Vec3> places = points_of(points, "points");
+  std::vector<Vec3> places = to_points(points, "points");
   {
     const py::gil_scoped_release unlocked;
     field::Cursor cursor;
@@ -41,22 +41,22 @@ py::array_t<double> gradient(const Field& field, const Points& points) {
       p = s.inside ? s.gradient : Vec3(kNan);
     }
   }
-  return array_of(places);
+  return to_array(places);
 }
 
 Field analytic(const std::string& name, double scale, const std::string& part, const Points& center) {
   field::AnalyticParameters parameters;
   parameters.scale = scale;
   parameters.part = part;
-  parameters.center = vec3_of(center, "center");
-  return {take(field::make_analytic(name, parameters))};
+  parameters.center = to_vec3(center, "center");
+  return {unwrap(field::make_analytic(name, parameters))};
 }
 
 void save(const Field& field, const py::object& to) {
-  const std::string path = path_of(to);
+  const std::string path = to_path(to);
   if (!field.any.get()->is_grid()) throw Failure(Error{"a formula has no voxels to write; a grid was expected"});
   const py::gil_scoped_release unlocked;
-  take(field::write_vdb(path, {{field.any, field.any.get()->name()}}));
+  unwrap(field::write_vdb(path, {{field.any, field.any.get()->name()}}));
 }
 
 std::string text(const Field& field) {
@@ -87,14 +87,14 @@ void add_fields(py::module_& m) {
           "bounds",
           [](const Field& f) {
             const Bounds b = f.any.get()->world_bounds();
-            return array_of({b.lo, b.hi});
+            return to_array({b.lo, b.hi});
           },
           "(2, 3): the lowest and the highest corner of the domain's box, world units.")
       .def_property_readonly(
           "range",
           [](const Field& f) -> py::object {
             if (f.any.scalar) return py::make_tuple(f.any.scalar->min_value(), f.any.scalar->max_value());
-            if (const field::VectorGrid* grid = f.any.vector->grid()) return py::make_tuple(grid->min_length(), grid->max_length());
+            if (const field::VectorGrid* grid = f.any.vector->grid()) return py::make_tuple(grid->min_magnitude(), grid->max_magnitude());
             return py::none();
           },
           "(least, most) of the values; of a vector grid of their lengths; None for a vector formula.")

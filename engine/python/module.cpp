@@ -5,46 +5,46 @@
 
 #include "engine/base/version.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/scene_object.h"
+#include "engine/scene/scene_from_object.h"
 
 namespace catena::python {
 
-std::string path_of(const py::object& path) { return py::cast<std::string>(py::module_::import("os").attr("fsencode")(path)); }
+std::string to_path(const py::object& path) { return py::cast<std::string>(py::module_::import("os").attr("fsencode")(path)); }
 
-Numbers numbers_of(const py::object& array, const std::string& what) {
+NumberArray to_numbers(const py::object& array, const std::string& what) {
   const py::array any = py::array::ensure(array);
   if (any && std::string_view("biuf").find(any.dtype().kind()) != std::string_view::npos)
-    if (Numbers numbers = Numbers::ensure(any)) return numbers;
+    if (NumberArray numbers = NumberArray::ensure(any)) return numbers;
   PyErr_Clear();
   throw Failure(
       Error{what + (any ? ": holds " + py::cast<std::string>(py::str(any.dtype())) : ": is no array") + "; real numbers were expected"});
 }
 
-std::string shape_of(const py::array& array) { return py::cast<std::string>(py::str(array.attr("shape"))); }
+std::string format_shape(const py::array& array) { return py::cast<std::string>(py::str(array.attr("shape"))); }
 
-Numbers rows_of(const Points& points, const std::string& what) {
-  Numbers array = numbers_of(points, what);
+NumberArray to_rows(const Points& points, const std::string& what) {
+  NumberArray array = to_numbers(points, what);
   const bool one = array.ndim() == 1 && array.shape(0) == 3;
   if (!one && !(array.ndim() == 2 && array.shape(1) == 3))
-    throw Failure(Error{what + " has the shape " + shape_of(array) + "; (N, 3) or (3,) was expected"});
+    throw Failure(Error{what + " has the shape " + format_shape(array) + "; (N, 3) or (3,) was expected"});
   return array;
 }
 
-std::vector<Vec3> points_of(const Points& given, const std::string& what) {
-  const Numbers array = rows_of(given, what);
+std::vector<Vec3> to_points(const Points& given, const std::string& what) {
+  const NumberArray array = to_rows(given, what);
   std::vector<Vec3> points(static_cast<std::size_t>(array.size() / 3));
   const double* from = array.data();
   for (Vec3& p : points) p = {from[0], from[1], from[2]}, from += 3;
   return points;
 }
 
-Vec3 vec3_of(const Points& array, const std::string& what) {
-  const std::vector<Vec3> points = points_of(array, what);
+Vec3 to_vec3(const Points& array, const std::string& what) {
+  const std::vector<Vec3> points = to_points(array, what);
   if (points.size() != 1) throw Failure(Error{what + " is several points; one, (3,), was expected"});
   return points[0];
 }
 
-py::array_t<double> array_of(const std::vector<Vec3>& points) {
+py::array_t<double> to_array(const std::vector<Vec3>& points) {
   py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t(3)});
   double* to = array.mutable_data();
   for (const Vec3& p : points)
@@ -52,29 +52,29 @@ py::array_t<double> array_of(const std::vector<Vec3>& points) {
   return array;
 }
 
-scene::Scene scene_of(const py::object& what, const py::object& fields) {
+scene::Scene to_scene(const py::object& what, const py::object& fields) {
   std::vector<scene::FieldOverride> given;
   for (const auto& [key, value] : fields.is_none() ? py::dict() : py::dict(fields)) {
     if (!py::isinstance<py::str>(key)) throw Failure(Error{"fields: " + py::cast<std::string>(py::repr(key)) + " is no name"});
     const std::string name = py::cast<std::string>(key);
-    given.push_back({name, {}, {}, field_of(value, name).any});
+    given.push_back({name, {}, {}, to_field(value, name).any});
   }
   if (py::isinstance<Field>(what) || py::isinstance<py::array>(what)) {
     if (!given.empty()) throw Failure(Error{"a field alone has no use for others; a scene was expected with them"});
-    const Field field = field_of(what, "field");
+    const Field field = to_field(what, "field");
     const py::gil_scoped_release unlocked;
-    return take(scene::scene_for_field(field.any));
+    return unwrap(scene::scene_for_field(field.any));
   }
   if (py::isinstance<py::dict>(what)) {
     const std::string text = py::cast<std::string>(py::module_::import("catena").attr("_text_of_scene")(what));
     const py::gil_scoped_release unlocked;
-    return take(scene::parse_scene_object(text, "scene", given));
+    return unwrap(scene::parse_scene_object(text, "scene", given));
   }
-  const std::string path = path_of(what);
+  const std::string path = to_path(what);
   const py::gil_scoped_release unlocked;
-  if (path.ends_with(".json")) return take(scene::read_scene(path, given));
+  if (path.ends_with(".json")) return unwrap(scene::read_scene(path, given));
   if (!given.empty()) throw Failure(Error{path + ": a data file has no use for other fields; a scene was expected with them"});
-  return take(scene::scene_for_file(path));
+  return unwrap(scene::scene_for_file(path));
 }
 
 }  // namespace catena::python
@@ -112,6 +112,6 @@ PYBIND11_MODULE(_catena, m) {
   catena::python::add_arrays(m);
   catena::python::add_curves(m);
   catena::python::add_chain(m);
-  catena::python::add_pictures(m);
+  catena::python::add_images(m);
   catena::python::add_tables(m);
 }

@@ -20,13 +20,13 @@ namespace py = pybind11;
 
 /// Becomes catena.Error, or catena.MachineError where the machine does not give what is needed.
 struct Failure : std::runtime_error {
-  explicit Failure(const Error& error) : std::runtime_error(error.message), message(error.message), machine(error.machine) {}
+  explicit Failure(const Error& error) : std::runtime_error(error.message), message(error.message), machine(error.system_failure) {}
   std::string message;  ///< what() ends at a zero byte
   bool machine;
 };
 
 template <class T>
-T take(Result<T> result) {
+T unwrap(Result<T> result) {
   if (!result) throw Failure(result.error());
   return std::move(*result);
 }
@@ -37,32 +37,32 @@ struct Field {
 };
 
 /// A path (str, bytes or os.PathLike) in the bytes of the file system.
-std::string path_of(const py::object& path);
+std::string to_path(const py::object& path);
 
 /// Real numbers of whatever shape; what holds none is an error that names `what`.
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-Numbers numbers_of(const py::object& array, const std::string& what);
+using NumberArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+NumberArray to_numbers(const py::object& array, const std::string& what);
 /// As NumPy writes it: "(2, 3)".
-std::string shape_of(const py::array& array);
-/// N x 3 of them, or three; another shape is an error. rows_of: without a copy where they are doubles in a row.
+std::string format_shape(const py::array& array);
+/// N x 3 of them, or three; another shape is an error. to_rows: without a copy where they are doubles in a row.
 using Points = py::object;
-Numbers rows_of(const Points& array, const std::string& what);
-std::vector<Vec3> points_of(const Points& array, const std::string& what);
-py::array_t<double> array_of(const std::vector<Vec3>& points);
-Vec3 vec3_of(const Points& array, const std::string& what);
+NumberArray to_rows(const Points& array, const std::string& what);
+std::vector<Vec3> to_points(const Points& array, const std::string& what);
+py::array_t<double> to_array(const std::vector<Vec3>& points);
+Vec3 to_vec3(const Points& array, const std::string& what);
 
 /// A Field, or what catena.field() makes one of: an array, masked or not, or a path.
-Field field_of(const py::handle& value, const std::string& name);
+Field to_field(const py::handle& value, const std::string& name);
 
 /// A scene of a path (a scene file or a data file), a dict as the scene file's object, a Field or an array. `fields`: names and what
 /// field_of() takes, which the scene uses, or None.
-scene::Scene scene_of(const py::object& what, const py::object& fields);
+scene::Scene to_scene(const py::object& what, const py::object& fields);
 
 void add_fields(py::module_& m);
 void add_arrays(py::module_& m);
 void add_curves(py::module_& m);
 void add_chain(py::module_& m);
-void add_pictures(py::module_& m);
+void add_images(py::module_& m);
 void add_tables(py::module_& m);
 
 }  // namespace catena::python

@@ -24,11 +24,11 @@ struct Recorded {
 };
 
 Recorded read_recording(const std::string& path) {
-  LogReader log = take(LogReader::open(path));
+  LogReader log = unwrap(LogReader::open(path));
   Recorded out;
   bool known = false;
   for (LogEvent event = log.next(); event != LogEvent::done; event = log.next()) {
-    if (event == LogEvent::gap) out.gaps.push_back(log.gap().text());
+    if (event == LogEvent::gap) out.gaps.push_back(log.gap().description());
     if (event == LogEvent::program) {
       const std::vector<std::string> links = log.program().link_names();
       if (known && links != out.links)
@@ -38,7 +38,7 @@ Recorded read_recording(const std::string& path) {
       known = true;
     }
     if (event != LogEvent::tick) continue;
-    const exchange::HapticState& state = log.tick().output;
+    const HapticState& state = log.tick().output;
     out.tick.push_back(state.tick);
     out.t.push_back(state.t_s);
     out.buttons.push_back(state.buttons);
@@ -49,10 +49,10 @@ Recorded read_recording(const std::string& path) {
     for (std::size_t i = 0; i < out.links.size(); ++i) {
       const bool there = i < static_cast<std::size_t>(state.link_count);
       out.proxies.push_back(there ? state.links[i].proxy : Vec3(0.0));
-      out.status.push_back(static_cast<std::uint8_t>(there ? state.links[i].status : exchange::Status::free));
+      out.status.push_back(static_cast<std::uint8_t>(there ? state.links[i].status : LinkStatus::free));
     }
   }
-  out.ending = log.ending();
+  out.ending = log.end_summary();
   out.device = log.header().device;
   out.version = log.header().catena_version;
   out.scene = log.header().scene_text;
@@ -74,10 +74,10 @@ py::dict recording(const std::string& path) {
   py::dict out;
   out["tick"] = column(r.tick);
   out["t"] = column(r.t);
-  out["probe"] = array_of(r.probe);
-  out["forces"] = array_of(r.force);
+  out["probe"] = to_array(r.probe);
+  out["forces"] = to_array(r.force);
   out["buttons"] = column(r.buttons);
-  out["proxies"] = array_of(r.proxies).reshape({n, links, py::ssize_t(3)});
+  out["proxies"] = to_array(r.proxies).reshape({n, links, py::ssize_t(3)});
   out["statuses"] = column(r.status).reshape({n, links});
   out["period_us"] = column(r.period_us);
   out["compute_us"] = column(r.compute_us);
@@ -91,36 +91,36 @@ py::dict recording(const std::string& path) {
 }
 
 template <class Member>
-py::list words(const std::vector<study::Row>& rows, Member member) {
+py::list words(const std::vector<study::TrialRow>& rows, Member member) {
   py::list out;
-  for (const study::Row& row : rows) out.append(row.*member);
+  for (const study::TrialRow& row : rows) out.append(row.*member);
   return out;
 }
 
 py::dict study_table(const std::string& folder) {
-  const study::TrialTable table = take(study::read_table(folder));
-  const std::vector<study::Row>& rows = table.rows;
+  const study::TrialTable table = unwrap(study::read_trial_table(folder));
+  const std::vector<study::TrialRow>& rows = table.rows;
   const py::object array = py::module_::import("numpy").attr("array");
   py::dict out;
   const auto add = [&](const char* name, const py::list& values, const char* type) { out[name] = array(values, py::arg("dtype") = type); };
-  add("subject", words(rows, &study::Row::subject), "int64");
-  add("index", words(rows, &study::Row::index), "int64");
-  add("block", words(rows, &study::Row::block), "int64");
-  add("task", words(rows, &study::Row::task), "str");
-  add("kind", words(rows, &study::Row::kind), "str");
-  add("dimensions", words(rows, &study::Row::dimensions), "int64");
-  add("condition", words(rows, &study::Row::condition), "str");
-  add("stimulus", words(rows, &study::Row::stimulus), "int64");
-  add("seed", words(rows, &study::Row::seed), "int64");
-  add("training", words(rows, &study::Row::training), "bool");
-  add("by_target", words(rows, &study::Row::by_target), "bool");
-  add("time_s", words(rows, &study::Row::time_s), "float64");
-  add("error_mm", words(rows, &study::Row::error_mm), "float64");
-  add("travelled_mm", words(rows, &study::Row::travelled_mm), "float64");
-  add("peak_force_n", words(rows, &study::Row::peak_force_n), "float64");
+  add("subject", words(rows, &study::TrialRow::subject), "int64");
+  add("index", words(rows, &study::TrialRow::index), "int64");
+  add("block", words(rows, &study::TrialRow::block), "int64");
+  add("task", words(rows, &study::TrialRow::task), "str");
+  add("kind", words(rows, &study::TrialRow::kind), "str");
+  add("dimensions", words(rows, &study::TrialRow::dimensions), "int64");
+  add("condition", words(rows, &study::TrialRow::condition), "str");
+  add("stimulus", words(rows, &study::TrialRow::stimulus), "int64");
+  add("seed", words(rows, &study::TrialRow::seed), "int64");
+  add("training", words(rows, &study::TrialRow::training), "bool");
+  add("by_target", words(rows, &study::TrialRow::reached_target), "bool");
+  add("time_s", words(rows, &study::TrialRow::time_s), "float64");
+  add("error_mm", words(rows, &study::TrialRow::error_mm), "float64");
+  add("travelled_mm", words(rows, &study::TrialRow::traveled_mm), "float64");
+  add("peak_force_n", words(rows, &study::TrialRow::peak_force_n), "float64");
   std::vector<Vec3> ends;
-  for (const study::Row& row : rows) ends.push_back(row.end_mm);
-  out["end_mm"] = array_of(ends);
+  for (const study::TrialRow& row : rows) ends.push_back(row.end_mm);
+  out["end_mm"] = to_array(ends);
   out["simulated"] = study::is_simulated(folder);
   out["notes"] = table.notes;
   return out;

@@ -11,35 +11,35 @@
 namespace catena::scene {
 
 /// Where a scalar bar stands.
-enum class PictureSide { right, left, bottom, top };
+enum class ImageSide { right, left, bottom, top };
 /// Where the orientation marker stands.
-enum class PictureCorner { bottom_left, bottom_right, top_left, top_right };
+enum class ImageCorner { bottom_left, bottom_right, top_left, top_right };
 
 /// The colours of a volume or of a coloured streamline set, with their values.
 struct ScalarBar {
-  Entity shown;                           ///< owns a Volume, a StreamlineSet with colours, ...
-  json::Node where;                       ///< its place in the scene file, for messages
-  std::optional<std::string> title;       ///< none: the name of what is shown
-  PictureSide side = PictureSide::right;  ///< where it stands
-  int ticks = 5;                          ///< about so many
-  std::string format;                     ///< of the values, "%.2f"; empty: as few digits as the ticks need
+  Entity target;                      ///< owns a Volume, a StreamlineSet with colours, ...
+  json::Node where;                   ///< its place in the scene file, for messages
+  std::optional<std::string> title;   ///< none: the name of what is shown
+  ImageSide side = ImageSide::right;  ///< where it stands
+  int ticks = 5;                      ///< about so many
+  std::string format;                 ///< of the values, "%.2f"; empty: as few digits as the ticks need
 };
 
 /// Text at a place of the world.
 struct Label {
-  Vec3 at{0.0};                ///< world units
-  std::string text;            ///< UTF-8; '\n' ends a line
-  std::optional<Color> color;  ///< none: readable over the background
-  double size_pt = 12;         ///< points of a picture (kPicturePoints, render/frame/overlay_items.h)
-  bool dot = true;             ///< a small dot at the place
-  bool hidden_behind = false;  ///< left out where an opaque surface stands before it
+  Vec3 position{0.0};               ///< world units
+  std::string text;                 ///< UTF-8; '\n' ends a line
+  std::optional<Color> color;       ///< none: readable over the background
+  double size_pt = 12;              ///< points of a picture (kImagePoints, render/frame/overlay_items.h)
+  bool show_dot = true;             ///< a small dot at the place
+  bool hide_when_occluded = false;  ///< left out where an opaque surface stands before it
 };
 
 /// The world's axes as the camera sees them, in a corner.
 struct OrientationMarker {
-  PictureCorner corner = PictureCorner::bottom_left;  ///< which corner
-  double size_pt = 84;                                ///< edge of its square, points
-  std::array<std::string, 3> names{"X", "Y", "Z"};    ///< at the ends of the arrows
+  ImageCorner corner = ImageCorner::bottom_left;    ///< which corner
+  double size_pt = 84;                              ///< edge of its square, points
+  std::array<std::string, 3> names{"X", "Y", "Z"};  ///< at the ends of the arrows
 };
 
 /// All that is written over the picture.
@@ -48,7 +48,7 @@ struct Annotations {
   std::vector<Label> labels;                            ///< texts at places
   std::string title;                                    ///< at the top of the picture; empty: none
   std::optional<OrientationMarker> orientation_marker;  ///< none: not drawn
-  bool status = false;                                  ///< what is felt, in words
+  bool show_status = false;                             ///< what is felt, in words
   // of all text
   std::string font = "DejaVu Sans";  ///< a family; the nearest that is installed is taken
   double scale = 1;                  ///< of all text
@@ -56,6 +56,6 @@ struct Annotations {
 };
 
 /// A bar for the first thing in the scene that has colours; nothing where there is none.
-std::optional<ScalarBar> first_scalar_bar(const World& world);
+std::optional<ScalarBar> first_scalar_bar(const EntityStore& world);
 
 }  // namespace catena::scene

@@ -10,8 +10,8 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
+#include "engine/base/symlog_scale.h"
 #include "engine/base/text.h"
-#include "engine/base/value_scale.h"
 
 namespace catena::scene {
 namespace {
@@ -69,7 +69,7 @@ std::vector<ColorPoint> cool_warm() {
   std::vector<ColorPoint> points;
   for (int i = 0; i <= kCoolWarmSteps; ++i) {
     const double t = static_cast<double>(i) / kCoolWarmSteps;
-    const Vec3 c = between_colors(ColorSpace::diverging, cool, warm, t);
+    const Vec3 c = interpolate_colors(ColorSpace::diverging, cool, warm, t);
     points.push_back({t, {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}});
   }
   return points;
@@ -112,12 +112,12 @@ const std::vector<std::string_view>& color_map_names() {
 
 bool is_color_map(std::string_view name) { return find_map(name) != nullptr; }
 
-std::string not_a_color_map(std::string_view name) {
-  return in_quotes(name) + " is no colour map; one of " + joined(color_map_names()) + ", or one of them with \"_r\", was expected" +
+std::string unknown_color_map_message(std::string_view name) {
+  return in_quotes(name) + " is no colour map; one of " + join_words(color_map_names()) + ", or one of them with \"_r\", was expected" +
          suggestion(name, color_map_names());
 }
 
-std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi, double linear_below) {
+std::vector<ColorPoint> make_color_map(std::string_view name, double lo, double hi, double linear_below) {
   const ColorMap* map = find_map(name);
   CATENA_ASSERT(map != nullptr && std::isfinite(lo) && std::isfinite(hi));
   if (!(lo < hi)) return {{lo, middle_of(map->points)}};
@@ -126,7 +126,7 @@ std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi, d
   const std::size_t count = map->points.size();
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const ColorPoint& point = map->points[reversed ? count - 1 - i : i];
-    const double t = reversed ? 1 - point.value : point.value, value = value_between(lo, hi, i == 0 ? 0 : t, linear_below);
+    const double t = reversed ? 1 - point.value : point.value, value = symlog_interpolate(lo, hi, i == 0 ? 0 : t, linear_below);
     // in a range of a few bits neighbours fall together
     if (i == 0 || (value > points.back().value && value < hi)) points.push_back({value, point.color});
   }
@@ -157,39 +157,40 @@ double linear_below(const TransferFunction& transfer) {
   return lo <= hi ? linear_below(transfer.named.mapping, lo, hi) : 0;
 }
 
-std::string mapping_problem(const ValueMapping& mapping, double lo, const std::string& what) {
+std::string mapping_error(const ValueMapping& mapping, double lo, const std::string& what) {
   if (mapping.kind != ValueMapping::Kind::log || lo > 0) return {};
   return "\"mapping\" is \"log\", but " + what + " begins at " + to_text(lo) +
          "; values above 0, or \"symlog\", which shows 0 and both signs, were expected";
 }
 
 Outcome check_mapping(const json::Node& item, const ValueMapping& mapping, double lo) {
-  const std::string problem = mapping_problem(mapping, lo, "the range of the values");
-  return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or(item, "mapping"), problem + " (\"range\" states others)");
+  const std::string problem = mapping_error(mapping, lo, "the range of the values");
+  return problem.empty() ? Outcome(Done{})
+                         : json::error_at(json::member_or_parent(item, "mapping"), problem + " (\"range\" states others)");
 }
 
 Outcome check_mapping(const ColorBy& by, double lo) {
   return by.colors.empty() && !by.named.range ? check_mapping(by.where, by.named.mapping, lo) : Outcome(Done{});
 }
 
-std::vector<ColorPoint> color_points(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
-                                     std::string_view fallback) {
+std::vector<ColorPoint> make_color_points(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                          std::string_view fallback) {
   if (!table.empty()) return table;
   const std::string_view name = named.map.empty() ? fallback : std::string_view(named.map);
   if (named.range) std::tie(lo, hi) = std::pair((*named.range)[0], (*named.range)[1]);
   if (!(lo <= hi)) lo = 0, hi = 1;
-  return named_map(name, lo, hi, linear_below(named.mapping, lo, hi));
+  return make_color_map(name, lo, hi, linear_below(named.mapping, lo, hi));
 }
 
-std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
-                                    std::string_view fallback) {
+std::vector<ColorPoint> make_color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                         std::string_view fallback) {
   constexpr double kOff = 1.0 / 2048;
-  std::vector<ColorPoint> points = color_points(table, named, lo, hi, fallback);
+  std::vector<ColorPoint> points = make_color_points(table, named, lo, hi, fallback);
   if (named.mapping.kind == ValueMapping::Kind::linear) return points;
   std::vector<std::array<double, 4>> rows;
   for (const ColorPoint& p : points) rows.push_back({p.value, p.color.r, p.color.g, p.color.b});
   points.clear();
-  for (const auto& row : refined(rows, linear_below(named.mapping, rows.front()[0], rows.back()[0]), kOff))
+  for (const auto& row : refine_for_symlog(rows, linear_below(named.mapping, rows.front()[0], rows.back()[0]), kOff))
     points.push_back({row[0], {static_cast<float>(row[1]), static_cast<float>(row[2]), static_cast<float>(row[3])}});
   return points;
 }
@@ -285,7 +286,7 @@ Vec3 lab_from_msh(const Vec3& msh) {
   return {msh.x * std::cos(msh.y), msh.x * std::sin(msh.y) * std::cos(msh.z), msh.x * std::sin(msh.y) * std::sin(msh.z)};
 }
 
-Vec3 between_colors(ColorSpace space, const Vec3& a, const Vec3& b, double t) {
+Vec3 interpolate_colors(ColorSpace space, const Vec3& a, const Vec3& b, double t) {
   switch (space) {
     case ColorSpace::rgb:
       return a + t * (b - a);

@@ -18,32 +18,32 @@ namespace catena::scene {
 
 using ColorPoint = TransferFunction::ColorPoint;
 
-inline constexpr std::string_view kDefaultLineMap = "viridis";
-inline constexpr std::string_view kDefaultVolumeMap = "dusk";
+inline constexpr std::string_view kDefaultLineColorMap = "viridis";
+inline constexpr std::string_view kDefaultVolumeColorMap = "dusk";
 
 /// Without the reversed ones.
 const std::vector<std::string_view>& color_map_names();
 bool is_color_map(std::string_view name);
 /// For messages: `"virids" is no colour map; one of viridis, ..., or one of them with "_r", was expected (did you mean ...?)`.
-std::string not_a_color_map(std::string_view name);
+std::string unknown_color_map_message(std::string_view name);
 
 /// The map from lo to hi, even on the scale of `linear_below`, values rising strictly, colours as they are at both ends; its middle colour
 /// alone where lo is not below hi. The name must be one (is_color_map); lo and hi finite.
-std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi, double linear_below = 0);
+std::vector<ColorPoint> make_color_map(std::string_view name, double lo, double hi, double linear_below = 0);
 
 /// Whether a map can lie between them: fields hold floats, so they are two rising floats.
 bool is_color_range(double lo, double hi);
 
 /// The words of ValueMapping::Kind, in its order.
-inline constexpr std::string_view kMappingWords[] = {"linear", "log", "symlog"};
-inline std::string_view word_of(ValueMapping::Kind kind) { return kMappingWords[static_cast<int>(kind)]; }
+inline constexpr std::string_view kMappingNames[] = {"linear", "log", "symlog"};
+inline std::string_view to_string(ValueMapping::Kind kind) { return kMappingNames[static_cast<int>(kind)]; }
 
-/// `linear_below` of engine/base/value_scale.h, of values shown from lo to hi: 0 of a linear mapping, lo of a logarithmic one.
+/// `linear_below` of engine/base/symlog_scale.h, of values shown from lo to hi: 0 of a linear mapping, lo of a logarithmic one.
 double linear_below(const ValueMapping& mapping, double lo, double hi);
 /// The same of a transfer function with its colours, by all of its points.
 double linear_below(const TransferFunction& transfer);
 /// Why the mapping cannot show values from lo to hi, for messages; empty: it can. `what` these are called.
-std::string mapping_problem(const ValueMapping& mapping, double lo, const std::string& what);
+std::string mapping_error(const ValueMapping& mapping, double lo, const std::string& what);
 /// The same of the values of the data, from `lo` on, as an error of the item that states the mapping.
 Outcome check_mapping(const json::Node& item, const ValueMapping& mapping, double lo);
 /// Of values from `lo` on that are shown by `by`, unless it says its own range.
@@ -51,11 +51,11 @@ Outcome check_mapping(const ColorBy& by, double lo);
 
 /// What shows values that reach from lo to hi: the table if there is one, else the map, or `fallback`, over its range or lo..hi. Between
 /// its points it is linear on the scale of its mapping.
-std::vector<ColorPoint> color_points(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
-                                     std::string_view fallback = kDefaultLineMap);
+std::vector<ColorPoint> make_color_points(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                          std::string_view fallback = kDefaultLineColorMap);
 /// The same with more points, so that it is linear between them in the value: to 1/2048.
-std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
-                                    std::string_view fallback = kDefaultLineMap);
+std::vector<ColorPoint> make_color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                         std::string_view fallback = kDefaultLineColorMap);
 
 /// Colours between two colours, each in the space that its author chose. Components are display (sRGB) values, 0 to 1.
 ///   rgb        the components themselves
@@ -70,7 +70,7 @@ std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const 
 enum class ColorSpace { rgb, hsv, hsv_wrap, lab, diverging };
 
 /// The colour at t, 0 (a) to 1 (b); components within 0..1.
-Vec3 between_colors(ColorSpace space, const Vec3& a, const Vec3& b, double t);
+Vec3 interpolate_colors(ColorSpace space, const Vec3& a, const Vec3& b, double t);
 
 Vec3 lab_from_srgb(const Vec3& rgb);
 Vec3 srgb_from_lab(const Vec3& lab);

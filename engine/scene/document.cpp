@@ -5,8 +5,8 @@
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
-#include "engine/scene/bare_file.h"
-#include "engine/scene/named_files.h"
+#include "engine/scene/default_scene.h"
+#include "engine/scene/referenced_files.h"
 
 namespace catena::scene {
 
@@ -18,20 +18,20 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   if (path.ends_with(".json")) {
     if (!colors.is_default()) return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
     if (!grid.empty()) return Error{one_line(path + ": a scene names its grids; a data file was expected beside the name of a grid")};
-    CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)", kMaxJsonBytes));
+    CATENA_TRY(document.saved_, read_text_file(path, "a scene file (JSON)", kMaxJsonBytes));
   } else {
     if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};
-    CATENA_TRY(BareFile bare, describe_bare_file(path, grid, colors));
+    CATENA_TRY(DefaultScene bare, make_default_scene(path, grid, colors));
     document.path_ = bare.scene_path;
     document.saved_ = bare.text;
-    document.loaded_ = std::make_shared<const BareFile>(std::move(bare));
+    document.loaded_ = std::make_shared<const DefaultScene>(std::move(bare));
   }
   document.versions_.push_back({document.saved_, {}, {}});
   CATENA_CHECK(parse_scene(document.saved_, document.path_, overrides));
   return document;
 }
 
-Result<Document> Document::make(const std::string& text, const std::string& path) {
+Result<Document> Document::create(const std::string& text, const std::string& path) {
   CATENA_CHECK(parse_scene(text, path));
   Document document;
   document.path_ = path;
@@ -42,7 +42,7 @@ Result<Document> Document::make(const std::string& text, const std::string& path
 
 Result<Scene> Document::read() const {
   CATENA_TRY(Scene scene, parse_scene(text(), path_, overrides_));
-  if (const auto loaded = std::exchange(loaded_, nullptr)) adopt_loaded(*loaded, scene);
+  if (const auto loaded = std::exchange(loaded_, nullptr)) adopt_loaded_data(*loaded, scene);
   return scene;
 }
 
@@ -54,7 +54,7 @@ Outcome Document::set(std::string_view pointer, const std::string& value, const 
 
 Outcome Document::remove(std::string_view pointer, const std::string& what) {
   CATENA_TRY(std::string edited, json::remove_value(text(), path_, pointer));
-  return push(std::move(edited), what, {});
+  return push_version(std::move(edited), what, {});
 }
 
 Outcome Document::apply(const std::vector<Edit>& edits, const std::string& what, const std::string& drag) {
@@ -68,25 +68,25 @@ Outcome Document::apply(const std::vector<Edit>& edits, const std::string& what,
       CATENA_TRY(edited, json::remove_value(edited, path_, edit.pointer));
     }
   }
-  return push(std::move(edited), what, drag);
+  return push_version(std::move(edited), what, drag);
 }
 
-Outcome Document::push(std::string edited, const std::string& what, const std::string& drag) {
+Outcome Document::push_version(std::string edited, const std::string& what, const std::string& drag) {
   if (edited == text()) return Done{};
   CATENA_CHECK(parse_scene(edited, path_, overrides_));
-  versions_.resize(now_ + 1);
-  if (now_ > 0 && !drag.empty() && versions_[now_].drag == drag) {
-    versions_[now_].text = std::move(edited);
+  versions_.resize(current_ + 1);
+  if (current_ > 0 && !drag.empty() && versions_[current_].drag == drag) {
+    versions_[current_].text = std::move(edited);
   } else {
     versions_.push_back({std::move(edited), what, drag});
-    ++now_;
+    ++current_;
   }
   // the oldest steps go
   std::size_t bytes = 0, kept = 0;
-  while (kept <= now_ && kept <= kMaxSteps && (kept == 0 || bytes + versions_[now_ - kept].text.size() <= kMaxBytes))
-    bytes += versions_[now_ - kept++].text.size();
+  while (kept <= current_ && kept <= kMaxUndoSteps && (kept == 0 || bytes + versions_[current_ - kept].text.size() <= kMaxHistoryBytes))
+    bytes += versions_[current_ - kept++].text.size();
   versions_.erase(versions_.begin(), versions_.end() - static_cast<std::ptrdiff_t>(kept));
-  now_ = versions_.size() - 1;
+  current_ = versions_.size() - 1;
   return Done{};
 }
 
@@ -94,55 +94,55 @@ namespace {
 const std::string kNothing;
 }
 
-const std::string& Document::undo_what() const { return can_undo() ? versions_[now_].what : kNothing; }
-const std::string& Document::redo_what() const { return can_redo() ? versions_[now_ + 1].what : kNothing; }
+const std::string& Document::undo_label() const { return can_undo() ? versions_[current_].label : kNothing; }
+const std::string& Document::redo_label() const { return can_redo() ? versions_[current_ + 1].label : kNothing; }
 void Document::undo() {
-  if (can_undo()) --now_;
+  if (can_undo()) --current_;
 }
 void Document::redo() {
-  if (can_redo()) ++now_;
+  if (can_redo()) ++current_;
 }
 
 // ---- to and from the disk ----
 
-Document::OnDisk Document::on_disk() const {
+Document::DiskState Document::disk_state() const {
   std::error_code code;
   const auto status = std::filesystem::status(path_, code);
-  if (status.type() == std::filesystem::file_type::not_found) return OnDisk::gone;
-  const auto there = read_text(path_, "a scene file (JSON)", kMaxJsonBytes);
-  if (!there) return OnDisk::no_file;
-  return *there == saved_ ? OnDisk::as_known : OnDisk::changed;
+  if (status.type() == std::filesystem::file_type::not_found) return DiskState::missing;
+  const auto there = read_text_file(path_, "a scene file (JSON)", kMaxJsonBytes);
+  if (!there) return DiskState::not_a_file;
+  return *there == saved_ ? DiskState::unchanged : DiskState::changed;
 }
 
-Outcome Document::take_from_disk() {
-  CATENA_TRY(std::string theirs, read_text(path_, "a scene file (JSON)", kMaxJsonBytes));
-  CATENA_CHECK(push(theirs, "the text of the file", {}));
+Outcome Document::reload_from_disk() {
+  CATENA_TRY(std::string theirs, read_text_file(path_, "a scene file (JSON)", kMaxJsonBytes));
+  CATENA_CHECK(push_version(theirs, "the text of the file", {}));
   saved_ = std::move(theirs);
   return Done{};
 }
 
-Result<std::string> Document::whole_text() const { return moved_text(text(), path_, path_, overrides_); }
+Result<std::string> Document::text_with_overrides() const { return relocate_text(text(), path_, path_, overrides_); }
 
 Outcome Document::save(const std::string& path) {
   if (!path.ends_with(".json")) return Error{one_line(path + ": a scene is written to a .json file; such a name was expected")};
-  CATENA_TRY(const std::vector<std::string> inputs, files_of(text(), path_, overrides_));
+  CATENA_TRY(const std::vector<std::string> inputs, referenced_files(text(), path_, overrides_));
   CATENA_CHECK(check_output(path, inputs));
   std::vector<std::string> texts;
   for (const Version& version : versions_) {
-    CATENA_TRY(std::string moved, moved_text(version.text, path_, path, overrides_));
+    CATENA_TRY(std::string moved, relocate_text(version.text, path_, path, overrides_));
     texts.push_back(std::move(moved));
   }
-  CATENA_CHECK(parse_scene(texts[now_], path));
+  CATENA_CHECK(parse_scene(texts[current_], path));
 
   CATENA_TRY(OutputFile file, OutputFile::open(path));
-  file.write(texts[now_]);
+  file.write(texts[current_]);
   file.sync();
   CATENA_CHECK(file.commit());
   for (std::size_t i = 0; i < versions_.size(); ++i) versions_[i].text = std::move(texts[i]);
   saved_ = text();
   path_ = path;
   overrides_.clear();
-  versions_[now_].drag.clear();
+  versions_[current_].drag.clear();
   return Done{};
 }
 

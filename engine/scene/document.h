@@ -12,12 +12,12 @@
 
 namespace catena::scene {
 
-struct BareFile;
+struct DefaultScene;
 
 class Document {
  public:
   /// The history that is kept: so many steps, so much text; the oldest steps go first, the text as it is now never.
-  static constexpr std::size_t kMaxSteps = 1000, kMaxBytes = std::size_t{64} << 20;
+  static constexpr std::size_t kMaxUndoSteps = 1000, kMaxHistoryBytes = std::size_t{64} << 20;
 
   /// A scene file as it is; for a data file a new scene that shows it as scene_for_file does, of its field `grid` (empty: the one that is
   /// looked at first), `colors` included (both go with data files only, overrides with scene files only).
@@ -25,24 +25,24 @@ class Document {
                                const std::string& grid = {});
 
   /// A scene that is nowhere yet; `path`: where save() without one would put it.
-  static Result<Document> make(const std::string& text, const std::string& path);
+  static Result<Document> create(const std::string& text, const std::string& path);
 
-  const std::string& text() const { return versions_[now_].text; }
+  const std::string& text() const { return versions_[current_].text; }
   /// The scene file; of a data file's scene: where save() without a path would put it (FILE.json beside it).
   const std::string& path() const { return path_; }
   /// The text is another than the one that was opened or saved last.
   bool is_modified() const { return text() != saved_; }
 
   /// What is at path() now, against the text that was opened or saved last: somebody else may have written or removed it meanwhile.
-  enum class OnDisk {
-    as_known,
-    changed,  ///< another text
-    gone,     ///< nothing is there
-    no_file   ///< a folder, or what cannot be read
+  enum class DiskState {
+    unchanged,
+    changed,    ///< another text
+    missing,    ///< nothing is there
+    not_a_file  ///< a folder, or what cannot be read
   };
-  OnDisk on_disk() const;
+  DiskState disk_state() const;
   /// The text at path() in place of this one, as one step of undo; nothing is modified then. An error (all stays) where it is no scene.
-  Outcome take_from_disk();
+  Outcome reload_from_disk();
 
   /// The scene of the text, as read_scene reads it. The first one of a data file has it loaded already.
   Result<Scene> read() const;
@@ -61,17 +61,17 @@ class Document {
   };
   Outcome apply(const std::vector<Edit>& edits, const std::string& what, const std::string& drag = {});
 
-  bool can_undo() const { return now_ > 0; }
-  bool can_redo() const { return now_ + 1 < versions_.size(); }
-  const std::string& undo_what() const;  ///< of the step that undo() takes back; empty where there is none
-  const std::string& redo_what() const;
+  bool can_undo() const { return current_ > 0; }
+  bool can_redo() const { return current_ + 1 < versions_.size(); }
+  const std::string& undo_label() const;  ///< of the step that undo() takes back; empty where there is none
+  const std::string& redo_label() const;
   void undo();
   void redo();
 
   /// The text with the overrides as part of it: what a file at path() has to say for this scene.
-  Result<std::string> whole_text() const;
+  Result<std::string> text_with_overrides() const;
   /// Another text in its place, as one step of undo. An error (all stays) where it is no scene.
-  Outcome replace(const std::string& text, const std::string& what) { return push(text, what, {}); }
+  Outcome replace(const std::string& text, const std::string& what) { return push_version(text, what, {}); }
 
   /// Writes the text, byte for byte, to a .json file: whole or not at all. In another folder than before, relative names of files are
   /// rewritten so that they name the same ones. Overrides become part of the text: their file, the grid that they name, and what of the
@@ -82,15 +82,15 @@ class Document {
 
  private:
   struct Version {
-    std::string text, what, drag;
+    std::string text, label, drag;
   };
-  Outcome push(std::string text, const std::string& what, const std::string& drag);
+  Outcome push_version(std::string text, const std::string& what, const std::string& drag);
 
   std::string path_, saved_;
   std::vector<FieldOverride> overrides_;
   std::vector<Version> versions_;
-  std::size_t now_ = 0;
-  mutable std::shared_ptr<const BareFile> loaded_;  ///< for the first read() of a data file
+  std::size_t current_ = 0;
+  mutable std::shared_ptr<const DefaultScene> loaded_;  ///< for the first read() of a data file
 };
 
 /// What `old` has loaded or made and `fresh` describes alike goes over, so that a scene that was read again loads nothing twice: fields
@@ -98,6 +98,6 @@ class Document {
 /// what other rooms keep beside things whose description did not change. So does what happens: the cursor (but its size), the phase, and
 /// the widgets' states; a widget whose place in the text did not change, or is where the hand has put it, stays where it is, and one that
 /// was set elsewhere gets a higher revision. `old` is given up.
-void carry_over(Scene& old, Scene& fresh);
+void transfer_state(Scene& old, Scene& fresh);
 
 }  // namespace catena::scene

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "engine/base/name_order.h"
+#include "engine/base/natural_sort.h"
 
 namespace catena::scene {
 namespace {
@@ -35,7 +35,7 @@ std::optional<NameList> list_in(const std::string& name) {
 }
 
 std::vector<std::string> in_folder(std::vector<std::string> names, const fs::path& folder) {
-  sort_by_numbers(names);
+  natural_sort(names);
   for (std::string& one : names) one = (folder / one).string();
   return names;
 }
@@ -62,7 +62,7 @@ bool is_pattern(const std::string& path) {
   return (name.find('*') != std::string::npos || list_in(name)) && !fs::exists(path, code);
 }
 
-std::vector<std::string> files_of_pattern(const std::string& path) {
+std::vector<std::string> expand_pattern(const std::string& path) {
   const fs::path whole(path);
   const std::string name = whole.filename().string();
   if (const auto list = list_in(name)) {
@@ -88,11 +88,11 @@ std::vector<std::string> files_of_pattern(const std::string& path) {
 }
 
 std::string first_file(const std::string& path) {
-  const std::vector<std::string> files = is_pattern(path) ? files_of_pattern(path) : std::vector<std::string>();
+  const std::vector<std::string> files = is_pattern(path) ? expand_pattern(path) : std::vector<std::string>();
   return files.empty() ? path : files.front();
 }
 
-Result<std::string> pattern_of(std::vector<std::string> files) {
+Result<std::string> make_pattern(std::vector<std::string> files) {
   const auto spelt_once = [](const std::string& file) { return fs::path(file).lexically_normal().string(); };
   if (files.size() > 1) std::ranges::transform(files, files.begin(), spelt_once);
   std::ranges::sort(files);
@@ -113,8 +113,8 @@ Result<std::string> pattern_of(std::vector<std::string> files) {
     if (fs::is_directory(file, code))
       return Error{file + ": this is a folder, which goes alone; one folder, or files of one series, were expected"};
   }
-  if (!is_one_series(names)) {
-    const auto other = std::ranges::find_if(names, [&](const std::string& name) { return !is_one_series({names.front(), name}); });
+  if (!is_numbered_series(names)) {
+    const auto other = std::ranges::find_if(names, [&](const std::string& name) { return !is_numbered_series({names.front(), name}); });
     return Error{fmt::format("{} and {} are no series: files whose names differ in their numbers alone were expected, or one file",
                              names.front(), *other)};
   }
@@ -128,9 +128,9 @@ Result<std::string> pattern_of(std::vector<std::string> files) {
   const std::string& first = names.front();
   while (before > 0 && is_part(first[before - 1])) --before;
   while (after > 0 && is_digit(first[first.size() - after])) --after;
-  sort_by_numbers(names);
+  natural_sort(names);
   const std::string head = first.substr(0, before), tail = first.substr(first.size() - after);
-  if (const std::string star = (folder / (head + "*" + tail)).string(); files_of_pattern(star).size() == names.size()) return star;
+  if (const std::string star = (folder / (head + "*" + tail)).string(); expand_pattern(star).size() == names.size()) return star;
   std::vector<std::string> middles;
   for (const std::string& name : names) middles.push_back(name.substr(before, name.size() - before - after));
   if (std::ranges::any_of(middles, [](const std::string& m) { return m.find_first_of("{},") != std::string::npos; }))

@@ -11,10 +11,10 @@ namespace catena::scene {
 /// really called so is none.
 bool is_pattern(const std::string& path);
 /// The files that a pattern stands for, by the numbers in their names; empty: none.
-std::vector<std::string> files_of_pattern(const std::string& path);
+std::vector<std::string> expand_pattern(const std::string& path);
 /// The file that a name stands for: of a pattern its first one, or the pattern itself where there is none.
 std::string first_file(const std::string& path);
 /// The pattern that stands for these files and no others. Error: they are no series, in a sentence.
-Result<std::string> pattern_of(std::vector<std::string> files);
+Result<std::string> make_pattern(std::vector<std::string> files);
 
 }  // namespace catena::scene

@@ -4,7 +4,7 @@
 #pragma once
 #include <cstddef>
 
-#include "engine/geometry/color.h"
+#include "engine/base/color.h"
 
 namespace catena::scene {
 

@@ -9,7 +9,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/field/formats.h"
+#include "engine/io/volume/formats.h"
 
 namespace catena::scene {
 namespace {
@@ -143,7 +143,7 @@ std::string name_within(std::string_view name) {
     while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
     name = name.substr(0, end);
   }
-  return printable(name);
+  return sanitize_for_terminal(name);
 }
 
 Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
@@ -154,7 +154,7 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
   double brightest = 0;
   bool first = true;
   int number = 0;
-  text = without_bom(text);
+  text = strip_bom(text);
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view whole = text.substr(0, end);
@@ -169,13 +169,13 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
     }
     const Row row = columns ? row_of_columns(line, *columns) : row_of_words(line);
     const auto value = number_of(row.value);
-    if (!value || *value != std::nearbyint(*value) || std::fabs(*value) > kGreatestLabel)
+    if (!value || *value != std::nearbyint(*value) || std::fabs(*value) > kMaxLabelValue)
       return wrong("a row begins with " + in_quotes(row.value) + "; the whole number of a label, at most 16777216 in size, was expected");
     const std::string name = name_within(row.name);
     if (name.empty()) return wrong("label " + to_text(*value) + " has no name; a name after the number was expected");
     if (!known.insert(*value).second) continue;
-    if (table.size() >= kMostLabelRows)
-      return wrong("there are more than " + std::to_string(kMostLabelRows) + " labels; at most as many were expected");
+    if (table.size() >= kMaxLabelRows)
+      return wrong("there are more than " + std::to_string(kMaxLabelRows) + " labels; at most as many were expected");
     if (!row.color.empty()) {
       std::array<double, 4> color{double(table.size())};
       for (std::size_t i = 0; i < 3; ++i) {
@@ -194,16 +194,16 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
   const double scale = columns && brightest <= 1 ? 1 : 255;
   for (const auto& c : colors)
     table[static_cast<std::size_t>(c[0])].color = Color{float(c[1] / scale), float(c[2] / scale), float(c[3] / scale)};
-  std::sort(table.begin(), table.end(), [](const LabelName& a, const LabelName& b) { return a.value < b.value; });
+  std::sort(table.begin(), table.end(), [](const LabelRow& a, const LabelRow& b) { return a.value < b.value; });
   return table;
 }
 
 /// The colours of a .lut beside the table, where it has none.
 void add_lut(const std::string& path, LabelTable& table) {
-  if (std::any_of(table.begin(), table.end(), [](const LabelName& label) { return label.color.has_value(); })) return;
-  const auto bytes = read_text(std::filesystem::path(path).replace_extension(".lut").string(), "a table of colours", kLutBytes);
+  if (std::any_of(table.begin(), table.end(), [](const LabelRow& label) { return label.color.has_value(); })) return;
+  const auto bytes = read_text_file(std::filesystem::path(path).replace_extension(".lut").string(), "a table of colours", kLutBytes);
   if (!bytes || bytes->size() != kLutBytes) return;
-  for (LabelName& label : table) {
+  for (LabelRow& label : table) {
     if (label.value < 0 || label.value > 255) continue;
     const auto at = static_cast<std::size_t>(label.value);
     const auto part = [&](std::size_t i) { return float(static_cast<unsigned char>((*bytes)[i * 256 + at])) / 255; };
@@ -217,23 +217,23 @@ void add_lut(const std::string& path, LabelTable& table) {
 Result<LabelTable> parse_label_table(std::string_view text, const std::string& file) { return parse_lines(text, file); }
 
 Result<LabelTable> read_label_table(const std::string& path) {
-  CATENA_TRY(const std::string text, read_text(path, "a table of labels", kMaxTableBytes));
+  CATENA_TRY(const std::string text, read_text_file(path, "a table of labels", kMaxTableBytes));
   CATENA_TRY(LabelTable table, parse_lines(text, path));
   add_lut(path, table);
   return table;
 }
 
-std::string label_table_beside(const std::string& path) {
+std::string find_label_table(const std::string& path) {
   std::string stem = path;
   std::vector<std::string> stems{path};
   const auto shorten = [&](std::string_view ending) {
-    if (!has_ending(stem, ending)) return false;
+    if (!has_extension(stem, ending)) return false;
     stem.resize(stem.size() - ending.size());
     stems.push_back(stem);
     return true;
   };
   shorten(".gz");
-  const std::vector<std::string_view> endings = field::field_endings();
+  const std::vector<std::string_view> endings = field::field_extensions();
   (void)std::ranges::any_of(endings, shorten);
   for (const std::string& name : stems)
     for (const char* ending : {".txt", ".ctbl", ".label", ".csv", ".tsv", ".lut"}) {

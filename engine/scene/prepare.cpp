@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/scene/hidden.h"
-#include "engine/scene/lines.h"
+#include "engine/scene/streamlines.h"
+#include "engine/scene/visibility.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
@@ -12,7 +12,7 @@ namespace {
 
 /// The entities with a visible T; a copy, as components are added meanwhile.
 template <class T>
-std::vector<Entity> visible(const World& world) {
+std::vector<Entity> visible(const EntityStore& world) {
   std::vector<Entity> all;
   world.each<T>([&](Entity e, const T&) {
     if (!is_hidden(world, e)) all.push_back(e);
@@ -23,50 +23,50 @@ std::vector<Entity> visible(const World& world) {
 /// What rays meet: a field, and the field that colours it.
 template <class T>
 Outcome load_drawn(Scene& scene) {
-  for (const Entity e : visible<T>(scene.world)) {
-    const T& item = scene.world.get<T>(e);
-    CATENA_CHECK(use_drawn_field(scene, item.field, item.where));
-    if (item.color_by) CATENA_CHECK(use_drawn_field(scene, item.color_by->field, item.color_by->where));
+  for (const Entity e : visible<T>(scene.entities)) {
+    const T& item = scene.entities.get<T>(e);
+    CATENA_CHECK(resolve_rendered_field(scene, item.field, item.where));
+    if (item.color_by) CATENA_CHECK(resolve_rendered_field(scene, item.color_by->field, item.color_by->where));
   }
   return Done{};
 }
 
 Outcome load_meshes(Scene& scene) {
-  for (const Entity e : visible<SurfaceMesh>(scene.world)) {
-    const SurfaceMesh& surface = scene.world.get<SurfaceMesh>(e);
-    CATENA_CHECK(use_mesh(scene, surface.mesh));
-    if (surface.color_by) CATENA_CHECK(use_field(scene, surface.color_by->field, surface.where));
+  for (const Entity e : visible<SurfaceMesh>(scene.entities)) {
+    const SurfaceMesh& surface = scene.entities.get<SurfaceMesh>(e);
+    CATENA_CHECK(resolve_mesh(scene, surface.mesh));
+    if (surface.color_by) CATENA_CHECK(resolve_field(scene, surface.color_by->field, surface.where));
   }
   return Done{};
 }
 
-Outcome load_flows(Scene& scene, Streamlines streamlines) {
-  for (const Entity e : visible<StreamlineSet>(scene.world)) {
-    if (streamlines == Streamlines::traced && lines_version(scene, e) == 0) CATENA_CHECK(use_lines(scene, e));
-    const StreamlineSet& set = scene.world.get<StreamlineSet>(e);
-    if (set.color_by && set.color_by->what == ColorBy::What::field) CATENA_CHECK(use_field(scene, set.color_by->field, set.where));
+Outcome load_flows(Scene& scene, StreamlineTracing streamlines) {
+  for (const Entity e : visible<StreamlineSet>(scene.entities)) {
+    if (streamlines == StreamlineTracing::immediate && lines_version(scene, e) == 0) CATENA_CHECK(resolve_lines(scene, e));
+    const StreamlineSet& set = scene.entities.get<StreamlineSet>(e);
+    if (set.color_by && set.color_by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, set.color_by->field, set.where));
   }
-  for (const Entity e : visible<Indicator>(scene.world)) {
-    const Indicator& indicator = scene.world.get<Indicator>(e);
-    CATENA_CHECK(use_field(scene, indicator.field, indicator.where));
+  for (const Entity e : visible<Indicator>(scene.entities)) {
+    const Indicator& indicator = scene.entities.get<Indicator>(e);
+    CATENA_CHECK(resolve_field(scene, indicator.field, indicator.where));
   }
   return Done{};
 }
 
 /// The vectors, what colours them, and what they lie on, drawn or not.
 Outcome load_glyphs(Scene& scene) {
-  for (const Entity e : visible<GlyphSet>(scene.world)) {
-    const GlyphSet& set = scene.world.get<GlyphSet>(e);
-    CATENA_CHECK(use_field(scene, set.field, set.where));
-    if (set.color_by && set.color_by->what == ColorBy::What::field) CATENA_CHECK(use_field(scene, set.color_by->field, set.where));
-    if (set.on == GlyphSet::On::mesh) CATENA_CHECK(use_mesh(scene, set.base));
-    if (set.on == GlyphSet::On::slice) {
-      const Slice& slice = scene.world.get<Slice>(set.base);
-      CATENA_CHECK(use_drawn_field(scene, slice.shown.field, slice.where));
+  for (const Entity e : visible<GlyphSet>(scene.entities)) {
+    const GlyphSet& set = scene.entities.get<GlyphSet>(e);
+    CATENA_CHECK(resolve_field(scene, set.field, set.where));
+    if (set.color_by && set.color_by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, set.color_by->field, set.where));
+    if (set.support == GlyphSet::Support::mesh) CATENA_CHECK(resolve_mesh(scene, set.support_entity));
+    if (set.support == GlyphSet::Support::slice) {
+      const Slice& slice = scene.entities.get<Slice>(set.support_entity);
+      CATENA_CHECK(resolve_rendered_field(scene, slice.color_by.field, slice.where));
     }
-    if (set.on == GlyphSet::On::isosurface) {
-      const Isosurface& surface = scene.world.get<Isosurface>(set.base);
-      CATENA_CHECK(use_drawn_field(scene, surface.field, surface.where));
+    if (set.support == GlyphSet::Support::isosurface) {
+      const Isosurface& surface = scene.entities.get<Isosurface>(set.support_entity);
+      CATENA_CHECK(resolve_rendered_field(scene, surface.field, surface.where));
     }
   }
   return Done{};
@@ -75,54 +75,54 @@ Outcome load_glyphs(Scene& scene) {
 /// Of curves and points: what `use` loads of them, and the field that colours it.
 template <class T, class Use>
 Outcome load_files(Scene& scene, const Use& use) {
-  for (const Entity e : visible<T>(scene.world)) {
+  for (const Entity e : visible<T>(scene.entities)) {
     CATENA_CHECK(use(e));
-    const std::optional<ColorBy>& by = scene.world.get<T>(e).color_by;
-    if (by && by->what == ColorBy::What::field) CATENA_CHECK(use_field(scene, by->field, by->where));
+    const std::optional<ColorBy>& by = scene.entities.get<T>(e).color_by;
+    if (by && by->source == ColorBy::Source::field) CATENA_CHECK(resolve_field(scene, by->field, by->where));
   }
   return Done{};
 }
 
 }  // namespace
 
-Outcome prepare(Scene& scene, Streamlines streamlines) {
-  CATENA_CHECK(drive_widgets(scene));
+Outcome prepare(Scene& scene, StreamlineTracing streamlines) {
+  CATENA_CHECK(propagate_widgets(scene));
   CATENA_CHECK(load_drawn<Volume>(scene));
   CATENA_CHECK(load_drawn<Isosurface>(scene));
   CATENA_CHECK(load_meshes(scene));
-  for (const Entity e : visible<Slice>(scene.world)) {
-    const Slice& slice = scene.world.get<Slice>(e);
-    CATENA_CHECK(use_drawn_field(scene, slice.shown.field, slice.where));
+  for (const Entity e : visible<Slice>(scene.entities)) {
+    const Slice& slice = scene.entities.get<Slice>(e);
+    CATENA_CHECK(resolve_rendered_field(scene, slice.color_by.field, slice.where));
   }
   CATENA_CHECK(load_flows(scene, streamlines));
   CATENA_CHECK(load_glyphs(scene));
-  CATENA_CHECK(load_files<DrawnCurves>(scene, [&](Entity e) { return use_curves(scene, e); }));
-  CATENA_CHECK(load_files<DrawnPoints>(scene, [&](Entity e) { return use_points(scene, e); }));
+  CATENA_CHECK(load_files<CurvesSource>(scene, [&](Entity e) { return resolve_curves(scene, e); }));
+  CATENA_CHECK(load_files<PointsSource>(scene, [&](Entity e) { return resolve_points(scene, e); }));
   if (scene.bounding_box && scene.bounding_box->field)
-    CATENA_CHECK(use_drawn_field(scene, scene.bounding_box->field, scene.bounding_box->where));
-  if (scene.axes && scene.axes->field) CATENA_CHECK(use_drawn_field(scene, scene.axes->field, scene.axes->where));
+    CATENA_CHECK(resolve_rendered_field(scene, scene.bounding_box->field, scene.bounding_box->where));
+  if (scene.axes && scene.axes->field) CATENA_CHECK(resolve_rendered_field(scene, scene.axes->field, scene.axes->where));
   return Done{};
 }
 
-Bounds prepared_bounds(const Scene& scene) {
+Bounds scene_bounds(const Scene& scene) {
   Bounds bounds;
-  scene.world.each<FieldSource>([&](Entity, const FieldSource& source) {
-    for (const field::AnyField* field : {&source.loaded, &source.drawn})
-      if (field->get() != nullptr) bounds.add(field->get()->world_bounds());
+  scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) {
+    for (const field::AnyField* field : {&source.loaded, &source.rendered})
+      if (field->get() != nullptr) bounds.extend(field->get()->world_bounds());
   });
-  scene.world.each<MeshSource>([&](Entity, const MeshSource& source) {
+  scene.entities.each<MeshSource>([&](Entity, const MeshSource& source) {
     if (!source.loaded) return;
-    bounds.add(source.loaded->lowest());
-    bounds.add(source.loaded->highest());
+    bounds.extend(source.loaded->min_corner());
+    bounds.extend(source.loaded->max_corner());
   });
   const auto add_box = [&](Entity, const auto& source) {
     if (!source.loaded) return;
-    bounds.add(source.loaded->lowest);
-    bounds.add(source.loaded->highest);
+    bounds.extend(source.loaded->min_corner);
+    bounds.extend(source.loaded->max_corner);
   };
-  scene.world.each<DrawnCurves>(add_box);
-  scene.world.each<DrawnPoints>(add_box);
-  for (const Entity e : visible<StreamlineSet>(scene.world)) bounds.add(lines_bounds(scene, e));
+  scene.entities.each<CurvesSource>(add_box);
+  scene.entities.each<PointsSource>(add_box);
+  for (const Entity e : visible<StreamlineSet>(scene.entities)) bounds.extend(lines_bounds(scene, e));
   return bounds;
 }
 
@@ -138,57 +138,58 @@ bool is_sound(const widget::Report& report) {
 
 std::vector<Entity> all_widgets(const Scene& scene) {
   std::vector<Entity> all;
-  scene.world.each<Widget>([&](Entity e, const Widget&) { all.push_back(e); });
+  scene.entities.each<Widget>([&](Entity e, const Widget&) { all.push_back(e); });
   return all;
 }
 
 void drive_planes(Scene& scene, Entity entity, const widget::Pose& pose, WidgetChanges& changes) {
-  scene.world.each<Slice>([&](Entity, Slice& slice) {
+  scene.entities.each<Slice>([&](Entity, Slice& slice) {
     if (slice.widget != entity) return;
     slice.point = pose.points[0];
-    slice.normal = normal_of(pose);
+    slice.normal = plane_normal(pose);
     changes.slices = true;
   });
-  scene.world.each<GlyphSet>([&](Entity, GlyphSet& set) {
+  scene.entities.each<GlyphSet>([&](Entity, GlyphSet& set) {
     if (set.widget != entity) return;
     set.point = pose.points[0];
-    set.normal = normal_of(pose);
+    set.normal = plane_normal(pose);
     changes.slices = true;
   });
-  for (ClipPlane& plane : scene.clip)
+  for (ClipPlane& plane : scene.clip_planes)
     if (plane.widget == entity) {
-      plane = clip_of(pose, plane);
+      plane = make_clip_plane(pose, plane);
       changes.clip = true;
     }
 }
 
 void drive_seeds(Scene& scene, Entity entity, const Widget& widget, WidgetChanges& changes) {
-  scene.world.each<StreamlineSet>([&](Entity, StreamlineSet& set) {
+  scene.entities.each<StreamlineSet>([&](Entity, StreamlineSet& set) {
     if (set.seeds.widget != entity) return;
-    set.seeds.points = seeds_of(widget.spec.kind, widget.state.pose, set.seeds.count);
+    set.seeds.points = make_widget_seeds(widget.spec.kind, widget.report.pose, set.seeds.count);
     changes.seeds = true;
   });
 }
 
 /// It is drawn, or something that is drawn lies on it.
 bool is_shown(const Scene& scene, Entity surface) {
-  bool shown = !is_hidden(scene.world, surface);
-  scene.world.each<GlyphSet>([&](Entity e, const GlyphSet& set) { shown = shown || (set.base == surface && !is_hidden(scene.world, e)); });
+  bool shown = !is_hidden(scene.entities, surface);
+  scene.entities.each<GlyphSet>(
+      [&](Entity e, const GlyphSet& set) { shown = shown || (set.support_entity == surface && !is_hidden(scene.entities, e)); });
   return shown;
 }
 
-/// Levels of surfaces that nobody sees are left: their fields are not loaded for them.
+/// ResolutionLevels of surfaces that nobody sees are left: their fields are not loaded for them.
 Outcome drive_levels(Scene& scene, Entity entity, double value, WidgetChanges& changes) {
   std::vector<Entity> surfaces;
-  scene.world.each<Isosurface>([&](Entity e, const Isosurface& surface) {
-    if (surface.level_from == entity && is_shown(scene, e)) surfaces.push_back(e);
+  scene.entities.each<Isosurface>([&](Entity e, const Isosurface& surface) {
+    if (surface.level_widget == entity && is_shown(scene, e)) surfaces.push_back(e);
   });
   for (const Entity e : surfaces) {
-    const Isosurface& surface = scene.world.get<Isosurface>(e);
-    CATENA_TRY(const field::AnyField drawn, use_drawn_field(scene, surface.field, surface.where));
+    const Isosurface& surface = scene.entities.get<Isosurface>(e);
+    CATENA_TRY(const field::AnyField drawn, resolve_rendered_field(scene, surface.field, surface.where));
     // a vector field is an error where the surface is extracted
     if (!drawn.scalar) continue;
-    scene.world.get<Isosurface>(e).level = std::clamp(value, drawn.scalar->min_value(), drawn.scalar->max_value());
+    scene.entities.get<Isosurface>(e).level = std::clamp(value, drawn.scalar->min_value(), drawn.scalar->max_value());
     changes.levels = true;
   }
   return Done{};
@@ -196,58 +197,58 @@ Outcome drive_levels(Scene& scene, Entity entity, double value, WidgetChanges& c
 
 }  // namespace
 
-bool update_widgets(Scene& scene, const exchange::HapticState& state) {
+bool update_widgets(Scene& scene, const HapticState& state) {
   const std::vector<Entity> widgets = all_widgets(scene);
-  if (state.widget_count != static_cast<int>(widgets.size()) || state.widget_count > exchange::kMaxWidgets) return false;
+  if (state.widget_count != static_cast<int>(widgets.size()) || state.widget_count > kMaxWidgets) return false;
   bool changed = false;
   for (std::size_t i = 0; i < widgets.size(); ++i) {
-    Widget& widget = scene.world.get<Widget>(widgets[i]);
+    Widget& widget = scene.entities.get<Widget>(widgets[i]);
     const widget::Report& report = state.widgets[i];
     if (report.revision != widget.spec.revision || !is_sound(report)) continue;
-    const double value = widget.spec.kind == widget::Kind::isolevel ? report.value : widget.state.value;
-    changed = changed || report.pose != widget.state.pose || value != widget.state.value;
-    widget.state = report;
-    widget.state.value = value;
+    const double value = widget.spec.kind == widget::Kind::isolevel ? report.value : widget.report.value;
+    changed = changed || report.pose != widget.report.pose || value != widget.report.value;
+    widget.report = report;
+    widget.report.value = value;
   }
   return changed;
 }
 
-Result<WidgetChanges> drive_widgets(Scene& scene) {
+Result<WidgetChanges> propagate_widgets(Scene& scene) {
   WidgetChanges changes;
   for (const Entity entity : all_widgets(scene)) {
-    CATENA_CHECK(use_widget(scene, entity));
-    Widget& widget = scene.world.get<Widget>(entity);
-    const widget::Pose pose = widget.state.pose;
-    const bool moved = widget.followed != pose, other_value = widget.followed_value != widget.state.value;
+    CATENA_CHECK(resolve_widget(scene, entity));
+    Widget& widget = scene.entities.get<Widget>(entity);
+    const widget::Pose pose = widget.report.pose;
+    const bool moved = widget.applied_pose != pose, other_value = widget.applied_value != widget.report.value;
     if (!moved && !other_value) continue;
     // the first time a program may have been made already: of the pose as stated
-    if (widget.followed || pose != widget.spec.pose) changes.links = changes.links || is_felt(scene, entity);
+    if (widget.applied_pose || pose != widget.spec.pose) changes.links = changes.links || has_haptic_link(scene, entity);
     if (moved) drive_planes(scene, entity, pose, changes);
     if (moved) drive_seeds(scene, entity, widget, changes);
-    CATENA_CHECK(drive_levels(scene, entity, widget.state.value, changes));
-    widget.followed = pose;
-    widget.followed_value = widget.state.value;
+    CATENA_CHECK(drive_levels(scene, entity, widget.report.value, changes));
+    widget.applied_pose = pose;
+    widget.applied_value = widget.report.value;
   }
   return changes;
 }
 
-void update_cursor(Scene& scene, const exchange::HapticState& state) {
+void update_cursor(Scene& scene, const HapticState& state) {
   if (!is_finite(state.probe)) return;
-  Cursor& cursor = scene.world.get<Cursor>(scene.cursor);
+  Cursor& cursor = scene.entities.get<Cursor>(scene.cursor);
   cursor.probe = state.probe;
   cursor.force_n = state.force_n;
   cursor.visible = true;
-  const int links = std::clamp(state.link_count, 0, exchange::kMaxLinks);
+  const int links = std::clamp(state.link_count, 0, kMaxLinks);
   cursor.proxies.clear();
   cursor.active.clear();
-  cursor.leaving.clear();
+  cursor.release_ratios.clear();
   cursor.statuses.clear();
   for (int i = 0; i < links; ++i) {
-    const exchange::LinkReport& link = state.links[static_cast<std::size_t>(i)];
+    const LinkReport& link = state.links[static_cast<std::size_t>(i)];
     cursor.proxies.push_back(link.proxy);
     cursor.active.push_back(link.active);
     cursor.statuses.push_back(link.status);
-    cursor.leaving.push_back(link.left ? 1.0 : std::clamp(link.leaving, 0.0, 1.0));
+    cursor.release_ratios.push_back(link.released ? 1.0 : std::clamp(link.release_ratio, 0.0, 1.0));
   }
 }
 

@@ -1,7 +1,7 @@
 /// What is written over the picture: "scalar_bars", "labels", "title", "orientation_marker", "status", "overlay".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 
 namespace catena::scene {
 namespace {
@@ -9,30 +9,31 @@ namespace {
 constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 
 /// What has colours that a bar can show; drawn or hidden.
-bool has_colors(const World& world, Entity e) {
+bool has_colors(const EntityStore& world, Entity e) {
   return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<Isosurface>(e) && world.get<Isosurface>(e).color_by) ||
          (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
-         (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by) || (world.has<DrawnCurves>(e) && world.get<DrawnCurves>(e).color_by) ||
-         (world.has<DrawnPoints>(e) && world.get<DrawnPoints>(e).color_by);
+         (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by) ||
+         (world.has<CurvesSource>(e) && world.get<CurvesSource>(e).color_by) ||
+         (world.has<PointsSource>(e) && world.get<PointsSource>(e).color_by);
 }
 
 /// The first thing with colours that shows a field.
-Entity shown_field(const World& world, Entity field) {
+Entity shown_field(const EntityStore& world, Entity field) {
   Entity found;
   const auto take = [&](Entity e, bool shows) {
     if (!found && shows && has_colors(world, e)) found = e;
   };
   world.each<Volume>([&](Entity e, const Volume& volume) { take(e, volume.field == field); });
-  world.each<Slice>([&](Entity e, const Slice& slice) { take(e, slice.shown.field == field); });
+  world.each<Slice>([&](Entity e, const Slice& slice) { take(e, slice.color_by.field == field); });
   world.each<Isosurface>([&](Entity e, const Isosurface& surface) { take(e, surface.color_by && surface.color_by->field == field); });
   const auto take_set = [&](Entity e, const auto& set) {
-    const bool other = set.color_by && set.color_by->what == ColorBy::What::field;
+    const bool other = set.color_by && set.color_by->source == ColorBy::Source::field;
     take(e, (other ? set.color_by->field : set.field) == field);
   };
   world.each<StreamlineSet>(take_set);
   world.each<GlyphSet>(take_set);
-  world.each<DrawnCurves>([&](Entity e, const DrawnCurves& curves) { take(e, curves.color_by && curves.color_by->field == field); });
-  world.each<DrawnPoints>([&](Entity e, const DrawnPoints& points) { take(e, points.color_by && points.color_by->field == field); });
+  world.each<CurvesSource>([&](Entity e, const CurvesSource& curves) { take(e, curves.color_by && curves.color_by->field == field); });
+  world.each<PointsSource>([&](Entity e, const PointsSource& points) { take(e, points.color_by && points.color_by->field == field); });
   return found;
 }
 
@@ -40,7 +41,7 @@ Entity shown_field(const World& world, Entity field) {
 template <class T>
 Result<Entity> read_coloured(const Scene& scene, const json::Node& item, const std::string& key, bool set) {
   CATENA_TRY(const Entity shown, read_index<T>(scene, item, key, key, "a scalar bar"));
-  if (has_colors(scene.world, shown)) return shown;
+  if (has_colors(scene.entities, shown)) return shown;
   return json::error_at(
       *item.find(key), "these " + key +
                            (set ? " have one colour; a set with \"color_by\" was" : " show no values; " + key + " with \"color_by\" were") +
@@ -59,13 +60,14 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices", whose);
   if (item.find("streamlines")) return read_coloured<StreamlineSet>(scene, item, "streamlines", true);
   if (item.find("glyphs")) return read_coloured<GlyphSet>(scene, item, "glyphs", true);
-  if (item.find("curves")) return read_coloured<DrawnCurves>(scene, item, "curves", false);
-  if (item.find("points")) return read_coloured<DrawnPoints>(scene, item, "points", false);
+  if (item.find("curves")) return read_coloured<CurvesSource>(scene, item, "curves", false);
+  if (item.find("points")) return read_coloured<PointsSource>(scene, item, "points", false);
   CATENA_TRY(const Entity field, read_field_name(scene, item));
-  const Entity shown = shown_field(scene.world, field);
+  const Entity shown = shown_field(scene.entities, field);
   if (!shown)
     return json::error_at(*item.find("field"), "no volume, slice, coloured isosurface, coloured streamlines or glyphs show " +
-                                                   in_quotes(scene.world.get<Name>(field).value) + "; a field with colours was expected");
+                                                   in_quotes(scene.entities.get<Name>(field).value) +
+                                                   "; a field with colours was expected");
   return shown;
 }
 
@@ -87,20 +89,21 @@ const Table<ScalarBar>& scalar_bar_table() {
   static const auto table = [] {
     Table<ScalarBar> t;
     const auto index = [](const char* key, const char* of) {
-      return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000).ranged("an index");
+      return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000)
+          .with_range_text("an index");
     };
     t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("glyphs", "glyphs"),
              index("curves", "curves"), index("points", "points"),
-             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the seven.")},
+             schema::reference("field", Role::any_field, "Or the first thing that shows this field: one of the seven.")},
             [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
-              CATENA_TRY(bar.shown, read_shown(scene, item));
+              CATENA_TRY(bar.target, read_shown(scene, item));
               return Done{};
             });
-    t.bind(schema::text("title", "Over the bar; `{time}` and `{step}` as in `title`.").by_default("the name of what is shown"),
+    t.bind(schema::text("title", "Over the bar; `{time}` and `{step}` as in `title`.").with_default("the name of what is shown"),
            &ScalarBar::title);
-    t.bind(schema::word("position", {"right", "left", "bottom", "top"}, "Where in the picture."), &ScalarBar::side);
+    t.bind(schema::choice("position", {"right", "left", "bottom", "top"}, "Where in the picture."), &ScalarBar::side);
     t.bind(schema::integer("ticks", "", "About so many.", 2, 50), &ScalarBar::ticks);
-    t.bind(schema::text("format", "One number, such as `%.2f` or `%g K`.").by_default("as needed"), &ScalarBar::format);
+    t.bind(schema::text("format", "One number, such as `%.2f` or `%g K`.").with_default("as needed"), &ScalarBar::format);
     t.check([](Scene&, const json::Node& item, ScalarBar& bar) -> Outcome {
       const json::Node* format = item.find("format");
       if (format == nullptr || is_format(bar.format)) return Done{};
@@ -114,18 +117,18 @@ const Table<ScalarBar>& scalar_bar_table() {
 
 /// A size in points.
 Key points_key(const std::string& name, const std::string& help) {
-  return schema::number(name, "points", help).limited({0.0, kMaxPoints, true});
+  return schema::number(name, "points", help).with_limits({0.0, kMaxPoints, true});
 }
 
 const Table<Label>& label_table() {
   static const auto table = [] {
     Table<Label> t;
-    t.bind(schema::vec3("at", "world", "Its place.").required(), &Label::at);
+    t.bind(schema::vec3("at", "world", "Its place.").required(), &Label::position);
     t.bind(schema::text("text", "What it says.").required(), &Label::text);
-    t.bind(schema::color("color", "Of the text.").by_default("readable"), &Label::color);
+    t.bind(schema::color("color", "Of the text.").with_default("readable"), &Label::color);
     t.bind(points_key("size", "Of the text."), &Label::size_pt);
-    t.bind(schema::boolean("dot", "A dot at the place."), &Label::dot);
-    t.bind(schema::boolean("hidden_behind", "Left out where an opaque surface stands before it."), &Label::hidden_behind);
+    t.bind(schema::boolean("dot", "A dot at the place."), &Label::show_dot);
+    t.bind(schema::boolean("hidden_behind", "Left out where an opaque surface stands before it."), &Label::hide_when_occluded);
     return t;
   }();
   return table;
@@ -134,9 +137,9 @@ const Table<Label>& label_table() {
 const Table<OrientationMarker>& orientation_marker_table() {
   static const auto table = [] {
     Table<OrientationMarker> t;
-    t.bind(schema::word("position", {"bottom-left", "bottom-right", "top-left", "top-right"}, "Its corner."), &OrientationMarker::corner);
+    t.bind(schema::choice("position", {"bottom-left", "bottom-right", "top-left", "top-right"}, "Its corner."), &OrientationMarker::corner);
     t.bind(points_key("size", "Of the marker."), &OrientationMarker::size_pt);
-    t.bind(schema::texts("names", "Of the axes x, y and z.").items(3, 3), &OrientationMarker::names);
+    t.bind(schema::texts("names", "Of the axes x, y and z.").with_size(3, 3), &OrientationMarker::names);
     return t;
   }();
   return table;
@@ -146,9 +149,9 @@ const Table<OrientationMarker>& orientation_marker_table() {
 const Table<Annotations>& overlay_table() {
   static const auto table = [] {
     Table<Annotations> t;
-    t.bind(schema::text("font", "Of all text.").by_default("DejaVu Sans"), &Annotations::font);
-    t.bind(schema::number("scale", "", "Of all text.").limited({0.0, 20.0, true}), &Annotations::scale);
-    t.bind(schema::color("color", "Of all text.").by_default("readable"), &Annotations::color);
+    t.bind(schema::text("font", "Of all text.").with_default("DejaVu Sans"), &Annotations::font);
+    t.bind(schema::number("scale", "", "Of all text.").with_limits({0.0, 20.0, true}), &Annotations::scale);
+    t.bind(schema::color("color", "Of all text.").with_default("readable"), &Annotations::color);
     return t;
   }();
   return table;
@@ -183,7 +186,7 @@ Outcome read_orientation_marker(Scene& scene, const json::Node& node) {
 
 Outcome read_status(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::boolean) return json::error_at(node, "\"status\" is no switch; true or false was expected");
-  scene.annotations.status = node.boolean;
+  scene.annotations.show_status = node.boolean;
   return Done{};
 }
 
@@ -199,38 +202,38 @@ Outcome read_overlay(Scene& scene, const json::Node& node) {
 
 }  // namespace
 
-std::optional<ScalarBar> first_scalar_bar(const World& world) {
+std::optional<ScalarBar> first_scalar_bar(const EntityStore& world) {
   std::optional<ScalarBar> bar;
   const auto take = [&](Entity e) {
     if (bar || !has_colors(world, e)) return;
     bar.emplace();
-    bar->shown = e;
+    bar->target = e;
   };
   world.each<Volume>([&](Entity e, const Volume&) { take(e); });
   world.each<Slice>([&](Entity e, const Slice&) { take(e); });
   world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { take(e); });
-  world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { take(e); });
-  world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) { take(e); });
+  world.each<CurvesSource>([&](Entity e, const CurvesSource&) { take(e); });
+  world.each<PointsSource>([&](Entity e, const PointsSource&) { take(e); });
   return bar;
 }
 
 Part scalar_bars_part() {
-  return {list_of("scalar_bars", "Colours with their values, beside the picture.", scalar_bar_table()), read_scalar_bars};
+  return {make_list_component("scalar_bars", "Colours with their values, beside the picture.", scalar_bar_table()), read_scalar_bars};
 }
 
-Part labels_part() { return {list_of("labels", "Words at places of the scene.", label_table()), read_labels}; }
+Part labels_part() { return {make_list_component("labels", "Words at places of the scene.", label_table()), read_labels}; }
 
 Part title_part() {
   return {{"title",
            "At the top of the picture.",
-           schema::Component::Shape::value,
+           schema::Section::Layout::value,
            {schema::text("title",
                          "At the top of the picture; `{time}` and `{step}` stand for those of the [step](#steps-in-time) that is shown.")}},
           read_title};
 }
 
 Part orientation_marker_part() {
-  return {{"orientation_marker", "Three arrows in a corner: which way x, y and z point.", schema::Component::Shape::on_off,
+  return {{"orientation_marker", "Three arrows in a corner: which way x, y and z point.", schema::Section::Layout::on_off,
            orientation_marker_table().keys()},
           read_orientation_marker};
 }
@@ -238,13 +241,13 @@ Part orientation_marker_part() {
 Part status_part() {
   return {{"status",
            "The force, and the status of every link.",
-           schema::Component::Shape::value,
-           {schema::boolean("status", "Writes the force, and the status of every link, over the picture.").by_default("false")}},
+           schema::Section::Layout::value,
+           {schema::boolean("status", "Writes the force, and the status of every link, over the picture.").with_default("false")}},
           read_status};
 }
 
 Part overlay_part() {
-  return {{"overlay", "What all text over the picture has in common.", schema::Component::Shape::object, overlay_table().keys()},
+  return {{"overlay", "What all text over the picture has in common.", schema::Section::Layout::object, overlay_table().keys()},
           read_overlay};
 }
 

@@ -4,10 +4,10 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/field/formats.h"
+#include "engine/io/volume/formats.h"
 #include "engine/scene/labels.h"
-#include "engine/scene/read_parts.h"
-#include "engine/scene/steps.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/time_steps.h"
 #include "engine/scene/units.h"
 
 namespace catena::scene {
@@ -19,74 +19,77 @@ using field::LoadRequest;
 constexpr int kMostSeed = (1 << 30) - 1;
 constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
 
-std::string field_fault(const std::string& path) { return file_fault(path, field::is_field_file(path), field::field_file_words(), true); }
+std::string field_fault(const std::string& path) {
+  return file_problem(path, field::is_field_file(path), field::describe_field_extensions(), true);
+}
 
 // ---- fields from files ----
 
 Key unit_key() {
   return schema::text("unit", "The word shown after values, such as `\"m/s\"`; it changes no number.")
-      .items(0, 24)
-      .by_default("the file's");
+      .with_size(0, 24)
+      .with_default("the file's");
 }
 
 Key file_key(bool with_layout) {
   std::vector<std::string_view> endings;
-  for (const std::string_view ending : field::field_endings())
+  for (const std::string_view ending : field::field_extensions())
     if (field::needs_layout(ending) == with_layout) endings.push_back(ending);
-  return schema::file("file",
-                      "The file with the data: " + alternatives(endings) + (with_layout ? "." : "; or a pattern of several, see `time`."))
+  return schema::file("file", "The file with the data: " + join_alternatives(endings) +
+                                  (with_layout ? "." : "; or a pattern of several, see `time`."))
       .required();
 }
 
 Keys grid_keys() {
   Keys keys{file_key(false),
-            schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
+            schema::text("grid", "The grid in the file.").with_default("the first that can be used"),
             schema::any_of("valid", {schema::text("", ""), schema::null()},
                            "The BoolGrid that masks the field; null for none. The default one may be missing.")
-                .by_default("\"valid\""),
-            schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).by_default("the scene's, see `time`"),
-            schema::word("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
-                .by_default("`zyx`"),
-            schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().by_default("`[1, 1, 1]`"),
-            schema::vec3("origin", "world", "`.npy`, `.npz`: place of the first voxel's centre.").by_default("`[0, 0, 0]`"),
+                .with_default("\"valid\""),
+            schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).with_default("the scene's, see `time`"),
+            schema::choice("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
+                .with_default("`zyx`"),
+            schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().with_default("`[1, 1, 1]`"),
+            schema::vec3("origin", "world", "`.npy`, `.npz`: place of the first voxel's centre.").with_default("`[0, 0, 0]`"),
             unit_key(),
             schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
-  return schema::joined(std::move(keys), map_keys());
+  return schema::concatenate(std::move(keys), grid_source_keys());
 }
 
 /// What a file without a header says of itself in the scene.
-using LayoutTable = schema::Table<field::RawLayout, const std::string>;
+using LayoutTable = schema::StructSchema<field::RawLayout, const std::string>;
 
 const LayoutTable& layout_table() {
   static const auto table = [] {
     LayoutTable t;
-    t.beside(file_key(true));
-    t.hand(schema::vec3("shape", "voxels", "Voxels along x, y and z.").within(2, 65536).required(),
-           [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
-             const json::Node* shape = node.find("shape");
-             if (shape == nullptr) return json::error_at(node, "key \"shape\" is missing; a .raw file was expected to state [nx, ny, nz]");
-             CATENA_TRY(const Vec3 size, json::as_vec3(*shape, "shape"));
-             for (int i = 0; i < 3; ++i)
-               if (!(size[i] >= 2 && size[i] <= 65536 && std::floor(size[i]) == size[i]))
-                 return json::error_at(*shape,
-                                       "\"shape\" holds " + to_text(size[i]) + "; three whole numbers from 2 to 65536 were expected");
-             layout.shape = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(size.z)};
-             return Done{};
-           });
+    t.companion(file_key(true));
+    t.custom(schema::vec3("shape", "voxels", "Voxels along x, y and z.").within(2, 65536).required(),
+             [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
+               const json::Node* shape = node.find("shape");
+               if (shape == nullptr)
+                 return json::error_at(node, "key \"shape\" is missing; a .raw file was expected to state [nx, ny, nz]");
+               CATENA_TRY(const Vec3 size, json::as_vec3(*shape, "shape"));
+               for (int i = 0; i < 3; ++i)
+                 if (!(size[i] >= 2 && size[i] <= 65536 && std::floor(size[i]) == size[i]))
+                   return json::error_at(*shape,
+                                         "\"shape\" holds " + to_text(size[i]) + "; three whole numbers from 2 to 65536 were expected");
+               layout.shape = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(size.z)};
+               return Done{};
+             });
     t.bind(schema::vec3("spacing", "world", "Edges of a voxel.").positive(), &field::RawLayout::spacing);
     t.bind(schema::vec3("origin", "world", "Place of the first voxel's centre."), &field::RawLayout::origin);
-    t.hand(schema::word("type", {"float32", "float64", "uint8", "int8", "uint16", "int16", "uint32", "int32", "float32x3"},
-                        "How a number is stored; `float32x3` for vectors.")
-               .by_default("`float32`"),
-           [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
-             const Key& key = *schema::find(layout_table().keys(), "type");
-             int index = 0;
-             CATENA_CHECK(schema::read_choice(key, node, index));
-             layout.type = key.words[static_cast<std::size_t>(index)];
-             return Done{};
-           });
-    t.beside(unit_key());
-    for (const Key& key : map_keys()) t.beside(key);
+    t.custom(schema::choice("type", {"float32", "float64", "uint8", "int8", "uint16", "int16", "uint32", "int32", "float32x3"},
+                            "How a number is stored; `float32x3` for vectors.")
+                 .with_default("`float32`"),
+             [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
+               const Key& key = *schema::find(layout_table().keys(), "type");
+               int index = 0;
+               CATENA_CHECK(schema::read_choice(key, node, index));
+               layout.type = key.options[static_cast<std::size_t>(index)];
+               return Done{};
+             });
+    t.companion(unit_key());
+    for (const Key& key : grid_source_keys()) t.companion(key);
     t.check([](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
       if (layout.spacing.x > 0 && layout.spacing.y > 0 && layout.spacing.z > 0) return Done{};
       return json::error_at(*node.find("spacing"), "\"spacing\" is not positive; three finite numbers > 0 were expected");
@@ -118,14 +121,14 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
 
 /// Which of the steps, and of a pattern's files.
 Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request, FieldSource& source) {
-  source.own_step = node.find("step") != nullptr;
+  source.has_own_step = node.find("step") != nullptr;
   CATENA_TRY(const int step, json::get_integer(node, "step", scene_step, 0, 1'000'000));
   if (!is_pattern(request.path)) {
     request.step = step;
     return Done{};
   }
   source.pattern = request.path;
-  source.series = files_of_pattern(request.path);
+  source.series = expand_pattern(request.path);
   if (source.series.empty())
     return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": no file is called like " + in_quotes(request.path));
   request.path = source.series[static_cast<std::size_t>(std::min(step, static_cast<int>(source.series.size()) - 1))];
@@ -135,22 +138,22 @@ Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request
 Outcome read_file_source(const std::string& scene_path, int scene_step, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
-  request.path = resolved_path(scene_path, file);
+  request.path = resolve_path(scene_path, file);
   if (!field::needs_layout(file)) CATENA_CHECK(read_series(node, scene_step, request, source));
   if (field::needs_layout(file)) {
     CATENA_CHECK(layout_table().read(scene_path, node, request.raw.emplace()));
   } else {
-    CATENA_CHECK(json::only_keys(node, schema::names_of(grid_keys())));
+    CATENA_CHECK(json::check_known_keys(node, schema::key_names(grid_keys())));
     CATENA_TRY(request.grid, json::get_string(node, "grid", {}));
     if (const json::Node* grid = node.find("grid"); grid != nullptr && request.grid.empty())
       return json::error_at(*grid, "\"grid\" is empty; the name of a grid was expected");
     if (const json::Node* valid = node.find("valid"); valid != nullptr && valid->is_null()) {
-      request.valid_grid.reset();
+      request.mask_grid.reset();
     } else if (valid != nullptr) {
       if (valid->kind != json::Kind::string || valid->string.empty())
         return json::error_at(*valid, "\"valid\" is no name; the name of a BoolGrid, or null for none, was expected");
-      request.valid_grid = valid->string;
-      request.valid_required = true;
+      request.mask_grid = valid->string;
+      request.mask_required = true;
     }
     CATENA_CHECK(read_array_keys(node, request));
   }
@@ -159,7 +162,7 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
     return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault +
                                                   (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
   source.file = std::move(request);
-  return read_map(scene_path, node, source);
+  return read_grid_source(scene_path, node, source);
 }
 
 // ---- fields by formula ----
@@ -169,28 +172,28 @@ Keys formula_keys() {
   for (const std::string_view name : field::analytic_names()) names.emplace_back(name);
   const FieldSource usual;
   return {
-      schema::word("analytic", std::move(names), "Which formula.").required(),
-      schema::number("scale", "", "Multiplies the values.").ranged("not 0").by_default("1"),
-      schema::direction("direction", "Of `uniform` only.").by_default("[1, 0, 0]"),
-      schema::vec3("center", "world", "Where the formula's origin lies.").by_default("[0, 0, 0]"),
-      schema::integer("seed", "", "Of `vortices` only: which of them.", 0, kMostSeed).by_default("1"),
-      schema::integer("dimensions", "", "Of `vortices` only: 2: in the plane of x and y, the same at every z.", 2, 3).by_default("3"),
+      schema::choice("analytic", std::move(names), "Which formula.").required(),
+      schema::number("scale", "", "Multiplies the values.").with_range_text("not 0").with_default("1"),
+      schema::direction("direction", "Of `uniform` only.").with_default("[1, 0, 0]"),
+      schema::vec3("center", "world", "Where the formula's origin lies.").with_default("[0, 0, 0]"),
+      schema::integer("seed", "", "Of `vortices` only: which of them.", 0, kMostSeed).with_default("1"),
+      schema::integer("dimensions", "", "Of `vortices` only: 2: in the plane of x and y, the same at every z.", 2, 3).with_default("3"),
       schema::text("part",
                    "A grid of what `generate` writes, where it writes several: of `left-ventricle`, `density`, `transmural` or `fibre`."),
       schema::text("grid", "Another word for `part`."),
       schema::integer("resolution", "nodes", "Along an axis of the grid that is drawn.", 2, kMaxNodes)
-          .by_default(std::to_string(usual.resolution)),
-      schema::vector("box", 2, "world", "The cube that is sampled for the picture.").ranged("rising").by_default("[-2, 2]"),
+          .with_default(std::to_string(usual.resolution)),
+      schema::vector("box", 2, "world", "The cube that is sampled for the picture.").with_range_text("rising").with_default("[-2, 2]"),
       unit_key()};
 }
 
 Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
-  CATENA_CHECK(json::only_keys(node, schema::names_of(formula_keys())));
+  CATENA_CHECK(json::check_known_keys(node, schema::key_names(formula_keys())));
   CATENA_TRY(source.analytic, json::require_string(node, "analytic"));
   const json::Node& name = *node.find("analytic");
   if (!field::is_analytic(source.analytic)) {
     const auto names = field::analytic_names();
-    return json::error_at(name, "unknown analytic field " + in_quotes(source.analytic) + "; one of " + joined(names) + " was expected" +
+    return json::error_at(name, "unknown analytic field " + in_quotes(source.analytic) + "; one of " + join_words(names) + " was expected" +
                                     suggestion(source.analytic, names));
   }
   CATENA_TRY(source.parameters.scale, json::get_number(node, "scale", 1));
@@ -223,7 +226,7 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
     const auto parts = field::analytic_parts(source.analytic);
     if (std::count(parts.begin(), parts.end(), word) == 0)
       return json::error_at(*part_node, "unknown part " + in_quotes(word) + " of " + in_quotes(source.analytic) + "; one of " +
-                                            joined(parts) + " was expected");
+                                            join_words(parts) + " was expected");
     if (word != source.analytic) source.parameters.part = word;
   }
 
@@ -255,35 +258,35 @@ Outcome read_source(const std::string& scene_path, int scene_step, const json::N
 FieldSource& source_named(Scene& scene, const std::string& name) {
   Entity entity = find_field(scene, name);
   if (!entity) {
-    entity = scene.world.create();
-    scene.world.emplace<Name>(entity, {name});
-    scene.world.emplace<FieldSource>(entity);
+    entity = scene.entities.create();
+    scene.entities.emplace<Name>(entity, {name});
+    scene.entities.emplace<FieldSource>(entity);
   }
-  return scene.world.get<FieldSource>(entity);
+  return scene.entities.get<FieldSource>(entity);
 }
 
 /// What the program has made in the place of a file.
 Outcome take_given(Scene& scene, const FieldOverride& with) {
-  if (!is_name(with.name)) return Error{"field " + in_quotes(with.name) + ": a name like [a-z][a-z0-9_]* was expected"};
+  if (!is_identifier(with.name)) return Error{"field " + in_quotes(with.name) + ": a name like [a-z][a-z0-9_]* was expected"};
   FieldSource& source = source_named(scene, with.name);
   const FieldSource usual;
   source.file.reset();
   source.label.reset();
   source.analytic.clear();
-  source.loaded = with.given;
-  source.drawn = {};
-  find_labels(source);
-  const Bounds bounds = with.given.get()->world_bounds();
+  source.loaded = with.in_memory_field;
+  source.rendered = {};
+  load_label_map(source);
+  const Bounds bounds = with.in_memory_field.get()->world_bounds();
   const double lo = std::min({bounds.lo.x, bounds.lo.y, bounds.lo.z}), hi = std::max({bounds.hi.x, bounds.hi.y, bounds.hi.z});
   source.box = lo < hi ? std::array{lo, hi} : usual.box;
   return Done{};
 }
 
 Outcome apply_override(Scene& scene, const FieldOverride& with) {
-  if (with.given.get() != nullptr) return take_given(scene, with);
+  if (with.in_memory_field.get() != nullptr) return take_given(scene, with);
   const std::string text = "--field " + with.name + "=" + with.file + (with.grid.empty() ? "" : ":" + with.grid);
   const auto failed = [&](const std::string& what) { return Error{one_line(text + ": " + what)}; };
-  if (!is_name(with.name)) return failed(in_quotes(with.name) + " is no name; a name like [a-z][a-z0-9_]* was expected");
+  if (!is_identifier(with.name)) return failed(in_quotes(with.name) + " is no name; a name like [a-z][a-z0-9_]* was expected");
   if (const std::string fault = field_fault(with.file); !fault.empty()) return failed("file " + fault);
 
   FieldSource& source = source_named(scene, with.name);
@@ -292,8 +295,8 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
     return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");
   if (!field::needs_layout(with.file)) request.raw.reset();
   request.path = with.file;
-  request.valid_required = false;
-  source.grid_is_a_wish = with.grid.empty();
+  request.mask_required = false;
+  source.grid_is_optional = with.grid.empty();
   if (!with.grid.empty()) request.grid = with.grid;
   source.file = request;
   source.analytic.clear();
@@ -304,18 +307,18 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
 
 }  // namespace
 
-std::string resolved_path(const std::string& scene_path, const std::string& file) {
+std::string resolve_path(const std::string& scene_path, const std::string& file) {
   const fs::path path(file);
   return path.is_absolute() ? file : (fs::path(scene_path).parent_path() / path).string();
 }
 
-bool is_name(std::string_view text) {
+bool is_identifier(std::string_view text) {
   if (text.empty() || text[0] < 'a' || text[0] > 'z') return false;
   return std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 Outcome check_name(const std::string& kind, const std::string& name, const json::Node& node) {
-  if (is_name(name)) return Done{};
+  if (is_identifier(name)) return Done{};
   return json::error_at(node, kind + " name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
 }
 
@@ -328,9 +331,9 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
       const bool replaced = std::any_of(overrides.begin(), overrides.end(), has_name);
       FieldSource source;
       CATENA_CHECK(read_source(scene.path, scene.time.step, node, replaced, source));
-      const Entity entity = scene.world.create();
-      scene.world.emplace<Name>(entity, {name});
-      scene.world.emplace<FieldSource>(entity, std::move(source));
+      const Entity entity = scene.entities.create();
+      scene.entities.emplace<Name>(entity, {name});
+      scene.entities.emplace<FieldSource>(entity, std::move(source));
       CATENA_CHECK(read_unit(scene, entity, node));
     }
   }
@@ -339,10 +342,10 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
 }
 
 Part fields_part() {
-  schema::Component component{"fields",
-                              "What there is: grids from files, formulas, surfaces of labels. Names and their fields; a field has one of "
-                              "`file`, `analytic`, `label`.",
-                              schema::Component::Shape::map};
+  schema::Section component{"fields",
+                            "What there is: grids from files, formulas, surfaces of labels. Names and their fields; a field has one of "
+                            "`file`, `analytic`, `label`.",
+                            schema::Section::Layout::map};
   component.variants = {
       {"file", "A file that says itself what it holds.", grid_keys()},
       {"raw", "A file of bare numbers, little-endian, x fastest.", layout_table().keys()},

@@ -1,12 +1,12 @@
 /// "glyphs": arrows of a vector field on a slice, a plane, an isosurface or a mesh, or in a box.
 #include "engine/base/text.h"
-#include "engine/scene/hidden.h"
-#include "engine/scene/read_named.h"
+#include "engine/scene/reader_bindings.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::scene {
 namespace {
 
-using On = GlyphSet::On;
+using On = GlyphSet::Support;
 
 /// In the order of GlyphSet::On.
 constexpr std::string_view kOn[] = {"box", "plane", "slice", "isosurface", "mesh"};
@@ -28,46 +28,46 @@ const Table<field::Box>& glyph_box_table() {
 Key on_key() {
   const auto index = [](std::string_view key, const std::string& of) {
     return schema::integer(std::string(key), "", "This item of `" + of + "`, counted from 0; they follow it.", 0, 1000000)
-        .ranged("an index")
+        .with_range_text("an index")
         .without_default();
   };
   return schema::object("on",
                         {schema::object(std::string(kOn[0]), glyph_box_table().keys(), "In a box with edges along the world's axes."),
                          schema::object(std::string(kOn[1]), plane_keys(), "On a plane of their own."), index(kOn[2], "slices"),
-                         index(kOn[3], "isosurfaces"), schema::named(std::string(kOn[4]), Role::mesh, "On a mesh, by its name.")},
+                         index(kOn[3], "isosurfaces"), schema::reference(std::string(kOn[4]), Role::mesh, "On a mesh, by its name.")},
                         "Where they stand: one of these.")
-      .by_default("in the field's domain");
+      .with_default("in the field's domain");
 }
 
 Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
   const json::Node* on = item.find("on");
   if (on == nullptr) return Done{};
   CATENA_CHECK(json::expect_object(*on, "on"));
-  CATENA_CHECK(json::only_keys(*on, std::vector<std::string_view>(std::begin(kOn), std::end(kOn))));
+  CATENA_CHECK(json::check_known_keys(*on, std::vector<std::string_view>(std::begin(kOn), std::end(kOn))));
   if (on->members.size() != 1)
     return json::error_at(*on, "\"on\" names " + std::to_string(on->members.size()) + " things; one of " +
-                                   joined(std::vector<std::string_view>(std::begin(kOn), std::end(kOn))) + " was expected");
+                                   join_words(std::vector<std::string_view>(std::begin(kOn), std::end(kOn))) + " was expected");
   const auto& [key, node] = on->members.front();
-  set.on = static_cast<On>(std::find(std::begin(kOn), std::end(kOn), key) - std::begin(kOn));
+  set.support = static_cast<On>(std::find(std::begin(kOn), std::end(kOn), key) - std::begin(kOn));
   const std::string whose = "glyphs";
-  switch (set.on) {
+  switch (set.support) {
     case On::box:
       CATENA_CHECK(json::expect_object(node, key));
       return glyph_box_table().read(scene, node, set.box.emplace());
     case On::plane:
       CATENA_CHECK(json::expect_object(node, key));
-      CATENA_CHECK(json::only_keys(node, schema::names_of(plane_keys())));
+      CATENA_CHECK(json::check_known_keys(node, schema::key_names(plane_keys())));
       return read_plane(scene, node, "set of glyphs", set.point, set.normal, set.widget);
     case On::slice: {
-      CATENA_TRY(set.base, read_index<Slice>(scene, *on, key, "slices", whose));
+      CATENA_TRY(set.support_entity, read_index<Slice>(scene, *on, key, "slices", whose));
       return Done{};
     }
     case On::isosurface: {
-      CATENA_TRY(set.base, read_index<Isosurface>(scene, *on, key, "isosurfaces", whose));
+      CATENA_TRY(set.support_entity, read_index<Isosurface>(scene, *on, key, "isosurfaces", whose));
       return Done{};
     }
     case On::mesh: {
-      CATENA_TRY(set.base, read_named<MeshSource>(scene, *on, key, "mesh", "meshes"));
+      CATENA_TRY(set.support_entity, read_named<MeshSource>(scene, *on, key, "mesh", "meshes"));
       return Done{};
     }
   }
@@ -77,7 +77,7 @@ Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
 template <class T>
 std::string index_of(const Scene& scene, Entity wanted) {
   int index = 0, found = 0;
-  scene.world.each<T>([&](Entity e, const T&) {
+  scene.entities.each<T>([&](Entity e, const T&) {
     if (e == wanted) found = index;
     ++index;
   });
@@ -85,8 +85,10 @@ std::string index_of(const Scene& scene, Entity wanted) {
 }
 
 std::string write_on(const Scene& scene, const GlyphSet& set) {
-  const auto with = [&](const std::string& value) { return "{\"" + std::string(kOn[static_cast<int>(set.on)]) + "\": " + value + "}"; };
-  switch (set.on) {
+  const auto with = [&](const std::string& value) {
+    return "{\"" + std::string(kOn[static_cast<int>(set.support)]) + "\": " + value + "}";
+  };
+  switch (set.support) {
     case On::box:
       return set.box ? with(glyph_box_table().write(scene, *set.box)) : std::string();
     case On::plane: {
@@ -96,11 +98,11 @@ std::string write_on(const Scene& scene, const GlyphSet& set) {
       return with(text + "}");
     }
     case On::slice:
-      return with(index_of<Slice>(scene, set.base));
+      return with(index_of<Slice>(scene, set.support_entity));
     case On::isosurface:
-      return with(index_of<Isosurface>(scene, set.base));
+      return with(index_of<Isosurface>(scene, set.support_entity));
     case On::mesh:
-      return with(schema::write_value(scene.world.get<Name>(set.base).value));
+      return with(schema::write_value(scene.entities.get<Name>(set.support_entity).value));
   }
   return {};
 }
@@ -108,24 +110,26 @@ std::string write_on(const Scene& scene, const GlyphSet& set) {
 const Table<GlyphSet>& glyphs_table() {
   static const auto table = [] {
     Table<GlyphSet> t;
-    bind_field(t, schema::named("field", Role::vector_field, "A vector field.").required(), &GlyphSet::field);
-    t.hand(on_key(), read_on, write_on);
-    t.bind(schema::number("spacing", "world", "Of neighbours.").positive().by_default("1/24 of the domain's diagonal, 1/16 in a box"),
+    bind_field(t, schema::reference("field", Role::vector_field, "A vector field.").required(), &GlyphSet::field);
+    t.custom(on_key(), read_on, write_on);
+    t.bind(schema::number("spacing", "world", "Of neighbours.").positive().with_default("1/24 of the domain's diagonal, 1/16 in a box"),
            &GlyphSet::spacing);
-    t.bind(schema::word("scale", {"magnitude", "constant"}, "Whether they are as long as the vectors."), &GlyphSet::constant);
-    t.bind(schema::number("length", "world", "Of the longest.").positive().by_default("the spacing"), &GlyphSet::length);
-    t.bind(schema::number("full_speed", "value", "The speed that is as long as that.").positive().by_default("the greatest that is drawn"),
-           &GlyphSet::full_speed);
-    t.bind(schema::number("min_speed", "value", "Speeds up to this have none.").not_negative(), &GlyphSet::min_speed);
-    t.bind(schema::number("radius", "world", "Of the longest one's shaft.").positive().by_default("0.06 of its length"), &GlyphSet::radius);
-    t.bind(schema::word("at", {"center", "tail", "head"}, "What of it lies at its place."), &GlyphSet::at);
-    t.bind(schema::line_kind_key(), &GlyphSet::line);
+    t.bind(schema::choice("scale", {"magnitude", "constant"}, "Whether they are as long as the vectors."), &GlyphSet::constant_length);
+    t.bind(schema::number("length", "world", "Of the longest.").positive().with_default("the spacing"), &GlyphSet::length);
+    t.bind(
+        schema::number("full_speed", "value", "The speed that is as long as that.").positive().with_default("the greatest that is drawn"),
+        &GlyphSet::reference_speed);
+    t.bind(schema::number("min_speed", "value", "Speeds up to this have none.").non_negative(), &GlyphSet::min_speed);
+    t.bind(schema::number("radius", "world", "Of the longest one's shaft.").positive().with_default("0.06 of its length"),
+           &GlyphSet::radius);
+    t.bind(schema::choice("at", {"center", "tail", "head"}, "What of it lies at its place."), &GlyphSet::anchor);
+    t.bind(schema::line_kind_key(), &GlyphSet::is_line_field);
     t.bind(schema::color("color", "Of all, without `color_by`."), &GlyphSet::color);
-    bind_color_by(t, ColorSubjects::glyphs, &GlyphSet::color_by);
+    bind_color_by(t, ColorTarget::glyphs, &GlyphSet::color_by);
     t.bind(clip_key(), &GlyphSet::clipped);
-    t.beside(visible_key());
+    t.companion(visible_key());
     t.check([](Scene&, const json::Node& item, GlyphSet& set) -> Outcome {
-      if (!set.line || set.at == GlyphSet::At::center) return Done{};
+      if (!set.is_line_field || set.anchor == GlyphSet::Anchor::center) return Done{};
       return json::error_at(*item.find("at"), "a line has neither head nor tail; \"center\" was expected beside the kind \"line\"");
     });
     return t;
@@ -138,18 +142,18 @@ Outcome read_glyphs(Scene& scene, const json::Node& node) {
     GlyphSet set;
     set.where = item;
     CATENA_CHECK(glyphs_table().read(scene, item, set));
-    const Entity e = scene.world.create();
-    scene.world.emplace<GlyphSet>(e, std::move(set));
+    const Entity e = scene.entities.create();
+    scene.entities.emplace<GlyphSet>(e, std::move(set));
     return read_visible(scene, e, item);
   });
 }
 
 }  // namespace
 
-std::string text_of(const Scene& scene, const GlyphSet& set) { return glyphs_table().write(scene, set); }
+std::string to_json(const Scene& scene, const GlyphSet& set) { return glyphs_table().write(scene, set); }
 
 Part glyphs_part() {
-  return {list_of("glyphs", "Arrows of a vector field, evenly placed on a surface or in a box.", glyphs_table()), read_glyphs};
+  return {make_list_component("glyphs", "Arrows of a vector field, evenly placed on a surface or in a box.", glyphs_table()), read_glyphs};
 }
 
 }  // namespace catena::scene

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/machine_failure.h"
 #include "engine/base/numbers.h"
-#include "engine/field/label_surface.h"
-#include "engine/field/level.h"
-#include "engine/scene/read_parts.h"
+#include "engine/base/system_failure.h"
+#include "engine/field/derived/label_surface.h"
+#include "engine/io/volume/downsample.h"
+#include "engine/scene/readers.h"
 
 namespace catena::scene {
 namespace {
@@ -15,16 +15,16 @@ constexpr int kMostNames = 65536;
 
 Keys labels_keys() {
   return {schema::file("file", "The table: of FreeSurfer, ITK-SNAP, comma-separated with column names, or rows of a number and a name."),
-          schema::numbers("values", "", "Or the numbers themselves: with `names`.").items(1, kMostNames),
-          schema::texts("names", "Of `values`, one each.").items(1, kMostNames),
-          schema::places("colors", "", "Of `values`, one each: red, green and blue from 0 to 1."),
+          schema::numbers("values", "", "Or the numbers themselves: with `names`.").with_size(1, kMostNames),
+          schema::texts("names", "Of `values`, one each.").with_size(1, kMostNames),
+          schema::points("colors", "", "Of `values`, one each: red, green and blue from 0 to 1."),
           schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
 }
 
 /// Whole numbers that floats tell apart.
 Outcome check_label(const json::Node& node) {
   const double value = node.number;
-  if (node.kind == json::Kind::number && value == std::nearbyint(value) && std::fabs(value) <= kGreatestLabel) return Done{};
+  if (node.kind == json::Kind::number && value == std::nearbyint(value) && std::fabs(value) <= kMaxLabelValue) return Done{};
   return json::error_at(node, "a label is no whole number; one of at most 16777216 in size was expected");
 }
 
@@ -45,7 +45,7 @@ Result<LabelTable> read_rows(const json::Node& node) {
   LabelTable table;
   for (std::size_t i = 0; i < count; ++i) {
     CATENA_CHECK(check_label(values->items[i]));
-    LabelName label{values->items[i].number, {}, {}};
+    LabelRow label{values->items[i].number, {}, {}};
     CATENA_TRY(label.name, json::as_string(names->items[i], "names"));
     if (colors != nullptr) {
       CATENA_TRY(const Color color, schema::as_color(Vec3(rows[i][0], rows[i][1], rows[i][2]), colors->items[i], "colors"));
@@ -53,7 +53,7 @@ Result<LabelTable> read_rows(const json::Node& node) {
     }
     table.push_back(std::move(label));
   }
-  std::sort(table.begin(), table.end(), [](const LabelName& a, const LabelName& b) { return a.value < b.value; });
+  std::sort(table.begin(), table.end(), [](const LabelRow& a, const LabelRow& b) { return a.value < b.value; });
   for (std::size_t i = 1; i < table.size(); ++i)
     if (table[i].value == table[i - 1].value)
       return json::error_at(*values, "\"values\" holds " + to_text(table[i].value) + " twice; different labels were expected");
@@ -62,7 +62,7 @@ Result<LabelTable> read_rows(const json::Node& node) {
 
 Outcome read_labels_table(const std::string& scene_path, const json::Node& node, FieldSource& source) {
   CATENA_CHECK(json::expect_object(node, "labels"));
-  CATENA_CHECK(json::only_keys(node, schema::names_of(labels_keys())));
+  CATENA_CHECK(json::check_known_keys(node, schema::key_names(labels_keys())));
   const json::Node* file = node.find("file");
   if (file == nullptr) {
     CATENA_TRY(source.labels_table, read_rows(node));
@@ -72,13 +72,13 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
     if (const json::Node* other = node.find(key))
       return json::error_at(*other, in_quotes(key) + " is given beside \"file\", which holds the labels; one of them was expected");
   CATENA_TRY(const std::string name, json::require_string(node, "file"));
-  source.labels_file = resolved_path(scene_path, name);
+  source.labels_file = resolve_path(scene_path, name);
   auto table = read_label_table(source.labels_file);
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
   if (!table)
-    return caused_by(json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
-                                               (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it")),
-                     table.error());
+    return with_cause(json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
+                                                (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it")),
+                      table.error());
   source.labels_table = std::move(*table);
   return Done{};
 }
@@ -91,7 +91,7 @@ Keys crop_keys() {
 
 Outcome read_crop(const json::Node& node, std::optional<field::Box>& crop) {
   CATENA_CHECK(json::expect_object(node, "crop"));
-  CATENA_CHECK(json::only_keys(node, schema::names_of(crop_keys())));
+  CATENA_CHECK(json::check_known_keys(node, schema::key_names(crop_keys())));
   field::Box& box = crop.emplace();
   CATENA_TRY(box.lo, json::require_vec3(node, "lo"));
   CATENA_TRY(box.hi, json::require_vec3(node, "hi"));
@@ -99,24 +99,24 @@ Outcome read_crop(const json::Node& node, std::optional<field::Box>& crop) {
   return json::error_at(*node.find("hi"), "\"hi\" is not above \"lo\"; a corner above it along each axis was expected");
 }
 
-Keys map_keys() {
-  return {schema::word("interpolation", {"linear", "nearest", "cubic"},
-                       "What lies between voxel centres: a mix of the eight nearest; the value of the nearest, as of a label map; or the "
-                       "cubic of the 64 nearest, which is smooth (C1), nearer to smooth data, and takes longer.")
-              .by_default("`linear`; with `labels` `nearest`"),
+Keys grid_source_keys() {
+  return {schema::choice("interpolation", {"linear", "nearest", "cubic"},
+                         "What lies between voxel centres: a mix of the eight nearest; the value of the nearest, as of a label map; or the "
+                         "cubic of the 64 nearest, which is smooth (C1), nearer to smooth data, and takes longer.")
+              .with_default("`linear`; with `labels` `nearest`"),
           schema::integer("level_of_detail", "", "Every 2nd, 4th or 8th voxel of each axis, for the eye and the hand alike: 1, 2 or 3.", 0,
-                          field::kMostLevels)
-              .by_default("0: all of them"),
+                          field::kMaxLevels)
+              .with_default("0: all of them"),
           schema::object("crop", crop_keys(),
                          "The field is the voxels that this box needs, for the eye and the hand alike; of a `.vdb` no others are read.")
-              .by_default("all of them"),
-          schema::object("labels", labels_keys(), "Of a label map: names and colours of the numbers in its voxels.").by_default("none")};
+              .with_default("all of them"),
+          schema::object("labels", labels_keys(), "Of a label map: names and colours of the numbers in its voxels.").with_default("none")};
 }
 
-Outcome read_map(const std::string& scene_path, const json::Node& node, FieldSource& source) {
+Outcome read_grid_source(const std::string& scene_path, const json::Node& node, FieldSource& source) {
   const json::Node* labels = node.find("labels");
   if (labels != nullptr) CATENA_CHECK(read_labels_table(scene_path, *labels, source));
-  const Keys keys = map_keys();
+  const Keys keys = grid_source_keys();
   field::Interpolation interpolation = labels != nullptr ? field::Interpolation::nearest : field::Interpolation::linear;
   CATENA_CHECK(schema::read_value(*schema::find(keys, "interpolation"), node, interpolation));
   source.file->interpolation = interpolation;
@@ -127,20 +127,20 @@ Outcome read_map(const std::string& scene_path, const json::Node& node, FieldSou
 
 Keys label_keys() {
   return {schema::any_of("label",
-                         {schema::integer("", "", "", -int(kGreatestLabel), int(kGreatestLabel)), schema::text("", ""),
+                         {schema::integer("", "", "", -int(kMaxLabelValue), int(kMaxLabelValue)), schema::text("", ""),
                           schema::numbers("", "", ""), schema::texts("", "")},
                          "The label, by its number or its name; a list: several together; `\"*\"`: every label but 0.")
               .required(),
-          schema::named("of", Role::scalar_field, "The field from a file whose labels they are.").required(),
+          schema::reference("of", Role::scalar_field, "The field from a file whose labels they are.").required(),
           schema::number("smooth", "voxels", "Of the surface: a Gaussian that leaves every voxel centre on its side.")
-              .within(0, field::kMostSmooth)
-              .by_default(to_text(field::kUsualSmooth))};
+              .within(0, field::kMaxLabelSmoothing)
+              .with_default(to_text(field::kDefaultLabelSmoothing))};
 }
 
 Outcome read_label_source(const json::Node& node, FieldSource& source) {
-  CATENA_CHECK(json::only_keys(node, schema::names_of(label_keys())));
+  CATENA_CHECK(json::check_known_keys(node, schema::key_names(label_keys())));
   LabelSource& label = source.label.emplace();
-  CATENA_TRY(label.of, json::require_string(node, "of"));
+  CATENA_TRY(label.label_map, json::require_string(node, "of"));
   const json::Node& wanted = *node.find("label");
   const auto add = [&](const json::Node& item) -> Outcome {
     if (item.kind == json::Kind::string && !item.string.empty()) {
@@ -152,32 +152,33 @@ Outcome read_label_source(const json::Node& node, FieldSource& source) {
     return Done{};
   };
   if (wanted.kind == json::Kind::string && wanted.string == "*") {
-    label.any = true;
+    label.all_labels = true;
   } else if (wanted.kind == json::Kind::array) {
     if (wanted.items.empty()) return json::error_at(wanted, "\"label\" is an empty list; at least one label was expected");
     for (const json::Node& item : wanted.items) CATENA_CHECK(add(item));
   } else {
     CATENA_CHECK(add(wanted));
   }
-  CATENA_TRY(label.smooth, json::get_number(node, "smooth", field::kUsualSmooth, json::Range::not_negative));
-  if (label.smooth > field::kMostSmooth)
-    return json::error_at(*node.find("smooth"), "\"smooth\" is " + to_text(label.smooth) + "; a number from 0 to 4 was expected");
+  CATENA_TRY(label.smoothing_voxels, json::get_number(node, "smooth", field::kDefaultLabelSmoothing, json::NumberRange::non_negative));
+  if (label.smoothing_voxels > field::kMaxLabelSmoothing)
+    return json::error_at(*node.find("smooth"), "\"smooth\" is " + to_text(label.smoothing_voxels) + "; a number from 0 to 4 was expected");
   return Done{};
 }
 
 Outcome check_label_sources(const Scene& scene) {
   Outcome outcome = Done{};
-  scene.world.each<FieldSource>([&](Entity, const FieldSource& source) {
+  scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) {
     if (!outcome || !source.label) return;
-    const json::Node& where = json::member_or(source.where, "of");
-    const Entity of = find_field(scene, source.label->of);
-    if (of && (scene.world.get<FieldSource>(of).file || scene.world.get<FieldSource>(of).loaded.get() != nullptr)) return;
+    const json::Node& where = json::member_or_parent(source.where, "of");
+    const Entity of = find_field(scene, source.label->label_map);
+    if (of && (scene.entities.get<FieldSource>(of).file || scene.entities.get<FieldSource>(of).loaded.get() != nullptr)) return;
     std::vector<std::string_view> names;
-    scene.world.each<FieldSource>([&](Entity e, const FieldSource& other) {
-      if (other.file) names.push_back(scene.world.get<Name>(e).value);
+    scene.entities.each<FieldSource>([&](Entity e, const FieldSource& other) {
+      if (other.file) names.push_back(scene.entities.get<Name>(e).value);
     });
-    outcome = json::error_at(where, in_quotes(source.label->of) + " is no field from a file, whose labels could be meant; one of " +
-                                        (names.empty() ? "them" : joined(names)) + " was expected" + suggestion(source.label->of, names));
+    outcome = json::error_at(where, in_quotes(source.label->label_map) + " is no field from a file, whose labels could be meant; one of " +
+                                        (names.empty() ? "them" : join_words(names)) + " was expected" +
+                                        suggestion(source.label->label_map, names));
   });
   return outcome;
 }

@@ -5,7 +5,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 #include "engine/schema/values.h"
 
 namespace catena::scene {
@@ -51,7 +51,7 @@ Outcome read_rgb_points(const json::Node& node, ColorSpace space, TransferFuncti
     for (int k = 1; k < pieces; ++k) {
       const double t = static_cast<double>(k) / pieces, value = (1 - t) * rows[i - 1][0] + t * rows[i][0];
       if (!(value > transfer.colors.back().value && value < rows[i][0])) continue;
-      const Vec3 c = between_colors(space, color_of(rows[i - 1]), color_of(rows[i]), t);
+      const Vec3 c = interpolate_colors(space, color_of(rows[i - 1]), color_of(rows[i]), t);
       transfer.colors.push_back({value, {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}});
     }
     transfer.colors.push_back({rows[i][0], rgb});

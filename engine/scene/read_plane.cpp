@@ -1,6 +1,6 @@
 /// A plane: a point with a normal, an axis with a place on it, or a widget.
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
@@ -13,9 +13,9 @@ Outcome read_followed(const Scene& scene, const json::Node& item, const std::str
       return json::error_at(*node,
                             in_quotes(key) + " is given beside \"widget\", whose plane the " + word + " follows; one of them was expected");
   CATENA_TRY(widget, read_widget_name(scene, item, {widget::Kind::cutting_plane}, "a cutting plane"));
-  const widget::Pose& pose = scene.world.get<Widget>(widget).spec.pose;
+  const widget::Pose& pose = scene.entities.get<Widget>(widget).spec.pose;
   point = pose.points[0];
-  normal = normal_of(pose);
+  normal = plane_normal(pose);
   return Done{};
 }
 
@@ -23,9 +23,9 @@ Outcome read_followed(const Scene& scene, const json::Node& item, const std::str
 
 Keys plane_keys() {
   return {schema::vec3("point", "world", "A point of the plane: with `normal`."), schema::direction("normal", "Its normal, of any length."),
-          schema::word("axis", {"x", "y", "z"}, "Or the axis that is its normal: with `at`."),
+          schema::choice("axis", {"x", "y", "z"}, "Or the axis that is its normal: with `at`."),
           schema::number("at", "world", "Where it crosses the axis."),
-          schema::named("widget", Role::widget, "Or a cutting plane to follow: one of the three.")};
+          schema::reference("widget", Role::widget, "Or a cutting plane to follow: one of the three.")};
 }
 
 Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget) {
@@ -53,7 +53,7 @@ Outcome read_plane(const Scene& scene, const json::Node& item, const std::string
 }
 
 schema::Members plane_members(const Scene& scene, const Vec3& point, const Vec3& normal, Entity widget) {
-  if (widget) return {{"widget", schema::write_value(scene.world.get<Name>(widget).value)}};
+  if (widget) return {{"widget", schema::write_value(scene.entities.get<Name>(widget).value)}};
   for (int i = 0; i < 3; ++i) {
     Vec3 axis(0.0), at(0.0);
     axis[i] = 1;

@@ -1,36 +1,36 @@
 /// "points": places from a table, drawn as balls.
-#include "engine/scene/read_named.h"
+#include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {
 namespace {
 
-using PointsItem = FileItem<DrawnPoints>;
+using PointsItem = FileItem<PointsSource>;
 
 const Table<PointsItem>& points_table() {
   static const auto table = [] {
-    Table<PointsItem> t = file_table<DrawnPoints>("points", "The table", curves::point_endings());
+    Table<PointsItem> t = make_file_table<PointsSource>("points", "The table", curves::point_endings());
     t.bind(
-        schema::number("radius", "world", "Of all balls.").positive().by_default("the table's column `radius`, or fitted to the spacing"),
-        [](auto& p) -> auto& { return p.drawn.radius; });
-    t.hand(
+        schema::number("radius", "world", "Of all balls.").positive().with_default("the table's column `radius`, or fitted to the spacing"),
+        [](auto& p) -> auto& { return p.item.radius; });
+    t.custom(
         schema::text("radius_by", "The column that says each ball's radius, not beside `radius`."),
         [](Scene&, const json::Node& item, PointsItem& made) -> Outcome {
           const json::Node* node = item.find("radius_by");
           if (node == nullptr) return Done{};
-          CATENA_TRY(made.drawn.radius_by, json::require_string(item, "radius_by"));
-          if (made.drawn.radius > 0) return json::error_at(*node, "\"radius_by\" stands beside \"radius\"; one of them was expected");
+          CATENA_TRY(made.item.radius_by, json::require_string(item, "radius_by"));
+          if (made.item.radius > 0) return json::error_at(*node, "\"radius_by\" stands beside \"radius\"; one of them was expected");
           return Done{};
         },
         [](const Scene&, const PointsItem& made) {
-          return made.drawn.radius_by.empty() ? std::string() : schema::write_value(made.drawn.radius_by);
+          return made.item.radius_by.empty() ? std::string() : schema::write_value(made.item.radius_by);
         });
     t.bind(
-        schema::color("color", "Of all balls, without `color_by`."), [](auto& p) -> auto& { return p.drawn.color; });
+        schema::color("color", "Of all balls, without `color_by`."), [](auto& p) -> auto& { return p.item.color; });
     bind_color_by(
-        t, ColorSubjects::points, [](auto& p) -> auto& { return p.drawn.color_by; });
+        t, ColorTarget::points, [](auto& p) -> auto& { return p.item.color_by; });
     t.bind(
-        clip_key(), [](auto& p) -> auto& { return p.drawn.clipped; });
-    t.beside(visible_key());
+        clip_key(), [](auto& p) -> auto& { return p.item.clipped; });
+    t.companion(visible_key());
     return t;
   }();
   return table;
@@ -39,7 +39,7 @@ const Table<PointsItem>& points_table() {
 }  // namespace
 
 Part points_part() {
-  return {list_of("points", "Places from a table, drawn as balls.", points_table()),
+  return {make_list_component("points", "Places from a table, drawn as balls.", points_table()),
           [](Scene& scene, const json::Node& node) { return read_file_items(scene, node, points_table()); }};
 }
 

@@ -1,7 +1,7 @@
 /// "screens": flat displays that pictures are made for, by their corners.
 #include <algorithm>
 
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 
 namespace catena::scene {
 namespace {
@@ -10,11 +10,13 @@ const Table<DisplayScreen>& screen_table() {
   static const auto table = [] {
     Table<DisplayScreen> t;
     t.bind(schema::text("name", "What `--screen` calls it; unique.").required(), &DisplayScreen::name);
-    t.bind(
-        schema::vec3("lower_left", "world", "A corner of its picture, as one sees it who stands before it.").ranged("to 1e15").required(),
-        &DisplayScreen::lower_left);
-    t.bind(schema::vec3("lower_right", "world", "Another.").ranged("to 1e15").required(), &DisplayScreen::lower_right);
-    t.bind(schema::vec3("upper_left", "world", "The third: a rectangle.").ranged("to 1e15").required(), &DisplayScreen::upper_left);
+    t.bind(schema::vec3("lower_left", "world", "A corner of its picture, as one sees it who stands before it.")
+               .with_range_text("to 1e15")
+               .required(),
+           &DisplayScreen::lower_left);
+    t.bind(schema::vec3("lower_right", "world", "Another.").with_range_text("to 1e15").required(), &DisplayScreen::lower_right);
+    t.bind(schema::vec3("upper_left", "world", "The third: a rectangle.").with_range_text("to 1e15").required(),
+           &DisplayScreen::upper_left);
     t.check([](Scene& scene, const json::Node& node, DisplayScreen& screen) -> Outcome {
       const Vec3 right = screen.lower_right - screen.lower_left, up = screen.upper_left - screen.lower_left;
       constexpr double kSquare = 1e-6;  // cosine of the corner
@@ -35,7 +37,7 @@ const Table<DisplayScreen>& screen_table() {
 }  // namespace
 
 Part screens_part() {
-  return {list_of("screens", "Flat displays that the picture may be made for.", screen_table(), static_cast<int>(kMaxScreens)),
+  return {make_list_component("screens", "Flat displays that the picture may be made for.", screen_table(), static_cast<int>(kMaxScreens)),
           [](Scene& scene, const json::Node& node) {
             return each_item(node, [&](const json::Node& item) -> Outcome {
               if (scene.stereo.screens.size() == kMaxScreens)

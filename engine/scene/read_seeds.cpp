@@ -1,8 +1,8 @@
 /// Where lines begin: places, a pattern, or a widget.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/lines.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/streamlines.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxSeeds = 100000, kMaxEvenLines = 20000;
 
 using Pattern = SeedPattern;
-using PatternTable = schema::Table<Pattern, const Scene>;
+using PatternTable = schema::StructSchema<Pattern, const Scene>;
 
 /// A pattern's word, its kind, and its keys.
 struct PatternType {
@@ -29,7 +29,7 @@ Outcome read_count(const json::Node& object, int& count) {
 }
 
 void bind_count(PatternTable& t) {
-  t.hand(
+  t.custom(
       count_key("How many seeds.").required(),
       [](const Scene&, const json::Node& node, Pattern& out) { return read_count(node, out.count); },
       [](const Scene&, const Pattern& p) { return schema::write_value(p.count); });
@@ -58,28 +58,29 @@ std::vector<PatternType> made_patterns() {
   plane.bind(schema::vec3("origin", "world", "A corner.").required(), &Pattern::origin);
   plane.bind(schema::vec3("u", "world", "One edge.").required(), &Pattern::u);
   plane.bind(schema::vec3("v", "world", "The other edge.").required(), &Pattern::v);
-  plane.hand(schema::vector("count", 2, "", "How many along `u` and along `v`.").within(1, 1000).required(), read_counts,
-             [](const Scene&, const Pattern& p) { return "[" + std::to_string(p.count) + ", " + std::to_string(p.count_v) + "]"; });
+  plane.custom(schema::vector("count", 2, "", "How many along `u` and along `v`.").within(1, 1000).required(), read_counts,
+               [](const Scene&, const Pattern& p) { return "[" + std::to_string(p.count) + ", " + std::to_string(p.count_v) + "]"; });
 
   sphere.bind(schema::vec3("center", "world", "Its centre.").required(), &Pattern::origin);
   sphere.bind(schema::number("radius", "world", "Its radius.").positive().required(), &Pattern::radius);
   bind_count(sphere);
   sphere.bind(schema::boolean("inside", "In the ball rather than on the sphere."), &Pattern::inside);
 
-  bind_field(isosurface, schema::named("field", Role::scalar_field, "A scalar field.").required(), &Pattern::field);
+  bind_field(isosurface, schema::reference("field", Role::scalar_field, "A scalar field.").required(), &Pattern::field);
   isosurface.bind(schema::number("level", "value", "Its value on the surface.").required(), &Pattern::level);
   bind_count(isosurface);
 
   even.bind(schema::number("distance", "world", "Of the lines from each other.").positive().required(), &Pattern::distance);
-  even.bind(schema::number("test", "", "Lines end nearer than this share of the distance.").limited({0.0, 1.0, true}), &Pattern::test);
-  even.hand(
-      count_key("The most lines.").by_default(std::to_string(kMaxEvenLines)),
+  even.bind(schema::number("test", "", "Lines end nearer than this share of the distance.").with_limits({0.0, 1.0, true}),
+            &Pattern::termination_ratio);
+  even.custom(
+      count_key("The most lines.").with_default(std::to_string(kMaxEvenLines)),
       [](const Scene&, const json::Node& node, Pattern& out) -> Outcome {
         CATENA_TRY(out.count, json::get_integer(node, "count", kMaxEvenLines, 1, kMaxSeeds));
         return Done{};
       },
       [](const Scene&, const Pattern& p) { return schema::write_value(p.count); });
-  even.bind(schema::places("start", "world", "Where the first lines begin.").by_default("found by the method"), &Pattern::start);
+  even.bind(schema::points("start", "world", "Where the first lines begin.").with_default("found by the method"), &Pattern::start_points);
 
   return {{"line", "Evenly on a segment.", Pattern::Kind::line, line},
           {"plane", "On a parallelogram.", Pattern::Kind::plane, plane},
@@ -95,16 +96,16 @@ const std::vector<PatternType>& patterns() {
 
 /// {"widget": NAME}: of a rake with "count".
 Result<Seeds> read_followed(const Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::only_keys(node, {"widget", "count"}));
+  CATENA_CHECK(json::check_known_keys(node, {"widget", "count"}));
   Seeds seeds;
   CATENA_TRY(seeds.widget, read_widget_name(scene, node, {widget::Kind::seed, widget::Kind::rake}, "a seed or a rake"));
-  const widget::Spec& spec = scene.world.get<Widget>(seeds.widget).spec;
+  const widget::Spec& spec = scene.entities.get<Widget>(seeds.widget).spec;
   if (spec.kind == widget::Kind::rake) {
     CATENA_CHECK(read_count(node, seeds.count));
   } else if (const json::Node* count = node.find("count")) {
     return json::error_at(*count, "\"count\" is given with a seed, which is one place; it belongs to a rake");
   }
-  seeds.points = seeds_of(spec.kind, spec.pose, seeds.count);
+  seeds.points = make_widget_seeds(spec.kind, spec.pose, seeds.count);
   return seeds;
 }
 
@@ -114,9 +115,9 @@ Key seeds_key() {
   Keys forms;
   for (const PatternType& type : patterns())
     forms.push_back(schema::object(std::string(type.word), type.table.keys(), std::string(type.help)));
-  forms.push_back(schema::named("widget", Role::widget, "Follows a seed; with `count`, a rake."));
+  forms.push_back(schema::reference("widget", Role::widget, "Follows a seed; with `count`, a rake."));
   forms.push_back(count_key("How many seeds along a rake."));
-  return schema::any_of("seeds", {schema::places("", "world", ""), schema::object("", forms, "")},
+  return schema::any_of("seeds", {schema::points("", "world", ""), schema::object("", forms, "")},
                         "Places `[[x, y, z], ...]`, or an object with one of the patterns below, or with `widget`.")
       .required();
 }
@@ -126,16 +127,16 @@ Result<Seeds> read_seeds(const Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::object) {
     if (node.kind != json::Kind::array || node.items.empty())
       return json::error_at(node, "\"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected");
-    CATENA_CHECK(schema::read_places(node, "seeds", seeds.points));
+    CATENA_CHECK(schema::read_points(node, "seeds", seeds.points));
     return seeds;
   }
   if (node.find("widget") != nullptr) return read_followed(scene, node);
   std::vector<std::string_view> words;
   for (const PatternType& type : patterns()) words.push_back(type.word);
-  CATENA_CHECK(json::only_keys(node, words));
+  CATENA_CHECK(json::check_known_keys(node, words));
   if (node.members.size() != 1)
     return json::error_at(
-        node, "\"seeds\" names " + std::to_string(node.members.size()) + " patterns; one of " + joined(words) + " was expected");
+        node, "\"seeds\" names " + std::to_string(node.members.size()) + " patterns; one of " + join_words(words) + " was expected");
   for (const PatternType& type : patterns()) {
     const json::Node* pattern = node.find(type.word);
     if (pattern == nullptr) continue;
@@ -150,8 +151,8 @@ Result<Seeds> read_seeds(const Scene& scene, const json::Node& node) {
 
 std::string write_seeds(const Scene& scene, const Seeds& seeds) {
   if (seeds.widget) {
-    const Widget& widget = scene.world.get<Widget>(seeds.widget);
-    return "{\"widget\": " + schema::write_value(scene.world.get<Name>(seeds.widget).value) +
+    const Widget& widget = scene.entities.get<Widget>(seeds.widget);
+    return "{\"widget\": " + schema::write_value(scene.entities.get<Name>(seeds.widget).value) +
            (widget.spec.kind == widget::Kind::rake ? ", \"count\": " + std::to_string(seeds.count) : "") + "}";
   }
   if (!seeds.pattern) return schema::write_value(seeds.points);

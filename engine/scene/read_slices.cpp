@@ -1,8 +1,8 @@
 /// "slices": a plane, colours, contours.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/hidden.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::scene {
 namespace {
@@ -13,14 +13,17 @@ const Table<Slice::Contours>& contours_table() {
   using Contours = Slice::Contours;
   static const auto table = [] {
     Table<Contours> t;
-    t.bind(schema::numbers("levels", "value", "These values: one of the three.").ranged("rising").without_default().items(1, kMaxContours),
+    t.bind(schema::numbers("levels", "value", "These values: one of the three.")
+               .with_range_text("rising")
+               .without_default()
+               .with_size(1, kMaxContours),
            &Contours::levels);
     t.bind(
         schema::integer("count", "", "Or so many within the range of the colours, its ends left out.", 1, kMaxContours).without_default(),
         &Contours::count);
     t.bind(schema::number("spacing", "value", "Or all multiples of this.").positive().without_default(), &Contours::spacing);
     t.bind(schema::color("color", "Of the lines."), &Contours::color);
-    t.bind(schema::number("width", "pixels", "Of the lines.").limited({0.0, kWidest, true}), &Contours::width);
+    t.bind(schema::number("width", "pixels", "Of the lines.").with_limits({0.0, kWidest, true}), &Contours::width);
     t.check([](Scene&, const json::Node& node, Contours& contours) -> Outcome {
       if (contours.levels.size() > static_cast<std::size_t>(kMaxContours))
         return json::error_at(*node.find("levels"), "\"levels\" holds " + std::to_string(contours.levels.size()) + " levels; at most " +
@@ -43,18 +46,18 @@ Outcome read_contours(Scene& scene, const json::Node& item, Slice& slice) {
   int ways = 0;
   for (const char* key : {"levels", "count", "spacing"}) ways += node->find(key) != nullptr;
   slice.contours.emplace().where = *node;
-  CATENA_CHECK(json::only_keys(*node, schema::names_of(contours_table().keys())));
+  CATENA_CHECK(json::check_known_keys(*node, schema::key_names(contours_table().keys())));
   if (ways != 1)
     return json::error_at(*node,
                           "contours say their levels in no way, or in several; one of \"levels\", \"count\" and \"spacing\" was expected");
-  return contours_table().read_known(scene, *node, *slice.contours);
+  return contours_table().read_own_keys(scene, *node, *slice.contours);
 }
 
 Outcome read_colors(Scene& scene, const json::Node& item, Slice& slice) {
   CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
-  slice.shown.where = item;
-  slice.shown.colors = std::move(scale.colors);
-  slice.shown.named = std::move(scale.named);
+  slice.color_by.where = item;
+  slice.color_by.colors = std::move(scale.colors);
+  slice.color_by.named = std::move(scale.named);
   return Done{};
 }
 
@@ -62,8 +65,8 @@ const Table<Slice>& slice_table() {
   static const auto table = [] {
     Table<Slice> t;
     bind_field(
-        t, schema::named("field", Role::any_field, "A scalar field, or a vector field, whose magnitude is shown.").required(),
-        [](auto& slice) -> auto& { return slice.shown.field; });
+        t, schema::reference("field", Role::any_field, "A scalar field, or a vector field, whose magnitude is shown.").required(),
+        [](auto& slice) -> auto& { return slice.color_by.field; });
     t.group(
         plane_keys(),
         [](Scene& scene, const json::Node& item, Slice& slice) {
@@ -71,15 +74,15 @@ const Table<Slice>& slice_table() {
         },
         [](const Scene& scene, const Slice& slice) { return plane_members(scene, slice.point, slice.normal, slice.widget); });
     t.group(color_scale_keys(), read_colors,
-            [](const Scene&, const Slice& slice) { return scale_members(slice.shown.colors, slice.shown.named); });
+            [](const Scene&, const Slice& slice) { return color_scale_members(slice.color_by.colors, slice.color_by.named); });
     t.bind(opacity_key("Of the slice."), &Slice::opacity);
-    t.hand(schema::object("contours", contours_table().keys(), "Lines of constant value; they say their levels in one of three ways."),
-           read_contours, [](const Scene& scene, const Slice& slice) {
-             return slice.contours ? contours_table().write(scene, *slice.contours) : std::string();
-           });
+    t.custom(schema::object("contours", contours_table().keys(), "Lines of constant value; they say their levels in one of three ways."),
+             read_contours, [](const Scene& scene, const Slice& slice) {
+               return slice.contours ? contours_table().write(scene, *slice.contours) : std::string();
+             });
     t.bind(schema::boolean("lit", "Lit as a surface is."), &Slice::lit);
     t.bind(clip_key(), &Slice::clipped);
-    t.beside(visible_key());
+    t.companion(visible_key());
     return t;
   }();
   return table;
@@ -90,19 +93,19 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
     Slice slice;
     slice.where = item;
     CATENA_CHECK(slice_table().read(scene, item, slice));
-    const Entity e = scene.world.create();
-    scene.world.emplace<Slice>(e, std::move(slice));
+    const Entity e = scene.entities.create();
+    scene.entities.emplace<Slice>(e, std::move(slice));
     return read_visible(scene, e, item);
   });
 }
 
 }  // namespace
 
-std::string text_of(const Scene& scene, const Slice& slice) { return slice_table().write(scene, slice); }
+std::string to_json(const Scene& scene, const Slice& slice) { return slice_table().write(scene, slice); }
 
 Part slices_part() {
   return {
-      list_of(
+      make_list_component(
           "slices",
           "Planes through a field, coloured by its values. A plane is said as `axis` and `at`, as `point` and `normal`, or as `widget`.",
           slice_table()),

@@ -1,9 +1,9 @@
 /// "streamlines" and the "indicator": lines of the flow.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/hidden.h"
-#include "engine/scene/lines.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/streamlines.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::scene {
 namespace {
@@ -14,7 +14,7 @@ Outcome read_line_color(Scene& scene, const json::Node& item, StreamlineSet& set
   const bool of_values =
       color != nullptr && (color->kind == json::Kind::string ||
                            (color->kind == json::Kind::array && !color->items.empty() && color->items[0].kind == json::Kind::array));
-  CATENA_CHECK(read_color_by(scene, item, ColorSubjects::lines, set.color_by));
+  CATENA_CHECK(read_color_by(scene, item, ColorTarget::lines, set.color_by));
   if (by != nullptr && by->kind == json::Kind::string) return Done{};
   for (const json::Node* node : {of_values ? color : nullptr, item.find("range"), item.find("transfer")})
     if (node != nullptr)
@@ -36,32 +36,32 @@ Outcome read_set_seeds(Scene& scene, const json::Node& item, StreamlineSet& set)
 const Table<StreamlineSet>& streamlines_table() {
   static const auto table = [] {
     Table<StreamlineSet> t;
-    bind_field(t, schema::named("field", Role::vector_field, "A vector field.").required(), &StreamlineSet::field);
-    t.hand(seeds_key(), read_set_seeds, [](const Scene& scene, const StreamlineSet& set) { return write_seeds(scene, set.seeds); });
-    t.bind(schema::number("radius", "world", "Of the tubes.").positive().by_default("0.003 diagonals of the domain"),
+    bind_field(t, schema::reference("field", Role::vector_field, "A vector field.").required(), &StreamlineSet::field);
+    t.custom(seeds_key(), read_set_seeds, [](const Scene& scene, const StreamlineSet& set) { return write_seeds(scene, set.seeds); });
+    t.bind(schema::number("radius", "world", "Of the tubes.").positive().with_default("0.003 diagonals of the domain"),
            &StreamlineSet::radius);
-    t.hand(schema::color("color", "Of all lines, without `color_by`.").by_default(schema::write_value(StreamlineSet{}.color)),
-           read_line_color,
-           [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
-    t.beside(color_by_key(ColorSubjects::lines),
-             [](const Scene& scene, const StreamlineSet& set) { return set.color_by ? text_of(scene, *set.color_by) : std::string(); });
-    t.bind(schema::line_kind_key(), &StreamlineSet::line);
-    t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").not_negative(), &StreamlineSet::min_speed);
+    t.custom(schema::color("color", "Of all lines, without `color_by`.").with_default(schema::write_value(StreamlineSet{}.color)),
+             read_line_color,
+             [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
+    t.companion(color_by_key(ColorTarget::lines),
+                [](const Scene& scene, const StreamlineSet& set) { return set.color_by ? to_json(scene, *set.color_by) : std::string(); });
+    t.bind(schema::line_kind_key(), &StreamlineSet::is_line_field);
+    t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").non_negative(), &StreamlineSet::min_speed);
     t.bind(schema::number("length", "world", "Longest arc length in each direction. Without it lines of a formula end at its `box`.")
                .positive()
-               .by_default("10 L"),
+               .with_default("10 L"),
            &StreamlineSet::length);
     t.bind(schema::number("tolerance", "L", "Embedded error of a step.")
-               .limited({0.0, 0.01, true})
-               .by_default("1e-10 for places, 1e-7 for patterns"),
+               .with_limits({0.0, 0.01, true})
+               .with_default("1e-10 for places, 1e-7 for patterns"),
            &StreamlineSet::tolerance);
-    t.bind(schema::number("arrows", "world", "An arrowhead every so far along a line.").positive().by_default("none"),
-           &StreamlineSet::arrows);
-    t.bind(schema::number("pulse", "world", "Bands of this length run with the flow.").positive().by_default("none"),
-           &StreamlineSet::pulse);
+    t.bind(schema::number("arrows", "world", "An arrowhead every so far along a line.").positive().with_default("none"),
+           &StreamlineSet::arrow_spacing);
+    t.bind(schema::number("pulse", "world", "Bands of this length run with the flow.").positive().with_default("none"),
+           &StreamlineSet::band_length);
     t.bind(clip_key(), &StreamlineSet::clipped);
-    t.beside(visible_key());
-    t.formerly("range").formerly("transfer");  // beside "color_by" as a word
+    t.companion(visible_key());
+    t.deprecated("range").deprecated("transfer");  // beside "color_by" as a word
     return t;
   }();
   return table;
@@ -70,11 +70,12 @@ const Table<StreamlineSet>& streamlines_table() {
 const Table<Indicator>& indicator_table() {
   static const auto table = [] {
     Table<Indicator> t;
-    bind_field(t, schema::named("field", Role::vector_field, "A vector field.").required(), &Indicator::field);
-    t.bind(schema::number("length", "world", "Of the piece.").positive().by_default("0.1 L"), &Indicator::length);
-    t.bind(schema::number("radius", "world", "Of its tube.").positive().by_default("0.004 diagonals of the domain"), &Indicator::radius);
+    bind_field(t, schema::reference("field", Role::vector_field, "A vector field.").required(), &Indicator::field);
+    t.bind(schema::number("length", "world", "Of the piece.").positive().with_default("0.1 L"), &Indicator::length);
+    t.bind(schema::number("radius", "world", "Of its tube.").positive().with_default("0.004 diagonals of the domain"), &Indicator::radius);
     t.bind(schema::color("color", "Its colour."), &Indicator::color);
-    t.bind(schema::boolean("ahead", "It begins at the cursor and goes with the flow; false: the cursor is its middle."), &Indicator::ahead);
+    t.bind(schema::boolean("ahead", "It begins at the cursor and goes with the flow; false: the cursor is its middle."),
+           &Indicator::starts_at_cursor);
     return t;
   }();
   return table;
@@ -85,8 +86,8 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
     StreamlineSet set;
     set.where = item;
     CATENA_CHECK(streamlines_table().read(scene, item, set));
-    const Entity e = scene.world.create();
-    scene.world.emplace<StreamlineSet>(e, std::move(set));
+    const Entity e = scene.entities.create();
+    scene.entities.emplace<StreamlineSet>(e, std::move(set));
     return read_visible(scene, e, item);
   });
 }
@@ -96,18 +97,18 @@ Outcome read_indicator(Scene& scene, const json::Node& node) {
   Indicator indicator;
   indicator.where = node;
   CATENA_CHECK(indicator_table().read(scene, node, indicator));
-  scene.world.emplace<Indicator>(scene.world.create(), std::move(indicator));
+  scene.entities.emplace<Indicator>(scene.entities.create(), std::move(indicator));
   return Done{};
 }
 
 }  // namespace
 
-std::string text_of(const Scene& scene, const StreamlineSet& set) { return streamlines_table().write(scene, set); }
+std::string to_json(const Scene& scene, const StreamlineSet& set) { return streamlines_table().write(scene, set); }
 
-Part streamlines_part() { return {list_of("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines}; }
+Part streamlines_part() { return {make_list_component("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines}; }
 
 Part indicator_part() {
-  return {{"indicator", "A short piece of the streamline through the cursor, with an arrowhead.", schema::Component::Shape::object,
+  return {{"indicator", "A short piece of the streamline through the cursor, with an arrowhead.", schema::Section::Layout::object,
            indicator_table().keys()},
           read_indicator};
 }

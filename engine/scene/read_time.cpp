@@ -1,5 +1,5 @@
 /// "time": which step of its series a scene shows, and how fast they go by.
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 
 namespace catena::scene {
 namespace {
@@ -10,7 +10,7 @@ const Table<TimeLine>& time_table() {
     t.bind(schema::integer("step", "", "Of all fields that have steps and state none of their own; beyond the last one the last.", 0,
                            1'000'000),
            &TimeLine::step);
-    t.bind(schema::number("per_second", "1/s", "Steps that go by while they are played.").within(0.01, 1000), &TimeLine::per_second);
+    t.bind(schema::number("per_second", "1/s", "Steps that go by while they are played.").within(0.01, 1000), &TimeLine::steps_per_second);
     return t;
   }();
   return table;
@@ -24,7 +24,7 @@ Outcome read_time(Scene& scene, const json::Node& node) {
 }
 
 Part time_part() {
-  return {{"time", "Steps in time, of fields that have them.", schema::Component::Shape::object, time_table().keys()}, nullptr};
+  return {{"time", "Steps in time, of fields that have them.", schema::Section::Layout::object, time_table().keys()}, nullptr};
 }
 
 }  // namespace catena::scene

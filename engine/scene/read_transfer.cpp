@@ -1,4 +1,4 @@
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 #include "engine/schema/values.h"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "engine/base/numbers.h"
+#include "engine/base/symlog_scale.h"
 #include "engine/base/text.h"
-#include "engine/base/value_scale.h"
 #include "engine/scene/color_maps.h"
 
 namespace catena::scene {
@@ -44,12 +44,12 @@ Result<std::optional<Pair>> read_range(const json::Node& object) {
 /// "mapping" and "linear_below"; none where they are not stated.
 Result<std::optional<ValueMapping>> read_mapping(const json::Node& object) {
   const json::Node* below = object.find("linear_below");
-  CATENA_TRY(const int kind, json::get_choice(object, "mapping", 0, {std::begin(kMappingWords), std::end(kMappingWords)}));
+  CATENA_TRY(const int kind, json::get_choice(object, "mapping", 0, {std::begin(kMappingNames), std::end(kMappingNames)}));
   ValueMapping mapping{static_cast<ValueMapping::Kind>(kind), 0};
   if (below != nullptr && mapping.kind != ValueMapping::Kind::symlog)
-    return json::error_at(
-        *below, "\"linear_below\" is given, but \"mapping\" is " + in_quotes(word_of(mapping.kind)) + "; \"symlog\" was expected with it");
-  CATENA_TRY(mapping.linear_below, json::get_number(object, "linear_below", 0, json::Range::positive));
+    return json::error_at(*below, "\"linear_below\" is given, but \"mapping\" is " + in_quotes(to_string(mapping.kind)) +
+                                      "; \"symlog\" was expected with it");
+  CATENA_TRY(mapping.linear_below, json::get_number(object, "linear_below", 0, json::NumberRange::positive));
   return object.find("mapping") == nullptr ? std::nullopt : std::optional(mapping);
 }
 
@@ -64,8 +64,8 @@ Outcome check_mapping(const json::Node& object, const TransferFunction& transfer
   take(transfer.opacities, "opacity");
   take(transfer.extinctions, "extinction");
   if (transfer.named.range && (*transfer.named.range)[0] < least) least = (*transfer.named.range)[0], what = "\"range\"";
-  const std::string problem = mapping_problem(transfer.named.mapping, least, what);
-  return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or(object, "mapping"), problem);
+  const std::string problem = mapping_error(transfer.named.mapping, least, what);
+  return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or_parent(object, "mapping"), problem);
 }
 
 /// "color", "range" and "mapping".
@@ -76,7 +76,7 @@ Outcome read_colors(const json::Node& object, std::vector<ColorPoint>& colors, N
   const json::Node* color = object.find("color");
   if (color == nullptr) return Done{};
   if (color->kind == json::Kind::string) {
-    if (!is_color_map(color->string)) return json::error_at(*color, "\"color\": " + not_a_color_map(color->string));
+    if (!is_color_map(color->string)) return json::error_at(*color, "\"color\": " + unknown_color_map_message(color->string));
     named.map = color->string;
     return Done{};
   }
@@ -105,7 +105,7 @@ Outcome read_gradient_opacity(const json::Node& object, TransferFunction& transf
   return Done{};
 }
 
-/// "opacity", "opacity_unit", "extinction", "gradient_opacity".
+/// "opacity", "opacity_length", "extinction", "gradient_opacity".
 Outcome read_opacities(const json::Node& object, TransferFunction& transfer) {
   const json::Node *opacity = object.find("opacity"), *extinction = object.find("extinction"), *unit = object.find("opacity_unit");
   if (opacity != nullptr && extinction != nullptr)
@@ -120,7 +120,7 @@ Outcome read_opacities(const json::Node& object, TransferFunction& transfer) {
       const double alpha = rows[i][1] < 1 ? rows[i][1] : TransferFunction::OpacityPoint::kMaxAlpha;
       transfer.opacities.push_back({rows[i][0], alpha});
     }
-    CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::Range::positive));
+    CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::NumberRange::positive));
   }
   if (extinction != nullptr) {
     CATENA_TRY(const auto rows, read_table(*extinction, "extinction", 2));
@@ -155,12 +155,12 @@ bool rises(const TransferFunction& transfer) {
 Outcome lay_anew(TransferFunction& transfer, const Pair& range, const ValueMapping& mapping, const json::Node& where) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   each_value(transfer, [&](const double& v) { lo = std::min(lo, v), hi = std::max(hi, v); });
-  if (const std::string problem = mapping_problem(mapping, range[0], "\"range\""); !problem.empty()) return json::error_at(where, problem);
+  if (const std::string problem = mapping_error(mapping, range[0], "\"range\""); !problem.empty()) return json::error_at(where, problem);
   if (lo <= hi) {
     const double from = linear_below(transfer.named.mapping, lo, hi), to = linear_below(mapping, range[0], range[1]);
     each_value(transfer, [&](double& v) {
-      const double t = (scaled(v, from) - scaled(lo, from)) / (scaled(hi, from) - scaled(lo, from));
-      v = value_between(range[0], range[1], t, to);
+      const double t = (symlog(v, from) - symlog(lo, from)) / (symlog(hi, from) - symlog(lo, from));
+      v = symlog_interpolate(range[0], range[1], t, to);
     });
     // one value alone, or values that fall together
     if (!(lo < hi) || !std::isfinite(hi - lo) || !rises(transfer))
@@ -179,13 +179,13 @@ Result<TransferFunction> read_transfer_file(const std::string& scene_path, const
       return json::error_at(*other,
                             "both \"transfer\" and " + in_quotes(key) + " are given; a transfer file that says all, or none, was expected");
   CATENA_TRY(const std::string name, json::as_string(node, "transfer"));
-  const std::string path = resolved_path(scene_path, name);
+  const std::string path = resolve_path(scene_path, name);
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code))
     return json::error_at(node, "\"transfer\": " + in_quotes(path) +
                                     (std::filesystem::exists(path, code) ? " is not a file" : " does not exist") +
                                     "; a transfer file (JSON) was expected");
-  CATENA_TRY(const std::string text, read_text(path, "a transfer file (JSON)", kMaxJsonBytes));
+  CATENA_TRY(const std::string text, read_text_file(path, "a transfer file (JSON)", kMaxJsonBytes));
   CATENA_TRY(TransferFunction transfer, parse_transfer(text, path));
   transfer.file = path;
   CATENA_TRY(const std::optional<Pair> range, read_range(object));
@@ -240,7 +240,7 @@ Result<TransferFunction> read_transfer(const std::string& scene_path, const json
   if (const json::Node* unit = object.find("opacity_unit")) {
     if (transfer.opacities.empty())
       return json::error_at(*unit, "\"opacity_unit\" is given, but the transfer file holds no \"opacity\"; one in it was expected");
-    CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::Range::positive));
+    CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::NumberRange::positive));
   }
   CATENA_CHECK(read_gradient_opacity(object, transfer));
   return transfer;
@@ -250,8 +250,8 @@ Result<TransferFunction> parse_transfer(std::string_view text, const std::string
   CATENA_TRY(const json::Node root, json::parse(text, path));
   if (root.kind == json::Kind::array) return read_paraview_map(root);
   CATENA_CHECK(json::expect_object(root, "the transfer function"));
-  CATENA_CHECK(
-      json::only_keys(root, {"color", "range", "mapping", "linear_below", "opacity", "opacity_unit", "extinction", "gradient_opacity"}));
+  CATENA_CHECK(json::check_known_keys(
+      root, {"color", "range", "mapping", "linear_below", "opacity", "opacity_unit", "extinction", "gradient_opacity"}));
   TransferFunction transfer;
   CATENA_CHECK(read_colors(root, transfer.colors, transfer.named));
   CATENA_CHECK(read_opacities(root, transfer));

@@ -1,10 +1,10 @@
 /// The eye and the picture: "camera", "background", "quality", "jitter".
-#include "engine/base/eye_limits.h"
+#include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/to_json.h"
 #include "engine/scene/widgets.h"
-#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 
@@ -13,39 +13,41 @@ namespace {
 /// What one key alone cannot tell.
 Outcome check_camera(Scene&, const json::Node& node, Camera& camera) {
   const Vec3 view = camera.target - camera.position;
-  if (const std::string problem = eye_problem(camera.position, camera.target); !problem.empty())
+  if (const std::string problem = validate_view(camera.position, camera.target); !problem.empty())
     return json::error_at(*node.find("target"), "\"target\": " + problem);
   const auto parallel = [&](const Vec3& v) { return norm(cross(direction(view), direction(v))) < 1e-9; };
   const json::Node* up = node.find("up");
   if (up != nullptr && parallel(camera.up)) return json::error_at(*up, "\"up\" is parallel to the view; a vector across it was expected");
   if (up == nullptr && parallel(camera.up)) camera.up = {0.0, 1.0, 0.0};
-  if (const std::string problem = fovy_problem(camera.fovy_deg); !problem.empty())
+  if (const std::string problem = validate_fovy(camera.fovy_deg); !problem.empty())
     return json::error_at(*node.find("fovy_deg"), "\"fovy_deg\" " + problem);
   const json::Node* height = node.find("height");
   if (!camera.orthographic && height != nullptr)
     return json::error_at(*height, "\"height\" is given without \"projection\": \"orthographic\"; \"fovy_deg\" was expected");
-  if (camera.orthographic && height == nullptr) CATENA_CHECK(json::require_number(node, "height", json::Range::positive));
-  if (camera.orthographic && !(camera.height >= kLeastEyeHeight && camera.height <= kMaxEyeHeight))
-    return json::error_at(*height, "\"height\" is " + to_text(camera.height) + "; a length from " + to_text(kLeastEyeHeight) + " to " +
-                                       to_text(kMaxEyeHeight) + " was expected");
-  camera.given = true;
+  if (camera.orthographic && height == nullptr) CATENA_CHECK(json::require_number(node, "height", json::NumberRange::positive));
+  if (camera.orthographic && !(camera.ortho_height >= kMinOrthoHeight && camera.ortho_height <= kMaxOrthoHeight))
+    return json::error_at(*height, "\"height\" is " + to_text(camera.ortho_height) + "; a length from " + to_text(kMinOrthoHeight) +
+                                       " to " + to_text(kMaxOrthoHeight) + " was expected");
+  camera.is_explicit = true;
   return Done{};
 }
 
 const Table<Camera>& camera_table() {
   static const auto table = [] {
     Table<Camera> t;
-    t.bind(schema::vec3("position", "world", "Of the eye.").ranged("to 1e15").required(), &Camera::position);
-    t.bind(schema::vec3("target", "world", "Where it looks.").ranged("to 1e15").required(), &Camera::target);
+    t.bind(schema::vec3("position", "world", "Of the eye.").with_range_text("to 1e15").required(), &Camera::position);
+    t.bind(schema::vec3("target", "world", "Where it looks.").with_range_text("to 1e15").required(), &Camera::target);
     t.bind(schema::direction("up", "What is up in the picture; where it is stated, not along the view."), &Camera::up);
-    t.bind(schema::number("fovy_deg", "degrees", "Vertical angle of view.").positive().ranged("0.001 to 179.9"), &Camera::fovy_deg);
-    t.bind(schema::word("projection", {"perspective", "orthographic"}, "How depth becomes size."), &Camera::orthographic);
-    t.hand(
-        schema::number("height", "world", "Height of an orthographic picture, which needs it; of no other.").ranged("1e-15 to 1e15"),
+    t.bind(schema::number("fovy_deg", "degrees", "Vertical angle of view.").positive().with_range_text("0.001 to 179.9"),
+           &Camera::fovy_deg);
+    t.bind(schema::choice("projection", {"perspective", "orthographic"}, "How depth becomes size."), &Camera::orthographic);
+    t.custom(
+        schema::number("height", "world", "Height of an orthographic picture, which needs it; of no other.")
+            .with_range_text("1e-15 to 1e15"),
         [](Scene&, const json::Node& node, Camera& camera) {
-          return schema::read_value(schema::number("height", "", "").positive(), node, camera.height);
+          return schema::read_value(schema::number("height", "", "").positive(), node, camera.ortho_height);
         },
-        [](const Scene&, const Camera& camera) { return camera.orthographic ? schema::write_value(camera.height) : std::string(); });
+        [](const Scene&, const Camera& camera) { return camera.orthographic ? schema::write_value(camera.ortho_height) : std::string(); });
     t.check(check_camera);
     return t;
   }();
@@ -89,34 +91,34 @@ Outcome read_jitter(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
-using schema::Component;
+using schema::Section;
 
 }  // namespace
 
 Part camera_part() {
-  return {{"camera", "The eye. Without it the picture is fitted to what is drawn.", Component::Shape::object, camera_table().keys()},
+  return {{"camera", "The eye. Without it the picture is fitted to what is drawn.", Section::Layout::object, camera_table().keys()},
           read_camera};
 }
 
 Part background_part() {
   const Key key =
-      schema::any_of("background", {schema::color("", ""), schema::word("", {"transparent"}, "")}, "A colour, or `transparent`.")
-          .by_default(schema::write_value(Background{}.color));
-  return {{"background", "Behind everything.", Component::Shape::value, {key}}, read_background};
+      schema::any_of("background", {schema::color("", ""), schema::choice("", {"transparent"}, "")}, "A colour, or `transparent`.")
+          .with_default(schema::write_value(Background{}.color));
+  return {{"background", "Behind everything.", Section::Layout::value, {key}}, read_background};
 }
 
 Part quality_part() {
   const Key key = schema::text("quality", "`draft`, `balanced`, `reference`, `time=MS` or `error=E`, as of `render --quality`.")
-                      .by_default("\"balanced\"");
-  return {{"quality", "How good the picture is to be, and how fast.", Component::Shape::value, {key}}, read_quality};
+                      .with_default("\"balanced\"");
+  return {{"quality", "How good the picture is to be, and how fast.", Section::Layout::value, {key}}, read_quality};
 }
 
 Part jitter_part() {
-  const Key key = schema::boolean("jitter", "Grain instead of rings in volumes.").by_default("false");
-  return {{"jitter", "Grain instead of rings in volumes.", Component::Shape::value, {key}}, read_jitter};
+  const Key key = schema::boolean("jitter", "Grain instead of rings in volumes.").with_default("false");
+  return {{"jitter", "Grain instead of rings in volumes.", Section::Layout::value, {key}}, read_jitter};
 }
 
-std::string text_of(const Camera& camera) { return camera_table().write({}, camera); }
+std::string to_json(const Camera& camera) { return camera_table().write({}, camera); }
 
 /// "clip": planes, boxes and widgets; what every one of them keeps is drawn.
 
@@ -153,17 +155,18 @@ const Table<Box>& box_table() {
 }
 
 Keys clip_keys() {
-  return {schema::object("plane", plane_table().keys(), "Keeps the side to which the normal points."),
-          schema::object("box", box_table().keys(), "Keeps the inside."),
-          schema::named("widget", Role::widget, "Follows a cutting plane, or a box."),
-          schema::word("side", {"front", "behind"}, "Of a cutting plane that is followed: which side is kept.").by_default("\"front\"")};
+  return {
+      schema::object("plane", plane_table().keys(), "Keeps the side to which the normal points."),
+      schema::object("box", box_table().keys(), "Keeps the inside."),
+      schema::reference("widget", Role::widget, "Follows a cutting plane, or a box."),
+      schema::choice("side", {"front", "behind"}, "Of a cutting plane that is followed: which side is kept.").with_default("\"front\"")};
 }
 
 Outcome read_plane(Scene& scene, const json::Node& node) {
   CATENA_CHECK(json::expect_object(node, "plane"));
   ClipPlane plane;
   CATENA_CHECK(plane_table().read(scene, node, plane));
-  scene.clip.push_back(plane);
+  scene.clip_planes.push_back(plane);
   return Done{};
 }
 
@@ -174,8 +177,8 @@ Outcome read_box(Scene& scene, const json::Node& node) {
   for (int i = 0; i < 3; ++i) {
     Vec3 axis(0.0);
     axis[i] = 1;
-    scene.clip.push_back({{box.lo, axis}});
-    scene.clip.push_back({{box.hi, -axis}});
+    scene.clip_planes.push_back({{box.lo, axis}});
+    scene.clip_planes.push_back({{box.hi, -axis}});
   }
   return Done{};
 }
@@ -184,29 +187,29 @@ Outcome read_box(Scene& scene, const json::Node& node) {
 Outcome read_followed(Scene& scene, const json::Node& item) {
   ClipPlane plane;
   CATENA_TRY(plane.widget, read_widget_name(scene, item, {widget::Kind::cutting_plane, widget::Kind::box}, "a cutting plane or a box"));
-  const widget::Spec& spec = scene.world.get<Widget>(plane.widget).spec;
+  const widget::Spec& spec = scene.entities.get<Widget>(plane.widget).spec;
   CATENA_TRY(const int side, json::get_choice(item, "side", 0, {"front", "behind"}));
-  plane.behind = side == 1;
+  plane.keep_back_side = side == 1;
   if (spec.kind == widget::Kind::cutting_plane) {
-    scene.clip.push_back(clip_of(spec.pose, plane));
+    scene.clip_planes.push_back(make_clip_plane(spec.pose, plane));
     return Done{};
   }
   if (const json::Node* node = item.find("side"))
     return json::error_at(*node, "\"side\" is given with a box, which keeps its inside; it belongs to a cutting plane");
-  for (plane.box_face = 0; plane.box_face < 6; ++plane.box_face) scene.clip.push_back(clip_of(spec.pose, plane));
+  for (plane.box_face = 0; plane.box_face < 6; ++plane.box_face) scene.clip_planes.push_back(make_clip_plane(spec.pose, plane));
   return Done{};
 }
 
 Outcome read_clip(Scene& scene, const json::Node& node) {
   return each_item(node, [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, schema::names_of(clip_keys())));
+    CATENA_CHECK(json::check_known_keys(item, schema::key_names(clip_keys())));
     const json::Node *plane = item.find("plane"), *box = item.find("box"), *widget = item.find("widget");
     if ((plane != nullptr) + (box != nullptr) + (widget != nullptr) != 1)
       return json::error_at(item, "a clip names a plane, a box or a widget; one of \"plane\", \"box\" and \"widget\" was expected");
     if (const json::Node* side = item.find("side"); side != nullptr && widget == nullptr)
       return json::error_at(*side, "\"side\" is given without \"widget\"; the name of a cutting plane was expected beside it");
     CATENA_CHECK(plane ? read_plane(scene, *plane) : box ? read_box(scene, *box) : read_followed(scene, item));
-    if (scene.clip.size() > kMaxClipPlanes)
+    if (scene.clip_planes.size() > kMaxClipPlanes)
       return json::error_at(
           item, "there are more than " + std::to_string(kMaxClipPlanes) + " clip planes (a box is six); that many at most were expected");
     return Done{};
@@ -217,10 +220,10 @@ Outcome read_clip(Scene& scene, const json::Node& node) {
 
 Part clip_part() {
   return {{"clip", "What every item keeps is drawn. A box counts as six planes, and at most eight planes are allowed.",
-           schema::Component::Shape::list, clip_keys()},
+           schema::Section::Layout::list, clip_keys()},
           read_clip};
 }
 
-std::string text_of(const ClipPlane& plane) { return "{\"plane\": " + plane_table().write({}, plane) + "}"; }
+std::string to_json(const ClipPlane& plane) { return "{\"plane\": " + plane_table().write({}, plane) + "}"; }
 
 }  // namespace catena::scene

@@ -1,9 +1,9 @@
 /// "widgets": what the hand takes hold of and moves, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_named.h"
+#include "engine/scene/reader_bindings.h"
+#include "engine/scene/to_json.h"
 #include "engine/scene/widgets.h"
-#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 namespace {
@@ -23,14 +23,14 @@ Result<Quat> read_orientation(const json::Node& node) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(std::fabs(length - 1) <= kUnitTolerance))
     return json::error_at(node, "\"orientation\" has the length " + to_text(length) + "; " + expected);
-  return unit_orientation({q[0], q[1], q[2], q[3]});
+  return normalize_orientation({q[0], q[1], q[2], q[3]});
 }
 
 constexpr double kLargest = 1e100;
 
 /// A length, stated or 0.
 Result<double> read_size(const json::Node& item, std::string_view key) {
-  CATENA_TRY(const double size, json::get_number(item, key, 0, json::Range::positive));
+  CATENA_TRY(const double size, json::get_number(item, key, 0, json::NumberRange::positive));
   if (size > kLargest)
     return json::error_at(*item.find(key), in_quotes(key) + " is " + to_text(size) + "; a length up to 1e100 was expected");
   return size;
@@ -38,12 +38,12 @@ Result<double> read_size(const json::Node& item, std::string_view key) {
 
 /// A length that the kind of widget has a default for.
 Key size_key(const std::string& name, const std::string& help, const std::string& usual) {
-  return schema::number(name, "world", help).limited({0.0, kLargest, true}).ranged("> 0").by_default(usual);
+  return schema::number(name, "world", help).with_limits({0.0, kLargest, true}).with_range_text("> 0").with_default(usual);
 }
 
 template <class Access>
 void bind_size(Table<Widget>& t, const Key& key, Access access) {
-  t.hand(
+  t.custom(
       key,
       [key, access](Scene&, const json::Node& item, Widget& widget) -> Outcome {
         CATENA_TRY(std::invoke(access, widget), read_size(item, key.name));
@@ -81,7 +81,7 @@ Table<Widget> cutting_plane_table() {
   t.group({schema::direction("normal", "Its normal, of any length: this or the next."),
            schema::vector("orientation", 4, "", "A unit quaternion `[w, x, y, z]`; its z is the normal.")},
           read_facing, [](const Scene&, const Widget& widget) {
-            return schema::Members{{"orientation", text_of(widget.spec.pose.orientation)}};
+            return schema::Members{{"orientation", to_json(widget.spec.pose.orientation)}};
           });
   bind_size(
       t, size_key("snap", "The plane takes hold of the hand within this distance.", "0.02 L"),
@@ -90,10 +90,11 @@ Table<Widget> cutting_plane_table() {
       t, size_key("release", "And lets it go at this distance, longer than `snap`.", "0.05 L"),
       [](auto& widget) -> auto& { return widget.spec.release; });
   t.bind(
-      schema::word("turning", {"any", "free", "axis"}, "How the sphere turns; `axis`: about the nearest axis only."),
-      [](auto& widget) -> auto& { return widget.spec.turning; });
+      schema::choice("turning", {"any", "free", "axis"}, "How the sphere turns; `axis`: about the nearest axis only."),
+      [](auto& widget) -> auto& { return widget.spec.rotation; });
   t.bind(
-      schema::boolean("touch", "The sphere turns without the button."), [](auto& widget) -> auto& { return widget.spec.touch; });
+      schema::boolean("touch", "The sphere turns without the button."),
+      [](auto& widget) -> auto& { return widget.spec.rotate_on_contact; });
   t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
     const widget::Spec& spec = widget.spec;
     if (!(spec.snap > 0 && spec.release > 0 && !(spec.release > spec.snap))) return Done{};
@@ -116,10 +117,10 @@ Table<Widget> rake_table() {
   return t;
 }
 
-/// Whether the field is a scalar one, and the place within it, use_widget tells: it loads the field.
+/// Whether the field is a scalar one, and the place within it, resolve_widget tells: it loads the field.
 Table<Widget> isolevel_table() {
   Table<Widget> t;
-  bind_field(t, schema::named("field", Role::scalar_field, "A scalar field; the level is its value at the handle.").required(),
+  bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field; the level is its value at the handle.").required(),
              &Widget::field);
   t.bind(schema::vec3("position", "world", "The handle's place.").required(), kPoint<0>);
   return t;
@@ -141,7 +142,7 @@ Table<Widget> box_widget_table() {
 /// A link of the chain, or one that a ready-made mode of it stands for (NAME_...): which those are the program's maker knows.
 bool is_link(const Scene& scene, std::string_view name) {
   bool found = false;
-  scene.world.each<Link>([&](Entity, const Link& link) { found = found || name == link.name || name.starts_with(link.name + "_"); });
+  scene.entities.each<Link>([&](Entity, const Link& link) { found = found || name == link.name || name.starts_with(link.name + "_"); });
   return found;
 }
 
@@ -154,23 +155,26 @@ Outcome read_along(Scene& scene, const json::Node& item, Widget& widget) {
     CATENA_TRY(const std::string name, json::as_string(node, "along"));
     if (!is_link(scene, name)) {
       std::vector<std::string_view> names;
-      scene.world.each<Link>([&](Entity, const Link& link) { names.push_back(link.name); });
+      scene.entities.each<Link>([&](Entity, const Link& link) { names.push_back(link.name); });
       return json::error_at(node, "\"along\" names " + in_quotes(name) +
                                       ", which is no link of the chain; one of its links was expected: " +
-                                      (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+                                      (names.empty() ? "it has none" : join_words(names)) + suggestion(name, names));
     }
-    for (const std::string& other : widget.along)
+    for (const std::string& other : widget.along_links)
       if (other == name) return json::error_at(node, "\"along\" names " + in_quotes(name) + " twice; each link once was expected");
-    widget.along.push_back(name);
+    widget.along_links.push_back(name);
   }
   return Done{};
 }
 
 Table<Widget> ruler_table() {
   Table<Widget> t = rake_table();
-  t.hand(schema::texts("along", "Links that its ends keep to: it measures along their line or surface.").items(1, 0).by_default("straight"),
-         read_along,
-         [](const Scene&, const Widget& widget) { return widget.along.empty() ? std::string() : schema::write_value(widget.along); });
+  t.custom(schema::texts("along", "Links that its ends keep to: it measures along their line or surface.")
+               .with_size(1, 0)
+               .with_default("straight"),
+           read_along, [](const Scene&, const Widget& widget) {
+             return widget.along_links.empty() ? std::string() : schema::write_value(widget.along_links);
+           });
   return t;
 }
 
@@ -180,7 +184,7 @@ struct WidgetType {
   Table<Widget> own;
 };
 
-/// In the order of kWords.
+/// In the order of kWordsPerTick.
 const std::vector<WidgetType>& types() {
   static const std::vector<WidgetType> all{
       {Kind::cutting_plane, "A plane that the hand keeps to, with a sphere that turns it.", cutting_plane_table()},
@@ -196,14 +200,14 @@ const std::vector<WidgetType>& types() {
 const Table<Widget>& common_table() {
   static const auto table = [] {
     Table<Widget> t;
-    t.beside(schema::identifier("name", "By which others follow it.").required());
-    t.beside(schema::word("type", {std::begin(kWords), std::end(kWords)}, "What it is.").required());
+    t.companion(schema::identifier("name", "By which others follow it.").required());
+    t.companion(schema::choice("type", {std::begin(kWords), std::end(kWords)}, "What it is.").required());
     bind_size(
         t, size_key("radius", "Of a handle's ball, or of a cutting plane's sphere.", "0.012 L; a sphere 0.12 L"),
         [](auto& widget) -> auto& { return widget.spec.radius; });
     bind_size(
         t, size_key("near", "A handle, or the sphere, is taken hold of within this distance.", "0.03 L; a sphere 0.02 L"),
-        [](auto& widget) -> auto& { return widget.spec.near; });
+        [](auto& widget) -> auto& { return widget.spec.grab_distance; });
     bind_size(
         t, size_key("step", "A drag leaves an axis when the hand is this far from it.", "0.02 L"),
         [](auto& widget) -> auto& { return widget.spec.step; });
@@ -220,58 +224,57 @@ Outcome read_widget(Scene& scene, const json::Node& item) {
   CATENA_CHECK(json::require_string(item, "type"));
   CATENA_TRY(const int index, json::get_choice(item, "type", 0, {std::begin(kWords), std::end(kWords)}));
   const WidgetType& type = types()[static_cast<std::size_t>(index)];
-  CATENA_CHECK(json::only_keys(item, schema::names_of(common_table().keys(), type.own.keys())));
+  CATENA_CHECK(json::check_known_keys(item, schema::key_names(common_table().keys(), type.own.keys())));
   Widget widget;
   widget.where = item;
   widget.spec.kind = type.kind;
-  CATENA_CHECK(type.own.read_known(scene, item, widget));
-  CATENA_CHECK(common_table().read_known(scene, item, widget));
-  widget.state.pose = widget.spec.pose;
-  const Entity entity = scene.world.create();
-  scene.world.emplace<Name>(entity, {name});
-  scene.world.emplace<Widget>(entity, std::move(widget));
+  CATENA_CHECK(type.own.read_own_keys(scene, item, widget));
+  CATENA_CHECK(common_table().read_own_keys(scene, item, widget));
+  widget.report.pose = widget.spec.pose;
+  const Entity entity = scene.entities.create();
+  scene.entities.emplace<Name>(entity, {name});
+  scene.entities.emplace<Widget>(entity, std::move(widget));
   return Done{};
 }
 
 Outcome read_widgets(Scene& scene, const json::Node& node) {
   return each_item(node, [&](const json::Node& item) -> Outcome {
-    if (scene.world.count<Widget>() == static_cast<std::size_t>(widget::kMaxWidgets))
-      return json::error_at(item,
-                            "there are more than " + std::to_string(widget::kMaxWidgets) + " widgets; that many at most were expected");
+    if (scene.entities.count<Widget>() == static_cast<std::size_t>(kMaxWidgets))
+      return json::error_at(item, "there are more than " + std::to_string(kMaxWidgets) + " widgets; that many at most were expected");
     return read_widget(scene, item);
   });
 }
 
 }  // namespace
 
-const char* kind_word(Kind kind) { return kWords[static_cast<std::size_t>(kind)].data(); }
+const char* to_string(Kind kind) { return kWords[static_cast<std::size_t>(kind)].data(); }
 
-std::string text_of(const Scene& scene, const std::string& name, const Widget& widget) {
+std::string to_json(const Scene& scene, const std::string& name, const Widget& widget) {
   const WidgetType& type = types()[static_cast<std::size_t>(widget.spec.kind)];
   CATENA_ASSERT(type.kind == widget.spec.kind);
   const auto members = [](const std::string& object) { return object.size() > 2 ? ", " + object.substr(1, object.size() - 2) : ""; };
-  return "{\"name\": " + text_of(std::string_view(name)) + ", \"type\": " + text_of(kind_word(type.kind)) +
+  return "{\"name\": " + to_json(std::string_view(name)) + ", \"type\": " + to_json(to_string(type.kind)) +
          members(type.own.write(scene, widget)) + members(common_table().write(scene, widget)) + "}";
 }
 
 Part widgets_part() {
-  schema::Component component = list_of("widgets",
-                                        "Things to take hold of. A slice, a clip, seeds, a level or a link follows one by "
-                                        "`{\"widget\": NAME}`. Here L is the longest domain among what is drawn.",
-                                        common_table(), widget::kMaxWidgets);
-  for (const WidgetType& type : types()) component.variants.push_back({kind_word(type.kind), std::string(type.help), type.own.keys()});
+  schema::Section component = make_list_component("widgets",
+                                                  "Things to take hold of. A slice, a clip, seeds, a level or a link follows one by "
+                                                  "`{\"widget\": NAME}`. Here L is the longest domain among what is drawn.",
+                                                  common_table(), kMaxWidgets);
+  for (const WidgetType& type : types()) component.variants.push_back({to_string(type.kind), std::string(type.help), type.own.keys()});
   return {component, read_widgets};
 }
 
 Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<Kind> kinds, std::string_view wanted) {
   CATENA_TRY(const std::string name, json::require_string(object, "widget"));
   const json::Node& node = *object.find("widget");
-  CATENA_TRY(const Entity found, named<Widget>(scene, name, node, "widget", "\"widgets\""));
-  const Kind kind = scene.world.get<Widget>(found).spec.kind;
+  CATENA_TRY(const Entity found, require_named<Widget>(scene, name, node, "widget", "\"widgets\""));
+  const Kind kind = scene.entities.get<Widget>(found).spec.kind;
   for (const Kind k : kinds)
     if (k == kind) return found;
   return json::error_at(
-      node, "widget " + in_quotes(name) + " is of type " + in_quotes(kind_word(kind)) + "; " + std::string(wanted) + " was expected");
+      node, "widget " + in_quotes(name) + " is of type " + in_quotes(to_string(kind)) + "; " + std::string(wanted) + " was expected");
 }
 
 }  // namespace catena::scene

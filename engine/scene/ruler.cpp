@@ -3,14 +3,14 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
-#include "engine/flow/curve.h"
-#include "engine/geodesics/geodesics.h"
+#include "engine/geometry/flow/curve.h"
+#include "engine/geometry/geodesics/geodesics.h"
 #include "engine/schema/values.h"
 
 namespace catena::scene {
 namespace {
 
-using How = RulerMeasure::How;
+using How = RulerMeasure::PathKind;
 constexpr std::size_t kMaxPoints = 4096;
 
 /// What a ruler is measured along: at most one is set.
@@ -42,18 +42,18 @@ Result<Track> curve_track(Scene& scene, const Link& link) {
   Track track;
   const json::Node* seed_node = link.node.find("seed");
   CATENA_TRY(const std::string name, json::require_string(link.node, "field"));
-  CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find("field")));
+  CATENA_TRY(const field::AnyField any, resolve_field(scene, name, *link.node.find("field")));
   if (!any.vector) return json::error_at(*link.node.find("field"), "a streamline needs a vector field");
   flow::Flow flow{any.vector.get()};
-  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link.node, flow.line));
-  CATENA_TRY(flow.min_speed, json::get_number(link.node, "min_speed", 0, json::Range::not_negative));
+  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link.node, flow.is_line_field));
+  CATENA_TRY(flow.min_speed, json::get_number(link.node, "min_speed", 0, json::NumberRange::non_negative));
   Vec3 seed;
   if (const Entity widget = named_widget(scene, seed_node)) {
-    seed = scene.world.get<Widget>(widget).state.pose.points[0];
+    seed = scene.entities.get<Widget>(widget).report.pose.points[0];
   } else {
     CATENA_TRY(seed, json::as_vec3(*seed_node, "seed"));
   }
-  auto curve = use_curve(scene, flow, seed, *seed_node);
+  auto curve = resolve_streamline(scene, flow, seed, *seed_node);
   if (curve)
     track.curve = *curve;
   else
@@ -64,13 +64,13 @@ Result<Track> curve_track(Scene& scene, const Link& link) {
 Result<Track> level_track(Scene& scene, const Link& link) {
   const char* field_key = level_field_key(link.node);
   CATENA_TRY(const std::string name, json::require_string(link.node, field_key));
-  CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find(field_key)));
+  CATENA_TRY(const field::AnyField any, resolve_field(scene, name, *link.node.find(field_key)));
   if (!any.scalar) return json::error_at(*link.node.find(field_key), "an isosurface needs a scalar field");
   Track track;
   track.surface = any.scalar;
   if (const Entity widget = named_widget(scene, link.node.find("level"))) {
-    CATENA_CHECK(use_widget(scene, widget));
-    track.level = std::clamp(scene.world.get<Widget>(widget).state.value, any.scalar->min_value(), any.scalar->max_value());
+    CATENA_CHECK(resolve_widget(scene, widget));
+    track.level = std::clamp(scene.entities.get<Widget>(widget).report.value, any.scalar->min_value(), any.scalar->max_value());
   } else {
     CATENA_TRY(track.level, json::require_number(link.node, "level"));
   }
@@ -80,7 +80,7 @@ Result<Track> level_track(Scene& scene, const Link& link) {
 /// A link of the chain by its name, or by that of a part of a ready-made mode (NAME_...).
 Link link_of(const Scene& scene, const std::string& name) {
   Link found;
-  scene.world.each<Link>([&](Entity, const Link& link) {
+  scene.entities.each<Link>([&](Entity, const Link& link) {
     if (link.name == name || (found.name.empty() && name.starts_with(link.name + "_"))) found = link;
   });
   return found;
@@ -88,15 +88,15 @@ Link link_of(const Scene& scene, const std::string& name) {
 
 Result<Track> track_of(Scene& scene, const Widget& ruler) {
   std::vector<Link> links;
-  for (const std::string& name : ruler.along) links.push_back(link_of(scene, name));
+  for (const std::string& name : ruler.along_links) links.push_back(link_of(scene, name));
   for (const Link& link : links)
-    if (feature_of(link.node) == LinkFeature::curve) return curve_track(scene, link);
+    if (find_link_feature(link.node) == LinkFeature::curve) return curve_track(scene, link);
   for (const Link& link : links) {
-    if (feature_of(link.node) == LinkFeature::level) return level_track(scene, link);
-    if (feature_of(link.node) != LinkFeature::mesh) continue;
+    if (find_link_feature(link.node) == LinkFeature::level) return level_track(scene, link);
+    if (find_link_feature(link.node) != LinkFeature::mesh) continue;
     Track track;
     CATENA_TRY(const std::string name, json::require_string(link.node, "mesh"));
-    CATENA_TRY(track.mesh, use_mesh(scene, name, *link.node.find("mesh")));
+    CATENA_TRY(track.mesh, resolve_mesh(scene, name, *link.node.find("mesh")));
     return track;
   }
   Track none;
@@ -112,11 +112,11 @@ RulerMeasure measure(const Track& track, const Vec3& from, const Vec3& to) {
   if (track.curve) return measure_along(track.curve, from, to);
   if (!track.surface && !track.mesh) return straight(from, to, track.note);
   RulerMeasure out;
-  out.how = track.mesh ? How::mesh : How::isosurface;
+  out.path_kind = track.mesh ? How::mesh : How::isosurface;
   out.points =
       track.mesh ? geodesics::path_on_mesh(*track.mesh, from, to) : geodesics::path_on_level(*track.surface, track.level, from, to);
   if (out.points.empty()) return straight(from, to, "no way along the surface joins the ends");
-  out.length = geodesics::length_of(out.points);
+  out.length = geodesics::path_length(out.points);
   return out;
 }
 
@@ -124,23 +124,23 @@ RulerMeasure measure(const Track& track, const Vec3& from, const Vec3& to) {
 
 RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to) {
   const flow::NearestOnCurve nearest(curve);
-  double a = nearest.at(from).s, b = nearest.at(to).s;
+  double a = nearest.find(from).s, b = nearest.find(to).s;
   const bool turned = a > b;
   if (turned) std::swap(a, b);
   // round a closed line the other way, past its first knot
   const double whole = curve->period();
-  const bool wrapped = curve->closed() && b - a > 0.5 * whole;
+  const bool wrapped = curve->is_closed() && b - a > 0.5 * whole;
   if (wrapped) {
     a += whole;
     std::swap(a, b);
   }
   RulerMeasure out;
-  out.how = How::streamline;
+  out.path_kind = How::streamline;
   out.length = b - a;
   std::vector<double> places{a};
   const std::vector<flow::Knot>& knots = curve->knots();
   for (const double lap : {0.0, whole}) {
-    if (lap > 0 && !curve->closed()) break;
+    if (lap > 0 && !curve->is_closed()) break;
     const auto by_s = [&](double s, const flow::Knot& knot) { return s < knot.s + lap; };
     for (auto k = std::upper_bound(knots.begin(), knots.end(), places.back(), by_s); k != knots.end() && k->s + lap < b; ++k)
       places.push_back(k->s + lap);
@@ -154,12 +154,12 @@ RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const 
   return out;
 }
 
-Result<RulerMeasure> use_ruler(Scene& scene, Entity entity) {
-  CATENA_ASSERT(scene.world.get<Widget>(entity).spec.kind == widget::Kind::ruler);
-  CATENA_TRY(Track track, track_of(scene, scene.world.get<Widget>(entity)));
-  const widget::Pose& pose = scene.world.get<Widget>(entity).state.pose;
-  if (!scene.made.has<MadeRuler>(entity)) scene.made.emplace<MadeRuler>(entity);
-  MadeRuler& made = scene.made.get<MadeRuler>(entity);
+Result<RulerMeasure> resolve_ruler(Scene& scene, Entity entity) {
+  CATENA_ASSERT(scene.entities.get<Widget>(entity).spec.kind == widget::Kind::ruler);
+  CATENA_TRY(Track track, track_of(scene, scene.entities.get<Widget>(entity)));
+  const widget::Pose& pose = scene.entities.get<Widget>(entity).report.pose;
+  if (!scene.cache.has<MadeRuler>(entity)) scene.cache.emplace<MadeRuler>(entity);
+  MadeRuler& made = scene.cache.get<MadeRuler>(entity);
   if (made.measure.points.empty() || made.pose != pose || !made.track.is_same(track)) {
     RulerMeasure measured = measure(track, pose.points[0], pose.points[1]);
     made = {pose, std::move(track), std::move(measured)};
@@ -167,19 +167,19 @@ Result<RulerMeasure> use_ruler(Scene& scene, Entity entity) {
   return made.measure;
 }
 
-const RulerMeasure* ruler_measure(const Scene& scene, Entity ruler) {
-  return scene.made.has<MadeRuler>(ruler) ? &scene.made.get<MadeRuler>(ruler).measure : nullptr;
+const RulerMeasure* find_ruler_measure(const Scene& scene, Entity ruler) {
+  return scene.cache.has<MadeRuler>(ruler) ? &scene.cache.get<MadeRuler>(ruler).measure : nullptr;
 }
 
-LinkFeature feature_of(const json::Node& link) {
+LinkFeature find_link_feature(const json::Node& link) {
   if (link.find("seed") != nullptr && link.find("field") != nullptr) return LinkFeature::curve;
-  if (!field_of_level(link).empty()) return LinkFeature::level;
+  if (!level_field_name(link).empty()) return LinkFeature::level;
   return link.find("mesh") != nullptr ? LinkFeature::mesh : LinkFeature::none;
 }
 
 const char* level_field_key(const json::Node& link) { return link.find("surface") != nullptr ? "surface" : "field"; }
 
-std::string field_of_level(const json::Node& link) {
+std::string level_field_name(const json::Node& link) {
   if (link.find("level") == nullptr) return {};
   const json::Node* field = link.find(level_field_key(link));
   return field != nullptr && field->kind == json::Kind::string ? field->string : std::string();

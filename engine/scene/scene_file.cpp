@@ -2,9 +2,9 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/named_files.h"
-#include "engine/scene/read_parts.h"
-#include "engine/scene/scene_object.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/referenced_files.h"
+#include "engine/scene/scene_from_object.h"
 #include "engine/scene/units.h"
 
 namespace catena::scene {
@@ -31,7 +31,7 @@ const std::vector<Part>& parts() {
                                      bounding_box_part(), axes_part(),
                                      ground_part(),       fog_part(),
                                      lights_part(),       unit_length_part(),
-                                     plan_part(),         screens_part()};
+                                     tuning_part(),       screens_part()};
   return all;
 }
 
@@ -43,7 +43,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
     keys.push_back("$schema");
     CATENA_CHECK(json::require_string(root, "$schema"));
   }
-  CATENA_CHECK(json::only_keys(root, keys));
+  CATENA_CHECK(json::check_known_keys(root, keys));
   // which fields follow
   if (const json::Node* time = root.find("time")) CATENA_CHECK(read_time(scene, *time));
   CATENA_CHECK(read_fields(scene, root.find("fields"), overrides));
@@ -57,17 +57,17 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
 
 static Outcome check_sizes(const json::Node& node) {
   const double size = std::abs(node.number);
-  if (node.kind == json::Kind::number && size != 0 && !(size >= kLeastSize && size <= kMostSize))
-    return json::error_at(node, to_text(node.number) + " is too " + (size < kLeastSize ? "small" : "large") +
+  if (node.kind == json::Kind::number && size != 0 && !(size >= kMinSize && size <= kMaxSize))
+    return json::error_at(node, to_text(node.number) + " is too " + (size < kMinSize ? "small" : "large") +
                                     "; 0 or a number from 1e-30 to 1e30 in size was expected");
   for (const json::Node& item : node.items) CATENA_CHECK(check_sizes(item));
   for (const auto& [key, value] : node.members) CATENA_CHECK(check_sizes(value));
   return Done{};
 }
 
-const std::vector<schema::Component>& scene_components() {
+const std::vector<schema::Section>& scene_components() {
   static const auto all = [] {
-    std::vector<schema::Component> components;
+    std::vector<schema::Section> components;
     for (const Part& part : parts()) components.push_back(part.description);
     return components;
   }();
@@ -92,10 +92,10 @@ Result<Scene> scene_of_root(const json::Node& root, const std::string& path, con
   CATENA_CHECK(check_sizes(root));
   Scene scene;
   scene.path = path;
-  scene.cursor = scene.world.create();
-  scene.world.emplace<Cursor>(scene.cursor);
+  scene.cursor = scene.entities.create();
+  scene.entities.emplace<Cursor>(scene.cursor);
   CATENA_CHECK(read_root(scene, root, overrides));
-  scene.files = files_of(root, path, overrides);
+  scene.referenced_files = referenced_files(root, path, overrides);
   return scene;
 }
 
@@ -113,7 +113,7 @@ Result<Scene> parse_scene_object(std::string_view text, const std::string& name,
 }
 
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides) {
-  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)", kMaxJsonBytes));
+  CATENA_TRY(const std::string text, read_text_file(path, "a scene file (JSON)", kMaxJsonBytes));
   return parse_scene(text, path, overrides);
 }
 

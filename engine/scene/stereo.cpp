@@ -3,35 +3,35 @@
 #include <array>
 
 #include "engine/base/numbers.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 
 namespace catena::scene {
 namespace {
 
-constexpr std::array<std::string_view, kStereoModes> kStereoWords{
+constexpr std::array<std::string_view, kStereoModeCount> kStereoWords{
     "mono",     "left",          "right",          "side-by-side",      "side-by-side-half", "cross-eyed", "top-bottom", "top-bottom-half",
     "anaglyph", "anaglyph-grey", "row-interlaced", "column-interlaced", "checkerboard"};
 
 }  // namespace
 
-std::string_view stereo_word(StereoMode mode) { return kStereoWords[static_cast<std::size_t>(mode)]; }
+std::string_view to_string(StereoMode mode) { return kStereoWords[static_cast<std::size_t>(mode)]; }
 
-std::optional<StereoMode> stereo_mode(std::string_view word) {
+std::optional<StereoMode> parse_stereo_mode(std::string_view word) {
   for (std::size_t i = 0; i < kStereoWords.size(); ++i)
     if (kStereoWords[i] == word) return static_cast<StereoMode>(i);
   return std::nullopt;
 }
 
-std::string stereo_words() {
+std::string stereo_mode_names() {
   std::string text;
   for (std::size_t i = 0; i < kStereoWords.size(); ++i)
     text += std::string(i == 0 ? "" : i + 1 == kStereoWords.size() ? " or " : ", ") + std::string(kStereoWords[i]);
   return text;
 }
 
-bool needs_a_pair(StereoMode mode) {
+bool needs_two_views(StereoMode mode) {
   return mode == StereoMode::left || mode == StereoMode::right || mode == StereoMode::cross_eyed || mode == StereoMode::anaglyph ||
-         mode == StereoMode::anaglyph_grey;
+         mode == StereoMode::anaglyph_gray;
 }
 
 namespace {
@@ -39,28 +39,28 @@ namespace {
 const Table<Stereo>& stereo_table() {
   static const auto table = [] {
     Table<Stereo> t;
-    const Key mode = schema::word("mode", {kStereoWords.begin(), kStereoWords.end()}, "How the eyes' pictures are put together.");
-    t.hand(mode.by_default("\"mono\""), [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
-      CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
-      const auto named = stereo_mode(word);
-      if (!named) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_words() + " was expected");
+    const Key mode = schema::choice("mode", {kStereoWords.begin(), kStereoWords.end()}, "How the eyes' pictures are put together.");
+    t.custom(mode.with_default("\"mono\""), [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
+      CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(to_string(stereo.mode))));
+      const auto named = parse_stereo_mode(word);
+      if (!named) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_mode_names() + " was expected");
       stereo.mode = *named;
       return Done{};
     });
     t.bind(schema::number("separation", "world", "Of neighbouring eyes.")
                .within(0, kMaxStereoSeparation)
-               .by_default("a 30th of `zero_parallax`"),
+               .with_default("a 30th of `zero_parallax`"),
            &Stereo::separation);
     t.bind(schema::number("zero_parallax", "world", "Distance from the eyes to where both see the same.")
                .positive()
-               .by_default("the target's"),
+               .with_default("the target's"),
            &Stereo::zero_parallax);
-    t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMaxStereoViews), &Stereo::views);
-    t.bind(schema::boolean("swap", "The right eye's picture in the place of the left eye's."), &Stereo::swap);
+    t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMaxStereoViews), &Stereo::view_count);
+    t.bind(schema::boolean("swap", "The right eye's picture in the place of the left eye's."), &Stereo::swap_eyes);
     t.check([](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
-      if (stereo.views == 2 || !needs_a_pair(stereo.mode)) return Done{};
-      return json::error_at(*node.find("views"), "\"views\" is " + std::to_string(stereo.views) + " with mode \"" +
-                                                     std::string(stereo_word(stereo.mode)) + "\"; 2 was expected");
+      if (stereo.view_count == 2 || !needs_two_views(stereo.mode)) return Done{};
+      return json::error_at(*node.find("views"), "\"views\" is " + std::to_string(stereo.view_count) + " with mode \"" +
+                                                     std::string(to_string(stereo.mode)) + "\"; 2 was expected");
     });
     return t;
   }();
@@ -70,7 +70,7 @@ const Table<Stereo>& stereo_table() {
 }  // namespace
 
 Part stereo_part() {
-  return {{"stereo", "Two eyes, or more.", schema::Component::Shape::object, stereo_table().keys()},
+  return {{"stereo", "Two eyes, or more.", schema::Section::Layout::object, stereo_table().keys()},
           [](Scene& scene, const json::Node& node) -> Outcome {
             CATENA_CHECK(json::expect_object(node, "stereo"));
             return stereo_table().read(scene, node, scene.stereo);

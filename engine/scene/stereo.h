@@ -20,21 +20,21 @@ enum class StereoMode {
   top_bottom,
   top_bottom_half,
   anaglyph,
-  anaglyph_grey,
+  anaglyph_gray,
   row_interlaced,
   column_interlaced,
   checkerboard
 };
-inline constexpr int kStereoModes = 13;  ///< How many modes there are.
+inline constexpr int kStereoModeCount = 13;  ///< How many modes there are.
 
 /// "side-by-side" and so on.
-std::string_view stereo_word(StereoMode mode);
+std::string_view to_string(StereoMode mode);
 /// The mode of that word.
-std::optional<StereoMode> stereo_mode(std::string_view word);
+std::optional<StereoMode> parse_stereo_mode(std::string_view word);
 /// "mono, left, .. or checkerboard"
-std::string stereo_words();
+std::string stereo_mode_names();
 /// Whether the mode takes two eyes and no other number.
-bool needs_a_pair(StereoMode mode);
+bool needs_two_views(StereoMode mode);
 
 /// A flat display that shows what lies behind it as a window does. World units.
 struct DisplayScreen {
@@ -48,10 +48,11 @@ struct Stereo {
   StereoMode mode = StereoMode::mono;   ///< how the eyes' pictures make one
   std::optional<double> separation;     ///< of neighbouring eyes; none: a 30th of the zero-parallax distance
   std::optional<double> zero_parallax;  ///< distance from the eyes to where both see the same; none: to the camera's target
-  int views = 2;                        ///< for the modes that take any number
-  bool swap = false;                    ///< the right eye's picture in the left eye's place
+  int view_count = 2;                   ///< for the modes that take any number
+  bool swap_eyes = false;               ///< the right eye's picture in the left eye's place
   std::vector<DisplayScreen> screens;   ///< screens that a picture may be of
-  std::optional<std::size_t> through;   ///< which of them the picture is of: the camera's position is the head, beside which the eyes are
+  std::optional<std::size_t>
+      screen_index;  ///< which of them the picture is of: the camera's position is the head, beside which the eyes are
 };
 inline constexpr int kMaxStereoViews = 64;            ///< More are refused.
 inline constexpr double kMaxStereoSeparation = 1e15;  ///< world units

@@ -1,5 +1,5 @@
-/// The words that go with numbers: "unit": "m/s" of a field, "unit_length": "mm" of the scene. They change no number. Stated in the scene,
-/// else what the data files say (engine/field/units.h). Frame thread.
+/// The words that go with numbers: "unit": "m/s" of a field, "length_unit": "mm" of the scene. They change no number. Stated in the scene,
+/// else what the data files say (engine/io/volume/units.h). Frame thread.
 #pragma once
 #include <string>
 
@@ -9,18 +9,18 @@ namespace catena::scene {
 
 /// Of a field's values, as the scene states it: a component beside FieldSource.
 struct Unit {
-  std::string word;
+  std::string symbol;
 };
 /// Of the world's lengths: a component that at most one entity has.
-struct UnitOfLength {
-  std::string word;
+struct LengthUnit {
+  std::string symbol;
 };
 
 /// Empty: nobody says.
 std::string unit_of(const Scene& scene, Entity field);
-std::string unit_length(const Scene& scene);
+std::string length_unit(const Scene& scene);
 /// "m/s" as " m/s"; empty as empty.
-std::string after_number(const std::string& unit);
+std::string unit_suffix(const std::string& unit);
 
 /// "unit" of a field's node.
 Outcome read_unit(Scene& scene, Entity field, const json::Node& node);

@@ -7,17 +7,17 @@ namespace catena::schema {
 
 namespace {
 
-using json::string_text;
+using json::serialize_string;
 
 std::string items_limits(const Key& key) {
   std::string out;
-  if (key.least > 0) out += ", \"minItems\": " + std::to_string(key.least);
-  if (key.most > 0) out += ", \"maxItems\": " + std::to_string(key.most);
+  if (key.min_size > 0) out += ", \"minItems\": " + std::to_string(key.min_size);
+  if (key.max_size > 0) out += ", \"maxItems\": " + std::to_string(key.max_size);
   return out;
 }
 
 std::string number_schema(const Key& key) {
-  std::string out = key.form == Form::integer ? R"("type": "integer")" : R"("type": "number")";
+  std::string out = key.value_type == ValueType::integer ? R"("type": "integer")" : R"("type": "number")";
   const Limits& l = key.limits;
   if (l.lo) out += (l.lo_open ? ", \"exclusiveMinimum\": " : ", \"minimum\": ") + to_text(*l.lo);
   if (l.hi) out += (l.hi_open ? ", \"exclusiveMaximum\": " : ", \"maximum\": ") + to_text(*l.hi);
@@ -36,7 +36,7 @@ std::string list_schema(const std::string& item, const Key& key) {
   return R"("type": "array", "items": {)" + item + "}" + items_limits(key);
 }
 
-/// The value that follows a field (haptics/constraints/rules/link_keys.h).
+/// The value that follows a field (haptics/constraints/common/link_schema.h).
 const char* const kFieldMap =
     R"({"type": "object", "required": ["field", "map"], "properties": {"field": {"type": "string", "description": "The field that is asked, at the proxy."}, "map": {"type": "array", "minItems": 1, "description": "Pairs [value, output], values rising, linear between them.", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}, "of": {"enum": ["value", "gradient", "magnitude"]}, "normalise": {"type": "boolean", "description": "The values of the map run from 0 to 1 over the range of the field."}, "outside": {"type": "number", "description": "The output where the field says nothing; by default the first one."}}, "additionalProperties": false})";
 const char* const kWidget =
@@ -46,53 +46,53 @@ const char* const kRotation =
 
 /// What is within the braces, without the sentence.
 std::string body(const Key& key) {
-  switch (key.form) {
-    case Form::number:
-    case Form::integer:
+  switch (key.value_type) {
+    case ValueType::number:
+    case ValueType::integer:
       return number_schema(key);
-    case Form::boolean:
+    case ValueType::boolean:
       return R"("type": "boolean")";
-    case Form::text:
+    case ValueType::text:
       return std::string(R"("type": "string")") + (key.is_identifier ? R"(, "pattern": "^[a-z][a-z0-9_]*$")" : "") +
-             (key.most > 0 ? ", \"maxLength\": " + std::to_string(key.most) : "");
-    case Form::word: {
+             (key.max_size > 0 ? ", \"maxLength\": " + std::to_string(key.max_size) : "");
+    case ValueType::choice: {
       std::string words;
-      for (const std::string& w : key.words) words += (words.empty() ? "" : ", ") + string_text(w);
+      for (const std::string& w : key.options) words += (words.empty() ? "" : ", ") + serialize_string(w);
       return "\"enum\": [" + words + "]";
     }
-    case Form::vector:
-      return row_schema(key.count, key.limits) + (key.range == "not 0" ? R"(, "not": {"const": [0, 0, 0]})" : "");
-    case Form::color:
+    case ValueType::vector:
+      return row_schema(key.count, key.limits) + (key.range_text == "not 0" ? R"(, "not": {"const": [0, 0, 0]})" : "");
+    case ValueType::color:
       return row_schema(3, {0.0, 1.0});
-    case Form::numbers:
+    case ValueType::numbers:
       return list_schema(R"("type": "number")", key);
-    case Form::texts:
+    case ValueType::texts:
       return list_schema(R"("type": "string")", key);
-    case Form::places:
+    case ValueType::points:
       return list_schema(row_schema(3), key);
-    case Form::table:
+    case ValueType::table:
       return list_schema(row_schema(key.count), key);
-    case Form::rotation:
+    case ValueType::rotation:
       return kRotation;
-    case Form::null:
+    case ValueType::null:
       return R"("type": "null")";
-    case Form::object: {
+    case ValueType::object: {
       // without keys: whatever another room reads there
-      if (key.inner->empty()) return R"("type": "object")";
-      const std::string whole = object_schema(*key.inner);
+      if (key.members->empty()) return R"("type": "object")";
+      const std::string whole = object_schema(*key.members);
       return whole.substr(1, whole.size() - 2);
     }
-    case Form::any_of: {
-      if (key.choices.empty()) return R"("type": ["array", "object"])";
+    case ValueType::any_of: {
+      if (key.alternatives.empty()) return R"("type": ["array", "object"])";
       std::string all;
-      for (const Key& choice : key.choices) all += (all.empty() ? "" : ", ") + json_schema(choice);
+      for (const Key& choice : key.alternatives) all += (all.empty() ? "" : ", ") + json_schema(choice);
       return "\"anyOf\": [" + all + "]";
     }
   }
   return {};
 }
 
-std::string sentence(const std::string& help) { return help.empty() ? std::string() : "\"description\": " + string_text(help) + ", "; }
+std::string sentence(const std::string& help) { return help.empty() ? std::string() : "\"description\": " + serialize_string(help) + ", "; }
 
 /// The sentence with the unit and the default, as an editor shows it.
 std::string described(const Key& key) {
@@ -100,23 +100,23 @@ std::string described(const Key& key) {
   if (key.unit == "world") text += " In world units.";
   if (key.unit == "value") text += " In the field's units.";
   if (!key.unit.empty() && key.unit != "world" && key.unit != "value") text += " In " + key.unit + ".";
-  if (!key.fallback.empty()) text += " Default: " + key.fallback + ".";
+  if (!key.default_text.empty()) text += " Default: " + key.default_text + ".";
   return key.name.empty() ? std::string() : sentence(text);
 }
 
 }  // namespace
 
 std::string json_schema(const Key& key) {
-  if (!key.follows_field && !key.follows_widget) return "{" + described(key) + body(key) + "}";
-  return "{" + described(key) + "\"oneOf\": [{" + body(key) + "}" + (key.follows_field ? std::string(", ") + kFieldMap : "") +
-         (key.follows_widget ? std::string(", ") + kWidget : "") + "]}";
+  if (!key.accepts_field_map && !key.accepts_widget) return "{" + described(key) + body(key) + "}";
+  return "{" + described(key) + "\"oneOf\": [{" + body(key) + "}" + (key.accepts_field_map ? std::string(", ") + kFieldMap : "") +
+         (key.accepts_widget ? std::string(", ") + kWidget : "") + "]}";
 }
 
 std::string object_schema(const Keys& keys, const std::string& help, const std::string& more) {
   std::string properties = more, required;
   for (const Key& key : keys) {
-    properties += (properties.empty() ? "" : ", ") + string_text(key.name) + ": " + json_schema(key);
-    if (key.is_required) required += (required.empty() ? "" : ", ") + string_text(key.name);
+    properties += (properties.empty() ? "" : ", ") + serialize_string(key.name) + ": " + json_schema(key);
+    if (key.is_required) required += (required.empty() ? "" : ", ") + serialize_string(key.name);
   }
   return "{" + sentence(help) + "\"type\": \"object\", \"properties\": {" + properties + "}" +
          (required.empty() ? "" : ", \"required\": [" + required + "]") + ", \"additionalProperties\": false}";
@@ -125,7 +125,7 @@ std::string object_schema(const Keys& keys, const std::string& help, const std::
 namespace {
 
 /// Of an item of a list or a map, of the part itself.
-std::string item_schema(const Component& component) {
+std::string item_schema(const Section& component) {
   if (component.variants.empty()) return object_schema(component.keys);
   const bool typed = find(component.keys, "type") != nullptr;
   std::string all;
@@ -133,8 +133,8 @@ std::string item_schema(const Component& component) {
     Keys keys;
     for (const Key& key : component.keys)
       if (key.name != "type") keys.push_back(key);
-    const std::string type = typed ? "\"type\": {\"const\": " + string_text(variant.name) + "}" : std::string();
-    std::string one = object_schema(joined(keys, variant.keys), variant.help, type);
+    const std::string type = typed ? "\"type\": {\"const\": " + serialize_string(variant.name) + "}" : std::string();
+    std::string one = object_schema(concatenate(keys, variant.keys), variant.help, type);
     if (typed) {
       // "type" is required, too
       const std::string list = "\"required\": [";
@@ -149,27 +149,27 @@ std::string item_schema(const Component& component) {
 
 }  // namespace
 
-std::string json_schema(const Component& component) {
-  if (component.shape == Component::Shape::value) return json_schema(component.keys.front());
+std::string json_schema(const Section& component) {
+  if (component.layout == Section::Layout::value) return json_schema(component.keys.front());
   const std::string item = item_schema(component);
-  switch (component.shape) {
-    case Component::Shape::list:
+  switch (component.layout) {
+    case Section::Layout::list:
       return "{" + sentence(component.help) + "\"type\": \"array\", \"items\": " + item +
-             (component.most > 0 ? ", \"maxItems\": " + std::to_string(component.most) : "") + "}";
-    case Component::Shape::map:
+             (component.max_items > 0 ? ", \"maxItems\": " + std::to_string(component.max_items) : "") + "}";
+    case Section::Layout::map:
       return "{" + sentence(component.help) + R"("type": "object", "propertyNames": {"pattern": "^[a-z][a-z0-9_]*$"}, )" +
              "\"additionalProperties\": " + item + "}";
-    case Component::Shape::on_off:
+    case Section::Layout::on_off:
       return "{" + sentence(component.help) + R"("anyOf": [{"type": "boolean"}, )" + item + "]}";
     default:
       return "{" + sentence(component.help) + item.substr(1);
   }
 }
 
-std::string json_schema(const std::vector<Component>& components, const std::string& title) {
+std::string json_schema(const std::vector<Section>& components, const std::string& title) {
   std::string properties = "    \"$schema\": {\"type\": \"string\"}";
-  for (const Component& component : components) properties += ",\n    " + string_text(component.name) + ": " + json_schema(component);
-  return "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": " + string_text(title) +
+  for (const Section& component : components) properties += ",\n    " + serialize_string(component.name) + ": " + json_schema(component);
+  return "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": " + serialize_string(title) +
          ",\n  \"type\": \"object\",\n  \"properties\": {\n" + properties + "\n  },\n  \"additionalProperties\": false\n}\n";
 }
 

@@ -8,10 +8,10 @@ namespace catena::schema {
 
 namespace {
 
-Key made(const std::string& name, Form form, const std::string& unit, const std::string& help) {
+Key made(const std::string& name, ValueType form, const std::string& unit, const std::string& help) {
   Key key;
   key.name = name;
-  key.form = form;
+  key.value_type = form;
   key.unit = unit;
   key.help = help;
   return key;
@@ -35,7 +35,7 @@ std::string plain(double x) {
 
 }  // namespace
 
-std::string Limits::words() const {
+std::string Limits::to_string() const {
   if (lo && hi && !lo_open) return plain(*lo) + " to " + (hi_open ? "below " : "") + plain(*hi);
   if (lo && hi) return "> " + plain(*lo) + (hi_open ? ", below " : ", at most ") + plain(*hi);
   if (lo) return (lo_open ? "> " : ">= ") + plain(*lo);
@@ -43,69 +43,74 @@ std::string Limits::words() const {
   return {};
 }
 
-Key number(const std::string& name, const std::string& unit, const std::string& help) { return made(name, Form::number, unit, help); }
+Key number(const std::string& name, const std::string& unit, const std::string& help) { return made(name, ValueType::number, unit, help); }
 Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most) {
-  return made(name, Form::integer, unit, help).within(least, most);
+  return made(name, ValueType::integer, unit, help).within(least, most);
 }
-Key boolean(const std::string& name, const std::string& help) { return made(name, Form::boolean, {}, help); }
-Key text(const std::string& name, const std::string& help) { return made(name, Form::text, {}, help); }
+Key boolean(const std::string& name, const std::string& help) { return made(name, ValueType::boolean, {}, help); }
+Key text(const std::string& name, const std::string& help) { return made(name, ValueType::text, {}, help); }
 Key identifier(const std::string& name, const std::string& help) {
   Key key = text(name, help);
   key.is_identifier = true;
   return key;
 }
-Key word(const std::string& name, std::vector<std::string> words, const std::string& help) {
-  Key key = made(name, Form::word, {}, help);
-  key.words = std::move(words);
+Key choice(const std::string& name, std::vector<std::string> words, const std::string& help) {
+  Key key = made(name, ValueType::choice, {}, help);
+  key.options = std::move(words);
   return key;
 }
 Key vector(const std::string& name, int count, const std::string& unit, const std::string& help) {
-  Key key = made(name, Form::vector, unit, help);
+  Key key = made(name, ValueType::vector, unit, help);
   key.count = count;
   return key;
 }
 Key vec3(const std::string& name, const std::string& unit, const std::string& help) { return vector(name, 3, unit, help); }
-Key direction(const std::string& name, const std::string& help) { return vec3(name, {}, help).ranged("not 0"); }
-Key color(const std::string& name, const std::string& help) { return made(name, Form::color, {}, help).within(0, 1); }
-Key numbers(const std::string& name, const std::string& unit, const std::string& help) { return made(name, Form::numbers, unit, help); }
-Key texts(const std::string& name, const std::string& help) { return made(name, Form::texts, {}, help); }
-Key places(const std::string& name, const std::string& unit, const std::string& help) {
-  return made(name, Form::places, unit, help).items(1, 0);
+Key direction(const std::string& name, const std::string& help) { return vec3(name, {}, help).with_range_text("not 0"); }
+Key color(const std::string& name, const std::string& help) { return made(name, ValueType::color, {}, help).within(0, 1); }
+Key numbers(const std::string& name, const std::string& unit, const std::string& help) {
+  return made(name, ValueType::numbers, unit, help);
+}
+Key texts(const std::string& name, const std::string& help) { return made(name, ValueType::texts, {}, help); }
+Key points(const std::string& name, const std::string& unit, const std::string& help) {
+  return made(name, ValueType::points, unit, help).with_size(1, 0);
 }
 Key table(const std::string& name, int width, const std::string& unit, const std::string& help) {
-  Key key = made(name, Form::table, unit, help).items(1, 0);
+  Key key = made(name, ValueType::table, unit, help).with_size(1, 0);
   key.count = width;
   return key;
 }
-Key rotation(const std::string& name, const std::string& help) { return made(name, Form::rotation, {}, help); }
-Key null() { return made({}, Form::null, {}, {}); }
+Key rotation(const std::string& name, const std::string& help) { return made(name, ValueType::rotation, {}, help); }
+Key null() { return made({}, ValueType::null, {}, {}); }
 Key object(const std::string& name, Keys inner, const std::string& help) {
-  Key key = made(name, Form::object, {}, help);
-  key.inner = std::make_shared<const Keys>(std::move(inner));
+  Key key = made(name, ValueType::object, {}, help);
+  key.members = std::make_shared<const Keys>(std::move(inner));
   return key;
 }
 Key any_of(const std::string& name, Keys choices, const std::string& help) {
-  Key key = made(name, Form::any_of, choices.front().unit, help);
-  key.choices = std::move(choices);
+  Key key = made(name, ValueType::any_of, choices.front().unit, help);
+  key.alternatives = std::move(choices);
   return key;
 }
-Key named(const std::string& name, Role role, const std::string& help) { return text(name, help).as(role); }
-Key file(const std::string& name, const std::string& help) { return text(name, help).as(Role::file); }
+Key reference(const std::string& name, Role role, const std::string& help) { return text(name, help).with_role(role); }
+Key file(const std::string& name, const std::string& help) { return text(name, help).with_role(Role::file); }
 Key core_criterion_key() {
-  return word("criterion", {"sujudi-haimes", "parallel-vectors", "vorticity"}, "By what a core is told.").by_default("\"sujudi-haimes\"");
+  return choice("criterion", {"sujudi-haimes", "parallel-vectors", "vorticity"}, "By what a core is told.")
+      .with_default("\"sujudi-haimes\"");
 }
 
 Key core_length_key() {
-  return number("least_length", "world", "Shorter core lines are left out.").positive().by_default("6 voxels; of a formula 0.02 L");
+  return number("least_length", "world", "Shorter core lines are left out.").positive().with_default("6 voxels; of a formula 0.02 L");
 }
 
 Key core_swirl_key() {
   return number("least_swirl", "", "So are weaker ones: the mean swirl of a line, by that of the strongest.")
       .within(0, 1)
-      .by_default("0.05");
+      .with_default("0.05");
 }
 
-Key line_kind_key() { return word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("\"vector\""); }
+Key line_kind_key() {
+  return choice("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").with_default("\"vector\"");
+}
 
 const Key* find(const Keys& keys, std::string_view name) {
   for (const Key& key : keys)
@@ -113,23 +118,23 @@ const Key* find(const Keys& keys, std::string_view name) {
   return nullptr;
 }
 
-Keys joined(Keys first, const Keys& second) {
+Keys concatenate(Keys first, const Keys& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
 }
 
-std::vector<std::string_view> names_of(const Keys& keys) {
+std::vector<std::string_view> key_names(const Keys& keys) {
   std::vector<std::string_view> names;
   for (const Key& key : keys) names.push_back(key.name);
   return names;
 }
 
-std::vector<std::string_view> names_of(const Keys& first, const Keys& second) {
-  std::vector<std::string_view> names = names_of(first);
+std::vector<std::string_view> key_names(const Keys& first, const Keys& second) {
+  std::vector<std::string_view> names = key_names(first);
   for (const Key& key : second) names.push_back(key.name);
   return names;
 }
 
-std::vector<std::string_view> words_of(const Key& key) { return {key.words.begin(), key.words.end()}; }
+std::vector<std::string_view> option_names(const Key& key) { return {key.options.begin(), key.options.end()}; }
 
 }  // namespace catena::schema

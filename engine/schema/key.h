@@ -16,17 +16,17 @@
 namespace catena::schema {
 
 /// The shape of a value.
-enum class Form {
+enum class ValueType {
   number,
   integer,
   boolean,
   text,
-  word,      ///< one of `words`
+  choice,    ///< one of `words`
   vector,    ///< `count` numbers: [x, y, z], a quaternion, an interval
   color,     ///< [r, g, b], display (sRGB) components from 0 to 1
   numbers,   ///< a list of any length
   texts,     ///< a list of strings, of names for instance
-  places,    ///< a list of [x, y, z]
+  points,    ///< a list of [x, y, z]
   table,     ///< rows of `count` numbers, the first of each rising
   rotation,  ///< three rows, nine numbers, or {"axis", "angle_deg"}
   null,      ///< null
@@ -44,84 +44,84 @@ struct Limits {
   /// Whether a number lies within them.
   bool contains(double x) const;
   /// "> 0", "0 to 1", "at most 8"; empty: any.
-  std::string words() const;
+  std::string to_string() const;
 };
 
 /// One key. Plain data: the functions below make it, and its own functions return a changed copy.
 struct Key {
-  std::string name;           ///< as the file has it
-  Form form = Form::number;   ///< the shape of its value
-  std::string unit;           ///< "world" (world units), "value" (of the field), "N/m" ...
-  std::string help;           ///< one sentence
-  std::string range = {};     ///< in words, where the limits do not say it: "rising", "not 0"
-  std::string fallback = {};  ///< the default in words; JSON text where it is a value
-  Limits limits = {};         ///< of a number, or of each of several
-  int count = 0;              ///< of a vector's numbers, of a row's
-  int least = 0;              ///< items of a list
-  int most = 0;               ///< items of a list, bytes of a text; 0: any number
-  Role role = Role::none;     ///< what of the scene it names
-  bool is_required = false;   ///< the file must have it
-  bool is_stated = false;     ///< a new component states it though it need not: without it the component means little
+  std::string name;                          ///< as the file has it
+  ValueType value_type = ValueType::number;  ///< the shape of its value
+  std::string unit;                          ///< "world" (world units), "value" (of the field), "N/m" ...
+  std::string help;                          ///< one sentence
+  std::string range_text = {};               ///< in words, where the limits do not say it: "rising", "not 0"
+  std::string default_text = {};             ///< the default in words; JSON text where it is a value
+  Limits limits = {};                        ///< of a number, or of each of several
+  int count = 0;                             ///< of a vector's numbers, of a row's
+  int min_size = 0;                          ///< items of a list
+  int max_size = 0;                          ///< items of a list, bytes of a text; 0: any number
+  Role role = Role::none;                    ///< what of the scene it names
+  bool is_required = false;                  ///< the file must have it
+  bool is_recommended = false;               ///< a new component states it though it need not: without it the component means little
   /// How a new one begins in the window: JSON text, "0.1 L" (a share of the length of all that is there), "hand" (a place where the hand
   /// is) or "hand + 0.1 L"; empty: places begin at the hand, lengths with 0.02 L, words with the first one.
-  std::string begin = {};
-  bool is_identifier = false;                          ///< [a-z][a-z0-9_]*
-  bool has_default = true;                             ///< what is left out means `fallback`
-  bool follows_field = false;                          ///< a number that may be an object {"field", "map", ...} instead
-  bool follows_widget = false;                         ///< or {"widget": NAME}
-  std::vector<std::string> words = {};                 ///< of Form::word
-  std::vector<Key> choices = {};                       ///< any_of
-  std::shared_ptr<const std::vector<Key>> inner = {};  ///< object
+  std::string initial_value = {};
+  bool is_identifier = false;                            ///< [a-z][a-z0-9_]*
+  bool has_default = true;                               ///< what is left out means `fallback`
+  bool accepts_field_map = false;                        ///< a number that may be an object {"field", "map", ...} instead
+  bool accepts_widget = false;                           ///< or {"widget": NAME}
+  std::vector<std::string> options = {};                 ///< of Form::word
+  std::vector<Key> alternatives = {};                    ///< any_of
+  std::shared_ptr<const std::vector<Key>> members = {};  ///< object
 
   /// A copy: the file must have the key.
   Key required() const {
     return with([](Key& k) { k.is_required = true; });
   }
   /// A copy: new components state the key.
-  Key stated() const {
-    return with([](Key& k) { k.is_stated = true; });
+  Key recommended() const {
+    return with([](Key& k) { k.is_recommended = true; });
   }
   /// A copy: more than 0.
-  Key positive() const { return limited({0.0, {}, true}); }
+  Key positive() const { return with_limits({0.0, {}, true}); }
   /// A copy: 0 or more.
-  Key not_negative() const { return limited({0.0, {}}); }
+  Key non_negative() const { return with_limits({0.0, {}}); }
   /// A copy: from lo to hi, both included.
-  Key within(double lo, double hi) const { return limited({lo, hi}); }
+  Key within(double lo, double hi) const { return with_limits({lo, hi}); }
   /// A copy with these limits.
-  Key limited(const Limits& l) const {
+  Key with_limits(const Limits& l) const {
     return with([&](Key& k) { k.limits = l; });
   }
   /// The range in words.
-  Key ranged(const std::string& text) const {
-    return with([&](Key& k) { k.range = text; });
+  Key with_range_text(const std::string& text) const {
+    return with([&](Key& k) { k.range_text = text; });
   }
   /// Left out it means something else than its value at the start.
   Key without_default() const {
     return with([](Key& k) { k.has_default = false; });
   }
   /// The default, in words or as JSON text.
-  Key by_default(const std::string& text) const {
-    return with([&](Key& k) { k.fallback = text; });
+  Key with_default(const std::string& text) const {
+    return with([&](Key& k) { k.default_text = text; });
   }
   /// A copy that begins like this in the window.
-  Key begins(const std::string& text) const {
-    return with([&](Key& k) { k.begin = text; });
+  Key with_initial_value(const std::string& text) const {
+    return with([&](Key& k) { k.initial_value = text; });
   }
   /// A copy that names such a thing of the scene.
-  Key as(Role r) const {
+  Key with_role(Role r) const {
     return with([&](Key& k) { k.role = r; });
   }
   /// A copy that takes from lo to hi items; hi 0: any number.
-  Key items(int lo, int hi) const {
-    return with([&](Key& k) { k.least = lo, k.most = hi; });
+  Key with_size(int lo, int hi) const {
+    return with([&](Key& k) { k.min_size = lo, k.max_size = hi; });
   }
   /// A copy that may be an object which follows a field.
   Key or_field() const {
-    return with([](Key& k) { k.follows_field = true; });
+    return with([](Key& k) { k.accepts_field_map = true; });
   }
   /// A copy that may name a widget.
   Key or_widget() const {
-    return with([](Key& k) { k.follows_widget = true; });
+    return with([](Key& k) { k.accepts_widget = true; });
   }
 
  private:
@@ -147,7 +147,7 @@ Key text(const std::string& name, const std::string& help);
 /// A name that others may use: [a-z][a-z0-9_]*.
 Key identifier(const std::string& name, const std::string& help);
 /// One of `words`.
-Key word(const std::string& name, std::vector<std::string> words, const std::string& help);
+Key choice(const std::string& name, std::vector<std::string> words, const std::string& help);
 /// Three numbers.
 Key vec3(const std::string& name, const std::string& unit, const std::string& help);
 /// An arrow of any length but 0.
@@ -161,7 +161,7 @@ Key numbers(const std::string& name, const std::string& unit, const std::string&
 /// A list of texts.
 Key texts(const std::string& name, const std::string& help);
 /// A list of [x, y, z].
-Key places(const std::string& name, const std::string& unit, const std::string& help);
+Key points(const std::string& name, const std::string& unit, const std::string& help);
 /// A list of rows of `width` numbers.
 Key table(const std::string& name, int width, const std::string& unit, const std::string& help);
 /// A rotation, as json::as_rotation reads it.
@@ -173,10 +173,10 @@ Key object(const std::string& name, Keys inner, const std::string& help);
 /// Several forms in one key; the first is the usual one.
 Key any_of(const std::string& name, Keys choices, const std::string& help);
 /// The name of a field, a mesh, curves, points, a widget.
-Key named(const std::string& name, Role role, const std::string& help);
+Key reference(const std::string& name, Role role, const std::string& help);
 /// A file's name, relative to the scene's file.
 Key file(const std::string& name, const std::string& help);
-/// How the core lines of vortices are traced (engine/flow/vortex_cores.h).
+/// How the core lines of vortices are traced (engine/geometry/flow/vortex_cores.h).
 Key core_criterion_key();
 /// The least length of a core line.
 Key core_length_key();
@@ -188,13 +188,13 @@ Key line_kind_key();
 /// The key of that name; null: none.
 const Key* find(const Keys& keys, std::string_view name);
 /// `first`, then `second`.
-Keys joined(Keys first, const Keys& second);
-/// The names of the keys, for json::only_keys.
-std::vector<std::string_view> names_of(const Keys& keys);
+Keys concatenate(Keys first, const Keys& second);
+/// The names of the keys, for json::check_known_keys.
+std::vector<std::string_view> key_names(const Keys& keys);
 /// Of both, in order.
-std::vector<std::string_view> names_of(const Keys& first, const Keys& second);
+std::vector<std::string_view> key_names(const Keys& first, const Keys& second);
 /// The words of a choice as json::get_choice takes them.
-std::vector<std::string_view> words_of(const Key& key);
+std::vector<std::string_view> option_names(const Key& key);
 
 /// What an item of a component may be: a streamline among links, a raw file among fields.
 struct Variant {
@@ -204,20 +204,20 @@ struct Variant {
 };
 
 /// A part of the scene file: what stands at one of its top-level keys.
-struct Component {
+struct Section {
   /// What stands at the key.
-  enum class Shape {
+  enum class Layout {
     object,
     list,    ///< an array of objects
     map,     ///< names -> objects
     on_off,  ///< true, false, or an object
     value    ///< `keys` has one key: the part itself
   };
-  std::string name;             ///< "isosurfaces"
-  std::string help;             ///< one or two sentences
-  Shape shape = Shape::object;  ///< what stands at its key
-  Keys keys = {};               ///< of the object, or of each item
-  int most = 0;                 ///< items of a list; 0: any number
+  std::string name;                ///< "isosurfaces"
+  std::string help;                ///< one or two sentences
+  Layout layout = Layout::object;  ///< what stands at its key
+  Keys keys = {};                  ///< of the object, or of each item
+  int max_items = 0;               ///< items of a list; 0: any number
   /// Empty, or each item is one of these; told by "type" where `keys` has that.
   std::vector<Variant> variants = {};
 };

@@ -10,49 +10,49 @@ namespace {
 std::string code(const std::string& text) { return "`" + text + "`"; }
 
 std::string form_words(const Key& key) {
-  switch (key.form) {
-    case Form::number:
+  switch (key.value_type) {
+    case ValueType::number:
       return "number";
-    case Form::integer:
+    case ValueType::integer:
       return "integer";
-    case Form::boolean:
+    case ValueType::boolean:
       return "boolean";
-    case Form::text:
+    case ValueType::text:
       return key.role == Role::file ? "file" : key.role == Role::none ? "string" : "name";
-    case Form::word:
+    case ValueType::choice:
       return "word";
-    case Form::vector:
+    case ValueType::vector:
       return std::to_string(key.count) + " numbers";
-    case Form::color:
+    case ValueType::color:
       return "colour";
-    case Form::numbers:
+    case ValueType::numbers:
       return "numbers";
-    case Form::texts:
+    case ValueType::texts:
       return "names";
-    case Form::places:
+    case ValueType::points:
       return "places";
-    case Form::table:
+    case ValueType::table:
       return "table";
-    case Form::rotation:
+    case ValueType::rotation:
       return "rotation";
-    case Form::null:
+    case ValueType::null:
       return "null";
-    case Form::object:
+    case ValueType::object:
       return "object";
-    case Form::any_of:
+    case ValueType::any_of:
       break;
   }
-  if (key.choices.empty()) return "array or object";
+  if (key.alternatives.empty()) return "array or object";
   std::string all;
-  for (std::size_t i = 0; i < key.choices.size(); ++i)
-    all += (i == 0 ? "" : i + 1 == key.choices.size() ? " or " : ", ") + type_words(key.choices[i]);
+  for (std::size_t i = 0; i < key.alternatives.size(); ++i)
+    all += (i == 0 ? "" : i + 1 == key.alternatives.size() ? " or " : ", ") + describe_type(key.alternatives[i]);
   return all;
 }
 
 /// JSON values stand as code, words do not.
 std::string fallback_words(const Key& key) {
   if (key.is_required) return "required";
-  const std::string& text = key.fallback;
+  const std::string& text = key.default_text;
   const bool value = !text.empty() && (text[0] == '[' || text[0] == '"' || parse_double(text));
   if (text.size() > 1 && text[0] == '"') return code(text.substr(1, text.size() - 2));
   return value ? code(text) : text;
@@ -60,26 +60,26 @@ std::string fallback_words(const Key& key) {
 
 /// A word's words stand where a number's range does.
 std::string range_words(const Key& key) {
-  if (!key.range.empty()) return key.range;
-  if (key.form == Form::word) {
+  if (!key.range_text.empty()) return key.range_text;
+  if (key.value_type == ValueType::choice) {
     std::string all;
-    for (const std::string& w : key.words) all += (all.empty() ? "" : ", ") + code(w);
+    for (const std::string& w : key.options) all += (all.empty() ? "" : ", ") + code(w);
     return all;
   }
-  if (key.form == Form::text && key.most > 0) return "at most " + std::to_string(key.most) + " bytes";
-  return key.limits.words();
+  if (key.value_type == ValueType::text && key.max_size > 0) return "at most " + std::to_string(key.max_size) + " bytes";
+  return key.limits.to_string();
 }
 
 }  // namespace
 
-std::string type_words(const Key& key) {
-  return form_words(key) + (key.follows_field ? " or map" : "") + (key.follows_widget ? " or widget" : "");
+std::string describe_type(const Key& key) {
+  return form_words(key) + (key.accepts_field_map ? " or map" : "") + (key.accepts_widget ? " or widget" : "");
 }
 
 std::string markdown_table(const Keys& keys) {
   std::string out = "| key | type | unit | range | default | meaning |\n|---|---|---|---|---|---|\n";
   for (const Key& key : keys)
-    out += "| " + code(key.name) + " | " + type_words(key) + " | " + key.unit + " | " + range_words(key) + " | " + fallback_words(key) +
+    out += "| " + code(key.name) + " | " + describe_type(key) + " | " + key.unit + " | " + range_words(key) + " | " + fallback_words(key) +
            " | " + key.help + " |\n";
   return out;
 }
@@ -91,33 +91,33 @@ using Tables = std::vector<std::pair<std::string, std::string>>;
 void add_tables(const std::string& name, const Keys& keys, Tables& out) {
   if (!keys.empty()) out.emplace_back(name, markdown_table(keys));
   for (const Key& key : keys) {
-    if (key.form == Form::object) add_tables(name + "." + key.name, *key.inner, out);
-    for (const Key& choice : key.choices)
-      if (choice.form == Form::object) add_tables(name + "." + key.name, *choice.inner, out);
+    if (key.value_type == ValueType::object) add_tables(name + "." + key.name, *key.members, out);
+    for (const Key& choice : key.alternatives)
+      if (choice.value_type == ValueType::object) add_tables(name + "." + key.name, *choice.members, out);
   }
 }
 
 }  // namespace
 
-Tables markdown_tables(const Component& component) {
+Tables markdown_tables(const Section& component) {
   Tables out;
   add_tables(component.name, component.keys, out);
   for (const Variant& variant : component.variants) add_tables(component.name + "/" + variant.name, variant.keys, out);
   return out;
 }
 
-Result<std::string> keys_text(const std::vector<Component>& parts, const std::string& name, const std::string& command,
-                              const std::string& whole, const char* behind) {
+Result<std::string> format_keys(const std::vector<Section>& parts, const std::string& name, const std::string& command,
+                                const std::string& whole, const char* behind) {
   std::vector<std::string_view> names;
   std::string text;
-  for (const Component& part : parts) {
+  for (const Section& part : parts) {
     names.push_back(part.name);
     if (!name.empty() && part.name != name) continue;
     text += part.help + "\n";
     for (const auto& [title, table] : markdown_tables(part)) text.append("\n").append(title).append("\n").append(table).append(behind);
   }
   if (!text.empty()) return text;
-  return Error{command + ": " + in_quotes(name) + " is no part of " + whole + "; one of " + catena::joined(names) + " was expected" +
+  return Error{command + ": " + in_quotes(name) + " is no part of " + whole + "; one of " + catena::join_words(names) + " was expected" +
                suggestion(name, names)};
 }
 

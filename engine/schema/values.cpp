@@ -13,13 +13,13 @@ namespace {
 
 bool is_absent(const Key& key, const json::Node& object) { return !key.is_required && object.find(key.name) == nullptr; }
 
-json::Range range_of(const Key& key) {
-  if (!key.limits.lo || *key.limits.lo != 0) return json::Range::any;
-  return key.limits.lo_open ? json::Range::positive : json::Range::not_negative;
+json::NumberRange range_of(const Key& key) {
+  if (!key.limits.lo || *key.limits.lo != 0) return json::NumberRange::any;
+  return key.limits.lo_open ? json::NumberRange::positive : json::NumberRange::non_negative;
 }
 
 std::string wrong_list(const Key& key, const std::string& items) {
-  return in_quotes(key.name) + " is no list; " + (key.range.empty() ? "" : key.range + " ") + items + " were expected";
+  return in_quotes(key.name) + " is no list; " + (key.range_text.empty() ? "" : key.range_text + " ") + items + " were expected";
 }
 
 template <class Items>
@@ -34,7 +34,7 @@ Outcome check_limits(const Key& key, const json::Node& node) {
   if (key.limits.contains(node.number)) return Done{};
   const std::string unit = key.unit.empty() || key.unit == "world" || key.unit == "value" ? "" : " " + key.unit;
   const Limits& l = key.limits;
-  const std::string range = l.lo && l.hi ? "from " + to_text(*l.lo) + " to " + to_text(*l.hi) : l.words();
+  const std::string range = l.lo && l.hi ? "from " + to_text(*l.lo) + " to " + to_text(*l.hi) : l.to_string();
   return json::error_at(node, in_quotes(key.name) + " is " + to_text(node.number) + "; a number " + range + unit + " was expected");
 }
 
@@ -52,7 +52,7 @@ Outcome read_value(const Key& key, const json::Node& object, int& out) {
 }
 
 Outcome read_value(const Key& key, const json::Node& object, bool& out) {
-  if (key.form == Form::word) {
+  if (key.value_type == ValueType::choice) {
     int index = out;
     CATENA_CHECK(read_choice(key, object, index));
     out = index == 1;
@@ -71,7 +71,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::string& out) {
 Outcome read_value(const Key& key, const json::Node& object, Vec3& out) {
   if (is_absent(key, object)) return Done{};
   CATENA_TRY(out, json::require_vec3(object, key.name));
-  if (key.range == "not 0" && max_abs(out) == 0)
+  if (key.range_text == "not 0" && max_abs(out) == 0)
     return json::error_at(*object.find(key.name), in_quotes(key.name) + " is zero; a vector other than [0, 0, 0] was expected");
   return Done{};
 }
@@ -105,7 +105,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<double>
   return Done{};
 }
 
-Outcome read_places(const json::Node& node, std::string_view what, std::vector<Vec3>& out) {
+Outcome read_points(const json::Node& node, std::string_view what, std::vector<Vec3>& out) {
   if (node.kind != json::Kind::array || node.items.empty())
     return json::error_at(node, in_quotes(what) + " is no list of places or empty; at least one [x, y, z] was expected");
   out.clear();
@@ -118,7 +118,7 @@ Outcome read_places(const json::Node& node, std::string_view what, std::vector<V
 }
 
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out) {
-  return is_absent(key, object) ? Outcome(Done{}) : read_places(*object.find(key.name), key.name, out);
+  return is_absent(key, object) ? Outcome(Done{}) : read_points(*object.find(key.name), key.name, out);
 }
 
 Result<Color> as_color(const Vec3& c, const json::Node& node, std::string_view what) {
@@ -137,7 +137,7 @@ Outcome read_value(const Key& key, const json::Node& object, Color& out) {
 
 Outcome read_choice(const Key& key, const json::Node& object, int& out) {
   if (key.is_required) CATENA_CHECK(json::require_string(object, key.name));
-  CATENA_TRY(out, json::get_choice(object, key.name, out, words_of(key)));
+  CATENA_TRY(out, json::get_choice(object, key.name, out, option_names(key)));
   return Done{};
 }
 
@@ -150,10 +150,10 @@ std::string write_value(const Color& c) {
   }
   return out + "]";
 }
-std::string write_value(double value) { return json::number_text(value); }
+std::string write_value(double value) { return json::serialize_number(value); }
 std::string write_value(int value) { return std::to_string(value); }
 std::string write_value(bool value) { return value ? "true" : "false"; }
-std::string write_value(const std::string& value) { return json::string_text(value); }
+std::string write_value(const std::string& value) { return json::serialize_string(value); }
 std::string write_value(const Vec3& v) { return list(std::array<double, 3>{v.x, v.y, v.z}); }
 std::string write_value(const std::array<double, 2>& value) { return list(value); }
 std::string write_value(const std::array<std::string, 3>& value) { return list(value); }

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/base/color.h"
 #include "engine/base/json.h"
-#include "engine/geometry/color.h"
 #include "engine/schema/key.h"
 
 namespace catena::schema {
@@ -24,7 +24,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<double>
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out);
 Outcome read_value(const Key& key, const json::Node& object, Color& out);
 /// A list of [x, y, z], at least one.
-Outcome read_places(const json::Node& node, std::string_view what, std::vector<Vec3>& out);
+Outcome read_points(const json::Node& node, std::string_view what, std::vector<Vec3>& out);
 /// The index of a word.
 Outcome read_choice(const Key& key, const json::Node& object, int& out);
 

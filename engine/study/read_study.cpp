@@ -1,18 +1,18 @@
-#include "engine/study/read_parts.h"
+#include "engine/study/study_tables.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "engine/base/text.h"
-#include "engine/schema/table.h"
-#include "engine/study/inquiry.h"
+#include "engine/schema/struct_schema.h"
+#include "engine/study/analysis_plan.h"
 #include "engine/study/study.h"
 #include "engine/study/trial_scene.h"
 
 namespace catena::study {
 
-const char* kind_word(TaskKind kind) { return kind == TaskKind::advection ? "advection" : "tracing"; }
+const char* to_string(TaskKind kind) { return kind == TaskKind::advection ? "advection" : "tracing"; }
 
 namespace {
 
@@ -24,12 +24,12 @@ Outcome read_chains(const json::Node& object, const std::vector<Task>& tasks, Co
   if (chain == nullptr) return json::error_at(object, "key \"chain\" is missing; the links that are felt were expected, [] for none");
   std::vector<std::string_view> names;
   for (const Task& task : tasks) names.push_back(task.name);
-  if (chain->kind == json::Kind::object) CATENA_CHECK(json::only_keys(*chain, names));
+  if (chain->kind == json::Kind::object) CATENA_CHECK(json::check_known_keys(*chain, names));
   for (const Task& task : tasks) {
     const json::Node* one = chain->kind == json::Kind::object ? chain->find(task.name) : chain;
     if (one == nullptr) return json::error_at(*chain, "\"chain\" has none for the task " + in_quotes(task.name) + "; one was expected");
     if (one->kind != json::Kind::array) return json::error_at(*one, "the chain is no array; an array of links was expected");
-    CATENA_CHECK(check_values(*one));
+    CATENA_CHECK(check_placeholders(*one));
     condition.chains.push_back(*one);
   }
   return Done{};
@@ -44,17 +44,17 @@ schema::Keys condition_keys() {
 schema::Keys question_keys() {
   return {schema::identifier("name", "Its name, in the table of answers.").required(),
           schema::text("question", "What is asked.").required(),
-          schema::texts("answers", "What can be answered: 2 to 9, by the keys 1 to 9.").by_default("any text")};
+          schema::texts("answers", "What can be answered: 2 to 9, by the keys 1 to 9.").with_default("any text")};
 }
 
 Outcome read_question(const json::Node& node, Question& question) {
-  CATENA_CHECK(json::only_keys(node, schema::names_of(question_keys())));
+  CATENA_CHECK(json::check_known_keys(node, schema::key_names(question_keys())));
   CATENA_CHECK(schema::read_value(question_keys()[0], node, question.name));
   CATENA_CHECK(schema::read_value(question_keys()[1], node, question.question));
   const json::Node* answers = node.find("answers");
   if (answers == nullptr) return Done{};
-  if (answers->kind != json::Kind::array || answers->items.size() < 2 || answers->items.size() > kMostAnswers)
-    return json::error_at(*answers, "\"answers\" is no list of 2 to " + std::to_string(kMostAnswers) +
+  if (answers->kind != json::Kind::array || answers->items.size() < 2 || answers->items.size() > kMaxAnswers)
+    return json::error_at(*answers, "\"answers\" is no list of 2 to " + std::to_string(kMaxAnswers) +
                                         "; so many strings to choose from were expected, a key each");
   for (const json::Node& answer : answers->items) {
     CATENA_TRY(std::string text, json::as_string(answer, "answers"));
@@ -68,7 +68,7 @@ Outcome check_name(const json::Node& item, const std::string& name) {
   constexpr std::size_t kMost = 64;
   const auto breaks = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == ',' || c == '"'; };
   if (!name.empty() && name.size() <= kMost && std::ranges::none_of(name, breaks)) return Done{};
-  return json::error_at(json::member_or(item, "name"),
+  return json::error_at(json::member_or_parent(item, "name"),
                         "\"name\" is empty, longer than " + std::to_string(kMost) +
                             " bytes, or has commas, quotes or line ends; a short name without them was expected");
 }
@@ -79,7 +79,7 @@ Outcome read_items(const json::Node& root, const char* key, std::size_t least, s
   const json::Node* list = root.find(key);
   if (list == nullptr && least == 0) return Done{};
   if (list == nullptr || list->kind != json::Kind::array || list->items.size() < least)
-    return json::error_at(json::member_or(root, key),
+    return json::error_at(json::member_or_parent(root, key),
                           in_quotes(key) + " has fewer than " + std::to_string(least) + " items; an array of objects was expected");
   std::set<std::string> names;
   for (const json::Node& item : list->items) {
@@ -102,13 +102,13 @@ const StudyTable<Study>& study_table() {
     t.bind(integer("subjects", "", "How many subjects the design is made for.", 1, 9999), &T::subjects);
     t.bind(integer("trials", "", "Stimuli of a task: so many trials in every condition.", 1, 1000), &T::trials);
     t.bind(integer("training", "", "Trials before them, of every task in every condition; they are not analysed.", 0, 100), &T::training);
-    t.hand(schema::file("instructions", "A text with the pages of instructions, relative to this file.").by_default("none"),
-           [](const None&, const json::Node& root, T& study) -> Outcome {
-             CATENA_TRY(study.instructions, json::get_string(root, "instructions", {}));
-             if (study.instructions.empty() || std::filesystem::path(study.instructions).is_absolute()) return Done{};
-             study.instructions = (std::filesystem::path(study.path).parent_path() / study.instructions).string();
-             return Done{};
-           });
+    t.custom(schema::file("instructions", "A text with the pages of instructions, relative to this file.").with_default("none"),
+             [](const NoContext&, const json::Node& root, T& study) -> Outcome {
+               CATENA_TRY(study.instructions, json::get_string(root, "instructions", {}));
+               if (study.instructions.empty() || std::filesystem::path(study.instructions).is_absolute()) return Done{};
+               study.instructions = (std::filesystem::path(study.path).parent_path() / study.instructions).string();
+               return Done{};
+             });
     return t;
   }();
   return table;
@@ -116,15 +116,15 @@ const StudyTable<Study>& study_table() {
 
 }  // namespace
 
-std::vector<schema::Component> study_components() {
-  using Shape = schema::Component::Shape;
-  std::vector<schema::Component> all{
+std::vector<schema::Section> study_components() {
+  using Shape = schema::Section::Layout;
+  std::vector<schema::Section> all{
       {"study", "What concerns all of it, at the top of the file.", Shape::object, study_table().keys()},
       {"tasks", "What is seen and asked.", Shape::list, task_table().keys()},
       {"conditions", "What is felt. The first is the one that the others are compared with.", Shape::list, condition_keys()},
-      {"operator", "The model of a subject for `study simulate`.", Shape::object, operator_table().keys()},
+      {"operator", "The model of a subject for `study simulate`.", Shape::object, human_model_table().keys()},
       {"questionnaire", "What is asked at the end of a session.", Shape::list, question_keys()}};
-  for (schema::Component& component : inquiry_components()) all.push_back(std::move(component));
+  for (schema::Section& component : analysis_plan_components()) all.push_back(std::move(component));
   return all;
 }
 
@@ -135,29 +135,29 @@ Result<Study> parse_study(std::string_view text, const std::string& path) {
   CATENA_TRY(study.document, json::parse(text, path));
   const json::Node& root = study.document;
   CATENA_CHECK(json::expect_object(root, "the study"));
-  std::vector<std::string_view> keys = schema::names_of(study_table().keys());
+  std::vector<std::string_view> keys = schema::key_names(study_table().keys());
   for (const char* key : {"$schema", "tasks", "conditions", "operator", "questionnaire", "compare", "findings"}) keys.push_back(key);
-  CATENA_CHECK(json::only_keys(root, keys));
-  CATENA_CHECK(study_table().read_known(kNone, root, study));
-  CATENA_CHECK(
-      read_items(root, "tasks", 1, study.tasks, [](const json::Node& node, Task& task) { return task_table().read(kNone, node, task); }));
+  CATENA_CHECK(json::check_known_keys(root, keys));
+  CATENA_CHECK(study_table().read_own_keys(kNoContext, root, study));
+  CATENA_CHECK(read_items(root, "tasks", 1, study.tasks,
+                          [](const json::Node& node, Task& task) { return task_table().read(kNoContext, node, task); }));
   const auto read_condition = [&](const json::Node& node, Condition& condition) -> Outcome {
-    CATENA_CHECK(json::only_keys(node, schema::names_of(condition_keys())));
+    CATENA_CHECK(json::check_known_keys(node, schema::key_names(condition_keys())));
     CATENA_CHECK(schema::read_value(condition_keys()[0], node, condition.name));
     return read_chains(node, study.tasks, condition);
   };
   CATENA_CHECK(read_items(root, "conditions", 1, study.conditions, read_condition));
   if (const json::Node* model = root.find("operator")) {
     CATENA_CHECK(json::expect_object(*model, "operator"));
-    CATENA_CHECK(operator_table().read(kNone, *model, study.model));
+    CATENA_CHECK(human_model_table().read(kNoContext, *model, study.human_model));
   }
   CATENA_CHECK(read_items(root, "questionnaire", 0, study.questions, read_question));
-  CATENA_CHECK(read_inquiry(study));  // a mistake there is told before the first subject comes
+  CATENA_CHECK(read_analysis_plan(study));  // a mistake there is told before the first subject comes
   return study;
 }
 
 Result<Study> read_study(const std::string& path) {
-  CATENA_TRY(const std::string text, read_text(path, "a study file (JSON)", kMaxJsonBytes));
+  CATENA_TRY(const std::string text, read_text_file(path, "a study file (JSON)", kMaxJsonBytes));
   return parse_study(text, path);
 }
 

@@ -1,5 +1,5 @@
 #include "engine/base/text.h"
-#include "engine/study/read_parts.h"
+#include "engine/study/study_tables.h"
 #include "engine/study/trial_scene.h"
 
 namespace catena::study {
@@ -12,10 +12,10 @@ const StudyTable<StimulusRules>& stimulus_table() {
   using T = StimulusRules;
   static const auto table =
       StudyTable<T>()
-          .bind(number("path_mm", "mm", "Length of every correct path.").limited({0.0, 1e4, true}), &T::path_mm)
+          .bind(number("path_mm", "mm", "Length of every correct path.").with_limits({0.0, 1e4, true}), &T::path_mm)
           .bind(number("clearance_mm", "mm", "The start is at least so far from every global streamline.").within(0, 1e4), &T::clearance_mm)
-          .bind(integer("lines", "", "Global streamlines.", 0, 200), &T::lines)
-          .bind(number("line_mm", "mm", "The longest that one is, each way.").limited({0.0, 1e5, true}), &T::line_mm)
+          .bind(integer("lines", "", "Global streamlines.", 0, 200), &T::context_streamlines)
+          .bind(number("line_mm", "mm", "The longest that one is, each way.").with_limits({0.0, 1e5, true}), &T::context_length_mm)
           .bind(number("parallel", "",
                        "3D: at least this share of the path's length is seen along the picture plane (across the camera's axis).")
                     .within(0, 1),
@@ -24,9 +24,9 @@ const StudyTable<StimulusRules>& stimulus_table() {
                 &T::crossing_deg)
           .bind(number("turn_deg", "degrees", "The path turns at least this much from its start to its middle or its end.").within(0, 180),
                 &T::turn_deg)
-          .bind(number("bend_mm", "mm", "The path's radius of curvature is nowhere smaller.").within(0, 1e4), &T::bend_mm)
+          .bind(number("bend_mm", "mm", "The path's radius of curvature is nowhere smaller.").within(0, 1e4), &T::min_curvature_radius_mm)
           .bind(integer("candidates", "", "Starts that are tried in a field, before another field is.", 1, 10000), &T::candidates)
-          .bind(number("region", "", "Share of the field's box, about its middle, in which starts lie.").limited({0.0, 1.0, true}),
+          .bind(number("region", "", "Share of the field's box, about its middle, in which starts lie.").with_limits({0.0, 1.0, true}),
                 &T::region);
   return table;
 }
@@ -35,11 +35,12 @@ const StudyTable<Limits>& limits_table() {
   using T = Limits;
   static const auto table =
       StudyTable<T>()
-          .bind(number("told_s", "s", "What the subject is told; it is not enforced.").limited({0.0, 3600, true}), &T::told_s)
-          .bind(number("ends_s", "s", "Here a trial ends.").limited({0.0, 3600, true}), &T::ends_s)
-          .bind(number("reject_error_mm", "mm", "A trial with a larger error is left out of the analysis.").limited({0.0, 1e6, true}),
+          .bind(number("told_s", "s", "What the subject is told; it is not enforced.").with_limits({0.0, 3600, true}),
+                &T::announced_limit_s)
+          .bind(number("ends_s", "s", "Here a trial ends.").with_limits({0.0, 3600, true}), &T::timeout_s)
+          .bind(number("reject_error_mm", "mm", "A trial with a larger error is left out of the analysis.").with_limits({0.0, 1e6, true}),
                 &T::reject_error_mm)
-          .bind(number("reject_time_s", "s", "So is one that took longer.").limited({0.0, 3600, true}), &T::reject_time_s);
+          .bind(number("reject_time_s", "s", "So is one that took longer.").with_limits({0.0, 3600, true}), &T::reject_time_s);
   return table;
 }
 
@@ -47,43 +48,43 @@ const StudyTable<Limits>& limits_table() {
 template <class Outer, class Inner>
 void bind_object(StudyTable<Outer>& table, const std::string& name, const StudyTable<Inner>& inner, Inner Outer::*member,
                  const std::string& help) {
-  table.hand(schema::object(name, inner.keys(), help).by_default("its defaults"),
-             [name, &inner, member](const None& none, const json::Node& object, Outer& out) -> Outcome {
-               const json::Node* node = object.find(name);
-               if (node == nullptr) return Done{};
-               CATENA_CHECK(json::expect_object(*node, name));
-               return inner.read(none, *node, out.*member);
-             });
+  table.custom(schema::object(name, inner.keys(), help).with_default("its defaults"),
+               [name, &inner, member](const NoContext& none, const json::Node& object, Outer& out) -> Outcome {
+                 const json::Node* node = object.find(name);
+                 if (node == nullptr) return Done{};
+                 CATENA_CHECK(json::expect_object(*node, name));
+                 return inner.read(none, *node, out.*member);
+               });
 }
 
 /// What the study must know of the scene: where the eye is, and how large the hand's millimetre.
 Outcome read_scene_template(Task& task) {
-  const json::Node& scene = task.scene;
+  const json::Node& scene = task.scene_template;
   CATENA_CHECK(json::expect_object(scene, "scene"));
-  CATENA_CHECK(check_values(scene));
+  CATENA_CHECK(check_placeholders(scene));
   if (const json::Node* chain = scene.find("chain"))
     return json::error_at(*chain, "the scene of a task has a \"chain\"; what is felt was expected in \"conditions\"");
   const json::Node* fields = scene.find("fields");
   if (fields == nullptr || fields->find(task.field) == nullptr)
-    return json::error_at(json::member_or(task.where, "field"),
+    return json::error_at(json::member_or_parent(task.where, "field"),
                           "\"field\" is " + in_quotes(task.field) + "; the name of one of the \"fields\" of the task's scene was expected");
   const json::Node* workspace = scene.find("workspace");
   if (workspace == nullptr || workspace->kind != json::Kind::object)
     return json::error_at(scene, "the scene of a task has no \"workspace\"; {\"metres_per_unit\": M} was expected, for millimetres");
-  CATENA_TRY(task.metres_per_unit, json::require_number(*workspace, "metres_per_unit", json::Range::positive));
+  CATENA_TRY(task.meters_per_unit, json::require_number(*workspace, "metres_per_unit", json::NumberRange::positive));
   const json::Node* camera = scene.find("camera");
   if (camera == nullptr || camera->kind != json::Kind::object)
     return json::error_at(scene, "the scene of a task has no \"camera\"; one was expected: it says which way is depth");
-  CATENA_TRY(task.eye, json::require_vec3(*camera, "position"));
-  CATENA_TRY(task.plane, json::require_vec3(*camera, "target"));
-  task.view = direction(task.plane - task.eye);
-  if (task.view == Vec3(0.0))
+  CATENA_TRY(task.camera_position, json::require_vec3(*camera, "position"));
+  CATENA_TRY(task.image_plane_point, json::require_vec3(*camera, "target"));
+  task.view_direction = direction(task.image_plane_point - task.camera_position);
+  if (task.view_direction == Vec3(0.0))
     return json::error_at(*camera->find("target"), "\"target\" is the camera's position; another place was expected");
   task.orthographic = camera->find("height") != nullptr;
   return Done{};
 }
 
-Outcome check_task(const None&, const json::Node& node, Task& task) {
+Outcome check_task(const NoContext&, const json::Node& node, Task& task) {
   task.where = node;
   if (node.find("target") == nullptr)
     task.target = task.kind == TaskKind::tracing ? Target::end : task.dimensions == 2 ? Target::circle : Target::plane;
@@ -91,7 +92,7 @@ Outcome check_task(const None&, const json::Node& node, Task& task) {
     return json::error_at(*node.find("target"), task.kind == TaskKind::tracing
                                                     ? "\"target\" of a tracing task is not \"end\"; the path's end was expected"
                                                     : "\"target\" of an advection task is \"end\"; \"circle\" or \"plane\" was expected");
-  if (!(task.start_mm < task.rules.path_mm && task.reach_mm < task.rules.path_mm))
+  if (!(task.start_radius_mm < task.rules.path_mm && task.target_radius_mm < task.rules.path_mm))
     return json::error_at(node, "\"start_mm\" or \"reach_mm\" is not below the path's length; less was expected");
   return read_scene_template(task);
 }
@@ -104,31 +105,32 @@ const StudyTable<Task>& task_table() {
     StudyTable<T> t;
     t.bind(schema::identifier("name", "Its name, in the tables.").required(), &T::name);
     t.bind(
-        schema::word("kind", {"advection", "tracing"},
-                     "`advection`: follow the flow, of which a short piece is seen at the cursor; `tracing`: follow a path that is seen.")
+        schema::choice("kind", {"advection", "tracing"},
+                       "`advection`: follow the flow, of which a short piece is seen at the cursor; `tracing`: follow a path that is seen.")
             .required(),
         &T::kind);
     t.bind(integer("dimensions", "", "2: all is measured in the picture plane.", 2, 3).required(), &T::dimensions);
-    t.bind(schema::word("target", {"circle", "plane", "end"},
-                        "Where a trial ends: a circle about the start or a level plane, which the path crosses at its end, or its end.")
-               .by_default("`end`; advection: 2D `circle`, 3D `plane`"),
+    t.bind(schema::choice("target", {"circle", "plane", "end"},
+                          "Where a trial ends: a circle about the start or a level plane, which the path crosses at its end, or its end.")
+               .with_default("`end`; advection: 2D `circle`, 3D `plane`"),
            &T::target);
     t.bind(schema::text("field", "The field of the scene that the path follows.").required(), &T::field);
     bind_object(t, "stimulus", stimulus_table(), &T::rules, "How start and path are chosen.");
     bind_object(t, "limits", limits_table(), &T::limits, "Times and errors.");
     t.bind(number("start_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.")
-               .limited({0.0, 1e4, true}),
-           &T::start_mm);
-    t.bind(number("reach_mm", "mm", "Tracing: so near, the end is reached.").limited({0.0, 1e4, true}), &T::reach_mm);
-    t.bind(number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").limited({0.0, 1e4, true}),
-           &T::indicator_mm);
-    t.hand(schema::object("scene", {}, "A scene (scene.md) without a chain, in which strings stand for values of the trial.").required(),
-           [](const None&, const json::Node& object, T& task) -> Outcome {
-             const json::Node* scene = object.find("scene");
-             if (scene == nullptr) return json::error_at(object, "key \"scene\" is missing; a scene was expected");
-             task.scene = *scene;
-             return Done{};
-           });
+               .with_limits({0.0, 1e4, true}),
+           &T::start_radius_mm);
+    t.bind(number("reach_mm", "mm", "Tracing: so near, the end is reached.").with_limits({0.0, 1e4, true}), &T::target_radius_mm);
+    t.bind(
+        number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").with_limits({0.0, 1e4, true}),
+        &T::indicator_mm);
+    t.custom(schema::object("scene", {}, "A scene (scene.md) without a chain, in which strings stand for values of the trial.").required(),
+             [](const NoContext&, const json::Node& object, T& task) -> Outcome {
+               const json::Node* scene = object.find("scene");
+               if (scene == nullptr) return json::error_at(object, "key \"scene\" is missing; a scene was expected");
+               task.scene_template = *scene;
+               return Done{};
+             });
     t.check(check_task);
     return t;
   }();

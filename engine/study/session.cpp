@@ -10,7 +10,7 @@ namespace {
 /// A seed for each thing that is drawn, from what names it.
 std::uint64_t seed_of(int study, int subject, int what, int number) {
   std::uint64_t seed = 0;
-  for (const int part : {study, subject, what, number}) seed = mixed_bits(seed ^ static_cast<std::uint64_t>(part));
+  for (const int part : {study, subject, what, number}) seed = mix_bits(seed ^ static_cast<std::uint64_t>(part));
   return seed;
 }
 
@@ -29,7 +29,7 @@ void shuffle(std::vector<Trial>& trials, Random& random) {
 
 }  // namespace
 
-std::vector<int> latin_row(int count, int row) {
+std::vector<int> latin_square_row(int count, int row) {
   // 0, 1, n-1, 2, n-2, ...: neighbours differ by every amount once
   std::vector<int> order;
   const bool mirrored = count % 2 == 1 && row >= count;
@@ -41,9 +41,9 @@ std::vector<int> latin_row(int count, int row) {
   return order;
 }
 
-std::vector<Trial> session_of(const Study& study, int subject) {
+std::vector<Trial> make_session(const Study& study, int subject) {
   const int tasks = static_cast<int>(study.tasks.size()), rows = tasks % 2 == 0 ? tasks : 2 * tasks;
-  const std::vector<int> order = latin_row(tasks, (subject - 1) % rows);
+  const std::vector<int> order = latin_square_row(tasks, (subject - 1) % rows);
   std::vector<Trial> session;
   for (int block = 0; block < tasks; ++block) {
     const int task = order[static_cast<std::size_t>(block)];

@@ -28,8 +28,8 @@ struct Trial {
 inline constexpr int kMaxSubject = 9999;  ///< Greater numbers are refused.
 
 /// The order of `count` tasks for a row of the square; it has `count` rows, or twice as many where `count` is odd.
-std::vector<int> latin_row(int count, int row);
+std::vector<int> latin_square_row(int count, int row);
 /// `subject`: 1 .. kMaxSubject.
-std::vector<Trial> session_of(const Study& study, int subject);
+std::vector<Trial> make_session(const Study& study, int subject);
 
 }  // namespace catena::study

@@ -8,7 +8,7 @@
 
 #include "engine/base/random.h"
 #include "engine/base/text.h"
-#include "engine/flow/curve.h"
+#include "engine/geometry/flow/curve.h"
 #include "engine/scene/scene.h"
 #include "engine/study/trial_scene.h"
 
@@ -27,7 +27,7 @@ constexpr double kFlat = 1e-6;           ///< of the path's length: how far a 2D
 constexpr int kStride = 8;               ///< of the path's corners that are looked at for what hides them
 
 /// Of another field: below 2^30.
-int next_seed(int seed) { return static_cast<int>(mixed_bits(static_cast<std::uint64_t>(seed)) >> 34); }
+int next_seed(int seed) { return static_cast<int>(mix_bits(static_cast<std::uint64_t>(seed)) >> 34); }
 
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
 
@@ -71,11 +71,11 @@ class Draw {
         rules_(task.rules),
         field_(field),
         box_(field.world_bounds()),
-        random_(mixed_bits(static_cast<std::uint64_t>(seed))),
-        line_random_(~mixed_bits(static_cast<std::uint64_t>(seed))) {
+        random_(mix_bits(static_cast<std::uint64_t>(seed))),
+        line_random_(~mix_bits(static_cast<std::uint64_t>(seed))) {
     stimulus_.seed = seed;
-    stimulus_.length = task.world(rules_.path_mm);
-    stimulus_.line_length = task.world(rules_.line_mm);
+    stimulus_.length = task.world_from_mm(rules_.path_mm);
+    stimulus_.context_length = task.world_from_mm(rules_.context_length_mm);
   }
 
   /// Counts why starts were none.
@@ -87,22 +87,22 @@ class Draw {
         ++faults[static_cast<std::size_t>(*fault)];
         continue;
       }
-      stimulus_.hidden = task_.dimensions == 3 ? hidden() : 0;
-      if (!best || stimulus_.hidden < best->hidden) best = stimulus_;
-      if (best->hidden == 0) break;
+      stimulus_.occluded_share = task_.dimensions == 3 ? hidden() : 0;
+      if (!best || stimulus_.occluded_share < best->occluded_share) best = stimulus_;
+      if (best->occluded_share == 0) break;
     }
     return best;
   }
 
  private:
   Vec3 place(double share, Random& random) const {
-    const Vec3 middle = box_.centre();
+    const Vec3 middle = box_.center();
     Vec3 p(0.0);
     for (int axis = 0; axis < 3; ++axis) {
       const double half = 0.5 * share * (box_.hi[axis] - box_.lo[axis]);
       p[axis] = random.between(middle[axis] - half, middle[axis] + half);
     }
-    return task_.dimensions == 3 ? p : p - task_.view * dot(p - task_.plane, task_.view);
+    return task_.dimensions == 3 ? p : p - task_.view_direction * dot(p - task_.image_plane_point, task_.view_direction);
   }
 
   flow::CurvePtr traced(const Vec3& seed, double length, double tolerance) const {
@@ -117,8 +117,8 @@ class Draw {
   std::optional<Fault> fault_of(const Vec3& start) {
     if (!take_path(start, kLineTolerance)) return Fault::leaves;
     if (const auto fault = fault_of_path()) return fault;
-    if (stimulus_.lines.empty()) draw_lines();
-    if (distance_to(lines_, start) < task_.world(rules_.clearance_mm)) return Fault::line;
+    if (stimulus_.context_points.empty()) draw_lines();
+    if (distance_to(lines_, start) < task_.world_from_mm(rules_.clearance_mm)) return Fault::line;
     // what is kept is traced well
     if (!take_path(start, kPathTolerance)) return Fault::leaves;
     return fault_of_path();
@@ -130,8 +130,8 @@ class Draw {
   }
 
   void draw_lines() {
-    const double step = task_.world(2);
-    for (int k = 0; k < rules_.lines; ++k) {
+    const double step = task_.world_from_mm(2);
+    for (int k = 0; k < rules_.context_streamlines; ++k) {
       std::optional<Vec3> seed;
       double farthest = -1;
       for (int choice = 0, drawn = 0; choice < kLineChoices && drawn < kLinePlaces; ++drawn) {
@@ -141,13 +141,13 @@ class Draw {
         const double distance = distance_to(lines_, p);
         if (distance > farthest) farthest = distance, seed = p;
       }
-      const flow::CurvePtr curve = seed ? traced(*seed, stimulus_.line_length, kLineTolerance) : nullptr;
+      const flow::CurvePtr curve = seed ? traced(*seed, stimulus_.context_length, kLineTolerance) : nullptr;
       if (!curve) continue;
       const double s0 = curve->knots().front().s, s1 = curve->knots().back().s;
       const int pieces = std::max(1, static_cast<int>(std::ceil((s1 - s0) / step)));
       std::vector<Vec3>& line = lines_.emplace_back();
       for (int i = 0; i <= pieces; ++i) line.push_back(curve->position(s0 + (s1 - s0) * i / pieces));
-      stimulus_.lines.push_back(*seed);
+      stimulus_.context_points.push_back(*seed);
     }
   }
 
@@ -155,7 +155,7 @@ class Draw {
   bool take_path(const Vec3& start, double tolerance) {
     const double length = stimulus_.length;
     const flow::CurvePtr curve = traced(start, 1.001 * length, tolerance);
-    if (!curve || curve->closed() || curve->knots().back().s < length) return false;
+    if (!curve || curve->is_closed() || curve->knots().back().s < length) return false;
     stimulus_.path.clear();
     for (int i = 0; i < kPathPoints; ++i) {
       const Vec3 p = curve->position(length * i / (kPathPoints - 1));
@@ -183,16 +183,17 @@ class Draw {
     for (std::size_t i = 1; i < last; ++i) {
       // a corner of angle a between pieces of length h: a / h is the curvature
       const Vec3 before = path[i] - path[i - 1], after = path[i + 1] - path[i];
-      if (norm(direction(after) - direction(before)) * task_.world(rules_.bend_mm) > norm(before)) return Fault::bend;
+      if (norm(direction(after) - direction(before)) * task_.world_from_mm(rules_.min_curvature_radius_mm) > norm(before))
+        return Fault::bend;
     }
     if (task_.dimensions == 2) {
       for (const Vec3& p : path)
-        if (std::fabs(dot(p - task_.plane, task_.view)) > kFlat * stimulus_.length) return Fault::flat;
+        if (std::fabs(dot(p - task_.image_plane_point, task_.view_direction)) > kFlat * stimulus_.length) return Fault::flat;
     } else {
       double seen = 0;
       for (std::size_t i = 1; i < path.size(); ++i) {
         const Vec3 way = path[i] - path[i - 1];
-        seen += norm(way - task_.view * dot(way, task_.view));
+        seen += norm(way - task_.view_direction * dot(way, task_.view_direction));
       }
       if (seen < rules_.parallel * stimulus_.length) return Fault::parallel;
     }
@@ -213,18 +214,18 @@ class Draw {
   }
 
   double hidden() const {
-    const double radius = task_.world(kHidingRadiusMm);
+    const double radius = task_.world_from_mm(kHidingRadiusMm);
     int behind = 0, looked_at = 0;
     for (std::size_t i = 0; i < stimulus_.path.size(); i += kStride) {
       const Vec3& p = stimulus_.path[i];
-      const Vec3 ray = task_.orthographic ? task_.view : direction(p - task_.eye);
-      const double depth = dot(p - task_.eye, ray) - 2 * radius;
+      const Vec3 ray = task_.orthographic ? task_.view_direction : direction(p - task_.camera_position);
+      const double depth = dot(p - task_.camera_position, ray) - 2 * radius;
       ++looked_at;
       behind += std::ranges::any_of(lines_, [&](const std::vector<Vec3>& line) {
         return std::ranges::any_of(line, [&](const Vec3& q) {
           const Vec3 off = q - p;
           const double along = dot(off, ray);
-          return dot(q - task_.eye, ray) < depth && dot(off, off) - along * along < radius * radius;
+          return dot(q - task_.camera_position, ray) < depth && dot(off, off) - along * along < radius * radius;
         });
       });
     }
@@ -244,43 +245,44 @@ class Draw {
 /// What is longer than any field is a mistake in the units, and would be traced without end.
 Outcome check_lengths(const Task& task, const Bounds& box) {
   const double diagonal = norm(box.hi - box.lo);
-  for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"line_mm", task.rules.line_mm}})
-    if (const double length = task.world(mm); !(length <= kMostBoxes * diagonal))
+  for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"line_mm", task.rules.context_length_mm}})
+    if (const double length = task.world_from_mm(mm); !(length <= kMostBoxes * diagonal))
       return json::error_at(
-          json::member_or(task.where, "stimulus"),
+          json::member_or_parent(task.where, "stimulus"),
           fmt::format("task {}: \"{}\" is {:.3g} world units, {:.3g} times as long as the field's box; at most {:g} times "
                       "was expected (metres_per_unit is {:g})",
-                      in_quotes(task.name), key, length, length / diagonal, kMostBoxes, task.metres_per_unit));
+                      in_quotes(task.name), key, length, length / diagonal, kMostBoxes, task.meters_per_unit));
   return Done{};
 }
 
 }  // namespace
 
-Result<field::AnyField> StimulusMaker::field_of(int task, int seed) {
+Result<field::AnyField> StimulusGenerator::load_field(int task, int seed) {
   const Task& of = study_.tasks[static_cast<std::size_t>(task)];
-  std::string text = field_scene(study_, of, seed);
-  Kept& kept = kept_[static_cast<std::size_t>(task)];
+  std::string text = make_field_scene(study_, of, seed);
+  CachedField& kept = field_cache_[static_cast<std::size_t>(task)];
   if (kept.text != text) {
     CATENA_TRY(scene::Scene scene, scene::parse_scene(text, study_.path));
-    CATENA_TRY(kept.field, scene::use_field(scene, of.field, of.where));
+    CATENA_TRY(kept.field, scene::resolve_field(scene, of.field, of.where));
     kept.text = std::move(text);
   }
   if (!kept.field.vector)
-    return json::error_at(json::member_or(of.where, "field"), "field " + in_quotes(of.field) + " is scalar; a vector field was expected");
+    return json::error_at(json::member_or_parent(of.where, "field"),
+                          "field " + in_quotes(of.field) + " is scalar; a vector field was expected");
   return kept.field;
 }
 
-Result<Stimulus> StimulusMaker::make(int task, int seed) {
+Result<Stimulus> StimulusGenerator::generate(int task, int seed) {
   const Task& of = study_.tasks[static_cast<std::size_t>(task)];
   const int fields = std::clamp(kStarts / of.rules.candidates, 2, kFields);
   Faults faults{};
   for (int k = 0, at = seed; k < fields; ++k, at = next_seed(at)) {
-    CATENA_TRY(const field::AnyField field, field_of(task, at));
+    CATENA_TRY(const field::AnyField field, load_field(task, at));
     CATENA_CHECK(check_lengths(of, field.vector->world_bounds()));
     if (auto found = Draw(of, *field.vector, at).stimulus(faults)) return *found;
   }
   return json::error_at(
-      json::member_or(of.where, "stimulus"),
+      json::member_or_parent(of.where, "stimulus"),
       fmt::format("task {}: no start under these rules was found: of {} that were drawn {}; rules that more meet were expected",
                   in_quotes(of.name), fields * of.rules.candidates, words_of(faults)));
 }

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/flow/curve.h"
+#include "engine/geometry/flow/curve.h"
 #include "engine/study/study.h"
 
 namespace catena::study {
@@ -26,31 +26,31 @@ struct Stimulus {
   std::vector<Vec3> path;                  ///< evenly by length, from start to end
   double length = 0;                       ///< of the path, world
   double radius = 0;                       ///< circle: world
-  double hidden = 0;                       ///< share of the path behind a global line, 3D
-  std::vector<Vec3> lines;                 ///< a place of each global line
-  double line_length = 0;                  ///< world, each way
+  double occluded_share = 0;               ///< share of the path behind a global line, 3D
+  std::vector<Vec3> context_points;        ///< a place of each global line
+  double context_length = 0;               ///< world, each way
 };
 
 /// Corners of Stimulus::path.
 inline constexpr int kPathPoints = 513;
 
 /// Makes stimuli one after the other; a field that does not depend on the seed is read once. One thread, each its own.
-class StimulusMaker {
+class StimulusGenerator {
  public:
   /// `study` outlives it.
-  explicit StimulusMaker(const Study& study) : study_(study), kept_(study.tasks.size()) {}
+  explicit StimulusGenerator(const Study& study) : study_(study), field_cache_(study.tasks.size()) {}
   /// An error where the field cannot be read, or none of many seeds gives a start.
-  Result<Stimulus> make(int task, int seed);
+  Result<Stimulus> generate(int task, int seed);
 
  private:
-  struct Kept {
+  struct CachedField {
     std::string text;
     field::AnyField field;
   };
-  Result<field::AnyField> field_of(int task, int seed);
+  Result<field::AnyField> load_field(int task, int seed);
 
   const Study& study_;
-  std::vector<Kept> kept_;
+  std::vector<CachedField> field_cache_;
 };
 
 }  // namespace catena::study

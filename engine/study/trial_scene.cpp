@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/scene/write_values.h"
+#include "engine/scene/to_json.h"
 
 namespace catena::study {
 namespace {
@@ -13,19 +13,19 @@ namespace {
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
 Values values_of(const Task& task, const Stimulus& s) {
-  using scene::text_of;
+  using scene::to_json;
   return {{"$seed", std::to_string(s.seed)},
-          {"$start", text_of(s.start)},
-          {"$middle", text_of(s.middle)},
-          {"$end", text_of(s.end)},
-          {"$path", text_of(s.path)},
-          {"$length", text_of(s.length)},
-          {"$half_length", text_of(0.5 * s.length)},
-          {"$lines", text_of(s.lines)},
-          {"$line_length", text_of(s.line_length)},
-          {"$radius", text_of(s.radius)},
-          {"$ground", text_of(s.end.z)},
-          {"$indicator", text_of(task.world(task.indicator_mm))}};
+          {"$start", to_json(s.start)},
+          {"$middle", to_json(s.middle)},
+          {"$end", to_json(s.end)},
+          {"$path", to_json(s.path)},
+          {"$length", to_json(s.length)},
+          {"$half_length", to_json(0.5 * s.length)},
+          {"$lines", to_json(s.context_points)},
+          {"$line_length", to_json(s.context_length)},
+          {"$radius", to_json(s.radius)},
+          {"$ground", to_json(s.end.z)},
+          {"$indicator", to_json(task.world_from_mm(task.indicator_mm))}};
 }
 
 bool stands_for_a_value(const json::Node& node) { return node.kind == json::Kind::string && node.string.starts_with("$"); }
@@ -76,38 +76,38 @@ void go_to_line(std::string& out, int line) {
 
 }  // namespace
 
-Outcome check_values(const json::Node& node) {
+Outcome check_placeholders(const json::Node& node) {
   if (stands_for_a_value(node)) {
     std::vector<std::string_view> names;
     static const Values known = values_of({}, {});
     for (const auto& [name, value] : known) names.push_back(name);
     if (std::ranges::count(names, node.string) == 0)
-      return json::error_at(
-          node, in_quotes(node.string) + " stands for nothing; one of " + joined(names) + " was expected" + suggestion(node.string, names));
+      return json::error_at(node, in_quotes(node.string) + " stands for nothing; one of " + join_words(names) + " was expected" +
+                                      suggestion(node.string, names));
   }
-  for (const json::Node& item : node.items) CATENA_CHECK(check_values(item));
-  for (const auto& [key, member] : node.members) CATENA_CHECK(check_values(member));
+  for (const json::Node& item : node.items) CATENA_CHECK(check_placeholders(item));
+  for (const auto& [key, member] : node.members) CATENA_CHECK(check_placeholders(member));
   return Done{};
 }
 
-std::string trial_scene(const Study& study, const Trial& trial, const Stimulus& stimulus) {
+std::string make_trial_scene(const Study& study, const Trial& trial, const Stimulus& stimulus) {
   const auto task_index = static_cast<std::size_t>(trial.task), condition = static_cast<std::size_t>(trial.condition);
   const Task& task = study.tasks[task_index];
   const json::Node& chain = study.conditions[condition].chains[task_index];
   const Values values = values_of(task, stimulus);
   const std::string links = with_values(study.text, chain, values);
   // the template without its braces; both parts on the lines where they are in the study file, the earlier one first
-  std::string parts = with_values(study.text, task.scene, values);
+  std::string parts = with_values(study.text, task.scene_template, values);
   parts = parts.substr(1, parts.size() - 2);
-  const char* between = task.scene.members.empty() ? "" : ",";
+  const char* between = task.scene_template.members.empty() ? "" : ",";
   std::string out = "{";
-  if (chain.begin < task.scene.begin) {
+  if (chain.begin < task.scene_template.begin) {
     go_to_line(out, chain.line);
     out += "\"chain\": " + links + between;
-    go_to_line(out, task.scene.line);
+    go_to_line(out, task.scene_template.line);
     return out + parts + "}";
   }
-  go_to_line(out, task.scene.line);
+  go_to_line(out, task.scene_template.line);
   out += parts;
   // a comment at the template's end must not take the rest
   if (parts.find("//") != std::string::npos) out += '\n';
@@ -116,10 +116,10 @@ std::string trial_scene(const Study& study, const Trial& trial, const Stimulus& 
   return out + " \"chain\": " + links + "}";
 }
 
-std::string field_scene(const Study& study, const Task& task, int seed) {
+std::string make_field_scene(const Study& study, const Task& task, int seed) {
   Stimulus stimulus;
   stimulus.seed = seed;
-  const json::Node& fields = *task.scene.find("fields");
+  const json::Node& fields = *task.scene_template.find("fields");
   std::string out = "{";
   go_to_line(out, fields.line);
   return out + "\"fields\": " + with_values(study.text, fields, values_of(task, stimulus)) + "}";

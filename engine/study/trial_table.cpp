@@ -10,11 +10,11 @@
 #include <cstring>
 #include <filesystem>
 
-#include "engine/base/append_file.h"
-#include "engine/base/machine_failure.h"
+#include "engine/base/durable_append.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
+#include "engine/base/system_failure.h"
 #include "engine/base/text.h"
 
 namespace catena::study {
@@ -41,10 +41,10 @@ Error fault_at(const std::string& file, int line, const std::string& what) {
   return Error{one_line(fmt::format("{}:{}: {}", file, line, what))};
 }
 
-Result<Row> parse_row(std::string_view line, const std::string& file, int number) {
+Result<TrialRow> parse_row(std::string_view line, const std::string& file, int number) {
   const std::vector<std::string_view> cells = cells_of(line);
   if (cells.size() != kColumns) return fault_at(file, number, fmt::format("{} cells; {} were expected", cells.size(), kColumns));
-  Row row;
+  TrialRow row;
   std::optional<std::size_t> bad;
   const auto whole = [&](std::size_t column, int& out) {
     const auto value = parse_integer(cells[column]);
@@ -68,13 +68,13 @@ Result<Row> parse_row(std::string_view line, const std::string& file, int number
   whole(0, row.subject), whole(1, row.index), whole(2, row.block);
   word(3, row.task);
   either(4, "advection", "tracing", tracing);
-  row.kind = kind_word(tracing ? TaskKind::tracing : TaskKind::advection);
+  row.kind = to_string(tracing ? TaskKind::tracing : TaskKind::advection);
   whole(5, row.dimensions);
   word(6, row.condition);
   whole(7, row.stimulus), whole(8, row.seed);
   either(9, "0", "1", row.training);
-  either(10, "limit", "target", row.by_target);
-  real(11, row.time_s), real(12, row.error_mm), real(13, row.travelled_mm), real(14, row.peak_force_n);
+  either(10, "limit", "target", row.reached_target);
+  real(11, row.time_s), real(12, row.error_mm), real(13, row.traveled_mm), real(14, row.peak_force_n);
   for (int axis = 0; axis < 3; ++axis) real(static_cast<std::size_t>(15 + axis), row.end_mm[axis]);
   if (bad)
     return fault_at(file, number,
@@ -85,13 +85,13 @@ Result<Row> parse_row(std::string_view line, const std::string& file, int number
 std::string table_of(const std::string& folder) { return (fs::path(folder) / "trials.csv").string(); }
 
 /// A subject's rows; of how many bytes of the file's `size`.
-Result<std::vector<Row>> read_subject(const std::string& folder, int subject, std::size_t& whole, std::size_t& size) {
+Result<std::vector<TrialRow>> read_subject(const std::string& folder, int subject, std::size_t& whole, std::size_t& size) {
   const std::string path = subject_file(folder, subject);
   std::error_code code;
-  if (fs::symlink_status(path, code).type() == fs::file_type::not_found) return std::vector<Row>{};
-  CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
+  if (fs::symlink_status(path, code).type() == fs::file_type::not_found) return std::vector<TrialRow>{};
+  CATENA_TRY(const std::string text, read_text_file(path, "a table of trials"));
   size = text.size();
-  CATENA_TRY(std::vector<Row> rows, parse_rows(text, path, true, &whole));
+  CATENA_TRY(std::vector<TrialRow> rows, parse_rows(text, path, true, &whole));
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i].subject != subject)
       return fault_at(path, static_cast<int>(i) + 2, fmt::format("is a trial of subject {}; of {} was expected", rows[i].subject, subject));
@@ -99,11 +99,11 @@ Result<std::vector<Row>> read_subject(const std::string& folder, int subject, st
 }
 
 /// By the subjects' numbers.
-Result<std::vector<Row>> rows_of_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr) {
-  CATENA_TRY(const std::vector<int> numbers, subjects_in(folder, notes));
-  std::vector<Row> all;
+Result<std::vector<TrialRow>> rows_of_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr) {
+  CATENA_TRY(const std::vector<int> numbers, list_subjects(folder, notes));
+  std::vector<TrialRow> all;
   for (const int subject : numbers) {
-    CATENA_TRY(const std::vector<Row> some, rows_in(folder, subject, notes));
+    CATENA_TRY(const std::vector<TrialRow> some, read_rows(folder, subject, notes));
     if (some.empty() && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": has no finished trial");
     all.insert(all.end(), some.begin(), some.end());
   }
@@ -122,48 +122,48 @@ std::string mark_of(const std::string& folder) { return (fs::path(folder) / "sim
 
 }  // namespace
 
-Row row_of(const Study& study, const Trial& trial, const Measured& measured) {
+TrialRow make_row(const Study& study, const Trial& trial, const TrialResult& measured) {
   const Task& task = study.tasks[static_cast<std::size_t>(trial.task)];
   return {.subject = trial.subject,
           .index = trial.index,
           .block = trial.block,
           .task = task.name,
-          .kind = kind_word(task.kind),
+          .kind = to_string(task.kind),
           .dimensions = task.dimensions,
           .condition = study.conditions[static_cast<std::size_t>(trial.condition)].name,
           .stimulus = trial.stimulus,
           .seed = trial.seed,
           .training = trial.training,
-          .by_target = measured.by_target,
+          .reached_target = measured.reached_target,
           .time_s = measured.time_s,
           .error_mm = measured.error_mm,
-          .travelled_mm = measured.travelled_mm,
+          .traveled_mm = measured.traveled_mm,
           .peak_force_n = measured.peak_force_n,
           .end_mm = measured.end_mm};
 }
 
 std::string table_header() { return fmt::format("{}\n", kHeader); }
 
-std::string table_text(const std::vector<Row>& rows) {
+std::string format_table(const std::vector<TrialRow>& rows) {
   std::string text = table_header();
-  for (const Row& row : rows) text += row_text(row);
+  for (const TrialRow& row : rows) text += format_row(row);
   return text;
 }
 
-std::string row_text(const Row& row) {
+std::string format_row(const TrialRow& row) {
   std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.subject, row.index, row.block, row.task, row.kind, row.dimensions,
-                                 row.condition, row.stimulus, row.seed, row.training ? 1 : 0, row.by_target ? "target" : "limit");
-  for (const double value : {row.time_s, row.error_mm, row.travelled_mm, row.peak_force_n, row.end_mm.x, row.end_mm.y, row.end_mm.z}) {
+                                 row.condition, row.stimulus, row.seed, row.training ? 1 : 0, row.reached_target ? "target" : "limit");
+  for (const double value : {row.time_s, row.error_mm, row.traveled_mm, row.peak_force_n, row.end_mm.x, row.end_mm.y, row.end_mm.z}) {
     text += ',';
-    append_text(text, value);
+    append_number(text, value);
   }
   return text + "\n";
 }
 
-Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end, std::size_t* whole) {
-  std::vector<Row> rows;
+Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end, std::size_t* whole) {
+  std::vector<TrialRow> rows;
   const auto lines = static_cast<double>(std::count(text.begin(), text.end(), '\n'));
-  CATENA_CHECK(ask_for_text_memory(one_line(fmt::format("{}: a table of {} rows", file, lines)), lines * 2 * sizeof(Row)));
+  CATENA_CHECK(check_text_memory_available(one_line(fmt::format("{}: a table of {} rows", file, lines)), lines * 2 * sizeof(TrialRow)));
   std::size_t at = 0;
   int number = 0;
   if (whole != nullptr) *whole = 0;
@@ -176,7 +176,7 @@ Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& fi
     if (number == 1) {
       if (cells_of(line) != cells_of(kHeader)) return fault_at(file, 1, "the header is another; " + std::string(kHeader) + " was expected");
     } else if (!trim(line).empty()) {
-      CATENA_TRY(Row row, parse_row(line, file, number));
+      CATENA_TRY(TrialRow row, parse_row(line, file, number));
       rows.push_back(std::move(row));
     }
     at = end == std::string_view::npos ? text.size() : end + 1;
@@ -203,7 +203,7 @@ std::string recording_file(const std::string& folder, const Trial& trial) {
   return (fs::path(recordings_folder(folder)) / fmt::format("{:03}-{:03}.catlog", trial.subject, trial.index)).string();
 }
 
-Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes) {
+Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<std::string>* notes) {
   std::vector<int> numbers;
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "subjects", code)) {
@@ -220,30 +220,31 @@ Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std:
   return numbers;
 }
 
-Result<std::vector<Row>> rows_in(const std::string& folder, int subject, std::vector<std::string>* notes) {
+Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes) {
   std::size_t whole = 0, size = 0;
-  CATENA_TRY(std::vector<Row> rows, read_subject(folder, subject, whole, size));
+  CATENA_TRY(std::vector<TrialRow> rows, read_subject(folder, subject, whole, size));
   if (whole < size && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": its last line is torn, and is not read");
   return rows;
 }
 
-Result<DataFolder> DataFolder::open(const std::string& path, const Study& study, Who who) {
+Result<DataFolder> DataFolder::open(const std::string& path, const Study& study, ParticipantKind who) {
   const std::string copy = (fs::path(path) / "study.json").string();
   std::error_code code;
   const bool is_new = !fs::exists(copy, code);
   if (!is_new) {
-    CATENA_TRY(const std::string old, read_text(copy, "the study of this data folder", kMaxJsonBytes));
+    CATENA_TRY(const std::string old, read_text_file(copy, "the study of this data folder", kMaxJsonBytes));
     if (old != study.text)
       return Error{
           fmt::format("{}: holds data of another study ({} differs from {}); another folder was expected", path, copy, study.path)};
   }
-  CATENA_TRY(const std::vector<int> there, subjects_in(path));
+  CATENA_TRY(const std::vector<int> there, list_subjects(path));
   const bool simulated = is_simulated(path);
-  if (who == Who::people && simulated) return Error{path + ": holds trials that a model did; another folder was expected for people's"};
-  if (who == Who::model && !simulated && !there.empty())
+  if (who == ParticipantKind::people && simulated)
+    return Error{path + ": holds trials that a model did; another folder was expected for people's"};
+  if (who == ParticipantKind::model && !simulated && !there.empty())
     return Error{path + ": holds trials that people did; another folder was expected for a model's"};
   CATENA_CHECK(make_folder((fs::path(path) / "subjects").string()));
-  CATENA_TRY(FolderLock lock, FolderLock::take(path));
+  CATENA_TRY(FolderLock lock, FolderLock::acquire(path));
   const auto write = [](const std::string& file, const std::string& text) -> Outcome {
     CATENA_TRY(OutputFile out, OutputFile::open(file));
     out.write(text);
@@ -251,36 +252,38 @@ Result<DataFolder> DataFolder::open(const std::string& path, const Study& study,
     return out.commit();
   };
   if (is_new) CATENA_CHECK(write(copy, study.text));
-  if (who == Who::model && !simulated)
+  if (who == ParticipantKind::model && !simulated)
     CATENA_CHECK(write(mark_of(path), "{\"simulated\": true, \"by\": \"the operator model of study.json; it stands in for nobody\"}\n"));
   return DataFolder(path, std::move(lock));
 }
 
-Result<std::vector<Row>> DataFolder::rows(int subject) const {
+Result<std::vector<TrialRow>> DataFolder::rows(int subject) const {
   std::size_t whole = 0, size = 0;
-  CATENA_TRY(std::vector<Row> rows, read_subject(path_, subject, whole, size));
+  CATENA_TRY(std::vector<TrialRow> rows, read_subject(path_, subject, whole, size));
   const std::string path = subject_file(path_, subject);
   if (whole < size && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
     return system_error(path + ": cannot cut off its torn last line", errno);
   return rows;
 }
 
-Outcome DataFolder::append(const Row& row) const { return append_whole(subject_file(path_, row.subject), table_header(), row_text(row)); }
+Outcome DataFolder::append(const TrialRow& row) const {
+  return append_durably(subject_file(path_, row.subject), table_header(), format_row(row));
+}
 
-Outcome DataFolder::write_subject(int subject, const std::vector<Row>& rows) const {
+Outcome DataFolder::write_subject(int subject, const std::vector<TrialRow>& rows) const {
   CATENA_TRY(OutputFile file, OutputFile::open(subject_file(path_, subject)));
-  file.write(table_text(rows));
+  file.write(format_table(rows));
   file.sync();
   return file.commit();
 }
 
-std::string DataFolder::unfinished_recording(const Trial& trial) const {
+std::string DataFolder::partial_recording_path(const Trial& trial) const {
   const std::string place = recording_file(path_, trial);
-  remove_stale_parts(place);
-  return part_name(place);
+  remove_stale_temporaries(place);
+  return temporary_name(place);
 }
 
-Outcome DataFolder::keep_recording(const Trial& trial, const std::string& unfinished) const {
+Outcome DataFolder::commit_recording(const Trial& trial, const std::string& unfinished) const {
   const std::string place = recording_file(path_, trial);
   if (std::rename(unfinished.c_str(), place.c_str()) != 0) return system_error(place + ": cannot write", errno);
   sync_folder(recordings_folder(path_));
@@ -288,13 +291,13 @@ Outcome DataFolder::keep_recording(const Trial& trial, const std::string& unfini
 }
 
 Outcome DataFolder::write_table() const {
-  CATENA_TRY(const std::vector<Row> all, rows_of_subjects(path_));
+  CATENA_TRY(const std::vector<TrialRow> all, rows_of_subjects(path_));
   CATENA_TRY(OutputFile file, OutputFile::open(table_of(path_)));
-  file.write(table_text(all));
+  file.write(format_table(all));
   return file.commit();
 }
 
-Result<TrialTable> read_table(const std::string& folder) {
+Result<TrialTable> read_trial_table(const std::string& folder) {
   TrialTable table;
   CATENA_TRY(table.rows, rows_of_subjects(folder, &table.notes));
   const std::string path = table_of(folder);
@@ -303,10 +306,10 @@ Result<TrialTable> read_table(const std::string& folder) {
     if (table.rows.empty()) return Error{folder + ": no trials.csv and no trials in subjects/*.csv; a data folder of a study was expected"};
     return table;
   }
-  CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
+  CATENA_TRY(const std::string text, read_text_file(path, "a table of trials"));
   if (table.rows.empty()) {
     CATENA_TRY(table.rows, parse_rows(text, path));
-  } else if (text != table_text(table.rows)) {
+  } else if (text != format_table(table.rows)) {
     table.notes.push_back(path + ": differs from subjects/*.csv, which are what is analysed");
   }
   return table;

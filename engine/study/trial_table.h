@@ -12,35 +12,36 @@
 #include <vector>
 
 #include "engine/base/folder_lock.h"
-#include "engine/study/judge.h"
 #include "engine/study/session.h"
+#include "engine/study/trial_scorer.h"
 
 namespace catena::study {
 
 /// One finished trial, as a row of the table.
-struct Row {
-  int subject = 1, index = 0, block = 0;                                ///< as in Trial
-  std::string task, kind;                                               ///< "advection", "tracing"
-  int dimensions = 2;                                                   ///< 2 or 3
-  std::string condition;                                                ///< its name
-  int stimulus = 0, seed = 0;                                           ///< as in Trial
-  bool training = false;                                                ///< not analysed
-  bool by_target = true;                                                ///< ended by its target; else by the limit
-  double time_s = 0, error_mm = 0, travelled_mm = 0, peak_force_n = 0;  ///< as in Measured; of the cursor, not of a proxy
-  Vec3 end_mm{0.0};                                                     ///< where it ended, world axes, millimetres of the hand
-  bool operator==(const Row&) const = default;
+struct TrialRow {
+  int subject = 1, index = 0, block = 0;                               ///< as in Trial
+  std::string task, kind;                                              ///< "advection", "tracing"
+  int dimensions = 2;                                                  ///< 2 or 3
+  std::string condition;                                               ///< its name
+  int stimulus = 0, seed = 0;                                          ///< as in Trial
+  bool training = false;                                               ///< not analysed
+  bool reached_target = true;                                          ///< ended by its target; else by the limit
+  double time_s = 0, error_mm = 0, traveled_mm = 0, peak_force_n = 0;  ///< as in TrialResult; of the cursor, not of a proxy
+  Vec3 end_mm{0.0};                                                    ///< where it ended, world axes, millimetres of the hand
+  bool operator==(const TrialRow&) const = default;
 };
 
-/// The row of a measured trial of this study's design (session_of()), which gives the names of its task and condition. Any thread.
-Row row_of(const Study& study, const Trial& trial, const Measured& measured);
+/// The row of a measured trial of this study's design (make_session()), which gives the names of its task and condition. Any thread.
+TrialRow make_row(const Study& study, const Trial& trial, const TrialResult& measured);
 
 /// "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
 std::string table_header();
-std::string row_text(const Row& row);  ///< with its line end
+std::string format_row(const TrialRow& row);  ///< with its line end
 /// All rows, a header first.
-std::string table_text(const std::vector<Row>& rows);
+std::string format_table(const std::vector<TrialRow>& rows);
 /// `torn_end`: a last line without its end is left out rather than an error; `whole` gets the bytes before it.
-Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false, std::size_t* whole = nullptr);
+Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false,
+                                         std::size_t* whole = nullptr);
 
 /// "DIR/subjects/007.csv"
 std::string subject_file(const std::string& folder, int subject);
@@ -53,33 +54,33 @@ Outcome make_folder(const std::string& path);
 std::string recording_file(const std::string& folder, const Trial& trial);
 
 /// The numbers of the subjects that have a file in a data folder, rising; other files are told in `notes`.
-Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes = nullptr);
+Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr);
 /// The finished trials of a subject as they are on the disk, in the order of the session; none where the subject has no file. A torn last
 /// line is left out and told in `notes`, where that is not null. Nothing is written. An error names file and line.
-Result<std::vector<Row>> rows_in(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
+Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
 
 /// Who does the trials of a data folder: people and models never share one.
-enum class Who { people, model };
+enum class ParticipantKind { people, model };
 
 /// A data folder that is written to, by one program at a time: it is locked as long as this lives.
 class DataFolder {
  public:
   /// Makes it where it is missing. An error where it holds another study, another program writes to it, or it holds trials of a model
   /// where people's are to come, or people's where a model's are.
-  static Result<DataFolder> open(const std::string& path, const Study& study, Who who);
+  static Result<DataFolder> open(const std::string& path, const Study& study, ParticipantKind who);
 
   /// The folder, as it was given.
   const std::string& path() const { return path_; }
-  /// rows_in(), but a torn end is cut off the file, so that rows can be appended.
-  Result<std::vector<Row>> rows(int subject) const;
+  /// read_rows(), but a torn end is cut off the file, so that rows can be appended.
+  Result<std::vector<TrialRow>> rows(int subject) const;
   /// Appends one and waits until it is on the disk.
-  Outcome append(const Row& row) const;
+  Outcome append(const TrialRow& row) const;
   /// All of a subject's rows at once, whole or not at all.
-  Outcome write_subject(int subject, const std::vector<Row>& rows) const;
+  Outcome write_subject(int subject, const std::vector<TrialRow>& rows) const;
   /// Where the recording of a trial is written until it is whole, under a name of its own; what ended programs left of it is gone.
-  std::string unfinished_recording(const Trial& trial) const;
+  std::string partial_recording_path(const Trial& trial) const;
   /// It is whole, and gets its name: recordings/007-012.catlog, on the disk.
-  Outcome keep_recording(const Trial& trial, const std::string& unfinished) const;
+  Outcome commit_recording(const Trial& trial, const std::string& unfinished) const;
   /// Writes trials.csv of all of them.
   Outcome write_table() const;
 
@@ -91,11 +92,11 @@ class DataFolder {
 
 /// The rows of a data folder: of DIR/subjects/*.csv, or of DIR/trials.csv where there are none of those.
 struct TrialTable {
-  std::vector<Row> rows;           ///< in the order of subjects and trials
+  std::vector<TrialRow> rows;      ///< in the order of subjects and trials
   std::vector<std::string> notes;  ///< lines: what of the folder was not taken, or torn, and that trials.csv differs from what was
 };
 /// Reads all rows of a folder. An error names file and line.
-Result<TrialTable> read_table(const std::string& folder);
+Result<TrialTable> read_trial_table(const std::string& folder);
 
 /// Whether a model did the trials.
 bool is_simulated(const std::string& folder);

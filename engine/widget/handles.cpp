@@ -4,33 +4,33 @@
 
 namespace catena::widget {
 
-void add_planes(const Spec& spec, State& state, const Vec3& probe, Plan& plan) noexcept {
+void add_planes(const Spec& spec, State& state, const Vec3& probe, ChainRequest& plan) noexcept {
   const Grip& grip = state.grip;
-  state.held = 0;
+  state.active_planes = 0;
   for (int i = 0; i < 3; ++i) {
     const auto bit = static_cast<std::uint8_t>(1u << i);
-    const Vec3 axis = axis_of(grip.frame, i);
-    const bool within = std::fabs(dot(axis, probe - grip.grab)) <= spec.step;
-    if ((grip.fixed & bit) == 0 && ((grip.loose & bit) != 0 || !within)) continue;
-    state.held = static_cast<std::uint8_t>(state.held | bit);
-    plan.add(i, {Shape::Kind::plane, grip.grab, axis, 0});
+    const Vec3 axis = frame_axis(grip.frame, i);
+    const bool within = std::fabs(dot(axis, probe - grip.grab_point)) <= spec.step;
+    if ((grip.fixed_axes & bit) == 0 && ((grip.free_axes & bit) != 0 || !within)) continue;
+    state.active_planes = static_cast<std::uint8_t>(state.active_planes | bit);
+    plan.add_link(i, {LinkShape::Kind::plane, grip.grab_point, axis, 0});
   }
 }
 
 Vec3 displacement(const Spec& spec, const State& state, const Vec3& proxy) noexcept {
   Vec3 out(0.0);
   for (int i = 0; i < 3; ++i) {
-    if ((state.held & (1u << i)) != 0) continue;
-    const double u = dot(axis_of(state.grip.frame, i), proxy - state.grip.grab);
-    out[i] = (state.grip.loose & (1u << i)) != 0 ? u : deadzone(u, spec.step);
+    if ((state.active_planes & (1u << i)) != 0) continue;
+    const double u = dot(frame_axis(state.grip.frame, i), proxy - state.grip.grab_point);
+    out[i] = (state.grip.free_axes & (1u << i)) != 0 ? u : deadzone(u, spec.step);
   }
   return out;
 }
 
-Vec3 moved(const Vec3& from, const Quat& frame, const Vec3& displacement) noexcept {
+Vec3 translated(const Vec3& from, const Quat& frame, const Vec3& displacement) noexcept {
   Vec3 to = from;
   for (int i = 0; i < 3; ++i)
-    if (displacement[i] != 0) to += axis_of(frame, i) * displacement[i];
+    if (displacement[i] != 0) to += frame_axis(frame, i) * displacement[i];
   return to;
 }
 
@@ -42,13 +42,13 @@ bool is_pair(Kind kind) noexcept { return kind == Kind::rake || kind == Kind::ru
 bool moves_whole(Kind kind, int handle) noexcept { return (is_pair(kind) && handle == kMiddle) || (kind == Kind::box && handle >= kFaces); }
 
 bool goes_along(const Spec& spec, const State& state) noexcept {
-  return spec.kind == Kind::ruler && !spec.along.empty() && state.handle < kMiddle;
+  return spec.kind == Kind::ruler && !spec.along_links.empty() && state.handle < kMiddle;
 }
 
 // The face moves, as far as the opposite one lets it.
 void move_face(const Spec& spec, State& state, double by) noexcept {
   const int axis = state.handle / 2;
-  const Pose& from = state.start;
+  const Pose& from = state.start_pose;
   const double lo = from.points[0][axis], hi = from.points[1][axis], least = std::fmin(spec.step, hi - lo);
   if (state.handle % 2 == 0)
     state.pose.points[0][axis] = std::fmin(lo + by, hi - least);
@@ -83,14 +83,14 @@ Vec3 handle_position(Kind kind, const Pose& pose, int handle) noexcept {
   return at;
 }
 
-Reach reach_of_handles(const Spec& spec, const State& state, const Vec3& probe) noexcept {
-  Reach out;
+Proximity handle_proximity(const Spec& spec, const State& state, const Vec3& probe) noexcept {
+  Proximity out;
   for (int h = 0; h < handle_count(spec.kind); ++h) {
     const double distance = norm(probe - handle_position(spec.kind, state.pose, h));
-    if (!(distance <= spec.near)) continue;
-    const bool has = state.mode != Mode::away && state.handle == h;
-    if (out.handle < 0 || has || distance < out.distance) {
-      out.handle = static_cast<std::int8_t>(h);
+    if (!(distance <= spec.grab_distance)) continue;
+    const bool has = state.mode != Mode::idle && state.handle == h;
+    if (out.nearest_handle < 0 || has || distance < out.distance) {
+      out.nearest_handle = static_cast<std::int8_t>(h);
       out.distance = distance;
     }
     if (has) break;
@@ -98,41 +98,41 @@ Reach reach_of_handles(const Spec& spec, const State& state, const Vec3& probe) 
   return out;
 }
 
-Grip grip_of(const Spec& spec, const State& state, const Vec3& probe) noexcept {
+Grip make_grip(const Spec& spec, const State& state, const Vec3& probe) noexcept {
   Grip out{probe, state.pose.orientation, 0, 0};
   if (spec.kind == Kind::box) {
-    out.frame = kNoRotation;
+    out.frame = kIdentityRotation;
     if (state.handle < kFaces) {
-      out.loose = static_cast<std::uint8_t>(1u << (state.handle / 2));
-      out.fixed = static_cast<std::uint8_t>(7u & ~out.loose);
+      out.free_axes = static_cast<std::uint8_t>(1u << (state.handle / 2));
+      out.fixed_axes = static_cast<std::uint8_t>(7u & ~out.free_axes);
     }
   } else if (spec.kind == Kind::isolevel && spec.field) {
     field::Cursor cursor;
     const Vec3 n = direction(spec.field->sample(state.pose.points[0], cursor).gradient);
     if (max_abs(n) > 0) {
       out.frame = shortest_arc(Vec3(0, 0, 1), n);
-      out.fixed = 3;
-      out.loose = 4;
+      out.fixed_axes = 3;
+      out.free_axes = 4;
     }
   }
   return out;
 }
 
-Plan plan_of_handles(const Spec& spec, State& state, const Vec3& probe) noexcept {
-  Plan out;
+ChainRequest plan_handle_chain(const Spec& spec, State& state, const Vec3& probe) noexcept {
+  ChainRequest out;
   if (state.mode == Mode::hover) {
-    out.add(kSphereSlot, {Shape::Kind::point, handle_position(spec.kind, state.pose, state.handle), Vec3(0.0), 0});
+    out.add_link(kSphereLink, {LinkShape::Kind::point, handle_position(spec.kind, state.pose, state.handle), Vec3(0.0), 0});
   } else if (state.mode == Mode::drag) {
-    out.alone = true;
+    out.disables_scene_links = true;
     if (goes_along(spec, state))
-      out.along = true;
+      out.uses_along_links = true;
     else
       add_planes(spec, state, probe, out);
   }
   return out;
 }
 
-void finish_handles(const Spec& spec, State& state, const Vec3& proxy) noexcept {
+void update_handle_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept {
   if (goes_along(spec, state)) {
     state.pose.points[static_cast<std::size_t>(state.handle)] = proxy;
     return;
@@ -142,11 +142,12 @@ void finish_handles(const Spec& spec, State& state, const Vec3& proxy) noexcept 
   const bool whole = moves_whole(spec.kind, state.handle);
   for (int k = 0; k < 2; ++k) {
     const auto p = static_cast<std::size_t>(k);
-    if (whole || k == (is_pair(spec.kind) ? state.handle : 0)) state.pose.points[p] = moved(state.start.points[p], state.grip.frame, by);
+    if (whole || k == (is_pair(spec.kind) ? state.handle : 0))
+      state.pose.points[p] = translated(state.start_pose.points[p], state.grip.frame, by);
   }
 }
 
-void read_level(const Spec& spec, State& state) noexcept {
+void update_level(const Spec& spec, State& state) noexcept {
   if (!spec.field) return;
   field::Cursor cursor;
   const field::ScalarSample sample = spec.field->sample(state.pose.points[0], cursor);

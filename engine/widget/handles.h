@@ -6,17 +6,17 @@
 namespace catena::widget {
 
 /// Adds the planes that hold a probe here; sets state.held.
-void add_planes(const Spec& spec, State& state, const Vec3& probe, Plan& plan) noexcept;
+void add_planes(const Spec& spec, State& state, const Vec3& probe, ChainRequest& plan) noexcept;
 /// How far the widget has moved along each axis of the frame: exactly 0 where it is held.
 Vec3 displacement(const Spec& spec, const State& state, const Vec3& proxy) noexcept;
 /// The same in world axes: what does not move adds nothing, to the bit.
-Vec3 moved(const Vec3& from, const Quat& frame, const Vec3& displacement) noexcept;
+Vec3 translated(const Vec3& from, const Quat& frame, const Vec3& displacement) noexcept;
 
 /// What of a widget a probe is near. World units.
-struct Reach {
-  std::int8_t handle = -1;  ///< the handle; -1: none
-  bool sphere = false;
-  bool plane = false;
+struct Proximity {
+  std::int8_t nearest_handle = -1;  ///< the handle; -1: none
+  bool near_sphere = false;
+  bool near_plane = false;
   double distance = 0;  ///< from the nearest of these
 };
 
@@ -32,11 +32,11 @@ int handle_count(Kind kind) noexcept;  ///< 0: a cutting plane
 /// WidgetReport says which is which.
 Vec3 handle_position(Kind kind, const Pose& pose, int handle) noexcept;
 
-Reach reach_of_handles(const Spec& spec, const State& state, const Vec3& probe) noexcept;
-Grip grip_of(const Spec& spec, const State& state, const Vec3& probe) noexcept;
-Plan plan_of_handles(const Spec& spec, State& state, const Vec3& probe) noexcept;
-void finish_handles(const Spec& spec, State& state, const Vec3& proxy) noexcept;
+Proximity handle_proximity(const Spec& spec, const State& state, const Vec3& probe) noexcept;
+Grip make_grip(const Spec& spec, const State& state, const Vec3& probe) noexcept;
+ChainRequest plan_handle_chain(const Spec& spec, State& state, const Vec3& probe) noexcept;
+void update_handle_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept;
 /// An isolevel's value: the field's at the handle; outside the field the last one stays.
-void read_level(const Spec& spec, State& state) noexcept;
+void update_level(const Spec& spec, State& state) noexcept;
 
 }  // namespace catena::widget

@@ -10,14 +10,14 @@ constexpr double kQuarterTurn = 1.5707963267948966;  // radians: the longest way
 
 // It constrains: not on the free side, not released, and something is there.
 bool holds(const LinkState& link) noexcept {
-  return link.active() &&
-         (link.status == Status::ok || link.status == Status::budget || link.status == Status::critical || link.status == Status::boundary);
+  return link.active() && (link.status == LinkStatus::ok || link.status == LinkStatus::budget || link.status == LinkStatus::critical ||
+                           link.status == LinkStatus::boundary);
 }
 
 // The axis of the link's primitive at its proxy; zero: none here.
 Vec3 axis_of(const Link& spec, LinkState& link, LinkScratch& scratch, const Vec3& last) noexcept {
   if (!holds(link)) return Vec3(0.0);
-  if (link.evaluations >= kEvaluationCap) return last;
+  if (link.evaluations >= kMaxEvaluations) return last;
   LinkState copy = link;
   Primitive primitive;
   const bool found = spec.constraint->primitive(link.proxy, copy, scratch, primitive);
@@ -35,17 +35,17 @@ Vec3 end_of(const Align& align, const Vec3& tool_axis, const Vec3& n, const Vec3
 
 }  // namespace
 
-Vec3 align_links(const Program& program, const Order& order, const Quat& tool, const AlignmentStep& step, std::span<LinkState> links,
-                 std::span<LinkScratch> scratch, AlignmentState& state, exchange::HapticState& out) noexcept {
+Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Quat& tool, const AlignmentStep& step,
+                 std::span<LinkState> links, std::span<LinkScratch> scratch, AlignmentState& state, HapticState& out) noexcept {
   bool aligns = false;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     out.links[i].orientation = tool;
     out.links[i].torque_nm = Vec3(0.0);
-    aligns = aligns || program.links[i].align.on;
+    aligns = aligns || program.links[i].align.enabled;
   }
   const double damping = program.coupling.rotational_damping_nms_per_rad;
-  if (!aligns && !(max_abs(state.ramp.rest) > 0 || max_abs(state.ramp.last) > 0) && !(damping > 0)) {
-    state.last = tool;
+  if (!aligns && !(max_abs(state.ramp.offset) > 0 || max_abs(state.ramp.last_force) > 0) && !(damping > 0)) {
+    state.last_orientation = tool;
     return Vec3(0.0);
   }
 
@@ -58,18 +58,18 @@ Vec3 align_links(const Program& program, const Order& order, const Quat& tool, c
     const int link = order.links[static_cast<std::size_t>(k)];
     const auto i = static_cast<std::size_t>(link);
     const Align& align = program.links[i].align;
-    if (align.on) {
+    if (align.enabled) {
       const Vec3 n = axis_of(program.links[i], links[i], scratch[i], state.axes[i]);
       const double kappa = std::fmin(align.stiffness_nm_per_rad, program.limits.max_rotational_stiffness_nm_per_rad);
       stiffness += kappa;
       if (max_abs(n) > 0) {
-        const Quat before = normalised(incoming);
+        const Quat before = normalized(incoming);
         const Vec3 axis = direction(rotate(before, align.tool_axis));
         state.axes[i] = end_of(align, axis, n, state.axes[i]);
         const Quat turn = shortest_arc(axis, state.axes[i]);
         shares[i] = rotation_vector(turn) * (links[i].weight * kappa);
         torque += shares[i];
-        incoming = normalised(turn * before);
+        incoming = normalized(turn * before);
       } else {
         state.axes[i] = Vec3(0.0);
       }
@@ -86,16 +86,17 @@ Vec3 align_links(const Program& program, const Order& order, const Quat& tool, c
   }
 
   // no step of the torque
-  const Quat q0 = normalised(tool);
-  const Vec3 turned = step.first_tick ? Vec3(0.0) : rotation_vector(normalised(q0 * glm::conjugate(normalised(state.last))));
-  if (step.first_tick) state.ramp.last = torque;
-  state.stiffness = max_abs(state.ramp.rest) > 0 || max_abs(state.ramp.last) > 0 ? std::fmax(stiffness, state.stiffness) : stiffness;
-  const double fall = step.ramp_step < 1 ? state.stiffness * kQuarterTurn * step.ramp_step : std::numeric_limits<double>::infinity();
+  const Quat q0 = normalized(tool);
+  const Vec3 turned = step.first_tick ? Vec3(0.0) : rotation_vector(normalized(q0 * glm::conjugate(normalized(state.last_orientation))));
+  if (step.first_tick) state.ramp.last_force = torque;
+  state.total_stiffness =
+      max_abs(state.ramp.offset) > 0 || max_abs(state.ramp.last_force) > 0 ? std::fmax(stiffness, state.total_stiffness) : stiffness;
+  const double fall = step.ramp_step < 1 ? state.total_stiffness * kQuarterTurn * step.ramp_step : std::numeric_limits<double>::infinity();
   torque += step_ramp(state.ramp, torque, stiffness * norm(turned), fall);
 
   // the coupling's damping
   if (step.dt_s > 0 && damping > 0) torque -= turned * (damping / step.dt_s);
-  state.last = q0;
+  state.last_orientation = q0;
   return torque;
 }
 

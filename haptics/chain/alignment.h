@@ -19,14 +19,14 @@ namespace catena::haptics {
 
 /// What the rotational chain remembers.
 struct AlignmentState {
-  std::array<Vec3, kMaxLinks> axes{};  ///< n_i of the last tick, by the end that draws the tool; zero: none
-  Ramp ramp;                           ///< of the torque
-  double stiffness = 0;                ///< sum of kappa_i that the ramp goes by, N m/rad
-  Quat last{kNoRotation};              ///< the tool's orientation in the last tick
+  std::array<Vec3, kMaxLinks> axes{};        ///< n_i of the last tick, by the end that draws the tool; zero: none
+  Ramp ramp;                                 ///< of the torque
+  double total_stiffness = 0;                ///< sum of kappa_i that the ramp goes by, N m/rad
+  Quat last_orientation{kIdentityRotation};  ///< the tool's orientation in the last tick
   /// The rotational proxies as the last tick left them, for ticks without a pose.
-  std::array<Quat, kMaxLinks> links = [] {
+  std::array<Quat, kMaxLinks> rotational_proxies = [] {
     std::array<Quat, kMaxLinks> none;
-    none.fill(kNoRotation);
+    none.fill(kIdentityRotation);
     return none;
   }();
 };
@@ -39,7 +39,7 @@ struct AlignmentStep {
 };
 
 /// After the chain of this tick. Returns the torque that the links ask for; fills every link's orientation and torque in `out`.
-Vec3 align_links(const Program& program, const Order& order, const Quat& tool, const AlignmentStep& step, std::span<LinkState> links,
-                 std::span<LinkScratch> scratch, AlignmentState& state, exchange::HapticState& out) noexcept;
+Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Quat& tool, const AlignmentStep& step,
+                 std::span<LinkState> links, std::span<LinkScratch> scratch, AlignmentState& state, HapticState& out) noexcept;
 
 }  // namespace catena::haptics

@@ -7,76 +7,76 @@ namespace catena::haptics {
 namespace {
 
 /// Where the probe is, seen from a surface that has let go. True: it has crossed it since the last time.
-bool note_side(SingleTick& tick, std::size_t i) noexcept {
-  SingleProxy::Watch& watch = tick.single.watches[i];
+bool note_side(SingleProxyTick& tick, std::size_t i) noexcept {
+  SingleProxyState::ReleaseState& watch = tick.state.release_states[i];
   Primitive primitive;
   if (!tick.primitive(i, tick.probe, primitive) || primitive.kind != Primitive::Kind::plane) {
-    watch.known = false;
+    watch.has_height = false;
     return false;
   }
   const double height = dot(primitive.axis, tick.probe - primitive.origin);
-  const bool crossed = watch.known && (height < 0) != (watch.height < 0);
+  const bool crossed = watch.has_height && (height < 0) != (watch.height < 0);
   watch.height = height;
-  watch.known = true;
+  watch.has_height = true;
   return crossed;
 }
 
-bool takes_hold_again(SingleTick& tick, std::size_t i) noexcept {
+bool takes_hold_again(SingleProxyTick& tick, std::size_t i) noexcept {
   const Link& spec = tick.program.links[i];
   const bool near = tick.apply(i, tick.probe);
-  if (spec.one_sided) return tick.links[i].status == Status::free;
+  if (spec.one_sided) return tick.links[i].status == LinkStatus::free;
   const bool crossed = note_side(tick, i);
-  return near && (crossed || norm(tick.probe - tick.links[i].proxy) <= kRearmPart * spec.release);
+  return near && (crossed || norm(tick.probe - tick.links[i].proxy) <= kRearmFraction * spec.release);
 }
 
 /// Starts the links that have just been switched on. False: none has.
-bool begin_links(SingleTick& tick) noexcept {
-  SingleProxy& single = tick.single;
+bool begin_links(SingleProxyTick& tick) noexcept {
+  SingleProxyState& single = tick.state;
   const CouplingMethod method = tick.program.coupling.method;
   const bool any_tick = method == CouplingMethod::linear, at_proxy = any_tick || method == CouplingMethod::balance;
-  const bool first = !single.started;
+  const bool first = !single.has_proxy;
   bool begun = false;
   if (first) single.proxy = tick.probe;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
     LinkState& link = tick.links[i];
-    tick.length = std::max(tick.length, tick.program.links[i].constraint->domain_length());
+    tick.domain_length = std::max(tick.domain_length, tick.program.links[i].constraint->domain_length());
     link.dt_s = tick.dt_s;
-    link.hand_step = kFastestHand * tick.dt_s / tick.program.metres_per_unit;
+    link.max_probe_step = kMaxProbeSpeed * tick.dt_s / tick.program.meters_per_unit;
     link.begin_tick();
     if (link.started) continue;
     begun = true;
-    single.watches[i] = {};
+    single.release_states[i] = {};
     begin_link(tick.program.links[i], at_proxy ? single.proxy : tick.probe, tick.first_tick, link, tick.scratch[i]);
     // what is not corrected later must begin on the constraint
     if ((any_tick || (at_proxy && first)) && is_finite(link.proxy)) single.proxy = link.proxy;
   }
-  single.started = true;
+  single.has_proxy = true;
   return begun;
 }
 
-Vec3 proxy_of(SingleTick& tick) noexcept {
+Vec3 proxy_of(SingleProxyTick& tick) noexcept {
   switch (tick.program.coupling.method) {
     case CouplingMethod::balance:
-      return balance(tick);
+      return solve_balance(tick);
     case CouplingMethod::closest:
-      return closest(tick);
+      return solve_closest(tick);
     case CouplingMethod::linear:
-      return linear(tick);
+      return solve_linear(tick);
     default:
-      return pipe(tick);
+      return solve_pipe(tick);
   }
 }
 
 /// Lets go of the links whose release the proxy has reached. False: of none.
-bool let_go(SingleTick& tick, const Vec3& p) noexcept {
+bool let_go(SingleProxyTick& tick, const Vec3& p) noexcept {
   const double stretch = norm(tick.probe - p);
   bool any = false;
-  tick.each([&](std::size_t i) {
+  tick.for_each_held_link([&](std::size_t i) {
     const double release = tick.program.links[i].release;
-    if (!tick.holds[i] || !(release > 0) || !(stretch >= release)) return;
+    if (!tick.holding[i] || !(release > 0) || !(stretch >= release)) return;
     any = true;
-    tick.single.watches[i].released = true;
+    tick.state.release_states[i].released = true;
     note_side(tick, i);
   });
   return any;
@@ -84,42 +84,42 @@ bool let_go(SingleTick& tick, const Vec3& p) noexcept {
 
 }  // namespace
 
-bool SingleTick::apply(std::size_t i, const Vec3& incoming) noexcept {
+bool SingleProxyTick::apply(std::size_t i, const Vec3& incoming) noexcept {
   LinkState& link = links[i];
   link.released = false;
   program.links[i].constraint->advance(incoming, link, scratch[i]);
   if (!is_finite(link.proxy)) {
     link.proxy = incoming;
-    stop_link(link, Status::critical, Reason::not_finite);
+    set_link_status(link, LinkStatus::critical, SampleStatus::not_finite);
     return false;
   }
-  return link.status != Status::free && link.status != Status::no_surface;
+  return link.status != LinkStatus::free && link.status != LinkStatus::no_surface;
 }
 
-bool SingleTick::primitive(std::size_t i, const Vec3& at, Primitive& out) noexcept {
+bool SingleProxyTick::primitive(std::size_t i, const Vec3& at, Primitive& out) noexcept {
   LinkState& link = links[i];
-  const Status before = link.status;
-  if (link.evaluations < kEvaluationCap && program.links[i].constraint->primitive(at, link, scratch[i], out) && is_finite(out.origin) &&
+  const LinkStatus before = link.status;
+  if (link.evaluations < kMaxEvaluations && program.links[i].constraint->primitive(at, link, scratch[i], out) && is_finite(out.origin) &&
       is_finite(out.axis))
     return true;
   if (link.status != before) return false;
-  if (link.evaluations < kEvaluationCap)
-    stop_link(link, Status::critical, Reason::zero);
+  if (link.evaluations < kMaxEvaluations)
+    set_link_status(link, LinkStatus::critical, SampleStatus::zero);
   else
-    link.status = Status::budget;
+    link.status = LinkStatus::budget;
   return false;
 }
 
-void advance_single_proxy(SingleTick& tick, bool same_order) noexcept {
-  SingleProxy& single = tick.single;
+void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
+  SingleProxyState& single = tick.state;
   const bool begun = begin_links(tick);
-  if (single.settled && same_order && !begun && same_bits(single.probe, tick.probe)) return;
+  if (single.settled && same_order && !begun && bitwise_equal(single.probe, tick.probe)) return;
 
   // links that have let go
   const bool is_linear = tick.program.coupling.method == CouplingMethod::linear;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
-    SingleProxy::Watch& watch = single.watches[i];
+    SingleProxyState::ReleaseState& watch = single.release_states[i];
     if (!watch.released || !takes_hold_again(tick, i)) continue;
     watch = {};
     if (is_linear) single.proxy = tick.links[i].proxy;
@@ -130,12 +130,12 @@ void advance_single_proxy(SingleTick& tick, bool same_order) noexcept {
   Vec3 p = tick.probe;
   for (int round = 0; round <= kMaxLinks; ++round) {
     single.proxy = before;
-    tick.holds.fill(false);
+    tick.holding.fill(false);
     p = proxy_of(tick);
     if (!let_go(tick, p)) break;
   }
   int count = 0;
-  for (const bool holds : tick.holds) count += holds ? 1 : 0;
+  for (const bool holds : tick.holding) count += holds ? 1 : 0;
   if (count == 0) p = tick.probe;
   if (!is_finite(p)) p = before;
 
@@ -144,15 +144,15 @@ void advance_single_proxy(SingleTick& tick, bool same_order) noexcept {
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
     LinkState& link = tick.links[i];
-    SingleProxy::Watch& watch = single.watches[i];
-    watch.holds = tick.holds[i];
+    SingleProxyState::ReleaseState& watch = single.release_states[i];
+    watch.was_holding = tick.holding[i];
     link.released = watch.released;
     link.limit = tick.program.links[i].release;
-    link.weight = tick.holds[i] ? 1.0 / count : 0;
+    link.weight = tick.holding[i] ? 1.0 / count : 0;
     link.stiffness_n_per_m = tick.program.coupling.stiffness_n_per_m;
-    if (watch.released) link.status = Status::released;
-    if (!tick.holds[i]) link.residual = 0;
-    spent = spent || link.status == Status::budget;
+    if (watch.released) link.status = LinkStatus::released;
+    if (!tick.holding[i]) link.residual = 0;
+    spent = spent || link.status == LinkStatus::budget;
   }
   single.proxy = p;
   single.probe = tick.probe;
@@ -183,15 +183,15 @@ Vec3 solve(const Mat3& a, const Vec3& b) noexcept {
 
 }  // namespace
 
-Vec3 balance(SingleTick& tick) noexcept {
-  const Vec3 last = tick.single.proxy;
+Vec3 solve_balance(SingleProxyTick& tick) noexcept {
+  const Vec3 last = tick.state.proxy;
   std::array<Primitive, kMaxLinks> primitives;
   std::array<double, kMaxLinks> stiffness{};
   double largest = tick.program.coupling.stiffness_n_per_m;
-  tick.each([&](std::size_t i) {
+  tick.for_each_held_link([&](std::size_t i) {
     if (!tick.apply(i, tick.probe) || !tick.primitive(i, last, primitives[i])) return;
-    tick.holds[i] = true;
-    stiffness[i] = tick.program.links[i].stiffness_n_per_m.at(last, tick.scratch[i].stiffness, tick.links[i].evaluations);
+    tick.holding[i] = true;
+    stiffness[i] = tick.program.links[i].stiffness_n_per_m.at(last, tick.scratch[i].stiffness_cursor, tick.links[i].evaluations);
     largest = std::max(largest, stiffness[i]);
   });
   if (!(largest > 0)) return tick.probe;
@@ -199,8 +199,8 @@ Vec3 balance(SingleTick& tick) noexcept {
   // the balance, in units of the largest stiffness
   Mat3 a(tick.program.coupling.stiffness_n_per_m / largest);
   Vec3 b(0.0);
-  tick.each([&](std::size_t i) {
-    if (!tick.holds[i]) return;
+  tick.for_each_held_link([&](std::size_t i) {
+    if (!tick.holding[i]) return;
     const Primitive& primitive = primitives[i];
     const double k = stiffness[i] / largest;
     const Vec3 n = primitive.axis, e = primitive.origin - tick.probe;
@@ -214,8 +214,8 @@ Vec3 balance(SingleTick& tick) noexcept {
     b += k * (p * e);
   });
   const Vec3 p = tick.probe + solve(a, b);
-  tick.each([&](std::size_t i) {
-    if (tick.holds[i]) tick.links[i].residual = distance_to(primitives[i], p);
+  tick.for_each_held_link([&](std::size_t i) {
+    if (tick.holding[i]) tick.links[i].residual = distance_to(primitives[i], p);
   });
   return p;
 }

@@ -15,41 +15,41 @@
 namespace catena::haptics {
 
 /// What the baselines remember.
-struct SingleProxy {
+struct SingleProxyState {
   /// What is remembered of a link.
-  struct Watch {
-    double height = 0;      ///< of the probe above a surface that has let go
-    bool known = false;     ///< `height` means something
-    bool released = false;  ///< it has let go
-    bool holds = false;     ///< in the last tick
+  struct ReleaseState {
+    double height = 0;         ///< of the probe above a surface that has let go
+    bool has_height = false;   ///< `height` means something
+    bool released = false;     ///< it has let go
+    bool was_holding = false;  ///< in the last tick
   };
-  Vec3 proxy{0.0};                         ///< p, world units
-  Vec3 probe{0.0};                         ///< of the last tick
-  bool started = false;                    ///< `proxy` means something
-  bool settled = false;                    ///< a probe that rests gives the same again
-  std::array<Watch, kMaxLinks> watches{};  ///< by link
+  Vec3 proxy{0.0};                                       ///< p, world units
+  Vec3 probe{0.0};                                       ///< of the last tick
+  bool has_proxy = false;                                ///< `proxy` means something
+  bool settled = false;                                  ///< a probe that rests gives the same again
+  std::array<ReleaseState, kMaxLinks> release_states{};  ///< by link
 };
 
 /// One tick as the methods see it; they find p and set `holds`, and each link's status and residual.
-struct SingleTick {
-  const Program& program;                       ///< what runs
-  const Order& order;                           ///< which links run
+struct SingleProxyTick {
+  const HapticProgram& program;                 ///< what runs
+  const LinkOrder& order;                       ///< which links run
   Vec3 probe;                                   ///< the hand, world units
   double dt_s;                                  ///< since the last tick
   bool first_tick;                              ///< there was no tick before
-  SingleProxy& single;                          ///< p, and what else is remembered
+  SingleProxyState& state;                      ///< p, and what else is remembered
   std::array<LinkState, kMaxLinks>& links;      ///< by link
   std::array<LinkScratch, kMaxLinks>& scratch;  ///< by link
-  double length = 0;                            ///< L, the largest of the links
-  int passes = 0;                               ///< of the pipe, in this tick
-  std::array<bool, kMaxLinks> holds{};          ///< by link: it holds in this tick
+  double domain_length = 0;                     ///< L, the largest of the links
+  int iterations = 0;                           ///< of the pipe, in this tick
+  std::array<bool, kMaxLinks> holding{};        ///< by link: it holds in this tick
 
   /// Calls f(i) for the links that run and have not let go, in order.
   template <class F>
-  void each(const F& f) noexcept {
+  void for_each_held_link(const F& f) noexcept {
     for (int k = 0; k < order.count; ++k) {
       const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
-      if (!single.watches[i].released) f(i);
+      if (!state.release_states[i].released) f(i);
     }
   }
   /// The constraint's own advance. True where it holds.
@@ -59,26 +59,26 @@ struct SingleTick {
 };
 
 /// Moves state.proxy by the probe; `same_order`: the order of the last tick.
-void advance_single_proxy(SingleTick& tick, bool same_order) noexcept;
+void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept;
 
 /// By "pipe": where p comes to rest.
-Vec3 pipe(SingleTick& tick) noexcept;
+Vec3 solve_pipe(SingleProxyTick& tick) noexcept;
 /// By "balance".
-Vec3 balance(SingleTick& tick) noexcept;
+Vec3 solve_balance(SingleProxyTick& tick) noexcept;
 /// By "closest".
-Vec3 closest(SingleTick& tick) noexcept;
+Vec3 solve_closest(SingleProxyTick& tick) noexcept;
 /// By "linear".
-Vec3 linear(SingleTick& tick) noexcept;
+Vec3 solve_linear(SingleProxyTick& tick) noexcept;
 
 /// The directions that some primitives take away, and the shortest way onto all of them.
-class Span {
+class ConstrainedSubspace {
  public:
   /// Adds a primitive's equations, as seen from `from`; what contradicts those before it is left out.
   void add(const Primitive& primitive, const Vec3& from) noexcept;
   /// The shortest move from `from` that satisfies all.
-  Vec3 move() const noexcept;
+  Vec3 shortest_step() const noexcept;
   /// A vector without what is taken away.
-  Vec3 across(Vec3 v) const noexcept;
+  Vec3 project_free(Vec3 v) const noexcept;
 
  private:
   void add(const Vec3& normal, double distance) noexcept;

@@ -5,16 +5,16 @@
 namespace catena::haptics {
 
 inline void begin_link(const Link& spec, const Vec3& incoming, bool first_tick, LinkState& link, LinkScratch& scratch) noexcept {
-  link.on = true;
+  link.switched_on = true;
   link.started = true;
   link.released = false;
-  link.status = Status::ok;
+  link.status = LinkStatus::ok;
   link.weight = first_tick ? 1 : 0;
   link.limit = 0;
   link.proxy = incoming;
   link.memory.fill(std::byte{0});
-  link.outer.fill(std::byte{0});
-  link.stiffness_n_per_m = spec.stiffness_n_per_m.at(incoming, scratch.stiffness, link.evaluations);
+  link.wrapper_memory.fill(std::byte{0});
+  link.stiffness_n_per_m = spec.stiffness_n_per_m.at(incoming, scratch.stiffness_cursor, link.evaluations);
   spec.constraint->start(incoming, link, scratch);
 }
 

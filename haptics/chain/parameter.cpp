@@ -14,11 +14,11 @@ double part(double x, double lo, double hi) noexcept {
   return std::isfinite(span) ? (x - lo) / span : (0.5 * x - 0.5 * lo) / (0.5 * hi - 0.5 * lo);
 }
 
-double piecewise_linear(const std::vector<ParameterMap::Point>& points, double x) noexcept {
-  const auto after =
-      std::upper_bound(points.begin(), points.end(), x, [](double value, const ParameterMap::Point& p) { return value < p.value; });
+double piecewise_linear(const std::vector<HapticTransferFunction::Point>& points, double x) noexcept {
+  const auto after = std::upper_bound(points.begin(), points.end(), x,
+                                      [](double value, const HapticTransferFunction::Point& p) { return value < p.value; });
   if (after == points.begin()) return points.front().output;
-  const ParameterMap::Point& a = *(after - 1);
+  const HapticTransferFunction::Point& a = *(after - 1);
   if (after == points.end() || x == a.value) return a.output;
   const double t = part(x, a.value, after->value);
   return (1 - t) * a.output + t * after->output;
@@ -31,14 +31,14 @@ double normalised(double x, double lo, double hi) noexcept {
 
 }  // namespace
 
-double Parameter::of_field(const Vec3& world, field::Cursor& cursor, std::int32_t& evaluations) const noexcept {
-  const ParameterMap& map = *map_;
-  if (evaluations >= kEvaluationCap) return map.outside;
+double Parameter::evaluate_field(const Vec3& world, field::Cursor& cursor, std::int32_t& evaluations) const noexcept {
+  const HapticTransferFunction& map = *map_;
+  if (evaluations >= kMaxEvaluations) return map.outside;
   ++evaluations;
   double x = 0;
   if (map.field.scalar) {
     const field::ScalarSample sample = map.field.scalar->sample(world, cursor);
-    x = map.by == ParameterMap::By::gradient ? norm(sample.gradient) : sample.value;
+    x = map.quantity == HapticTransferFunction::Quantity::gradient ? norm(sample.gradient) : sample.value;
     if (!sample.inside) return map.outside;
   } else {
     const field::VectorSample sample = map.field.vector->sample(world, cursor);
@@ -46,21 +46,21 @@ double Parameter::of_field(const Vec3& world, field::Cursor& cursor, std::int32_
     if (!sample.inside) return map.outside;
   }
   if (!std::isfinite(x)) return map.outside;
-  if (map.normalise) x = normalised(x, map.lo, map.hi);
+  if (map.normalize) x = normalised(x, map.range_min, map.range_max);
   return piecewise_linear(map.points, x);
 }
 
-double Parameter::least() const {
+double Parameter::min() const {
   if (!map_) return constant_;
   double least = map_->outside;
-  for (const ParameterMap::Point& point : map_->points) least = std::min(least, point.output);
+  for (const HapticTransferFunction::Point& point : map_->points) least = std::min(least, point.output);
   return least;
 }
 
-double Parameter::most() const {
+double Parameter::max() const {
   if (!map_) return constant_;
   double most = map_->outside;
-  for (const ParameterMap::Point& point : map_->points) most = std::max(most, point.output);
+  for (const HapticTransferFunction::Point& point : map_->points) most = std::max(most, point.output);
   return most;
 }
 

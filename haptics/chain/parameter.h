@@ -3,7 +3,7 @@
 ///   of a scalar field: its value, or |grad s|; of a vector field: |v|.
 ///   normalise: the map's abscissae run 0..1 over the field's range, (s - min) / (max - min), |v| / X or |grad s| / X with X the
 ///   field's largest magnitude, clamped to 0..1; a field without range gives 0 (safe normalisation, at any scale).
-/// Beyond the map's ends their outputs hold. Where the field says nothing (outside, not finite) it is `outside`.
+/// Outliers the map's ends their outputs hold. Where the field says nothing (outside, not finite) it is `outside`.
 /// One evaluation a call where a field is asked, counted; none where the link's budget is spent (then `outside`).
 /// Haptic thread: no allocation, lock or throw.
 #pragma once
@@ -15,19 +15,19 @@
 namespace catena::haptics {
 
 /// How a parameter follows a field. Made off the tick, immutable.
-struct ParameterMap {
+struct HapticTransferFunction {
   /// What of the field counts.
-  enum class By { value, gradient, magnitude };
+  enum class Quantity { value, gradient, magnitude };
   /// An output at a value.
   struct Point {
     double value, output;  ///< the field's unit (0 to 1 with `normalise`); the parameter's own
   };
-  field::AnyField field;      ///< the field
-  By by = By::value;          ///< what of it counts
-  bool normalise = false;     ///< over the field's range
-  double lo = 0, hi = 0;      ///< `normalise` maps them to 0 and 1; where hi > lo does not hold, all is 0
-  std::vector<Point> points;  ///< values rising, at least one
-  double outside = 0;         ///< the output where the field says nothing
+  field::AnyField field;                ///< the field
+  Quantity quantity = Quantity::value;  ///< what of it counts
+  bool normalize = false;               ///< over the field's range
+  double range_min = 0, range_max = 0;  ///< `normalise` maps them to 0 and 1; where hi > lo does not hold, all is 0
+  std::vector<Point> points;            ///< values rising, at least one
+  double outside = 0;                   ///< the output where the field says nothing
 };
 
 /// A number, or what a field says. Immutable; any thread.
@@ -36,11 +36,11 @@ class Parameter {
   /// Always this number.
   Parameter(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor): a number is a parameter
   /// Follows a field.
-  explicit Parameter(std::shared_ptr<const ParameterMap> map) : map_(std::move(map)) {}
+  explicit Parameter(std::shared_ptr<const HapticTransferFunction> map) : map_(std::move(map)) {}
 
   /// The parameter at a place; a fetch is added to `evaluations`.
   double at(const Vec3& world, field::Cursor& cursor, std::int32_t& evaluations) const noexcept {
-    return map_ ? of_field(world, cursor, evaluations) : constant_;
+    return map_ ? evaluate_field(world, cursor, evaluations) : constant_;
   }
   /// Its gradient there, by central differences of the length `step`: six fetches, none of a number.
   Vec3 gradient(const Vec3& world, double step, field::Cursor& cursor, std::int32_t& evaluations) const noexcept {
@@ -49,20 +49,20 @@ class Parameter {
       Vec3 ahead = world, behind = world;
       ahead[a] += step;
       behind[a] -= step;
-      out[a] = (of_field(ahead, cursor, evaluations) - of_field(behind, cursor, evaluations)) / (2 * step);
+      out[a] = (evaluate_field(ahead, cursor, evaluations) - evaluate_field(behind, cursor, evaluations)) / (2 * step);
     }
     return out;
   }
   /// Whether it is a number.
   bool is_constant() const { return map_ == nullptr; }
-  double least() const;  ///< the smallest and the largest value that it can take
+  double min() const;  ///< the smallest and the largest value that it can take
   /// The largest value that it can take.
-  double most() const;
+  double max() const;
 
  private:
-  double of_field(const Vec3& world, field::Cursor& cursor, std::int32_t& evaluations) const noexcept;
+  double evaluate_field(const Vec3& world, field::Cursor& cursor, std::int32_t& evaluations) const noexcept;
   double constant_ = 0;
-  std::shared_ptr<const ParameterMap> map_;
+  std::shared_ptr<const HapticTransferFunction> map_;
 };
 
 }  // namespace catena::haptics

@@ -8,7 +8,7 @@ constexpr double kLeastEnergy = 1e-15;  // joules: below it is round-off
 constexpr double kLeastDamping = 1e-3;  // N s/m: below it is nothing
 
 bool is_apart(const LinkState& link, bool has_gap) noexcept {
-  return !link.on || link.released || link.status == Status::no_surface || (link.status == Status::budget && !has_gap);
+  return !link.switched_on || link.released || link.status == LinkStatus::no_surface || (link.status == LinkStatus::budget && !has_gap);
 }
 
 /// The part of a spring's energy that it can give back through a force limit: r (2 - r), r = limit / force.
@@ -19,31 +19,31 @@ double through_limit(double force_n, double most_n) noexcept {
 }
 
 /// The part of the chain's force that the guard's ramps let through.
-double ramp_of(const Limits& limits, const GuardState& guard) noexcept {
+double ramp_of(const DeviceLimits& limits, const ForceLimiterState& guard) noexcept {
   if (guard.force_state == ForceState::stopped || guard.force_state == ForceState::off) return 0;
-  return guard.late > limits.late_ticks ? guard.ramp * guard.hold : guard.ramp;
+  return guard.late_ticks > limits.max_late_ticks ? guard.ramp_factor * guard.hold_factor : guard.ramp_factor;
 }
 
 // What acted since the last tick: sent in it, or a delay before.
-PassivityState::Sent acted(const PassivityState& state, double delay_s, double dt_s) noexcept {
-  using Sent = PassivityState::Sent;
-  constexpr std::uint32_t size = PassivityState::kPast;
-  const Sent& last = state.past[(state.next + size - 1) % size];
+PassivityState::SentForce acted(const PassivityState& state, double delay_s, double dt_s) noexcept {
+  using Sent = PassivityState::SentForce;
+  constexpr std::uint32_t size = PassivityState::kHistoryLength;
+  const Sent& last = state.history[(state.next_index + size - 1) % size];
   if (!(delay_s > 0) || !(dt_s > 0)) return last;
   const double periods = std::fmin(delay_s / dt_s, size - 2.0);
   const auto whole = static_cast<std::uint32_t>(periods);
   const double part = periods - whole;
-  const Sent& newer = state.past[(state.next + size - 1 - whole) % size];
-  const Sent& older = state.past[(state.next + size - 2 - whole) % size];
+  const Sent& newer = state.history[(state.next_index + size - 1 - whole) % size];
+  const Sent& older = state.history[(state.next_index + size - 2 - whole) % size];
   const auto mix = [part](const Vec3& a, const Vec3& b) { return a * part + b * (1 - part); };
-  return {mix(older.force_n, newer.force_n), mix(older.granted_n, newer.granted_n), mix(older.fading_n, newer.fading_n),
-          mix(older.added_n, newer.added_n)};
+  return {mix(older.force_n, newer.force_n), mix(older.exempt_n, newer.exempt_n), mix(older.ramped_n, newer.ramped_n),
+          mix(older.damping_n, newer.damping_n)};
 }
 
 constexpr double kReleaseS = 0.03;  // in which added damping goes: one that comes and goes by the tick would be felt as a buzz
 
 // The damping that takes `need_j` from a hand that goes on by `move_m` in the next tick: at once up, slowly down.
-double step_damping(const Limits& limits, const Vec3& move_m, double dt_s, double need_j, double last) noexcept {
+double step_damping(const DeviceLimits& limits, const Vec3& move_m, double dt_s, double need_j, double last) noexcept {
   const double kept = dt_s < kReleaseS ? last * (1 - dt_s / kReleaseS) : 0;
   const double squared = dot(move_m, move_m);
   const double needed = need_j > 0 && squared > 0 ? need_j * dt_s / squared : 0;
@@ -59,49 +59,49 @@ Vec3 brake(double damping_ns_per_m, const Vec3& move_m, double dt_s) noexcept {
 
 }  // namespace
 
-void settle(const Program& program, const std::array<LinkState, kMaxLinks>& links, const LedgerTick& tick, GuardState& guard,
-            PassivityState& state) noexcept {
-  const Limits& limits = program.limits;
-  const Vec3 move_m = tick.move * program.metres_per_unit;
+void step_passivity(const HapticProgram& program, const std::array<LinkState, kMaxLinks>& links, const EnergyTick& tick,
+                    ForceLimiterState& guard, PassivityState& state) noexcept {
+  const DeviceLimits& limits = program.limits;
+  const Vec3 move_m = tick.displacement * program.meters_per_unit;
   const bool weighs = program.coupling.method == CouplingMethod::chain;
   const bool conservative = weighs && program.coupling.force == CouplingForce::conservative;
   const std::size_t count = program.links.size();
 
   // what the last tick's force has done since
-  const PassivityState::Sent did = acted(state, limits.delay_s, tick.dt_s);
-  const double work_j = dot(did.force_n, move_m), taken_j = -dot(did.added_n, move_m);
+  const PassivityState::SentForce did = acted(state, limits.delay_s, tick.dt_s);
+  const double work_j = dot(did.force_n, move_m), taken_j = -dot(did.damping_n, move_m);
   // what is ramped is granted as far as there is something left of what springs that came or went had
-  const bool fades = max_abs(did.fading_n) > 0 || max_abs(tick.fading_n) > 0;
-  const double faded_j = std::fmin(dot(did.fading_n, move_m), state.let_go_j);
-  state.let_go_j = fades ? state.let_go_j - faded_j : 0;
-  const double free_j = dot(did.granted_n, move_m) + faded_j;
+  const bool fades = max_abs(did.ramped_n) > 0 || max_abs(tick.ramped_n) > 0;
+  const double faded_j = std::fmin(dot(did.ramped_n, move_m), state.released_j);
+  state.released_j = fades ? state.released_j - faded_j : 0;
+  const double free_j = dot(did.exempt_n, move_m) + faded_j;
 
   // what of the chain's force is sent, and what its springs can give back through the limits
-  const double asked = dot(tick.sum_n, tick.sum_n);
-  const double sent = asked > 0 && std::isfinite(asked) ? dot(guard.force_n, tick.sum_n) / asked : 0;
+  const double asked = dot(tick.total_force_n, tick.total_force_n);
+  const double sent = asked > 0 && std::isfinite(asked) ? dot(guard.force_n, tick.total_force_n) / asked : 0;
   const double ramp = ramp_of(limits, guard);
   Vec3 springs_n(0.0);
   for (std::size_t i = 0; i < count; ++i) springs_n += tick.shares_n[i];
   const double most_n = std::fmin(program.coupling.max_force_n, ramp > 0 ? limits.max_force_n / ramp : 0);
-  const double share = 0.5 * program.metres_per_unit * ramp * through_limit(norm(springs_n), most_n);
+  const double share = 0.5 * program.meters_per_unit * ramp * through_limit(norm(springs_n), most_n);
 
   // by link: the ledger, and what weights that rise put in
-  bool anew = state.anew || !(tick.order == state.order);
+  bool anew = state.rebase_pending || !(tick.order == state.order);
   double storage_j = 0, raised_j = 0;
   Vec3 granted_n = tick.cues_n;
   for (std::size_t i = 0; i < count; ++i) {
     const LinkState& link = links[i];
     const Vec3& force_n = tick.shares_n[i];
-    const bool own = conservative && !state.anew && tick.order == state.order;
-    const double given_j = dot(state.sent_n[i], own ? (tick.probes[i] - state.probes[i]) * program.metres_per_unit : move_m);
+    const bool own = conservative && !state.rebase_pending && tick.order == state.order;
+    const double given_j = dot(state.sent_shares_n[i], own ? (tick.probes[i] - state.probes[i]) * program.meters_per_unit : move_m);
     state.probes[i] = tick.probes[i];
-    state.given_j[i] += given_j;
-    state.sent_n[i] = force_n * sent;
+    state.work_j[i] += given_j;
+    state.sent_shares_n[i] = force_n * sent;
     const bool apart = is_apart(link, max_abs(force_n) > 0);
-    anew = anew || apart != state.apart[i];
-    state.apart[i] = apart;
-    const double stored_j = share * dot(force_n, conservative ? tick.gaps[i] : tick.reach);
-    if (link.on && program.links[i].constraint->is_source()) {
+    anew = anew || apart != state.detached[i];
+    state.detached[i] = apart;
+    const double stored_j = share * dot(force_n, conservative ? tick.gaps[i] : tick.chain_gap);
+    if (link.switched_on && program.links[i].constraint->is_energy_source()) {
       granted_n += force_n;
       state.stored_j[i] = 0;
     } else {
@@ -111,54 +111,54 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
     }
     state.weights[i] = link.weight;
   }
-  if (ramp > state.ramp) raised_j += (storage_j - raised_j) * (1 - state.ramp / ramp);
+  if (ramp > state.ramp_factor) raised_j += (storage_j - raised_j) * (1 - state.ramp_factor / ramp);
 
   // the balance
   const double made_j = work_j - free_j + storage_j - state.storage_j;
   const double own_j = tick.dt_s > 0 ? limits.damping_ns_per_m * dot(move_m, move_m) / tick.dt_s : 0;
   const double booked_j = anew ? std::fmax(0.0, made_j) : std::fmax(0.0, raised_j);
-  if (anew && fades) state.let_go_j += std::fabs(made_j);
-  state.granted_j += booked_j + free_j;
+  if (anew && fades) state.released_j += std::fabs(made_j);
+  state.exempt_j += booked_j + free_j;
   const double step_j = own_j - made_j + booked_j;
   state.balance_j = std::fmin(0.0, state.balance_j + step_j);
   state.dissipated_j += taken_j;
   state.storage_j = storage_j;
-  if (!std::isfinite(state.balance_j + state.granted_j + state.dissipated_j + state.storage_j)) {
+  if (!std::isfinite(state.balance_j + state.exempt_j + state.dissipated_j + state.storage_j)) {
     // forces or places too large for a double: the account begins again
-    state.balance_j = state.granted_j = state.dissipated_j = state.storage_j = state.let_go_j = 0;
-    state.given_j.fill(0);
+    state.balance_j = state.exempt_j = state.dissipated_j = state.storage_j = state.released_j = 0;
+    state.work_j.fill(0);
     state.stored_j.fill(0);
   }
 
   // the controller
   Vec3 added_n(0.0);
   const bool flows = guard.force_state == ForceState::on || guard.force_state == ForceState::ramping_in;
-  if (limits.passivity && flows) {
+  if (limits.passivity_control && flows) {
     const double next_j = state.balance_j + std::fmin(0.0, step_j - taken_j);
     state.damping_ns_per_m = step_damping(limits, move_m, tick.dt_s, next_j < -kLeastEnergy ? -next_j : 0, state.damping_ns_per_m);
     if (state.damping_ns_per_m > 0) {
       const Vec3 before = guard.force_n;
-      guard.force_n =
-          at_most(before + brake(state.damping_ns_per_m, move_m, tick.dt_s), std::fmin(limits.max_force_n, program.coupling.max_force_n));
+      guard.force_n = clamp_norm(before + brake(state.damping_ns_per_m, move_m, tick.dt_s),
+                                 std::fmin(limits.max_force_n, program.coupling.max_force_n));
       added_n = guard.force_n - before;
     }
   } else {
     state.damping_ns_per_m = 0;
   }
 
-  state.past[state.next] = {guard.force_n, granted_n * sent, tick.fading_n * sent, added_n};
-  state.next = (state.next + 1) % PassivityState::kPast;
-  state.ramp = ramp;
+  state.history[state.next_index] = {guard.force_n, granted_n * sent, tick.ramped_n * sent, added_n};
+  state.next_index = (state.next_index + 1) % PassivityState::kHistoryLength;
+  state.ramp_factor = ramp;
   state.order = tick.order;
-  state.anew = false;
+  state.rebase_pending = false;
 }
 
-void suspend(PassivityState& state) noexcept {
-  state.sent_n.fill(Vec3(0.0));
+void pause_passivity(PassivityState& state) noexcept {
+  state.sent_shares_n.fill(Vec3(0.0));
   state.stored_j.fill(0);
-  state.past.fill({});
-  state.storage_j = state.ramp = state.let_go_j = state.damping_ns_per_m = 0;
-  state.anew = true;
+  state.history.fill({});
+  state.storage_j = state.ramp_factor = state.released_j = state.damping_ns_per_m = 0;
+  state.rebase_pending = true;
 }
 
 }  // namespace catena::haptics

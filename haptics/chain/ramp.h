@@ -12,20 +12,20 @@ namespace catena::haptics {
 
 /// What the ramp remembers. Newtons, or newton metres.
 struct Ramp {
-  Vec3 last{0.0};  ///< f of the last tick
-  Vec3 rest{0.0};  ///< e: what is still to fade
+  Vec3 last_force{0.0};  ///< f of the last tick
+  Vec3 offset{0.0};      ///< e: what is still to fade
 };
 
 /// Steps the ramp to this tick's f; the first tick and those without a ramp (`fall` infinite) add nothing. Returns e.
 inline Vec3 step_ramp(Ramp& ramp, const Vec3& now, double moved, double fall) noexcept {
-  const Vec3 step = now - ramp.last;
+  const Vec3 step = now - ramp.last_force;
   const double far = norm(step);
-  ramp.last = now;
-  if (far > moved) ramp.rest += step * (moved / far) - step;
-  const double left = norm(ramp.rest);
+  ramp.last_force = now;
+  if (far > moved) ramp.offset += step * (moved / far) - step;
+  const double left = norm(ramp.offset);
   // infinite or not a number: nothing that could fade
-  ramp.rest = left > fall && std::isfinite(left) ? ramp.rest * ((left - fall) / left) : Vec3(0.0);
-  return ramp.rest;
+  ramp.offset = left > fall && std::isfinite(left) ? ramp.offset * ((left - fall) / left) : Vec3(0.0);
+  return ramp.offset;
 }
 
 }  // namespace catena::haptics

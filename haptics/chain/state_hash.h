@@ -6,14 +6,14 @@
 #include <cstring>
 #include <type_traits>
 
+#include "engine/base/haptic_state.h"
 #include "engine/base/hash.h"
-#include "engine/exchange/haptic_state.h"
 
 namespace catena::haptics {
 
 /// Each byte is 0 or 1.
 template <class... Flags>
-bool are_bools(const Flags&... flags) noexcept {
+bool are_valid_bools(const Flags&... flags) noexcept {
   static_assert((std::is_same_v<Flags, bool> && ...));
   const auto is_one = [](const bool& flag) {
     unsigned char byte;
@@ -25,15 +25,15 @@ bool are_bools(const Flags&... flags) noexcept {
 
 /// The same of an array.
 template <std::size_t n>
-bool are_bools(const std::array<bool, n>& flags) noexcept {
+bool are_valid_bools(const std::array<bool, n>& flags) noexcept {
   for (std::size_t i = 0; i < n; ++i)
-    if (!are_bools(flags.data()[i])) return false;
+    if (!are_valid_bools(flags.data()[i])) return false;
   return true;
 }
 
 /// The number is one of the enumerators from 0 to `last`.
 template <class Enum>
-bool is_one_of(const Enum& word, Enum last) noexcept {
+bool is_valid_enum(const Enum& word, Enum last) noexcept {
   std::underlying_type_t<Enum> value;
   std::memcpy(&value, &word, sizeof value);
   return value >= 0 && value <= static_cast<std::underlying_type_t<Enum>>(last);
@@ -44,7 +44,7 @@ bool is_one_of(const Enum& word, Enum last) noexcept {
 class StateHash {
  public:
   /// Adds one tick.
-  void add(const exchange::HapticState& state) noexcept {
+  void add(const HapticState& state) noexcept {
     const auto vector = [&](const Vec3& v) {
       fnv_.add(v.x);
       fnv_.add(v.y);
@@ -55,10 +55,10 @@ class StateHash {
     for (int i = 0; i < state.link_count; ++i) fnv_.add(static_cast<std::uint8_t>(state.links[static_cast<std::size_t>(i)].active));
     for (int i = 0; i < state.link_count; ++i) fnv_.add(static_cast<std::uint8_t>(state.links[static_cast<std::size_t>(i)].status));
     for (int i = 0; i < state.widget_count; ++i) {
-      const exchange::WidgetReport& w = state.widgets[static_cast<std::size_t>(i)];
+      const WidgetReport& w = state.widgets[static_cast<std::size_t>(i)];
       for (const Vec3& point : w.pose.points) vector(point);
       for (const double v : {w.pose.orientation.w, w.pose.orientation.x, w.pose.orientation.y, w.pose.orientation.z, w.value}) fnv_.add(v);
-      for (const int v : {static_cast<int>(w.mode), static_cast<int>(w.handle), static_cast<int>(w.held)})
+      for (const int v : {static_cast<int>(w.mode), static_cast<int>(w.handle), static_cast<int>(w.active_planes)})
         fnv_.add(static_cast<std::uint8_t>(v));
     }
   }

@@ -4,8 +4,8 @@ namespace catena::haptics {
 
 namespace {
 
-bool step(const Switch& on, bool was, std::uint32_t before, std::uint32_t now, double force_n) noexcept {
-  if (on.never) return false;
+bool step(const ActivationSwitch& on, bool was, std::uint32_t before, std::uint32_t now, double force_n) noexcept {
+  if (on.disabled) return false;
   if (on.button > 0) {
     const std::uint32_t bit = 1u << (on.button - 1);
     if (!on.toggle) return (now & bit) != 0;
@@ -17,12 +17,12 @@ bool step(const Switch& on, bool was, std::uint32_t before, std::uint32_t now, d
 
 }  // namespace
 
-Order step_switches(const Program& program, std::uint32_t buttons, double last_force_n, SwitchState& state) noexcept {
-  for (std::size_t i = 0; i < program.scene_links(); ++i)
-    state.link_on[i] = step(program.links[i].on, state.link_on[i], state.buttons, buttons, last_force_n);
-  Order order;
+LinkOrder step_switches(const HapticProgram& program, std::uint32_t buttons, double last_force_n, SwitchState& state) noexcept {
+  for (std::size_t i = 0; i < program.scene_link_count(); ++i)
+    state.link_on[i] = step(program.links[i].active_when, state.link_on[i], state.buttons, buttons, last_force_n);
+  LinkOrder order;
   for (std::size_t m = 0; m < program.modes.size(); ++m) {
-    state.mode_on[m] = step(program.modes[m].on, state.mode_on[m], state.buttons, buttons, last_force_n);
+    state.mode_on[m] = step(program.modes[m].active_when, state.mode_on[m], state.buttons, buttons, last_force_n);
     if (state.mode_on[m] && order.mode < 0) order.mode = static_cast<std::int8_t>(m);
   }
   state.buttons = buttons;
@@ -31,7 +31,7 @@ Order step_switches(const Program& program, std::uint32_t buttons, double last_f
     if (state.link_on[link]) order.add(link);
   };
   if (order.mode < 0) {
-    for (std::size_t i = 0; i < program.scene_links(); ++i) add(i);
+    for (std::size_t i = 0; i < program.scene_link_count(); ++i) add(i);
   } else {
     for (const int i : program.modes[static_cast<std::size_t>(order.mode)].links) add(static_cast<std::size_t>(i));
   }

@@ -21,81 +21,83 @@ struct Coupled {
   double newtons_per_unit = 0;           ///< K S: of the links that run, together
 };
 
-bool is_single(const Program& program) noexcept { return program.coupling.method != CouplingMethod::chain; }
+bool is_single(const HapticProgram& program) noexcept { return program.coupling.method != CouplingMethod::chain; }
 
 void switch_off(LinkState& link) noexcept {
-  link.on = link.started = link.released = false;
+  link.switched_on = link.started = link.released = false;
   link.residual = link.limit = link.weight = 0;
   link.begin_tick();
-  link.status = Status::free;
+  link.status = LinkStatus::free;
 }
 
-double capped(double stiffness, const Limits& limits) noexcept {
+double capped(double stiffness, const DeviceLimits& limits) noexcept {
   return stiffness > limits.max_stiffness_n_per_m ? limits.max_stiffness_n_per_m : stiffness;
 }
 
 // What a constraint of a plug-in may break: a proxy that is not finite, a status or reason that there is not.
 void keep_sane(const Vec3& incoming, LinkState& link) noexcept {
-  if (is_finite(link.proxy) && is_one_of(link.status, Status::bad_probe) && is_one_of(link.reason, Reason::parallel)) return;
+  if (is_finite(link.proxy) && is_valid_enum(link.status, LinkStatus::bad_probe) && is_valid_enum(link.reason, SampleStatus::parallel))
+    return;
   link.proxy = incoming;
-  stop_link(link, Status::critical, Reason::not_finite);
+  set_link_status(link, LinkStatus::critical, SampleStatus::not_finite);
 }
 
 // One link that is on: its start, its advance, its weight (the ramp after a switch).
-void advance_link(const Program& program, std::size_t i, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
+void advance_link(const HapticProgram& program, std::size_t i, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
                   LinkState& link, LinkScratch& scratch) noexcept {
   const Link& spec = program.links[i];
   link.begin_tick();
   link.dt_s = dt;
-  link.hand_step = kFastestHand * dt / program.metres_per_unit;
+  link.max_probe_step = kMaxProbeSpeed * dt / program.meters_per_unit;
   if (!link.started) {
     begin_link(spec, incoming, first_tick, link, scratch);
   } else {
-    link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
+    link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness_cursor, link.evaluations);
   }
   link.stiffness_n_per_m = capped(link.stiffness_n_per_m, program.limits);
-  const double newtons_per_unit = link.stiffness_n_per_m * program.metres_per_unit;
-  link.slip = newtons_per_unit > 0 ? kSlipPart * program.coupling.max_force_n / newtons_per_unit : std::numeric_limits<double>::infinity();
+  const double newtons_per_unit = link.stiffness_n_per_m * program.meters_per_unit;
+  link.max_slip =
+      newtons_per_unit > 0 ? kSlipFraction * program.coupling.max_force_n / newtons_per_unit : std::numeric_limits<double>::infinity();
   spec.constraint->advance(incoming, link, scratch);
   keep_sane(incoming, link);
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
 
 // Links that are off pass their probe through: the proxy before them in the scene's order, where no mode orders the chain.
-void pass_through(const Program& program, const Order& order, const Vec3& probe, ChainState& state) noexcept {
+void pass_through(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, ChainState& state) noexcept {
   Vec3 before = probe;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
-    if (!state.links[i].on) state.links[i].proxy = before;
+    if (!state.links[i].switched_on) state.links[i].proxy = before;
     if (order.mode < 0) before = state.links[i].proxy;
   }
 }
 
-Vec3 last_proxy(const Order& order, const Vec3& probe, const ChainState& state) noexcept {
+Vec3 last_proxy(const LinkOrder& order, const Vec3& probe, const ChainState& state) noexcept {
   return order.count > 0 ? state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(order.count - 1)])].proxy : probe;
 }
 
 // A baseline's tick: one proxy for all links. Returns K S (p - x).
-Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe, double dt, ChainState& state,
+Coupled one_proxy(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double dt, ChainState& state,
                   ChainScratch& scratch) noexcept {
-  SingleTick single{program, order, probe, dt, !state.has_probe, state.single, state.links, scratch.links};
+  SingleProxyTick single{program, order, probe, dt, !state.has_probe, state.single_proxy, state.links, scratch.links};
   advance_single_proxy(single, order == state.order);
   Coupled out;
-  const Vec3 gap = state.single.proxy - probe;
+  const Vec3 gap = state.single_proxy.proxy - probe;
   for (std::size_t i = 0; i < kMaxLinks; ++i) {
     LinkState& link = state.links[i];
     link.stiffness_n_per_m = capped(link.stiffness_n_per_m, program.limits);
-    if (!link.on || !state.single.watches[i].holds) continue;
+    if (!link.switched_on || !state.single_proxy.release_states[i].was_holding) continue;
     out.gaps[i] = gap;
-    out.shares_n[i] = gap * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
+    out.shares_n[i] = gap * (link.weight * link.stiffness_n_per_m * program.meters_per_unit);
   }
-  out.newtons_per_unit = capped(program.coupling.stiffness_n_per_m, program.limits) * program.metres_per_unit;
+  out.newtons_per_unit = capped(program.coupling.stiffness_n_per_m, program.limits) * program.meters_per_unit;
   out.force_n = gap * out.newtons_per_unit;
   out.reach = gap;
   return out;
 }
 
 // The chain: each proxy is the next link's probe.
-Coupled chain(const Program& program, const Order& order, const Vec3& probe, double dt, double ramp_step, ChainState& state,
+Coupled chain(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double dt, double ramp_step, ChainState& state,
               ChainScratch& scratch) noexcept {
   Coupled out;
   const bool conservative = program.coupling.force == CouplingForce::conservative;
@@ -106,19 +108,19 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
     advance_link(program, i, incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
     if (conservative && !program.links[i].stiffness_n_per_m.is_constant())
       link.stiffness_n_per_m =
-          capped(program.links[i].stiffness_n_per_m.at(link.proxy, scratch.links[i].stiffness, link.evaluations), program.limits);
+          capped(program.links[i].stiffness_n_per_m.at(link.proxy, scratch.links[i].stiffness_cursor, link.evaluations), program.limits);
     out.probes[i] = incoming;
     out.gaps[i] = link.proxy - incoming;
-    out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
-    out.newtons_per_unit += link.stiffness_n_per_m * program.metres_per_unit;
+    out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.meters_per_unit);
+    out.newtons_per_unit += link.stiffness_n_per_m * program.meters_per_unit;
     out.force_n += out.shares_n[i];
-    out.energy_j += 0.5 * program.metres_per_unit * dot(out.shares_n[i], out.gaps[i]);
+    out.energy_j += 0.5 * program.meters_per_unit * dot(out.shares_n[i], out.gaps[i]);
     incoming = link.proxy;
   }
   if (conservative) {
-    const PulledBack all = virtual_work(program, order, probe, out.gaps, out.shares_n, state.links, scratch.links);
+    const PulledBackForce all = virtual_work_force(program, order, probe, out.gaps, out.shares_n, state.links, scratch.links);
     out.force_n = all.force;
-    out.left_out_n = all.left_out;
+    out.left_out_n = all.truncated;
   }
   out.reach = incoming - probe;
   pass_through(program, order, probe, state);
@@ -127,16 +129,17 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
 
 // The direction of the links' force, and of `braking` times the move, where they are too large for a double: every term scaled down before
 // it is formed.
-Vec3 huge_direction(const Program& program, const Order& order, const Vec3& probe, double braking, const ChainState& state) noexcept {
+Vec3 huge_direction(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double braking,
+                    const ChainState& state) noexcept {
   constexpr double small = 1e-160;
   Vec3 incoming = probe, force(0.0);
   const bool single = is_single(program);
   if (single && order.count > 0)
-    force = (state.single.proxy * small - probe * small) *
-            (capped(program.coupling.stiffness_n_per_m, program.limits) * program.metres_per_unit * small);
+    force = (state.single_proxy.proxy * small - probe * small) *
+            (capped(program.coupling.stiffness_n_per_m, program.limits) * program.meters_per_unit * small);
   for (int k = 0; k < order.count && !single; ++k) {
     const LinkState& link = state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)])];
-    force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.metres_per_unit * small);
+    force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.meters_per_unit * small);
     incoming = link.proxy;
   }
   if (state.has_probe) force -= (probe * small - state.last_probe * small) * (braking * small);
@@ -150,79 +153,79 @@ double bounded(double v) noexcept {
 }
 
 /// The state's reason is of the last time that it was set: it counts only beside the statuses that have one.
-Reason reason_of(const LinkState& link) noexcept {
-  if (link.status == Status::bad_probe) return Reason::not_finite;
-  return link.status == Status::critical || link.status == Status::boundary ? link.reason : Reason::none;
+SampleStatus reason_of(const LinkState& link) noexcept {
+  if (link.status == LinkStatus::bad_probe) return SampleStatus::not_finite;
+  return link.status == LinkStatus::critical || link.status == LinkStatus::boundary ? link.reason : SampleStatus::ok;
 }
 
-void report(const Program& program, const ChainState& state, exchange::HapticState& out) noexcept {
+void report(const HapticProgram& program, const ChainState& state, HapticState& out) noexcept {
   out.tick = state.ticks;
-  out.t_s = state.last_t_s;
-  out.coupling_force_n = state.force_n;
-  out.force_n = state.guard.force_n;
-  out.torque_nm = state.guard.torque_nm;
-  out.force_state = state.guard.force_state;
+  out.t_s = state.last_probe_t_s;
+  out.coupling_force_n = state.chain_force_n;
+  out.force_n = state.force_limiter.force_n;
+  out.torque_nm = state.force_limiter.torque_nm;
+  out.force_state = state.force_limiter.force_state;
   out.link_count = static_cast<std::int32_t>(program.links.size());
   out.mode = state.order.mode;
   out.energy_j = state.passivity.energy_j();
   out.dissipated_j = state.passivity.dissipated_j;
-  out.left_out_j = bounded(state.left_out.work_j);
+  out.omitted_work_j = bounded(state.unaccounted.work_j);
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkState& link = state.links[i];
-    exchange::LinkReport& to = out.links[i];
-    to.proxy = is_single(program) ? state.single.proxy : link.proxy;
+    LinkReport& to = out.links[i];
+    to.proxy = is_single(program) ? state.single_proxy.proxy : link.proxy;
     to.residual = link.residual;
     to.weight = link.weight;
     to.stiffness_n_per_m = link.stiffness_n_per_m;
-    to.booked_j = bounded(state.passivity.booked_j(i));
+    to.accounted_j = bounded(state.passivity.accounted_j(i));
     to.evaluations = link.evaluations;
     to.status = link.status;
-    to.reason = reason_of(link);
+    to.sample_status = reason_of(link);
     to.active = link.active();
-    to.curve = link.curve;
+    to.curve = link.curve_index;
   }
   report_widgets(program, state.widgets, out);
 }
 
-void hold_all(const Program& program, double t_s, ChainState& state, exchange::HapticState& out) noexcept {
+void hold_all(const HapticProgram& program, double t_s, ChainState& state, HapticState& out) noexcept {
   for (std::size_t i = 0; i < program.links.size(); ++i) {
-    state.links[i].status = Status::bad_probe;
+    state.links[i].status = LinkStatus::bad_probe;
     state.links[i].begin_tick();
-    out.links[i].orientation = state.alignment.links[i];
+    out.links[i].orientation = state.alignment.rotational_proxies[i];
     out.links[i].force_n = out.links[i].torque_nm = Vec3(0.0);
-    out.links[i].gap = out.links[i].leaving = 0;
-    out.links[i].left = state.indications[i].left;
+    out.links[i].gap = out.links[i].release_ratio = 0;
+    out.links[i].released = state.release_cues[i].released;
   }
-  state.force_n = state.told_n = Vec3(0.0);
+  state.chain_force_n = state.requested_force_n = Vec3(0.0);
   state.ramp = Ramp{};
-  state.left_out.known = false;
+  state.unaccounted.has_previous = false;
   // no pose, no force: whatever the clock says
-  guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
-  suspend(state.passivity);
-  lose_probe(state.widgets);
-  if (std::isfinite(t_s)) state.clock_t_s = t_s;
+  limit_force(program.limits, {Vec3(0.0), Vec3(0.0), TickCondition::no_device, false, 0}, state.force_limiter);
+  pause_passivity(state.passivity);
+  pause_widgets(state.widgets);
+  if (std::isfinite(t_s)) state.last_tick_t_s = t_s;
   ++state.ticks;
   report(program, state, out);
 }
 
 }  // namespace
 
-void tick(const Program& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, exchange::HapticState& out) noexcept {
+void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, HapticState& out) noexcept {
   out.probe = probe.position;
   out.buttons = probe.buttons;
   out.program_epoch = program.epoch;
   out.orientation = probe.orientation;
   out.condition = probe.condition;
-  const bool stopped = probe.condition == Condition::no_device || probe.condition == Condition::watchdog;
+  const bool stopped = probe.condition == TickCondition::no_device || probe.condition == TickCondition::watchdog;
   if (stopped || !is_finite(probe.position) || !is_finite(probe.orientation) || !std::isfinite(probe.t_s))
     return hold_all(program, probe.t_s, state, out);
 
-  const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_t_s) : 0;
+  const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_probe_t_s) : 0;
   // a ramp counts from the last tick, even one without a probe
-  const double ramp_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.clock_t_s));
+  const double ramp_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.last_tick_t_s));
   const double ramp_step = program.coupling.ramp_s > 0 ? ramp_dt / program.coupling.ramp_s : 1;
-  const double s = program.metres_per_unit;
-  Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
+  const double s = program.meters_per_unit;
+  LinkOrder order = step_switches(program, probe.buttons, norm(state.chain_force_n), state.switches);
   if (!program.widgets.empty())
     order = engage_widgets(program, {probe.position, probe.buttons}, order, state.switches, state.links, state.widgets);
 
@@ -240,39 +243,40 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     const Vec3& share = coupled.shares_n[i];
     out.links[i].force_n = {bounded(share.x), bounded(share.y), bounded(share.z)};
     out.links[i].gap = bounded(norm(coupled.gaps[i]));
-    cues += indicate(program.links[i].indication, state.links[i], coupled.gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
+    cues += update_release_cue(program.links[i].release_cue, state.links[i], coupled.gaps[i], probe.t_s, dt, state.release_cues[i],
+                               out.links[i]);
   }
 
   // their force, without a step
   const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
   const double most = program.coupling.max_force_n;
   const bool huge = !std::isfinite(norm(coupled.force_n));
-  const Vec3 pull = huge ? huge_direction(program, order, probe.position, 0, state) * most : at_most(coupled.force_n, most);
-  if (!state.has_probe) state.ramp.last = pull;
+  const Vec3 pull = huge ? huge_direction(program, order, probe.position, 0, state) * most : clamp_norm(coupled.force_n, most);
+  if (!state.has_probe) state.ramp.last_force = pull;
   const double fall = program.coupling.ramp_s > 0 ? most * ramp_step : std::numeric_limits<double>::infinity();
   const Vec3 ramped = step_ramp(state.ramp, pull, coupled.newtons_per_unit * norm(move), fall);
   const Vec3 told = coupled.force_n + ramped + cues;
-  state.told_n = {bounded(told.x), bounded(told.y), bounded(told.z)};
+  state.requested_force_n = {bounded(told.x), bounded(told.y), bounded(told.z)};
 
   // the coupling's damping, then the limit with the direction kept
   const double braking = dt > 0 ? program.coupling.damping_ns_per_m * s / dt : 0;
   const Vec3 braked = state.has_probe ? move * braking : Vec3(0.0), sum = told - braked;
   const Vec3 whole = max_abs(ramped) > 0 ? pull + ramped + cues - braked : sum;
   const Vec3 force =
-      std::isfinite(norm(whole)) ? at_most(whole, most) : huge_direction(program, order, probe.position, braking, state) * most;
+      std::isfinite(norm(whole)) ? clamp_norm(whole, most) : huge_direction(program, order, probe.position, braking, state) * most;
 
-  state.force_n = force;
+  state.chain_force_n = force;
   const Vec3 torque =
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
-  for (std::size_t i = 0; i < program.links.size(); ++i) state.alignment.links[i] = out.links[i].orientation;
-  guard(program.limits, {force, torque, probe.condition, probe.forces_on, ramp_dt}, state.guard);
+  for (std::size_t i = 0; i < program.links.size(); ++i) state.alignment.rotational_proxies[i] = out.links[i].orientation;
+  limit_force(program.limits, {force, torque, probe.condition, probe.forces_on, ramp_dt}, state.force_limiter);
   if (program.coupling.force == CouplingForce::conservative)
-    book(state.left_out, {coupled.force_n, coupled.left_out_n}, coupled.energy_j, move * s);
-  settle(program, state.links, {move, coupled.probes, coupled.gaps, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum},
-         state.guard, state.passivity);
+    accumulate_unaccounted(state.unaccounted, {coupled.force_n, coupled.left_out_n}, coupled.energy_j, move * s);
+  step_passivity(program, state.links, {move, coupled.probes, coupled.gaps, coupled.reach, dt, order, coupled.shares_n, cues, ramped, sum},
+                 state.force_limiter, state.passivity);
   state.order = order;
   state.last_probe = probe.position;
-  state.last_t_s = state.clock_t_s = probe.t_s;
+  state.last_probe_t_s = state.last_tick_t_s = probe.t_s;
   state.has_probe = true;
   ++state.ticks;
   report(program, state, out);
@@ -281,37 +285,37 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
 namespace {
 
 bool keeps(const Link& from, const Link& to) noexcept {
-  return from.name == to.name && (from.recipe != 0 ? from.recipe == to.recipe : from.constraint == to.constraint);
+  return from.name == to.name && (from.spec_hash != 0 ? from.spec_hash == to.spec_hash : from.constraint == to.constraint);
 }
 
 }  // namespace
 
-void rebind(const Program& from, const Program& to, ChainState& state, ChainScratch& scratch) noexcept {
+void rebind_program(const HapticProgram& from, const HapticProgram& to, ChainState& state, ChainScratch& scratch) noexcept {
   const ChainState old = state;
   scratch = ChainScratch{};
   state.alignment.axes = {};
-  state.passivity.anew = true;
-  state.left_out.known = false;
-  if (from.coupling.method != to.coupling.method) state.single = SingleProxy{};
+  state.passivity.rebase_pending = true;
+  state.unaccounted.has_previous = false;
+  if (from.coupling.method != to.coupling.method) state.single_proxy = SingleProxyState{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {
     state.links[i] = LinkState{};
-    state.indications[i] = IndicationState{};
-    state.single.watches[i] = {};
+    state.release_cues[i] = ReleaseCueState{};
+    state.single_proxy.release_states[i] = {};
     state.switches.link_on[i] = false;
-    state.passivity.given_j[i] = state.passivity.stored_j[i] = state.passivity.weights[i] = 0;
-    state.passivity.sent_n[i] = Vec3(0.0);
+    state.passivity.work_j[i] = state.passivity.stored_j[i] = state.passivity.weights[i] = 0;
+    state.passivity.sent_shares_n[i] = Vec3(0.0);
     if (i >= to.links.size()) continue;
     for (std::size_t k = 0; k < from.links.size(); ++k) {
       if (!keeps(from.links[k], to.links[i])) continue;
       state.links[i] = old.links[k];
-      state.indications[i] = old.indications[k];
-      if (from.coupling.method == to.coupling.method) state.single.watches[i] = old.single.watches[k];
+      state.release_cues[i] = old.release_cues[k];
+      if (from.coupling.method == to.coupling.method) state.single_proxy.release_states[i] = old.single_proxy.release_states[k];
       state.switches.link_on[i] = old.switches.link_on[k];
       // the ledger of a link goes on; what links that are gone have given stays in the observer
-      state.passivity.given_j[i] = old.passivity.given_j[k];
+      state.passivity.work_j[i] = old.passivity.work_j[k];
       state.passivity.stored_j[i] = old.passivity.stored_j[k];
       state.passivity.weights[i] = old.passivity.weights[k];
-      state.passivity.sent_n[i] = old.passivity.sent_n[k];
+      state.passivity.sent_shares_n[i] = old.passivity.sent_shares_n[k];
     }
   }
   rebind_widgets(from, to, state.widgets);

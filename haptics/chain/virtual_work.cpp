@@ -8,44 +8,44 @@ constexpr double kDifference = 1e-6;  // of L: for the gradient of a stiffness
 
 }  // namespace
 
-PulledBack virtual_work(const Program& program, const Order& order, const Vec3& probe, const std::array<Vec3, kMaxLinks>& gaps,
-                        const std::array<Vec3, kMaxLinks>& shares_n, std::array<LinkState, kMaxLinks>& links,
-                        std::array<LinkScratch, kMaxLinks>& scratch) noexcept {
-  PulledBack all;
+PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder& order, const Vec3& probe,
+                                   const std::array<Vec3, kMaxLinks>& gaps, const std::array<Vec3, kMaxLinks>& shares_n,
+                                   std::array<LinkState, kMaxLinks>& links, std::array<LinkScratch, kMaxLinks>& scratch) noexcept {
+  PulledBackForce all;
   for (int k = order.count - 1; k >= 0; --k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     const Link& spec = program.links[i];
     // a stiffness that follows a field pulls towards where it is less
     if (!spec.stiffness_n_per_m.is_constant()) {
       const Vec3 slope = spec.stiffness_n_per_m.gradient(links[i].proxy, kDifference * spec.constraint->domain_length(),
-                                                         scratch[i].stiffness, links[i].evaluations);
-      all.force -= slope * (0.5 * links[i].weight * program.metres_per_unit * dot(gaps[i], gaps[i]));
+                                                         scratch[i].stiffness_cursor, links[i].evaluations);
+      all.force -= slope * (0.5 * links[i].weight * program.meters_per_unit * dot(gaps[i], gaps[i]));
     }
-    if (max_abs(all.force) > 0 || max_abs(all.left_out) > 0) {
+    if (max_abs(all.force) > 0 || max_abs(all.truncated) > 0) {
       const int before = k > 0 ? order.links[static_cast<std::size_t>(k - 1)] : -1;
       const Vec3& incoming = before < 0 ? probe : links[static_cast<std::size_t>(before)].proxy;
-      const PulledBack force = spec.constraint->pull_back(incoming, all.force, links[i], scratch[i]);
+      const PulledBackForce force = spec.constraint->pull_back(incoming, all.force, links[i], scratch[i]);
       const Vec3 left_out =
-          max_abs(all.left_out) > 0 ? spec.constraint->pull_back(incoming, all.left_out, links[i], scratch[i]).force : Vec3(0.0);
-      all = {force.force, force.left_out + left_out};
+          max_abs(all.truncated) > 0 ? spec.constraint->pull_back(incoming, all.truncated, links[i], scratch[i]).force : Vec3(0.0);
+      all = {force.force, force.truncated + left_out};
     }
     all.force += shares_n[i];
   }
   return all;
 }
 
-void book(LeftOut& state, const PulledBack& force, double energy_j, const Vec3& move_m) noexcept {
-  const Vec3 whole = force.force + force.left_out;
-  if (state.known) {
+void accumulate_unaccounted(UnaccountedEnergy& state, const PulledBackForce& force, double energy_j, const Vec3& move_m) noexcept {
+  const Vec3 whole = force.force + force.truncated;
+  if (state.has_previous) {
     const double jump = state.energy_j - energy_j - 0.5 * dot(state.force_n + whole, move_m);
     const Vec3 turned = whole - state.force_n;
     const double missed2 = dot(turned, turned) * dot(move_m, move_m);
-    state.work_j += 0.5 * dot(state.bounded_n + force.left_out, move_m) + (jump * jump > missed2 ? jump : 0);
+    state.work_j += 0.5 * dot(state.truncated_n + force.truncated, move_m) + (jump * jump > missed2 ? jump : 0);
   }
   state.force_n = whole;
-  state.bounded_n = force.left_out;
+  state.truncated_n = force.truncated;
   state.energy_j = energy_j;
-  state.known = std::isfinite(energy_j) && is_finite(whole);
+  state.has_previous = std::isfinite(energy_j) && is_finite(whole);
 }
 
 }  // namespace catena::haptics

@@ -14,20 +14,20 @@ namespace catena::haptics {
 ///   what the bounds of J leave out, over the hand's motion by the trapezoid rule, and
 ///   the change of E beside -(F + left_out) dx, in ticks where it is more than the trapezoid rule may miss, |d(F + left_out)| |dx|: a proxy
 ///   that jumps (to the next straight piece at a concave corner, to another place as near), a link that lets go or is switched, friction
-struct LeftOut {
-  Vec3 force_n{0.0};    ///< -dE/dx of the last tick, without bounds of J
-  Vec3 bounded_n{0.0};  ///< the part of it that the bounds left out
-  double energy_j = 0;  ///< E of the last tick
-  double work_j = 0;    ///< since the start
-  bool known = false;   ///< the last tick's values mean something
+struct UnaccountedEnergy {
+  Vec3 force_n{0.0};          ///< -dE/dx of the last tick, without bounds of J
+  Vec3 truncated_n{0.0};      ///< the part of it that the bounds left out
+  double energy_j = 0;        ///< E of the last tick
+  double work_j = 0;          ///< since the start
+  bool has_previous = false;  ///< the last tick's values mean something
 };
 
 /// F, after the links of this tick have advanced; `gaps` and `shares_n` are p_i - p_(i-1) and g_i by link.
-PulledBack virtual_work(const Program& program, const Order& order, const Vec3& probe, const std::array<Vec3, kMaxLinks>& gaps,
-                        const std::array<Vec3, kMaxLinks>& shares_n, std::array<LinkState, kMaxLinks>& links,
-                        std::array<LinkScratch, kMaxLinks>& scratch) noexcept;
+PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder& order, const Vec3& probe,
+                                   const std::array<Vec3, kMaxLinks>& gaps, const std::array<Vec3, kMaxLinks>& shares_n,
+                                   std::array<LinkState, kMaxLinks>& links, std::array<LinkScratch, kMaxLinks>& scratch) noexcept;
 
-/// Books what a tick leaves out; `force` as virtual_work returns it, `energy_j` E.
-void book(LeftOut& state, const PulledBack& force, double energy_j, const Vec3& move_m) noexcept;
+/// Books what a tick leaves out; `force` as virtual_work_force returns it, `energy_j` E.
+void accumulate_unaccounted(UnaccountedEnergy& state, const PulledBackForce& force, double energy_j, const Vec3& move_m) noexcept;
 
 }  // namespace catena::haptics

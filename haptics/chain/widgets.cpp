@@ -4,69 +4,70 @@ namespace catena::haptics {
 
 namespace {
 
-std::size_t count_of(const Program& program) noexcept {
-  return std::min(program.widgets.size(), static_cast<std::size_t>(widget::kMaxWidgets));
+std::size_t count_of(const HapticProgram& program) noexcept {
+  return std::min(program.widgets.size(), static_cast<std::size_t>(kMaxWidgets));
 }
 
 // The links of the scene that a ruler's end keeps to, as far as they are switched on.
-void add_along(const widget::Spec& spec, const Program& program, const SwitchState& switches, Order& order) noexcept {
-  for (const int link : spec.along) {
+void add_along(const widget::Spec& spec, const HapticProgram& program, const SwitchState& switches, LinkOrder& order) noexcept {
+  for (const int link : spec.along_links) {
     const auto i = static_cast<std::size_t>(link);
-    if (link >= 0 && i < program.scene_links() && switches.link_on[i] && !order.contains(i)) order.add(i);
+    if (link >= 0 && i < program.scene_link_count() && switches.link_on[i] && !order.contains(i)) order.add(i);
   }
 }
 
 }  // namespace
 
-Order engage_widgets(const Program& program, const WidgetsInput& input, const Order& scene, const SwitchState& switches,
-                     std::array<LinkState, kMaxLinks>& links, WidgetsState& state) noexcept {
+LinkOrder engage_widgets(const HapticProgram& program, const WidgetsInput& input, const LinkOrder& scene, const SwitchState& switches,
+                         std::array<LinkState, kMaxLinks>& links, WidgetsState& state) noexcept {
   const std::size_t count = count_of(program);
-  if (!state.started) state.probe = input.probe;
-  state.engaged = static_cast<std::int8_t>(widget::step_modes({program.widgets.data(), count}, {state.widgets.data(), count},
-                                                              {input.probe, state.probe, input.buttons, state.buttons, state.gone}));
-  state.probe = input.probe;
-  state.buttons = input.buttons;
-  state.started = true;
-  state.gone = false;
+  if (!state.has_probe) state.last_probe = input.probe;
+  state.engaged =
+      static_cast<std::int8_t>(widget::step_modes({program.widgets.data(), count}, {state.widgets.data(), count},
+                                                  {input.probe, state.last_probe, input.buttons, state.last_buttons, state.probe_lost}));
+  state.last_probe = input.probe;
+  state.last_buttons = input.buttons;
+  state.has_probe = true;
+  state.probe_lost = false;
   if (state.engaged < 0) return scene;
 
   const auto w = static_cast<std::size_t>(state.engaged);
-  const widget::Plan plan = widget::plan(program.widgets[w], state.widgets[w], input.probe);
-  Order order = scene;
-  if (plan.alone) order.count = 0, order.links = {}, order.takes = {};
-  if (plan.along) add_along(program.widgets[w], program, switches, order);
+  const widget::ChainRequest plan = widget::plan_chain(program.widgets[w], state.widgets[w], input.probe);
+  LinkOrder order = scene;
+  if (plan.disables_scene_links) order.count = 0, order.links = {}, order.shape_revisions = {};
+  if (plan.uses_along_links) add_along(program.widgets[w], program, switches, order);
   for (int k = 0; k < plan.count; ++k) {
-    const auto slot = static_cast<std::size_t>(plan.slots[static_cast<std::size_t>(k)]);
-    const std::size_t i = program.scene_links() + slot;
+    const auto slot = static_cast<std::size_t>(plan.order[static_cast<std::size_t>(k)]);
+    const std::size_t i = program.scene_link_count() + slot;
     if (!(links[i].shape == plan.shapes[slot])) {
       links[i].shape = plan.shapes[slot];
       links[i].started = false;
-      ++state.takes[slot];
+      ++state.shape_revisions[slot];
     }
-    order.add(i, state.takes[slot]);
+    order.add(i, state.shape_revisions[slot]);
   }
   return order;
 }
 
-void move_widgets(const Program& program, const Vec3& last_proxy, WidgetsState& state) noexcept {
+void move_widgets(const HapticProgram& program, const Vec3& last_proxy, WidgetsState& state) noexcept {
   if (state.engaged < 0) return;
   const auto w = static_cast<std::size_t>(state.engaged);
-  widget::finish(program.widgets[w], state.widgets[w], last_proxy);
+  widget::update_pose(program.widgets[w], state.widgets[w], last_proxy);
 }
 
-void lose_probe(WidgetsState& state) noexcept { state.gone = state.started; }
+void pause_widgets(WidgetsState& state) noexcept { state.probe_lost = state.has_probe; }
 
-void report_widgets(const Program& program, const WidgetsState& state, exchange::HapticState& out) noexcept {
+void report_widgets(const HapticProgram& program, const WidgetsState& state, HapticState& out) noexcept {
   const std::size_t count = count_of(program);
   out.widget_count = static_cast<std::int32_t>(count);
   for (std::size_t i = 0; i < count; ++i) {
     widget::State begun;
-    if (!state.widgets[i].known) widget::begin(program.widgets[i], begun);
-    out.widgets[i] = widget::report_of(state.widgets[i].known ? state.widgets[i] : begun);
+    if (!state.widgets[i].is_initialized) widget::reset_state(program.widgets[i], begun);
+    out.widgets[i] = widget::make_report(state.widgets[i].is_initialized ? state.widgets[i] : begun);
   }
 }
 
-void rebind_widgets(const Program& from, const Program& to, WidgetsState& state) noexcept {
+void rebind_widgets(const HapticProgram& from, const HapticProgram& to, WidgetsState& state) noexcept {
   const WidgetsState old = state;
   state.widgets = {};
   state.engaged = -1;

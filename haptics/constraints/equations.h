@@ -1,7 +1,8 @@
 /// The equations of the paper's sections 4 and 6.1, each once, by its number and in its symbols. The constraints move their proxies by
-/// these; the safeguards around them are the constraints' own. (Eqs. 3 and 4 are steps of an integrator: engine/flow/runge_kutta.h.)
+/// these; the safeguards around them are the constraints' own. (Eqs. 3 and 4 are steps of an integrator:
+/// engine/geometry/flow/runge_kutta.h.)
 ///   x the probe, p the proxy, v the vector field, s the scalar field, s_0 its level, t = v / |v|, n = grad s / |grad s|
-/// Streamlines are followed in arc length: with v replaced by t, the paper's dt is a length, and |v| may be anything but 0.
+/// StreamlineTracing are followed in arc length: with v replaced by t, the paper's dt is a length, and |v| may be anything but 0.
 /// World units. Any thread; no allocation, lock or throw.
 #pragma once
 #include "engine/base/vec.h"
@@ -13,15 +14,15 @@ inline Vec3 linear_step(const Vec3& p, const Vec3& t, double dt) noexcept { retu
 
 /// Eq. 2: dt = v.(x - p) / |v|^2, here t.(x - p): how far along the line the probe is. `e` is x - p. Zero is a local extremum of the
 /// distance between the probe and the streamline.
-inline double way_to_foot(const Vec3& e, const Vec3& t) noexcept { return dot(e, t); }
+inline double distance_to_foot(const Vec3& e, const Vec3& t) noexcept { return dot(e, t); }
 
 /// Eq. 5: p_(j+1) = p_j - grad s (s - s_0) / |grad s|^2, one Newton-Raphson step along the gradient to the level. `distance` is
 /// (s - s_0) / |grad s|.
-inline Vec3 newton_to_level(const Vec3& p, const Vec3& n, double distance) noexcept { return p - n * distance; }
+inline Vec3 newton_step_to_level(const Vec3& p, const Vec3& n, double distance) noexcept { return p - n * distance; }
 
 /// Eq. 6: p_0 = x - grad s (grad s.(x - p)) / |grad s|^2, the probe's projection to the tangent plane at the proxy, here as the move
 /// p_0 - p. `e` is x - p.
-inline Vec3 tangential(const Vec3& e, const Vec3& n) noexcept { return e - n * dot(n, e); }
+inline Vec3 tangential_component(const Vec3& e, const Vec3& n) noexcept { return e - n * dot(n, e); }
 
 /// Eq. 7: tau_f = u tau_min + (1 - u) tau_max. `hard` is the weight of tau_max: 1 - u as printed; |u| in the safe law, by which it is
 /// harder to drag the more normal the field is to the surface, as the paper's text says.

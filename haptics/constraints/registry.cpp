@@ -6,13 +6,13 @@
 #include <new>
 #include <system_error>
 
+#include "haptics/constraints/common/link_schema.h"
+#include "haptics/constraints/common/snap.h"
 #include "haptics/constraints/forces/forces.h"
 #include "haptics/constraints/friction/friction.h"
 #include "haptics/constraints/isosurface/isosurface.h"
 #include "haptics/constraints/mesh/mesh.h"
-#include "haptics/constraints/presets/modes.h"
-#include "haptics/constraints/rules/link_keys.h"
-#include "haptics/constraints/rules/snap.h"
+#include "haptics/constraints/presets/mode_presets.h"
 #include "haptics/constraints/shapes/shapes.h"
 #include "haptics/constraints/streamline/streamline.h"
 
@@ -21,8 +21,8 @@ namespace {
 
 std::string known_types() {
   std::string list;
-  for (const ConstraintType& type : registry()) list += (list.empty() ? "" : ", ") + type.type;
-  for (const ReadyMode& mode : ready_modes()) list += ", " + mode.type;
+  for (const ConstraintType& type : constraint_types()) list += (list.empty() ? "" : ", ") + type.type;
+  for (const ModePreset& mode : mode_presets()) list += ", " + mode.type;
   return list;
 }
 
@@ -79,12 +79,12 @@ Result<std::shared_ptr<const Constraint>> build_of_plugin(const ConstraintType& 
 
 }  // namespace
 
-const std::vector<ConstraintType>& registry() { return list_of_types(); }
+const std::vector<ConstraintType>& constraint_types() { return list_of_types(); }
 
-void add_constraint(ConstraintType type) { list_of_types().push_back(std::move(type)); }
+void register_constraint(ConstraintType type) { list_of_types().push_back(std::move(type)); }
 
-const ConstraintType* find_constraint(std::string_view type) {
-  for (const ConstraintType& entry : registry())
+const ConstraintType* find_constraint_type(std::string_view type) {
+  for (const ConstraintType& entry : constraint_types())
     if (entry.type == type) return &entry;
   return nullptr;
 }
@@ -93,53 +93,54 @@ const schema::Keys& common_keys() {
   static const schema::Keys keys{
       schema::identifier("name", "Names the columns of the tick CSV; unique.").required(),
       schema::text("type", "Which constraint.").required(),
-      schema::number("stiffness", "N/m", "Of the link's spring.").not_negative().or_field().by_default("the coupling's"),
+      schema::number("stiffness", "N/m", "Of the link's spring.").non_negative().or_field().with_default("the coupling's"),
       schema::number("snap", "world", "The link starts apart, and takes hold within this distance of its feature.").positive().or_field(),
       schema::number("release", "world", "The link lets go at this distance of its probe from its proxy.")
           .positive()
           .or_field()
-          .begins("0.05 L")
-          .by_default("2 `snap`, or never"),
+          .with_initial_value("0.05 L")
+          .with_default("2 `snap`, or never"),
       switch_key(),
-      schema::boolean("enabled", "False: off, whatever the switch says.").by_default("true"),
-      indication_key(),
+      schema::boolean("enabled", "False: off, whatever the switch says.").with_default("true"),
+      release_cue_key(),
       align_key()};
   return keys;
 }
 
-schema::Component chain_component() {
-  schema::Component chain{"chain", "What the hand feels: links, in their order.", schema::Component::Shape::list, common_keys(),
-                          exchange::kMaxSceneLinks};
-  for (const ConstraintType& type : registry()) chain.variants.push_back({type.type, described(type), type.keys});
-  for (const ReadyMode& mode : ready_modes()) chain.variants.push_back({mode.type, mode.help + " Paper: " + mode.paper + ".", mode.keys});
+schema::Section chain_component() {
+  schema::Section chain{"chain", "What the hand feels: links, in their order.", schema::Section::Layout::list, common_keys(),
+                        kMaxSceneLinks};
+  for (const ConstraintType& type : constraint_types()) chain.variants.push_back({type.type, described(type), type.keys});
+  for (const ModePreset& mode : mode_presets()) chain.variants.push_back({mode.type, mode.help + " Paper: " + mode.paper + ".", mode.keys});
   return chain;
 }
 
-schema::Key scalar_field_key(const std::string& name) { return schema::named(name, schema::Role::scalar_field, "A scalar field."); }
-schema::Key vector_field_key(const std::string& name) { return schema::named(name, schema::Role::vector_field, "A vector field."); }
+schema::Key scalar_field_key(const std::string& name) { return schema::reference(name, schema::Role::scalar_field, "A scalar field."); }
+schema::Key vector_field_key(const std::string& name) { return schema::reference(name, schema::Role::vector_field, "A vector field."); }
 schema::Key level_key(const std::string& help) {
-  return schema::number("level", "value", help).ranged("in the field's range").as(schema::Role::level).or_widget();
+  return schema::number("level", "value", help).with_range_text("in the field's range").with_role(schema::Role::level).or_widget();
 }
 schema::Key length_key(const std::string& name, const std::string& help) {
-  return schema::number(name, "world", help).not_negative().or_field();
+  return schema::number(name, "world", help).non_negative().or_field();
 }
 schema::Key free_key(const std::string& above) {
-  return schema::word("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".").by_default("\"none\"");
+  return schema::choice("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".")
+      .with_default("\"none\"");
 }
-schema::Key law_key(const std::string& help) { return schema::word("law", {"safe", "printed"}, help).by_default("\"safe\""); }
+schema::Key law_key(const std::string& help) { return schema::choice("law", {"safe", "printed"}, help).with_default("\"safe\""); }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {
   CATENA_CHECK(json::expect_object(link, "a link of the chain"));
   CATENA_TRY(const std::string word, json::require_string(link, "type"));
-  const ConstraintType* type = find_constraint(word);
+  const ConstraintType* type = find_constraint_type(word);
   if (!type)
     return json::error_at(
         *link.find("type"),
         fmt::format("unknown constraint type \"{}\"; expected one of {}, or one that a --plugin brings", word, known_types()));
-  CATENA_CHECK(json::only_keys(link, schema::names_of(common_keys(), type->keys)));
+  CATENA_CHECK(json::check_known_keys(link, schema::key_names(common_keys(), type->keys)));
   CATENA_TRY(std::shared_ptr<const Constraint> made,
              type->plugin.empty() ? type->build(link, context) : build_of_plugin(*type, link, context));
-  return wrap_snap(link, type->releases_itself, std::move(made), context);
+  return wrap_snap(link, type->has_own_release, std::move(made), context);
 }
 
 }  // namespace catena::haptics

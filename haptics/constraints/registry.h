@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "engine/base/json.h"
-#include "engine/curves/points.h"
-#include "engine/flow/curve.h"
-#include "engine/mesh/mesh.h"
+#include "engine/geometry/curves/point_set.h"
+#include "engine/geometry/flow/curve.h"
+#include "engine/geometry/mesh/mesh.h"
 #include "engine/schema/key.h"
 #include "haptics/chain/constraint.h"
 
@@ -38,23 +38,23 @@ struct ConstraintType {
   schema::Keys keys;  ///< its own keys, beside common_keys()
   /// Makes the constraint of a link whose keys have been checked. Off the tick; an error names the link's line.
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
-  bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
+  bool has_own_release = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
   bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
-  std::string feels{};           ///< the part of a scene whose items a link of this type lies on, "isosurfaces"; empty: none
+  std::string scene_section{};   ///< the part of a scene whose items a link of this type lies on, "isosurfaces"; empty: none
   std::string plugin{};          ///< the file of the plug-in that brought it (haptics/plugin/plugin.h), as loading it sets it; empty: none
 };
 
 /// All types, in the order of the documents. Any thread once programs have added theirs.
-const std::vector<ConstraintType>& registry();
+const std::vector<ConstraintType>& constraint_types();
 /// The type of that word; null: none.
-const ConstraintType* find_constraint(std::string_view type);
+const ConstraintType* find_constraint_type(std::string_view type);
 /// One more type, of a program that brings its own constraint. At start-up, before anything reads a scene.
-void add_constraint(ConstraintType type);
+void register_constraint(ConstraintType type);
 
 /// The keys that every link takes: name, type, stiffness, on, enabled, indicate, align, snap, release.
 const schema::Keys& common_keys();
 /// What the scene's "chain" may say: all types and the ready-made modes (modes.h).
-schema::Component chain_component();
+schema::Section chain_component();
 
 // keys that several types have
 /// A key that names a scalar field, required.

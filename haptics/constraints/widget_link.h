@@ -12,6 +12,6 @@ namespace catena::haptics {
 std::shared_ptr<const Constraint> widget_constraint();
 
 /// Appends the four links that widgets share, with the coupling's stiffness, and says so in first_widget_link.
-void add_widget_links(Program& program);
+void add_widget_links(HapticProgram& program);
 
 }  // namespace catena::haptics

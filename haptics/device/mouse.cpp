@@ -2,17 +2,17 @@
 
 namespace catena::haptics {
 
-DeviceCapabilities MouseDevice::nominal() {
+DeviceCapabilities MouseDevice::nominal_capabilities() {
   DeviceCapabilities out;
   out.name = "mouse";
   out.has_orientation = true;
-  out.buttons = 3;
+  out.button_count = 3;
   return out;
 }
 
 MouseDevice::MouseDevice(const Vec3& start_m, const MouseParameters& parameters)
-    : capabilities_(nominal()), eased_(start_m, parameters.smoothing_s, parameters.rate_hz) {
-  newest_.position_m = start_m;
+    : capabilities_(nominal_capabilities()), filter_(start_m, parameters.smoothing_s, parameters.rate_hz) {
+  latest_pose_.position_m = start_m;
 }
 
 void MouseDevice::move_to(const Vec3& position_m, std::uint32_t buttons, const Quat& orientation) {
@@ -21,12 +21,12 @@ void MouseDevice::move_to(const Vec3& position_m, std::uint32_t buttons, const Q
 }
 
 DeviceInput MouseDevice::read() noexcept {
-  if (poses_.take()) newest_ = poses_.front();
-  eased_.follow(newest_.position_m, newest_.orientation);
+  if (poses_.acquire()) latest_pose_ = poses_.front();
+  filter_.step_toward(latest_pose_.position_m, latest_pose_.orientation);
   DeviceInput input;
-  input.position_m = eased_.position_m();
-  input.orientation = eased_.orientation();
-  input.buttons = newest_.buttons;
+  input.position_m = filter_.position_m();
+  input.orientation = filter_.orientation();
+  input.buttons = latest_pose_.buttons;
   return input;
 }
 

@@ -9,14 +9,14 @@ RecordedPath::RecordedPath(std::vector<Sample> samples, bool has_orientation) : 
   CATENA_ASSERT(!samples_.empty());
   capabilities_.name = "recorded path";
   capabilities_.has_orientation = has_orientation;
-  capabilities_.buttons = 32;
+  capabilities_.button_count = 32;
 }
 
 Result<std::unique_ptr<Device>> RecordedPath::open(const std::string& path) {
-  CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(path));
+  CATENA_TRY(const std::vector<ProbePathRow> rows, read_probe_path(path));
   std::vector<Sample> samples;
   samples.reserve(rows.size());
-  for (const ProbeRow& row : rows) samples.push_back({row.t_s, row.position, row.buttons, row.orientation});
+  for (const ProbePathRow& row : rows) samples.push_back({row.t_s, row.position, row.buttons, row.orientation});
   return std::unique_ptr<Device>(std::make_unique<RecordedPath>(std::move(samples), rows.front().has_orientation));
 }
 
@@ -27,7 +27,7 @@ DeviceInput RecordedPath::read() noexcept {
   input.position_m = sample.position;
   input.orientation = sample.orientation;
   input.buttons = sample.buttons;
-  input.recorded = true;
+  input.is_recorded = true;
   input.t_s = sample.t_s;
   return input;
 }

@@ -15,7 +15,7 @@ class RecordedPath final : public Device {
     double t_s = 0;
     Vec3 position{0.0};
     std::uint32_t buttons = 0;
-    Quat orientation{kNoRotation};
+    Quat orientation{kIdentityRotation};
   };
   explicit RecordedPath(std::vector<Sample> samples, bool has_orientation = false);
   /// `t,x,y,z[,buttons][,qw,qx,qy,qz]`; the error names file and line.

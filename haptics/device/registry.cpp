@@ -6,11 +6,11 @@
 #include "engine/base/numbers.h"
 #include "haptics/device/controller.h"
 #include "haptics/device/device.h"
+#include "haptics/device/device_mapping.h"
 #include "haptics/device/emulator/emulated_transport.h"
-#include "haptics/device/hand_map.h"
 #include "haptics/device/mouse.h"
 #include "haptics/device/recorded_path.h"
-#include "haptics/device/simulated_hand.h"
+#include "haptics/device/simulated_device.h"
 #include "haptics/device/spacemouse.h"
 #include "haptics/device/usb/falcon.h"
 
@@ -32,29 +32,29 @@ Result<std::unique_ptr<Device>> open_null(const std::string& detail, const Devic
 
 // "simulated": the hand rests at 0; "simulated:PATH.csv" (t,x,y,z[,buttons], metres of hand): it follows that path
 Result<std::unique_ptr<Device>> open_simulated(const std::string& detail, const DeviceSettings& settings) {
-  HandParameters p = simulated_device();
+  SimulatedDeviceParameters p = desktop_device_parameters();
   p.period_s = 1 / settings.rate_hz;
   p.mass_kg = settings.mass_kg.value_or(p.mass_kg);
   p.device_damping_ns_per_m = settings.damping_ns_per_m.value_or(p.device_damping_ns_per_m);
   p.friction_n = settings.friction_n.value_or(p.friction_n);
   p.encoder_step_m = settings.encoder_step_m.value_or(p.encoder_step_m);
   p.delay_s = settings.delay_s.value_or(p.delay_s);
-  if (p.delay_s > HandParameters::kMaxDelay * p.period_s)
+  if (p.delay_s > SimulatedDeviceParameters::kMaxDelayPeriods * p.period_s)
     return Error{"simulated: a delay of " + to_text(p.delay_s) + " s is too long; at most " +
-                 to_text(HandParameters::kMaxDelay * p.period_s) + " s (" + std::to_string(HandParameters::kMaxDelay) +
-                 " periods) were expected"};
-  std::vector<SimulatedHand::Waypoint> path{{}};
+                 to_text(SimulatedDeviceParameters::kMaxDelayPeriods * p.period_s) + " s (" +
+                 std::to_string(SimulatedDeviceParameters::kMaxDelayPeriods) + " periods) were expected"};
+  std::vector<SimulatedDevice::Waypoint> path{{}};
   if (!detail.empty()) {
-    CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(detail));
+    CATENA_TRY(const std::vector<ProbePathRow> rows, read_probe_path(detail));
     path.clear();
-    for (const ProbeRow& row : rows) path.push_back({row.t_s, row.position, row.buttons});
+    for (const ProbePathRow& row : rows) path.push_back({row.t_s, row.position, row.buttons});
   }
-  return std::unique_ptr<Device>(std::make_unique<SimulatedHand>(std::move(path), p));
+  return std::unique_ptr<Device>(std::make_unique<SimulatedDevice>(std::move(path), p));
 }
 
 Result<std::unique_ptr<Device>> open_simulated_tool(const std::string& detail, const DeviceSettings& settings) {
   CATENA_TRY(std::unique_ptr<Device> hand, open_simulated(detail, settings));
-  ToolParameters parameters;
+  SimulatedToolParameters parameters;
   parameters.period_s = 1 / settings.rate_hz;
   return std::unique_ptr<Device>(std::make_unique<SimulatedTool>(std::move(hand), std::vector<SimulatedTool::Waypoint>{{}}, parameters));
 }
@@ -88,7 +88,7 @@ const std::vector<DeviceType>& types() {
          to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});
        },
        open_null},
-      {"simulated", [] { return SimulatedHand({{}}, simulated_device()).capabilities(); },
+      {"simulated", [] { return SimulatedDevice({{}}, desktop_device_parameters()).capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back(
              {"simulated", true,
@@ -105,20 +105,20 @@ const std::vector<DeviceType>& types() {
          to.push_back({"recorded:PATH.csv", true, "a probe path t,x,y,z[,buttons][,qw,qx,qy,qz]; stays at its end"});
        },
        open_recorded},
-      {"mouse", MouseDevice::nominal,
+      {"mouse", MouseDevice::nominal_capabilities,
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"mouse", false, "mouse and keyboard, in the window of catena view"});
        },
        open_mouse},
-      {"controller", Controller::nominal,
+      {"controller", TrackedController::nominal_capabilities,
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"controller", false, "a headset's controller, with catena view --xr: it is tracked and vibrates"});
        },
        open_controller},
-      {"spacemouse", SpaceMouse::nominal,
+      {"spacemouse", SpaceMouse::nominal_capabilities,
        [](std::vector<DeviceInfo>& to) {
-         const bool there = SpaceMouse::daemon_is_there();
-         to.push_back({"spacemouse", there, there ? "3Dconnexion SpaceMouse through spacenavd" : SpaceMouse::daemon_missing()});
+         const bool there = SpaceMouse::is_daemon_available();
+         to.push_back({"spacemouse", there, there ? "3Dconnexion SpaceMouse through spacenavd" : SpaceMouse::daemon_missing_hint()});
        },
        open_spacemouse},
   };
@@ -133,23 +133,23 @@ const DeviceType* find(const std::string& type) {
 
 }  // namespace
 
-std::string device_type_of(const std::string& name) { return name.substr(0, name.find(':')); }
+std::string parse_device_type(const std::string& name) { return name.substr(0, name.find(':')); }
 
 bool is_hardware(const std::string& type) { return type == "falcon" || type == "spacemouse"; }
 
-bool has_place(const std::string& type) {
+bool is_stationary(const std::string& type) {
   return type == "falcon" || type == "emulated-falcon" || type == "simulated" || type == "simulated-6dof";
 }
 
-std::string table_of_device(const std::string& name) {
+std::string force_table_path(const std::string& name) {
   const std::size_t colon = name.find(':');
-  return colon != std::string::npos && device_type_of(name) == "emulated-falcon" ? table_of_emulated_falcon(name.substr(colon + 1))
-                                                                                 : std::string();
+  return colon != std::string::npos && parse_device_type(name) == "emulated-falcon" ? emulated_falcon_table_path(name.substr(colon + 1))
+                                                                                    : std::string();
 }
 
 bool is_device_type(const std::string& type) { return find(type) != nullptr; }
 
-std::string device_types() {
+std::string device_type_names() {
   std::string out;
   for (const DeviceType& type : types()) out += (out.empty() ? "" : ", ") + std::string(type.name);
   return out;
@@ -158,7 +158,7 @@ std::string device_types() {
 std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> found;
   for (const DeviceType& type : types()) type.list(found);
-  std::stable_partition(found.begin(), found.end(), [](const DeviceInfo& info) { return info.present; });
+  std::stable_partition(found.begin(), found.end(), [](const DeviceInfo& info) { return info.available; });
   return found;
 }
 
@@ -169,13 +169,13 @@ DeviceCapabilities nominal_capabilities(const std::string& type) {
 
 Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceSettings& settings) {
   const std::size_t colon = name.find(':');
-  const DeviceType* found = find(device_type_of(name));
-  if (found == nullptr) return Error{"there is no device \"" + name + "\"; one of " + device_types() + " was expected"};
+  const DeviceType* found = find(parse_device_type(name));
+  if (found == nullptr) return Error{"there is no device \"" + name + "\"; one of " + device_type_names() + " was expected"};
   if (colon != std::string::npos && colon + 1 == name.size())
     return Error{"device \"" + name + "\" has nothing after its colon; \"" + found->name + "\" or \"" + found->name +
                  ":DETAIL\" was expected"};
   CATENA_TRY(std::unique_ptr<Device> device, found->open(colon == std::string::npos ? std::string() : name.substr(colon + 1), settings));
-  return with_hand_map(std::move(device), settings);
+  return with_device_mapping(std::move(device), settings);
 }
 
 }  // namespace catena::haptics

@@ -5,26 +5,26 @@
 #include <string>
 #include <vector>
 
-#include "haptics/device/settings.h"
+#include "haptics/device/device_settings.h"
 
 namespace catena::haptics {
 
 /// One device that could be used.
 struct DeviceInfo {
-  std::string name;     ///< what `open_device` takes
-  bool present = true;  ///< it can be opened now
-  std::string detail;   ///< one line: what it is, or why it cannot be opened
+  std::string name;       ///< what `open_device` takes
+  bool available = true;  ///< it can be opened now
+  std::string detail;     ///< one line: what it is, or why it cannot be opened
 };
 
-std::string device_type_of(const std::string& name);  ///< TYPE
+std::string parse_device_type(const std::string& name);  ///< TYPE
 /// The file that the device of this name writes; empty: none.
-std::string table_of_device(const std::string& name);
+std::string force_table_path(const std::string& name);
 /// Whether open_device() knows the type.
 bool is_device_type(const std::string& type);
 bool is_hardware(const std::string& type);  ///< a thing on the desk: it may not be plugged in
 /// Its metres are of a thing that stands still on the desk: it can be registered to the room of a headset.
-bool has_place(const std::string& type);
-std::string device_types();  ///< "falcon, mouse, null, ...": for messages
+bool is_stationary(const std::string& type);
+std::string device_type_names();  ///< "falcon, mouse, null, ...": for messages
 /// Every device that could be used, present ones first. Looks at the USB bus.
 std::vector<DeviceInfo> list_devices();
 /// What a device of this type can do, before it is opened.

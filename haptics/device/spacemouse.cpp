@@ -51,42 +51,42 @@ bool is_socket(const char* path) {
 
 }  // namespace
 
-SpaceMouseRates spacemouse_rates(const SpaceMouseCounts& counts, const SpaceMouseParameters& parameters) noexcept {
+SpaceMouseRates compute_spacemouse_rates(const SpaceMouseCounts& counts, const SpaceMouseParameters& parameters) noexcept {
   const auto axis = [&](std::size_t i) { return share(counts.axes[i], parameters.dead_zone_counts); };
   return {Vec3(axis(0), axis(1), -axis(2)) * parameters.speed_m_per_s, Vec3(axis(3), axis(4), -axis(5)) * parameters.turn_rad_per_s};
 }
 
-DeviceCapabilities SpaceMouse::nominal() {
+DeviceCapabilities SpaceMouse::nominal_capabilities() {
   DeviceCapabilities out;
   out.name = "SpaceMouse";
   out.has_orientation = true;
-  out.buttons = 2;
+  out.button_count = 2;
   return out;
 }
 
 // Where libspnav looks: its environment variable, a path in /etc/spnavrc, the daemon's own.
-bool SpaceMouse::daemon_is_there() {
+bool SpaceMouse::is_daemon_available() {
   struct stat about {};
   return is_socket(std::getenv("SPNAV_SOCKET")) || is_socket("/var/run/spnav.sock") || stat("/etc/spnavrc", &about) == 0;
 }
 
-const char* SpaceMouse::daemon_missing() { return "spacenavd is not running: install and start it (apt install spacenavd)"; }
+const char* SpaceMouse::daemon_missing_hint() { return "spacenavd is not running: install and start it (apt install spacenavd)"; }
 
 Result<std::unique_ptr<Device>> SpaceMouse::open(const SpaceMouseParameters& parameters) {
-  if (!daemon_is_there()) return Error{daemon_missing()};
+  if (!is_daemon_available()) return Error{daemon_missing_hint()};
   if (in_use.exchange(true)) return Error{"the SpaceMouse is open already; one at a time was expected"};
   if (!connect_daemon()) {
     in_use = false;
-    return Error{daemon_missing()};
+    return Error{daemon_missing_hint()};
   }
   auto device = std::unique_ptr<SpaceMouse>(new SpaceMouse(parameters));
   CATENA_TRY(device->thread_, start_thread("the SpaceMouse", [mouse = device.get()] { mouse->listen(); }));
   return std::unique_ptr<Device>(std::move(device));
 }
 
-SpaceMouse::SpaceMouse(const SpaceMouseParameters& parameters) : parameters_(parameters), capabilities_(nominal()) {
+SpaceMouse::SpaceMouse(const SpaceMouseParameters& parameters) : parameters_(parameters), capabilities_(nominal_capabilities()) {
   CATENA_ASSERT(parameters.rate_hz > 0 && parameters.dead_zone_counts >= 0 && parameters.dead_zone_counts < kFullCounts);
-  say(true);
+  publish(true);
 }
 
 SpaceMouse::~SpaceMouse() {
@@ -97,14 +97,14 @@ SpaceMouse::~SpaceMouse() {
 }
 
 DeviceInput SpaceMouse::read() noexcept {
-  counts_.take();
+  counts_.acquire();
   const SpaceMouseCounts& counts = counts_.front();
   DeviceInput input;
   if (counts.connected) {
-    const SpaceMouseRates rates = spacemouse_rates(counts, parameters_);
+    const SpaceMouseRates rates = compute_spacemouse_rates(counts, parameters_);
     const double dt = 1 / parameters_.rate_hz, most = 0.5 * capabilities_.workspace_m;
     for (int a = 0; a < 3; ++a) position_m_[a] = std::clamp(position_m_[a] + rates.velocity_m_per_s[a] * dt, -most, most);
-    if (max_abs(rates.turn_rad_per_s) > 0) orientation_ = normalised(rotation_of(rates.turn_rad_per_s * dt) * orientation_);
+    if (max_abs(rates.turn_rad_per_s) > 0) orientation_ = normalized(rotation_from_vector(rates.turn_rad_per_s * dt) * orientation_);
   } else {
     input.status = DeviceStatus::lost;
   }
@@ -114,14 +114,14 @@ DeviceInput SpaceMouse::read() noexcept {
   return input;
 }
 
-void SpaceMouse::say(bool connected) {
-  if (!connected) now_ = {};
-  now_.connected = connected;
-  counts_.publish(now_);
+void SpaceMouse::publish(bool connected) {
+  if (!connected) current_counts_ = {};
+  current_counts_.connected = connected;
+  counts_.publish(current_counts_);
 }
 
 // Whole packets only: libspnav takes a part of one for the whole, and the end of the connection for silence.
-bool SpaceMouse::take_events() {
+bool SpaceMouse::receive_events() {
   char packet[kPacketBytes];
   while (!stop_) {
     const auto bytes = recv(spnav_fd(), packet, sizeof packet, MSG_PEEK | MSG_DONTWAIT);
@@ -134,17 +134,17 @@ bool SpaceMouse::take_events() {
     spnav_event event{};
     const int type = spnav_poll_event(&event);
     if (type == SPNAV_EVENT_MOTION) {
-      now_.axes = {event.motion.x, event.motion.y, event.motion.z, event.motion.rx, event.motion.ry, event.motion.rz};
+      current_counts_.axes = {event.motion.x, event.motion.y, event.motion.z, event.motion.rx, event.motion.ry, event.motion.rz};
     } else if (type == SPNAV_EVENT_BUTTON) {
       const auto bit = event.button.bnum >= 0 && event.button.bnum < 32 ? 1u << event.button.bnum : 0u;
-      now_.buttons = event.button.press != 0 ? now_.buttons | bit : now_.buttons & ~bit;
+      current_counts_.buttons = event.button.press != 0 ? current_counts_.buttons | bit : current_counts_.buttons & ~bit;
     } else if (type == SPNAV_EVENT_DEV) {
-      now_.axes = {};  // plugged or unplugged behind the daemon: it no longer says what is held
-      now_.buttons = 0;
+      current_counts_.axes = {};  // plugged or unplugged behind the daemon: it no longer says what is held
+      current_counts_.buttons = 0;
     } else {
       continue;
     }
-    say(true);
+    publish(true);
   }
   return true;
 }
@@ -154,15 +154,15 @@ void SpaceMouse::listen() {
   for (int waits = 0; !stop_; ++waits) {
     if (connected) {
       pollfd waiting{spnav_fd(), POLLIN, 0};
-      if (poll(&waiting, 1, kWait_ms) > 0 && !take_events()) {
+      if (poll(&waiting, 1, kWait_ms) > 0 && !receive_events()) {
         spnav_close();
-        say(connected = false);
+        publish(connected = false);
         waits = 0;
       }
       continue;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(kWait_ms));
-    if (waits % kLookAgain == 0 && daemon_is_there() && connect_daemon()) say(connected = true);
+    if (waits % kLookAgain == 0 && is_daemon_available() && connect_daemon()) publish(connected = true);
   }
 }
 

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "engine/base/result.h"
-#include "engine/exchange/triple_buffer.h"
+#include "engine/base/triple_buffer.h"
 #include "haptics/device/device.h"
 
 namespace catena::haptics {
@@ -33,14 +33,14 @@ struct SpaceMouseCounts {
 struct SpaceMouseRates {
   Vec3 velocity_m_per_s{0.0}, turn_rad_per_s{0.0};
 };
-SpaceMouseRates spacemouse_rates(const SpaceMouseCounts& counts, const SpaceMouseParameters& parameters) noexcept;
+SpaceMouseRates compute_spacemouse_rates(const SpaceMouseCounts& counts, const SpaceMouseParameters& parameters) noexcept;
 
 class SpaceMouse final : public Device {
  public:
   static Result<std::unique_ptr<Device>> open(const SpaceMouseParameters& parameters);
-  static DeviceCapabilities nominal();
-  static bool daemon_is_there();        ///< its socket exists
-  static const char* daemon_missing();  ///< what to do then
+  static DeviceCapabilities nominal_capabilities();
+  static bool is_daemon_available();         ///< its socket exists
+  static const char* daemon_missing_hint();  ///< what to do then
   ~SpaceMouse() override;
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
@@ -49,20 +49,20 @@ class SpaceMouse final : public Device {
 
  private:
   explicit SpaceMouse(const SpaceMouseParameters& parameters);
-  void listen();       ///< the thread
-  bool take_events();  ///< false: the daemon has gone
-  void say(bool connected);
+  void listen();          ///< the thread
+  bool receive_events();  ///< false: the daemon has gone
+  void publish(bool connected);
 
   SpaceMouseParameters parameters_;
   DeviceCapabilities capabilities_;
-  exchange::TripleBuffer<SpaceMouseCounts> counts_;
+  TripleBuffer<SpaceMouseCounts> counts_;
 
   // haptic thread
   Vec3 position_m_{0.0};
-  Quat orientation_{kNoRotation};
+  Quat orientation_{kIdentityRotation};
 
   // the device's thread
-  SpaceMouseCounts now_;
+  SpaceMouseCounts current_counts_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

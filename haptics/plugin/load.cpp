@@ -17,10 +17,10 @@
 #include <filesystem>
 
 #include "engine/base/hash.h"
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 #include "engine/base/text.h"
-#include "haptics/constraints/presets/modes.h"
-#include "haptics/plugin/file.h"
+#include "haptics/constraints/presets/mode_presets.h"
+#include "haptics/plugin/plugin_file.h"
 
 namespace catena::haptics::plugin {
 namespace {
@@ -31,8 +31,8 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
 constexpr unsigned kTrialSeconds = 10;
 constexpr int kThrew = 100;  // exit code of a trial
 
-std::vector<Loaded>& list_of_loaded() {
-  static std::vector<Loaded> list;
+std::vector<LoadedPlugin>& list_of_loaded() {
+  static std::vector<LoadedPlugin> list;
   return list;
 }
 
@@ -47,10 +47,10 @@ std::string changed_by_others(const fs::path& path) {
   return group || (about.st_mode & S_IWOTH) != 0 ? "may be written by others" : "";
 }
 
-Outcome check_statement(const Statement& stated) {
-  static constexpr Statement kOwn = statement(CATENA_PLUGIN_INTERFACE);
+Outcome check_statement(const AbiStamp& stated) {
+  static constexpr AbiStamp kOwn = make_abi_stamp(CATENA_PLUGIN_INTERFACE);
   const auto other = [](const char* what, const char* theirs, const char* own) {
-    return Error{std::string("was built ") + what + " " + printable(theirs) + ", this program " + what + " " + own +
+    return Error{std::string("was built ") + what + " " + sanitize_for_terminal(theirs) + ", this program " + what + " " + own +
                  "; build the plug-in again as this program was"};
   };
   if (std::strcmp(stated.headers, kOwn.headers) != 0) return other("for Catena", stated.headers, kOwn.headers);
@@ -68,14 +68,14 @@ Outcome check_type(const ConstraintType& type, const std::vector<std::string>& b
   if (!is_word(type.type))
     return Error{"gives a type the name " + in_quotes(type.type) + "; small letters, digits and _ were expected, a letter first"};
   const std::string named = "gives the type " + in_quotes(type.type);
-  const ConstraintType* const known = find_constraint(type.type);
+  const ConstraintType* const known = find_constraint_type(type.type);
   if (known != nullptr && !known->plugin.empty())
-    return Error{named + ", which the plug-in " + printable(known->plugin) + " has given already; another name was expected"};
-  if (known != nullptr || find_ready_mode(type.type) != nullptr)
+    return Error{named + ", which the plug-in " + sanitize_for_terminal(known->plugin) + " has given already; another name was expected"};
+  if (known != nullptr || find_mode_preset(type.type) != nullptr)
     return Error{named + ", which Catena has already; another name was expected"};
   if (std::find(before.begin(), before.end(), type.type) != before.end()) return Error{named + " twice; another name was expected"};
   if (type.build == nullptr) return Error{named + " without a function that builds it; ConstraintType::build was expected"};
-  std::vector<std::string_view> keys = schema::names_of(common_keys());
+  std::vector<std::string_view> keys = schema::key_names(common_keys());
   for (const schema::Key& key : type.keys) {
     if (!is_word(key.name) || std::find(keys.begin(), keys.end(), key.name) != keys.end())
       return Error{named + " the key " + in_quotes(key.name) + "; a name that no other key of the link has was expected"};
@@ -85,12 +85,12 @@ Outcome check_type(const ConstraintType& type, const std::vector<std::string>& b
 }
 
 /// Its types, all of them or none.
-Result<std::vector<ConstraintType>> types_of(const Entry& entry) {
+Result<std::vector<ConstraintType>> types_of(const PluginEntry& entry) {
   std::vector<ConstraintType> types;
   try {
-    entry.add(types);
+    entry.add_types(types);
   } catch (const std::exception& error) {
-    return Error{"threw an exception (" + printable(error.what()) + "); its types were expected"};
+    return Error{"threw an exception (" + sanitize_for_terminal(error.what()) + "); its types were expected"};
   } catch (...) {
     return Error{"threw an exception; its types were expected"};
   }
@@ -132,7 +132,7 @@ Outcome try_library(const std::string& path) {
 }
 
 /// Runs the library's own initialisers.
-Result<const Entry*> open_library(const std::string& path, const Statement& stated) {
+Result<const PluginEntry*> open_library(const std::string& path, const AbiStamp& stated) {
   std::fenv_t rounding;  // a library that was linked with -ffast-math turns small numbers to 0 in the whole thread
   std::fegetenv(&rounding);
   void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
@@ -140,39 +140,40 @@ Result<const Entry*> open_library(const std::string& path, const Statement& stat
   if (library == nullptr) {
     std::string why = ::dlerror();
     if (why.starts_with(path + ": ")) why.erase(0, path.size() + 2);
-    return Error{"cannot be loaded (" + printable(why) + "); what the headers of the target catena::plugin declare was expected"};
+    return Error{"cannot be loaded (" + sanitize_for_terminal(why) +
+                 "); what the headers of the target catena::plugin declare was expected"};
   }
-  const auto* const entry = static_cast<const Entry*>(::dlsym(library, "catena_plugin"));
-  if (entry == nullptr || entry->add == nullptr || std::memcmp(&entry->statement, &stated, sizeof stated) != 0)
+  const auto* const entry = static_cast<const PluginEntry*>(::dlsym(library, "catena_plugin"));
+  if (entry == nullptr || entry->add_types == nullptr || std::memcmp(&entry->abi_stamp, &stated, sizeof stated) != 0)
     return Error{"has another entry than its file states; the one of CATENA_CONSTRAINT_PLUGIN was expected"};
   return entry;
 }
 
 Outcome load_checked(const fs::path& path) {
-  CATENA_TRY(const std::string bytes, read_text(path.string(), "a plug-in", kMostBytes));
+  CATENA_TRY(const std::string bytes, read_text_file(path.string(), "a plug-in", kMostBytes));
   const auto failed = [&](const std::string& why) { return Error{one_line(path.string() + ": " + why)}; };
-  const std::uint64_t hash = hash_of(bytes.data(), bytes.size());
-  for (const Loaded& other : loaded())
+  const std::uint64_t hash = hash_bytes(bytes.data(), bytes.size());
+  for (const LoadedPlugin& other : loaded_plugins())
     if (other.hash == hash) return Done{};
   for (const fs::path& place : {path, path.parent_path()})
     if (const std::string why = changed_by_others(place); !why.empty())
       return Error{one_line(place.string() + ": " + why + "; a plug-in that only you and root may change was expected, in such a folder")};
   const auto file = read_file(bytes);
   if (!file) return failed(file.error().message);
-  if (const Outcome same = check_statement(file->statement); !same) return failed(same.error().message);
+  if (const Outcome same = check_statement(file->abi_stamp); !same) return failed(same.error().message);
   if (file->links_catena) return failed("links libcatena.so, a second Catena; the target catena::plugin was expected in its place");
-  if (const Outcome tried = try_library(path.string()); !tried) return caused_by(failed(tried.error().message), tried.error());
-  const auto entry = open_library(path.string(), file->statement);
+  if (const Outcome tried = try_library(path.string()); !tried) return with_cause(failed(tried.error().message), tried.error());
+  const auto entry = open_library(path.string(), file->abi_stamp);
   if (!entry) return failed(entry.error().message);
   auto types = types_of(**entry);
   if (!types) return failed(types.error().message);
-  Loaded plugin{path.filename().string(), hash, {}};
+  LoadedPlugin plugin{path.filename().string(), hash, {}};
   for (ConstraintType& type : *types) {
     plugin.types.push_back(type.type);
     type.help = one_line(type.help);
     type.paper = one_line(type.paper);
     type.plugin = plugin.file;
-    add_constraint(std::move(type));
+    register_constraint(std::move(type));
   }
   list_of_loaded().push_back(std::move(plugin));
   return Done{};
@@ -180,9 +181,9 @@ Outcome load_checked(const fs::path& path) {
 
 }  // namespace
 
-const std::vector<Loaded>& loaded() { return list_of_loaded(); }
+const std::vector<LoadedPlugin>& loaded_plugins() { return list_of_loaded(); }
 
-std::string refusal() {
+std::string refusal_reason() {
   uid_t real = 0, effective = 0, saved = 0;
   if (::getresuid(&real, &effective, &saved) != 0 || real == 0 || effective == 0 || saved == 0)
     return "nothing is loaded as root; run it as yourself";
@@ -192,7 +193,7 @@ std::string refusal() {
 }
 
 Outcome load(const std::string& path) {
-  if (const std::string why = refusal(); !why.empty()) return Error{one_line(path + ": " + why)};
+  if (const std::string why = refusal_reason(); !why.empty()) return Error{one_line(path + ": " + why)};
   std::error_code code;
   const fs::path whole = fs::canonical(path, code);  // an absolute name, so that no library's search path has a say
   return load_checked(code ? fs::path(path) : whole);

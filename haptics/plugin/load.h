@@ -1,5 +1,5 @@
 /// Loads plug-ins: shared libraries with constraints of a user's own (haptics/plugin/plugin.h). Which ones, the program decides
-/// (engine/app/plugins.h). At start-up, in the first thread, before anything reads a scene.
+/// (engine/app/cli/plugins.h). At start-up, in the first thread, before anything reads a scene.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,18 +10,18 @@
 namespace catena::haptics::plugin {
 
 /// One that is loaded.
-struct Loaded {
+struct LoadedPlugin {
   std::string file;                ///< its name, without its folder
   std::uint64_t hash = 0;          ///< of the file (engine/base/hash.h): tells builds apart, and is no proof against intent
   std::vector<std::string> types;  ///< the words that it gave to scenes
 };
 
 /// Those that are loaded, in their order.
-const std::vector<Loaded>& loaded();
+const std::vector<LoadedPlugin>& loaded_plugins();
 
 /// Why this process may load none, as a clause; empty: it may. None is loaded as root, or by a program that has rights which its caller
 /// lacks (set-id, file capabilities): its caller would run code with them.
-std::string refusal();
+std::string refusal_reason();
 
 /// Loads a file, and adds its types to the registry. It stays loaded to the end. The same file again is not loaded twice.
 /// One sentence otherwise, and no type is added: no regular file; a file, or its folder, that others may write or that is somebody else's;

@@ -20,13 +20,13 @@
 namespace catena::haptics::plugin {
 
 /// What must be the same in a plug-in and in the program, as text that ends with zeros: plain bytes, of which no loader changes any.
-struct Statement {
-  char mark[16] = "Catena plug-in";  ///< tells it from other data
-  char headers[64] = {};             ///< Catena's version, and a hash of all public headers
-  char compiler[192] = {};           ///< the compiler, its library and the sizes of what crosses, as the options of the build leave them
+struct AbiStamp {
+  char magic[16] = "Catena plug-in";  ///< tells it from other data
+  char headers[64] = {};              ///< Catena's version, and a hash of all public headers
+  char compiler[192] = {};            ///< the compiler, its library and the sizes of what crosses, as the options of the build leave them
 };
 
-/// Appends words to a text of a Statement. One that does not fit does not compile.
+/// Appends words to a text of a AbiStamp. One that does not fit does not compile.
 template <std::size_t N>
 constexpr void append(char (&text)[N], std::string_view words) {
   std::size_t end = std::string_view(text).size();
@@ -45,8 +45,8 @@ constexpr void append(char (&text)[N], unsigned long number) {
 }
 
 /// The statement of what is being compiled. `headers`: CATENA_PLUGIN_INTERFACE, which the build of Catena defines.
-consteval Statement statement(std::string_view headers) {
-  Statement out;
+consteval AbiStamp make_abi_stamp(std::string_view headers) {
+  AbiStamp out;
   append(out.headers, headers);
 #ifdef __clang__
   append(out.compiler, "Clang");
@@ -81,22 +81,22 @@ consteval Statement statement(std::string_view headers) {
 }
 
 /// The entry: the statement, and where the types come from.
-struct Entry {
-  Statement statement;                              ///< read from the file first
-  void (*add)(std::vector<ConstraintType>& types);  ///< appends the plug-in's types; may throw
+struct PluginEntry {
+  AbiStamp abi_stamp;                                     ///< read from the file first
+  void (*add_types)(std::vector<ConstraintType>& types);  ///< appends the plug-in's types; may throw
 };
 
 }  // namespace catena::haptics::plugin
 
 extern "C" {
 /// The entry of a plug-in, defined by CATENA_CONSTRAINT_PLUGIN, in a section of its own, where the program finds it.
-[[gnu::visibility("default"), gnu::section(".catena.plugin")]] extern const catena::haptics::plugin::Entry catena_plugin;
+[[gnu::visibility("default"), gnu::section(".catena.plugin")]] extern const catena::haptics::plugin::PluginEntry catena_plugin;
 }
 
 /// Makes a shared library a plug-in, of one or several functions that return a ConstraintType.
-#define CATENA_CONSTRAINT_PLUGIN(...)                                                                                           \
-  static void catena_plugin_add(std::vector<::catena::haptics::ConstraintType>& types) {                                        \
-    for (::catena::haptics::ConstraintType(*const make)() : {__VA_ARGS__}) types.push_back(make());                             \
-  }                                                                                                                             \
-  constinit const ::catena::haptics::plugin::Entry catena_plugin{::catena::haptics::plugin::statement(CATENA_PLUGIN_INTERFACE), \
-                                                                 &catena_plugin_add};
+#define CATENA_CONSTRAINT_PLUGIN(...)                                                                                                      \
+  static void catena_plugin_add(std::vector<::catena::haptics::ConstraintType>& types) {                                                   \
+    for (::catena::haptics::ConstraintType(*const make)() : {__VA_ARGS__}) types.push_back(make());                                        \
+  }                                                                                                                                        \
+  constinit const ::catena::haptics::plugin::PluginEntry catena_plugin{::catena::haptics::plugin::make_abi_stamp(CATENA_PLUGIN_INTERFACE), \
+                                                                       &catena_plugin_add};

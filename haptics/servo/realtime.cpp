@@ -61,7 +61,7 @@ void unlock_everything() {
 
 }  // namespace
 
-bool take_fifo(int priority, std::vector<std::string>& notes) {
+bool acquire_fifo_priority(int priority, std::vector<std::string>& notes) {
   sched_param parameter{};
   parameter.sched_priority = std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
   if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0) return true;
@@ -77,28 +77,28 @@ void limit_realtime_run(double soft_s, double hard_s) noexcept {
   setrlimit(RLIMIT_RTTIME, &limit);
 }
 
-void leave_fifo() noexcept {
+void release_fifo_priority() noexcept {
   const sched_param parameter{};
   sched_setscheduler(0, SCHED_OTHER, &parameter);
 }
 
-void leave_core() noexcept {
+void reset_cpu_affinity() noexcept {
   cpu_set_t cores;  // the first thread's, which no servo binds
   if (sched_getaffinity(getpid(), sizeof cores, &cores) == 0) sched_setaffinity(0, sizeof cores, &cores);
 }
 
 RealtimeThread::RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes) {
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // at normal priority a wake-up may be 50 us late by default
-  if (options.fifo) report_.fifo = take_fifo(options.priority, report_.notes);
-  if (report_.fifo) limit_realtime_run(kRealtimeRunS, kRealtimeEndS);
+  if (options.fifo) report_.fifo = acquire_fifo_priority(options.priority, report_.notes);
+  if (report_.fifo) limit_realtime_run(kRealtimeSoftLimit_s, kRealtimeHardLimit_s);
   if (options.cpu >= 0 || (options.cpu == RealtimeOptions::kAnyWithFifo && report_.fifo)) bind(options.cpu);
   if (options.lock_memory) lock(own, own_bytes);
 }
 
 RealtimeThread::~RealtimeThread() {
   if (report_.locked) unlock_everything();
-  for (const Locked& part : parts_) munlock(part.at, part.bytes);
-  if (report_.fifo) leave_fifo();
+  for (const LockedRange& part : locked_ranges_) munlock(part.at, part.bytes);
+  if (report_.fifo) release_fifo_priority();
 }
 
 void RealtimeThread::bind(int cpu) {
@@ -130,10 +130,10 @@ void RealtimeThread::lock(const void* own, std::size_t own_bytes) {
   report_.locked = everything;
   if (everything) return;
   const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // it grows downwards
-  for (const Locked& part : {Locked{stack, kStackBytes}, Locked{own, own_bytes}})
-    if (mlock(part.at, part.bytes) == 0) parts_.push_back(part);
+  for (const LockedRange& part : {LockedRange{stack, kStackBytes}, LockedRange{own, own_bytes}})
+    if (mlock(part.at, part.bytes) == 0) locked_ranges_.push_back(part);
   report_.notes.push_back(std::string("not all memory could be locked (") +
-                          (parts_.size() == 2 ? "the thread's own is): " : "not even the thread's own): ") + remedy("memlock"));
+                          (locked_ranges_.size() == 2 ? "the thread's own is): " : "not even the thread's own): ") + remedy("memlock"));
 }
 
 }  // namespace catena::haptics

@@ -26,17 +26,17 @@ struct RealtimeReport {
 };
 
 /// Fixed priority (SCHED_FIFO, not inherited by children) for the calling thread. On failure one sentence in `notes`.
-bool take_fifo(int priority, std::vector<std::string>& notes);
+bool acquire_fifo_priority(int priority, std::vector<std::string>& notes);
 /// How long this process may run at a fixed priority without a pause: beyond `soft_s` SIGXCPU, beyond `hard_s` SIGKILL, so that a tick that
 /// never ends gives the machine back. Only ever lowers a limit. A servo that is merely too slow has left the priority before (servo.h).
 void limit_realtime_run(double soft_s, double hard_s) noexcept;
-inline constexpr double kRealtimeRunS = 2, kRealtimeEndS = 3;  ///< what a servo sets for its process, seconds
+inline constexpr double kRealtimeSoftLimit_s = 2, kRealtimeHardLimit_s = 3;  ///< what a servo sets for its process, seconds
 
 /// Back to normal priority.
-void leave_fifo() noexcept;
+void release_fifo_priority() noexcept;
 
 /// The calling thread may run wherever the process may, though the thread that made it is bound to a core.
-void leave_core() noexcept;
+void reset_cpu_affinity() noexcept;
 
 /// Prepares the calling thread before its first tick: touches its stack, then priority, core, memory. The whole process is locked
 /// (as pages are touched) where that is unlimited; otherwise only the stack and `own`, as far as the limit goes: a lock on all
@@ -57,11 +57,11 @@ class RealtimeThread {
   void bind(int cpu);
 
   RealtimeReport report_;
-  struct Locked {
+  struct LockedRange {
     const void* at;
     std::size_t bytes;
   };
-  std::vector<Locked> parts_;
+  std::vector<LockedRange> locked_ranges_;
 };
 
 }  // namespace catena::haptics

@@ -12,7 +12,7 @@ void ReplayMeter::reserve(std::size_t ticks) {
   evaluations_.reserve(ticks);
 }
 
-void ReplayMeter::add(double nanoseconds, const exchange::HapticState& state) {
+void ReplayMeter::add(double nanoseconds, const HapticState& state) {
   nanoseconds_.push_back(nanoseconds);
   std::int64_t sum = 0;
   for (int i = 0; i < state.link_count; ++i) sum += state.links[static_cast<std::size_t>(i)].evaluations;
@@ -33,11 +33,11 @@ ReplayStats ReplayMeter::stats() {
   return stats;
 }
 
-ReplayStats replay(const Program& program, std::span<const ProbeSample> path,
-                   const std::function<bool(const exchange::HapticState&)>& on_tick) {
+ReplayStats replay(const HapticProgram& program, std::span<const ProbeSample> path,
+                   const std::function<bool(const HapticState&)>& on_tick) {
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
-  exchange::HapticState out;
+  HapticState out;
   ReplayMeter meter;
   meter.reserve(path.size());
   for (const ProbeSample& probe : path) {

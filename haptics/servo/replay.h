@@ -24,7 +24,7 @@ class ReplayMeter {
   /// Takes the memory for so many ticks.
   void reserve(std::size_t ticks);
   /// Adds a tick and how long it took.
-  void add(double nanoseconds, const exchange::HapticState& state);
+  void add(double nanoseconds, const HapticState& state);
   ReplayStats stats();  ///< reorders what it has collected: call it last
 
  private:
@@ -34,7 +34,6 @@ class ReplayMeter {
 };
 
 /// Calls `on_tick` after every tick, outside the timed part. False from it stops the replay.
-ReplayStats replay(const Program& program, std::span<const ProbeSample> path,
-                   const std::function<bool(const exchange::HapticState&)>& on_tick);
+ReplayStats replay(const HapticProgram& program, std::span<const ProbeSample> path, const std::function<bool(const HapticState&)>& on_tick);
 
 }  // namespace catena::haptics

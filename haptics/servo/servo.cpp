@@ -7,7 +7,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/result.h"
 #include "engine/base/threads.h"
-#include "haptics/servo/step.h"
+#include "haptics/servo/servo_tick.h"
 #include "haptics/servo/watchdog.h"
 
 namespace catena::haptics {
@@ -38,12 +38,12 @@ RealtimeOptions realtime_options(const ServoOptions& options) {
 
 }  // namespace
 
-Servo::Servo(Device& device, std::shared_ptr<const Program> program, const ServoOptions& options)
+Servo::Servo(Device& device, std::shared_ptr<const HapticProgram> program, const ServoOptions& options)
     : device_(device),
       options_(options),
-      forces_(options.forces),
-      wanted_sink_(options.sink),
-      taken_sink_(options.sink),
+      forces_enabled_(options.forces_enabled),
+      requested_sink_(options.sink),
+      active_sink_(options.sink),
       sink_(options.sink) {
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
   CATENA_ASSERT(options.rate_hz >= ServoOptions::kMinRateHz && options.rate_hz <= ServoOptions::kMaxRateHz && options.watchdog_s >= 0);
@@ -73,10 +73,10 @@ Outcome Servo::start() {
   return Done{};
 }
 
-void Servo::go_on_from(const Servo& other) {
+void Servo::resume_from(const Servo& other) {
   CATENA_ASSERT(!thread_.joinable() && !other.thread_.joinable());
   state_ = other.state_;
-  rebind(*other.program_, *program_, state_, scratch_);
+  rebind_program(*other.program_, *program_, state_, scratch_);
 }
 
 void Servo::stop() {
@@ -85,7 +85,7 @@ void Servo::stop() {
   watchdog_.reset();
 }
 
-void Servo::set_program(std::shared_ptr<const Program> program) {
+void Servo::set_program(std::shared_ptr<const HapticProgram> program) {
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
   for (const auto& alive : programs_) CATENA_ASSERT(alive->epoch != program->epoch);
   next_program_.publish(program.get());
@@ -93,17 +93,17 @@ void Servo::set_program(std::shared_ptr<const Program> program) {
 }
 
 bool Servo::set_sink(TickSink* sink, double patience_s) {
-  wanted_sink_.store(sink, std::memory_order_release);
+  requested_sink_.store(sink, std::memory_order_release);
   const std::int64_t began = now_ns();
-  while (running() && taken_sink_.load(std::memory_order_acquire) != sink) {
+  while (running() && active_sink_.load(std::memory_order_acquire) != sink) {
     if (1e-9 * static_cast<double>(now_ns() - began) > patience_s) return false;
     std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
   return true;
 }
 
-bool Servo::take(exchange::HapticState& state) {
-  if (!published_.take()) return false;
+bool Servo::receive(HapticState& state) {
+  if (!published_.acquire()) return false;
   state = published_.front();
   // a published epoch proves that no later tick can name an older program
   std::size_t newest = 0;
@@ -113,9 +113,9 @@ bool Servo::take(exchange::HapticState& state) {
   return true;
 }
 
-ServoReport Servo::report() const {
+ServoStats Servo::stats() const {
   const auto read = [](const auto& counter) { return counter.load(std::memory_order_relaxed); };
-  ServoReport out;
+  ServoStats out;
   out.rate_hz = options_.rate_hz;
   out.paced = options_.paced;
   out.ticks = read(counters_.ticks);
@@ -123,56 +123,59 @@ ServoReport Servo::report() const {
   out.late_ticks = read(counters_.late_ticks);
   out.lost_ticks = read(counters_.lost_ticks);
   out.watchdog_trips = read(counters_.watchdog_trips);
-  out.period = counters_.period.figures();
-  out.compute = counters_.compute.figures();
-  out.device = counters_.device.figures();
+  out.period = counters_.period.summarize();
+  out.compute = counters_.compute.summarize();
+  out.device = counters_.device.summarize();
   const std::int64_t started = read(counters_.started_ns), ended = read(counters_.ended_ns);
   if (started != 0) out.seconds = 1e-9 * static_cast<double>((ended != 0 ? ended : now_ns()) - started);
   if (prepared_.load(std::memory_order_acquire)) out.realtime = realtime_;
-  if (read(counters_.left_fifo)) {
+  if (read(counters_.released_fifo)) {
     out.realtime.fifo = false;
     out.realtime.notes.push_back("real-time scheduling was given back: the ticks take longer than the period");
   }
   return out;
 }
 
-void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) noexcept {
+void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexcept {
   // before the program: a sink that is taken up knows every program that was handed over before it
-  TickSink* wanted = wanted_sink_.load(std::memory_order_acquire);
+  TickSink* wanted = requested_sink_.load(std::memory_order_acquire);
   const bool takes_up = wanted != sink_;
 
   const std::int64_t began = now_ns();
   const DeviceInput input = device_.read();
   const std::int64_t has_read = now_ns();
 
-  if (next_program_.take()) {
-    const Program* newer = next_program_.front();
-    rebind(*program_, *newer, state_, scratch_);
+  if (next_program_.acquire()) {
+    const HapticProgram* newer = next_program_.front();
+    rebind_program(*program_, *newer, state_, scratch_);
     program_ = newer;
   }
   if (takes_up) {
     sink_ = wanted;
-    taken_sink_.store(wanted, std::memory_order_release);
+    active_sink_.store(wanted, std::memory_order_release);
     scratch_ = ChainScratch{};
     if (sink_ != nullptr) sink_->begin(state_);
   }
-  ProbeSample probe = probe_of(*program_, input, t_s);
-  probe.forces_on = input.forces_on && forces();
+  ProbeSample probe = make_probe_sample(*program_, input, t_s);
+  probe.forces_on = input.forces_on && forces_enabled();
 
   // the tick that finds the watchdog's flag is without force; the one after it may drive the device again
-  const bool stalled = watchdog_ && (beat.stalled || stalled_within_);
-  if (watchdog_ && beat.stalled) watchdog_->stalled();
-  const bool tripped = (watchdog_ && watchdog_->take_trip()) || stalled;
+  const bool stalled = watchdog_ && (beat.stalled || stalled_in_tick_);
+  if (watchdog_ && beat.stalled) watchdog_->report_stall();
+  const bool tripped = (watchdog_ && watchdog_->consume_trip()) || stalled;
   if (stopped_ && !tripped) device_.resume();
   stopped_ = tripped;
   const bool lost = input.status != DeviceStatus::ready;
-  probe.condition = tripped ? Condition::watchdog : lost ? Condition::no_device : beat.late ? Condition::late : Condition::normal;
+  probe.condition = tripped     ? TickCondition::watchdog
+                    : lost      ? TickCondition::no_device
+                    : beat.late ? TickCondition::late
+                                : TickCondition::normal;
   tick(*program_, probe, state_, scratch_, out);
   const std::int64_t computed = now_ns();
-  stalled_within_ = watchdog_ && computed - began > watchdog_->limit_ns();
-  if (stalled_within_) watchdog_->stalled();
+  stalled_in_tick_ = watchdog_ && computed - began > watchdog_->limit_ns();
+  if (stalled_in_tick_) watchdog_->report_stall();
 
-  device_.write(output_of(*program_, out, state_));
+  device_.write(make_device_output(*program_, out, state_));
   const std::int64_t ended = now_ns();
   hash_.add(out);
 
@@ -188,28 +191,28 @@ void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) n
 }
 
 /// A fixed priority is for ticks that fit into their period: a second of misses gives it back.
-void Servo::relax(bool missed, std::int64_t now_ns) noexcept {
+void Servo::release_priority_if_overloaded(bool missed, std::int64_t now_ns) noexcept {
   if (!missed) misses_in_row_ = 0;
-  if (!missed || !realtime_.fifo || counters_.left_fifo.load(std::memory_order_relaxed)) return;
+  if (!missed || !realtime_.fifo || counters_.released_fifo.load(std::memory_order_relaxed)) return;
   if (misses_in_row_++ == 0) missing_since_ns_ = now_ns;
   if (misses_in_row_ < kMissesUntilNormal && now_ns - missing_since_ns_ < kMissesUntilNormalNs) return;
-  leave_fifo();
-  counters_.left_fifo.store(true, std::memory_order_relaxed);
+  release_fifo_priority();
+  counters_.released_fifo.store(true, std::memory_order_relaxed);
 }
 
 void Servo::loop() noexcept {
   const RealtimeThread realtime(realtime_options(options_), this, sizeof *this);
   realtime_ = realtime.report();
-  if (watchdog_) watchdog_->begin(now_ns(), realtime_.fifo ? options_.realtime.priority + 1 : 0);
-  exchange::HapticState out;
+  if (watchdog_) watchdog_->start(now_ns(), realtime_.fifo ? options_.realtime.priority + 1 : 0);
+  HapticState out;
   device_.resume();
-  stopped_ = stalled_within_ = false;
+  stopped_ = stalled_in_tick_ = false;
   misses_in_row_ = 0;
-  state_.guard = {};  // whatever an earlier run sent, this one begins at zero
-  suspend(state_.passivity);
+  state_.force_limiter = {};  // whatever an earlier run sent, this one begins at zero
+  pause_passivity(state_.passivity);
 
   const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
-  Pace pace(period_ns, now_ns() + period_ns, watchdog_ ? watchdog_->limit_ns() : Pace::kNeverStalls);
+  DeadlineClock pace(period_ns, now_ns() + period_ns, watchdog_ ? watchdog_->limit_ns() : DeadlineClock::kNeverStalls);
   counters_.started_ns.store(now_ns(), std::memory_order_relaxed);
   counters_.ended_ns.store(0, std::memory_order_relaxed);
   prepared_.store(true, std::memory_order_release);
@@ -226,27 +229,27 @@ void Servo::loop() noexcept {
     last_begin = began;
 
     double t_s = static_cast<double>(k) / options_.rate_hz;
-    Beat beat;
+    TickTiming beat;
     if (options_.paced) {
-      beat = pace.begins(began);
+      beat = pace.begin_tick(began);
       t_s = 1e-9 * static_cast<double>(beat.time_ns);
       add_one(counters_.missed_deadlines, static_cast<std::uint64_t>(beat.missed));
       if (beat.late) add_one(counters_.late_ticks);
-      relax(beat.missed > 0, began);
+      release_priority_if_overloaded(beat.missed > 0, began);
     }
-    one_tick(t_s, beat, out);
+    run_tick(t_s, beat, out);
     published_.publish(out);
 
     const std::int64_t ended = now_ns();
-    pace.ends(ended);
+    pace.end_tick(ended);
     // the thread may have stood still after the force was computed, too: in the device, or on the way here
-    if (watchdog_ && !stalled_within_ && ended - began > watchdog_->limit_ns()) {
-      stalled_within_ = true;
-      watchdog_->stalled();
+    if (watchdog_ && !stalled_in_tick_ && ended - began > watchdog_->limit_ns()) {
+      stalled_in_tick_ = true;
+      watchdog_->report_stall();
     }
     if (watchdog_) watchdog_->tick_ended(ended);
   }
-  device_.write({.live = false});
+  device_.write({.forces_active = false});
   device_.stop();
   counters_.ended_ns.store(now_ns(), std::memory_order_relaxed);
   running_.store(false, std::memory_order_release);

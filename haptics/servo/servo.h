@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/exchange/triple_buffer.h"
+#include "engine/base/triple_buffer.h"
 #include "haptics/chain/state_hash.h"
 #include "haptics/chain/tick.h"
 #include "haptics/device/device.h"
-#include "haptics/servo/pace.h"
-#include "haptics/servo/report.h"
+#include "haptics/servo/deadline_clock.h"
+#include "haptics/servo/servo_stats.h"
 
 namespace catena::haptics {
 
@@ -23,7 +23,7 @@ class TickSink {
   /// A sink that a running servo takes up: the state before the tick that `put` gets next.
   virtual void begin(const ChainState& state) noexcept { static_cast<void>(state); }
   /// `input` and `output` as the tick had them; the servo's timings are in `output`.
-  virtual void put(const ProbeSample& input, const exchange::HapticState& output) noexcept = 0;
+  virtual void put(const ProbeSample& input, const HapticState& output) noexcept = 0;
 };
 
 class Watchdog;
@@ -36,7 +36,7 @@ struct ServoOptions {
   bool paced = true;              ///< false: as fast as it goes (soaks, determinism); never late, no watchdog, normal priority
   std::uint64_t max_ticks = 0;    ///< 0: until stop()
   TickSink* sink = nullptr;       ///< gets every tick; outlives the servo, or is taken away by set_sink
-  bool forces = true;             ///< at the start; set_forces() later
+  bool forces_enabled = true;     ///< at the start; set_forces_enabled() later
   double watchdog_s = 0.05;       ///< at least four periods; 0: none
   RealtimeOptions realtime = {};  ///< of a paced servo
 };
@@ -57,66 +57,66 @@ struct ServoOptions {
 class Servo {
  public:
   /// The device must outlive the servo. Nothing runs before start().
-  Servo(Device& device, std::shared_ptr<const Program> program, const ServoOptions& options = {});
+  Servo(Device& device, std::shared_ptr<const HapticProgram> program, const ServoOptions& options = {});
   ~Servo();
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
   // frame side
   /// Before start(): what the chain remembers comes from a servo that has been stopped (another device takes over). The force begins at
-  /// zero, as it always does. Programs need epochs of their own over both.
-  void go_on_from(const Servo& other);
+  /// zero, as it always does. ProgramLookup need epochs of their own over both.
+  void resume_from(const Servo& other);
   /// Returns when the thread is prepared, just before its first tick. Where this machine gives no thread: an error, and nothing runs.
   Outcome start();
-  void stop();                                               ///< joins; the device has had a last zero force and is stopped
-  void set_program(std::shared_ptr<const Program> program);  ///< of an epoch of its own: by it the older ones are freed
-  bool take(exchange::HapticState& state);                   ///< true if there was something newer
+  void stop();                                                     ///< joins; the device has had a last zero force and is stopped
+  void set_program(std::shared_ptr<const HapticProgram> program);  ///< of an epoch of its own: by it the older ones are freed
+  bool receive(HapticState& state);                                ///< true if there was something newer
   /// Another sink from one of the next ticks on, or none. True: the old one is not used any more. The tick takes it up by itself; the
   /// caller waits for that, a tick or two, and at most `patience_s`: then false, and the old one must live on (until stop(), or a true).
   bool set_sink(TickSink* sink, double patience_s = 1);
   std::uint64_t state_hash() const { return hash_.value(); }  ///< after stop()
-  /// Programs that it keeps: the one that runs and those that a tick may still name.
-  std::size_t programs_alive() const { return programs_.size(); }
+  /// ProgramLookup that it keeps: the one that runs and those that a tick may still name.
+  std::size_t live_program_count() const { return programs_.size(); }
 
   // any thread
   /// From the start until max_ticks, stop(), or an end of its own.
   bool running() const { return running_.load(std::memory_order_acquire); }
   /// The person's switch, from the next tick on. While it or the device's own switch is off the hand gets no force; the force goes to zero
-  /// over Limits::ramp_out_s (guard.h).
-  void set_forces(bool on) { forces_.store(on, std::memory_order_relaxed); }
+  /// over DeviceLimits::ramp_out_s (guard.h).
+  void set_forces_enabled(bool on) { forces_enabled_.store(on, std::memory_order_relaxed); }
   /// Whether the person's switch is on; it does not tell whether the device's own is.
-  bool forces() const { return forces_.load(std::memory_order_relaxed); }
-  ServoReport report() const;  ///< after start(), also while it runs
+  bool forces_enabled() const { return forces_enabled_.load(std::memory_order_relaxed); }
+  ServoStats stats() const;  ///< after start(), also while it runs
 
  private:
   void loop() noexcept;
-  void one_tick(double t_s, const Beat& beat, exchange::HapticState& out) noexcept;
-  void relax(bool missed, std::int64_t now_ns) noexcept;
+  void run_tick(double t_s, const TickTiming& beat, HapticState& out) noexcept;
+  void release_priority_if_overloaded(bool missed, std::int64_t now_ns) noexcept;
 
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free &&
-                std::atomic<const Program*>::is_always_lock_free && std::atomic<TickSink*>::is_always_lock_free);
+                std::atomic<const HapticProgram*>::is_always_lock_free && std::atomic<TickSink*>::is_always_lock_free);
   Device& device_;
   ServoOptions options_;
-  exchange::TripleBuffer<const Program*> next_program_;
-  exchange::TripleBuffer<exchange::HapticState> published_;
-  std::atomic<bool> stop_{false}, running_{false}, prepared_{false}, forces_;
-  std::atomic<TickSink*> wanted_sink_, taken_sink_;
+  TripleBuffer<const HapticProgram*> next_program_;
+  TripleBuffer<HapticState> published_;
+  std::atomic<bool> stop_{false}, running_{false}, prepared_{false}, forces_enabled_;
+  std::atomic<TickSink*> requested_sink_, active_sink_;
   ServoCounters counters_;
 
   // haptic thread only, once started
-  const Program* program_ = nullptr;
+  const HapticProgram* program_ = nullptr;
   TickSink* sink_ = nullptr;
   ChainState state_;
   ChainScratch scratch_;
   StateHash hash_;
-  bool stopped_ = false;         ///< the watchdog has stopped the device
-  bool stalled_within_ = false;  ///< the last tick did
+  bool stopped_ = false;          ///< the watchdog has stopped the device
+  bool stalled_in_tick_ = false;  ///< the last tick did
   int misses_in_row_ = 0;
   std::int64_t missing_since_ns_ = 0;
 
   // frame side only; realtime_ is written before prepared_
   RealtimeReport realtime_;
-  std::vector<std::shared_ptr<const Program>> programs_;
+  std::vector<std::shared_ptr<const HapticProgram>> programs_;
   std::unique_ptr<Watchdog> watchdog_;  ///< null: none
   std::thread thread_;
 };

@@ -22,35 +22,35 @@ Result<std::unique_ptr<Watchdog>> Watchdog::make(Device& device, double limit_s,
 
 Watchdog::~Watchdog() {
   stop_.store(true, std::memory_order_release);
-  int waits = kWaits;
+  int waits = kNotStarted;
   fifo_priority_.compare_exchange_strong(waits, 0);
   fifo_priority_.notify_all();
   if (thread_.joinable()) thread_.join();
 }
 
-void Watchdog::begin(std::int64_t now_ns, int fifo_priority) noexcept {
+void Watchdog::start(std::int64_t now_ns, int fifo_priority) noexcept {
   last_ns_.store(now_ns, std::memory_order_release);
   fifo_priority_.store(fifo_priority, std::memory_order_release);
   fifo_priority_.notify_all();
 }
 
-void Watchdog::stalled() noexcept {
-  if (claim(last_ns_.load(std::memory_order_relaxed))) trips_.fetch_add(1, std::memory_order_relaxed);
+void Watchdog::report_stall() noexcept {
+  if (claim_stall(last_ns_.load(std::memory_order_relaxed))) trips_.fetch_add(1, std::memory_order_relaxed);
   device_.stop();
 }
 
 void Watchdog::watch() {
-  fifo_priority_.wait(kWaits, std::memory_order_acquire);
+  fifo_priority_.wait(kNotStarted, std::memory_order_acquire);
   const int fifo_priority = fifo_priority_.load(std::memory_order_acquire);
   std::vector<std::string> notes;  // the haptic thread has told them
   // a haptic thread that spins must not keep it from running: before it where that is permitted, and beside it
-  leave_core();
-  if (fifo_priority > 0 && !take_fifo(fifo_priority, notes)) take_fifo(fifo_priority - 1, notes);
+  reset_cpu_affinity();
+  if (fifo_priority > 0 && !acquire_fifo_priority(fifo_priority, notes)) acquire_fifo_priority(fifo_priority - 1, notes);
   const std::chrono::nanoseconds nap(std::clamp<std::int64_t>(limit_ns_ / 8, 500'000, 10'000'000));
   while (!stop_.load(std::memory_order_acquire)) {
     std::this_thread::sleep_for(nap);
     const std::int64_t last = last_ns_.load(std::memory_order_acquire);
-    if (now_ns() - last <= limit_ns_ || !claim(last)) continue;
+    if (now_ns() - last <= limit_ns_ || !claim_stall(last)) continue;
     device_.stop();
     trips_.fetch_add(1, std::memory_order_relaxed);
     tripped_.store(true, std::memory_order_release);

@@ -1,7 +1,7 @@
 /// Sees that the haptic thread has stopped finishing ticks, and takes the force away without its help: a thread that looks at one
 /// time stamp every few milliseconds.
 ///   now - (end of the last tick) > limit  ->  device.stop(), then the flag; once for a stall
-/// The haptic thread takes the flag in the tick that runs next: zero force (Condition::watchdog); the tick after it resumes the device
+/// The haptic thread takes the flag in the tick that runs next: zero force (TickCondition::watchdog); the tick after it resumes the device
 /// and the guard ramps the force in. device.stop() comes before the flag, so that no stop is left over after a resume.
 /// Where the whole program stood still (SIGSTOP), the haptic thread may be the first to run again: it sees the gap by itself (pace.h)
 /// and says so; the stall counts once, whoever saw it.
@@ -28,16 +28,16 @@ class Watchdog {
 
   // haptic thread
   /// Watches from now on. `fifo_priority` > 0: at that fixed priority or the one below, if permitted.
-  void begin(std::int64_t now_ns, int fifo_priority) noexcept;
+  void start(std::int64_t now_ns, int fifo_priority) noexcept;
   void tick_ended(std::int64_t now_ns) noexcept { last_ns_.store(now_ns, std::memory_order_release); }
-  bool take_trip() noexcept { return tripped_.load(std::memory_order_relaxed) && tripped_.exchange(false, std::memory_order_acq_rel); }
+  bool consume_trip() noexcept { return tripped_.load(std::memory_order_relaxed) && tripped_.exchange(false, std::memory_order_acq_rel); }
   /// This thread has not run for longer than the limit: the device is stopped when this returns.
-  void stalled() noexcept;
+  void report_stall() noexcept;
 
  private:
   Watchdog(Device& device, double limit_s, std::atomic<std::uint64_t>& trips);
   void watch();
-  bool claim(std::int64_t last_ns) noexcept { return claimed_ns_.exchange(last_ns, std::memory_order_acq_rel) != last_ns; }
+  bool claim_stall(std::int64_t last_ns) noexcept { return claimed_ns_.exchange(last_ns, std::memory_order_acq_rel) != last_ns; }
 
   static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
   Device& device_;
@@ -45,9 +45,9 @@ class Watchdog {
   std::atomic<std::uint64_t>& trips_;
   std::atomic<std::int64_t> last_ns_{0};
   std::atomic<std::int64_t> claimed_ns_{-1};  ///< the stall that was acted upon: the end of the tick before it
-  std::atomic<int> fifo_priority_{kWaits};
+  std::atomic<int> fifo_priority_{kNotStarted};
   std::atomic<bool> tripped_{false}, stop_{false};
-  static constexpr int kWaits = -1;
+  static constexpr int kNotStarted = -1;
   std::thread thread_;
 };
 

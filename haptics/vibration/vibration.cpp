@@ -13,32 +13,33 @@ std::int64_t nanoseconds(double s) noexcept { return static_cast<std::int64_t>(1
 
 }  // namespace
 
-Vibration vibration_of(const FeltPeaks& peaks, double call_s, const VibrationMap& map) noexcept {
-  const double pulse = std::min(1.0, peaks.change_n / map.full_change_n);
-  const double rubs = map.most_friction * std::min(1.0, peaks.friction_n / map.full_friction_n);
-  if (!(std::max(pulse, rubs) >= map.least)) return {};
+Vibration compute_vibration(const ForcePeaks& peaks, double call_s, const VibrationMapping& map) noexcept {
+  const double pulse = std::min(1.0, peaks.change_n / map.saturation_change_n);
+  const double rubs = map.max_friction_amplitude * std::min(1.0, peaks.friction_n / map.saturation_friction_n);
+  if (!(std::max(pulse, rubs) >= map.min_amplitude)) return {};
   if (pulse >= rubs) return {pulse, map.pulse_hz, nanoseconds(map.pulse_s), true};
-  return {rubs, std::clamp(peaks.speed_m_per_s / map.grain_m, map.slowest_hz, map.fastest_hz), nanoseconds(kFrictionCalls * call_s), false};
+  return {rubs, std::clamp(peaks.speed_m_per_s / map.grain_m, map.min_frequency_hz, map.max_frequency_hz),
+          nanoseconds(kFrictionCalls * call_s), false};
 }
 
-VibrationSender::Call VibrationSender::next(Peaks& peaks, std::int64_t now_ns, bool allowed) noexcept {
-  const FeltPeaks felt = peaks.take();
+VibrationSender::Command VibrationSender::next(PeakDetector& peaks, std::int64_t now_ns, bool allowed) noexcept {
+  const ForcePeaks felt = peaks.take_peaks();
   if (!allowed) {
     const bool stops = was_allowed_;
     was_allowed_ = false;
-    running_ = {};
-    return {stops ? What::stop : What::nothing, {}};
+    current_ = {};
+    return {stops ? Action::stop : Action::nothing, {}};
   }
   const bool began = !was_allowed_;
   was_allowed_ = true;
   const double since_s = 1e-9 * static_cast<double>(now_ns - std::exchange(last_ns_, now_ns));
   if (began) return {};  // what was felt before it was allowed
-  const Vibration wish = vibration_of(felt, std::clamp(since_s, kShortestCallS, kLongestCallS), map_);
-  const bool pulse_lasts = running_.is_pulse && now_ns < ends_ns_;
-  if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < running_.amplitude)) return {};
-  running_ = wish;
+  const Vibration wish = compute_vibration(felt, std::clamp(since_s, kShortestCallS, kLongestCallS), map_);
+  const bool pulse_lasts = current_.is_pulse && now_ns < ends_ns_;
+  if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < current_.amplitude)) return {};
+  current_ = wish;
   ends_ns_ = now_ns + wish.duration_ns;
-  return {What::vibrate, wish};
+  return {Action::vibrate, wish};
 }
 
 }  // namespace catena::haptics

@@ -44,13 +44,13 @@ int main() {
   sigprocmask(SIG_SETMASK, &all, nullptr);
   struct stat page_file {};
   if (fcntl(kUsb, F_GETFD) < 0 || fcntl(kLifeline, F_GETFD) < 0 || fstat(kPage, &page_file) != 0 ||
-      page_file.st_size < static_cast<off_t>(sizeof(Page)))
+      page_file.st_size < static_cast<off_t>(sizeof(SharedPage)))
     return usage();
-  void* const at = mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, kPage, 0);
+  void* const at = mmap(nullptr, sizeof(SharedPage), PROT_READ | PROT_WRITE, MAP_SHARED, kPage, 0);
   if (at == MAP_FAILED) return usage();
-  Page& page = *static_cast<Page*>(at);
-  if (page.mark != Page::kMark) return usage();
+  SharedPage& page = *static_cast<SharedPage*>(at);
+  if (page.magic != SharedPage::kMagic) return usage();
   prefer();
   if (write(kLifeline, &kReady, 1) != 1) return 1;
-  return watch(page, kUsb, kLifeline, STDERR_FILENO) == Ended::told ? 0 : 1;
+  return run_watchdog(page, kUsb, kLifeline, STDERR_FILENO) == EndReason::requested ? 0 : 1;
 }

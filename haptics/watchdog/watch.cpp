@@ -31,15 +31,15 @@ void say(int messages, const char* sentence) noexcept {
 
 enum class Sent { yes, not_yet, gone };
 
-Sent send_off(Page& page, int usb) noexcept {
+Sent send_off(SharedPage& page, int usb) noexcept {
   usbdevfs_bulktransfer transfer{};
   transfer.ep = page.endpoint;
-  transfer.len = std::min<std::uint32_t>(page.off_bytes, Page::kMaxOffBytes);
+  transfer.len = std::min<std::uint32_t>(page.zero_packet_bytes, SharedPage::kMaxZeroPacketBytes);
   transfer.timeout = kWriteMs;
-  transfer.data = page.off;
+  transfer.data = page.zero_packet;
   const int sent = ioctl(usb, USBDEVFS_BULK, &transfer);
   if (sent == static_cast<int>(transfer.len)) {
-    page.zeros.fetch_add(1, std::memory_order_acq_rel);
+    page.acknowledged_zeros.fetch_add(1, std::memory_order_acq_rel);
     return Sent::yes;
   }
   const int error = errno;
@@ -76,29 +76,29 @@ Line look(int lifeline, int wait_ms) noexcept {
   return n < 0 && (errno == EINTR || errno == EAGAIN) ? Line::quiet : Line::ended;
 }
 
-Ended program_gone(Page& page, int usb, int messages) noexcept {
-  const bool pushed = page.pushing.load(std::memory_order_acquire) != 0;
+EndReason program_gone(SharedPage& page, int usb, int messages) noexcept {
+  const bool pushed = page.force_active.load(std::memory_order_acquire) != 0;
   for (int done = 0; done < kOffsForTheGone;) {
     const Sent sent = send_off(page, usb);
-    if (sent == Sent::gone) return Ended::device_gone;
+    if (sent == Sent::gone) return EndReason::device_gone;
     if (sent == Sent::yes) ++done;
     const timespec nap{0, 1000000};
     if (sent == Sent::not_yet) nanosleep(&nap, nullptr);
   }
   if (pushed) say(messages, "catena: the program has ended with a force on: its device was let go\n");
-  return Ended::program_gone;
+  return EndReason::program_gone;
 }
 
 }  // namespace
 
-Ended watch(Page& page, int usb, int lifeline, int messages) noexcept {
-  const std::int64_t silence_ms = page.silence_ms;
+EndReason run_watchdog(SharedPage& page, int usb, int lifeline, int messages) noexcept {
+  const std::int64_t silence_ms = page.silence_timeout_ms;
   Beat ticks{page.ticks.load(), now_ms()}, cycles{page.cycles.load(), now_ms()};
   bool holds = false, said = false;
   std::int64_t next_off_ms = 0;
   while (true) {
     const Line line = look(lifeline, kLookMs);
-    if (line == Line::quit) return Ended::told;
+    if (line == Line::quit) return EndReason::requested;
     if (line == Line::ended) return program_gone(page, usb, messages);
 
     const std::int64_t now = now_ms();
@@ -106,9 +106,9 @@ Ended watch(Page& page, int usb, int lifeline, int messages) noexcept {
                                          cycles.silent_ms(page.cycles.load(std::memory_order_acquire), now));
     if (!holds) {
       // nothing at the device: nothing to be silent about
-      if (page.pushing.load(std::memory_order_acquire) == 0) ticks.since_ms = cycles.since_ms = now;
+      if (page.force_active.load(std::memory_order_acquire) == 0) ticks.since_ms = cycles.since_ms = now;
       Holder expected = Holder::program;
-      if (silent < silence_ms || page.pushing.load(std::memory_order_acquire) == 0 ||
+      if (silent < silence_ms || page.force_active.load(std::memory_order_acquire) == 0 ||
           !page.holder.compare_exchange_strong(expected, Holder::watchdog, std::memory_order_acq_rel))
         continue;
       holds = true;
@@ -123,7 +123,7 @@ Ended watch(Page& page, int usb, int lifeline, int messages) noexcept {
     }
     if (now < next_off_ms) continue;
     const Sent sent = send_off(page, usb);
-    if (sent == Sent::gone) return Ended::device_gone;
+    if (sent == Sent::gone) return EndReason::device_gone;
     if (sent != Sent::yes) continue;
     next_off_ms = now + silence_ms;
     if (!said) say(messages, "catena: the program has stood still with a force on: its device was let go until it goes on\n");

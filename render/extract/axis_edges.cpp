@@ -11,11 +11,11 @@ constexpr double kEdgeOn = 1e-9;  // a face that is nearly seen from its side is
 constexpr double kLean = 0.01;    // of lowest to the left, and of leftmost to the bottom: no two are alike
 
 /// A place in the picture, right and up; behind the eye, too.
-struct Seen {
+struct ScreenPoint {
   double x, y;
 };
 
-Seen seen_at(const Camera& camera, const Vec3& p) {
+ScreenPoint seen_at(const Camera& camera, const Vec3& p) {
   const Vec3 away = camera.orthographic ? p : direction(p - camera.position);
   return {dot(away, camera.right), dot(away, camera.up)};
 }
@@ -30,8 +30,8 @@ bool faces_eye(const Bounds& box, const Camera& camera, int axis, int side) {
 /// How far, in the picture, a step along `out` leads away from the edge.
 double leads_away(const Camera& camera, const AxisEdge& edge, const Vec3& out, double step) {
   const Vec3 middle = 0.5 * (edge.from + edge.to);
-  const Seen a = seen_at(camera, edge.from), b = seen_at(camera, edge.to), m = seen_at(camera, middle),
-             o = seen_at(camera, middle + step * out);
+  const ScreenPoint a = seen_at(camera, edge.from), b = seen_at(camera, edge.to), m = seen_at(camera, middle),
+                    o = seen_at(camera, middle + step * out);
   const double x = b.x - a.x, y = b.y - a.y, length = std::hypot(x, y), aside_x = o.x - m.x, aside_y = o.y - m.y;
   return length > 0 ? std::fabs(aside_x * y - aside_y * x) / length : std::hypot(aside_x, aside_y);
 }
@@ -48,14 +48,14 @@ AxisEdge edge_of(const Bounds& box, const Camera& camera, int axis, bool upright
     if (side_c == 1) edge.from[c] = edge.to[c] = box.hi[c];
     edge.to[axis] = box.hi[axis];
     const bool outlines = faces_eye(box, camera, b, side_b) != faces_eye(box, camera, c, side_c);
-    const Seen at = seen_at(camera, 0.5 * (edge.from + edge.to));
+    const ScreenPoint at = seen_at(camera, 0.5 * (edge.from + edge.to));
     const double score = upright ? at.x + kLean * at.y : at.y + kLean * at.x;
     if (outlines < best_outlines || (outlines == best_outlines && score >= best_score)) continue;
     Vec3 out_b(0.0), out_c(0.0);
     out_b[b] = 2 * side_b - 1;
     out_c[c] = 2 * side_c - 1;
     const double step = 0.01 * box.diagonal();
-    edge.out = leads_away(camera, edge, out_b, step) > leads_away(camera, edge, out_c, step) ? out_b : out_c;
+    edge.outward = leads_away(camera, edge, out_b, step) > leads_away(camera, edge, out_c, step) ? out_b : out_c;
     best = edge;
     best_outlines = outlines;
     best_score = score;
@@ -65,7 +65,7 @@ AxisEdge edge_of(const Bounds& box, const Camera& camera, int axis, bool upright
 
 }  // namespace
 
-std::array<AxisEdge, 3> axis_edges(const Bounds& box, const View& view) {
+std::array<AxisEdge, 3> find_axis_edges(const Bounds& box, const View& view) {
   const Camera camera = make_camera(view, 1, 1, Bounds());
   int upright = 2;
   for (const int axis : {1, 0})

@@ -10,17 +10,17 @@
 #pragma once
 #include <array>
 
-#include "engine/geometry/bounds.h"
+#include "engine/base/bounds.h"
 #include "render/frame/frame_packet.h"
 
 namespace catena::render {
 
 struct AxisEdge {
   Vec3 from{0.0}, to{0.0};  ///< the coordinate rises
-  Vec3 out{0.0};            ///< unit, along an axis
+  Vec3 outward{0.0};        ///< unit, along an axis
 };
 
 /// Of x, y, z.
-std::array<AxisEdge, 3> axis_edges(const Bounds& box, const View& view);
+std::array<AxisEdge, 3> find_axis_edges(const Bounds& box, const View& view);
 
 }  // namespace catena::render

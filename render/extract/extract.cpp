@@ -5,11 +5,11 @@
 
 #include "engine/base/result.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/hidden.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/prepare.h"
-#include "render/extract/extract_parts.h"
-#include "render/extract/first_view.h"
+#include "engine/scene/visibility.h"
+#include "render/extract/auto_camera.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 
@@ -21,10 +21,10 @@ constexpr double kCursorOverTube = 2;
 /// The scalar grid that the eye sees of a field.
 Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(const scene::Scene& scene, scene::Entity field, const json::Node& where,
                                                             const char* what) {
-  const field::AnyField& any = scene::drawn_field(scene, field);
+  const field::AnyField& any = scene::rendered_field(scene, field);
   if (!any.scalar)
-    return json::error_at(json::member_or(where, "field"),
-                          "\"" + name_of(scene, field) + "\" is a vector field; expected a scalar field for " + what);
+    return json::error_at(json::member_or_parent(where, "field"),
+                          "\"" + entity_name(scene, field) + "\" is a vector field; expected a scalar field for " + what);
   CATENA_ASSERT(any.scalar->grid() != nullptr);
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
@@ -36,13 +36,13 @@ Result<std::optional<ColorSource>> color_source(const scene::Scene& scene, const
   CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));
   const DisplayRange& range = display_range(*source.grid);
   CATENA_CHECK(scene::check_mapping(*by, range.lo));
-  for (const auto& c : scene::shown_table(scene, by->field, by->colors, by->named, range.lo, range.hi))
+  for (const auto& c : scene::make_display_color_table(scene, by->field, by->colors, by->named, range.lo, range.hi))
     source.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
   source.linear_below = scene::linear_below(by->named.mapping, source.colors.front()[0], source.colors.back()[0]);
   // a surface of labels runs between them and what is none
-  const auto& label = scene.world.get<scene::FieldSource>(of).label;
-  source.labels = scene::labels_of(scene, by->field) != nullptr;
-  source.spread = source.labels && label && label->of == name_of(scene, by->field);
+  const auto& label = scene.entities.get<scene::FieldSource>(of).label;
+  source.is_categorical = scene::find_label_map(scene, by->field) != nullptr;
+  source.spread_labels = source.is_categorical && label && label->label_map == entity_name(scene, by->field);
   return std::optional<ColorSource>(std::move(source));
 }
 
@@ -55,29 +55,29 @@ Projection projection_of(scene::Volume::Projection projection) {
 }
 
 Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
-    const scene::Volume& volume = scene.world.get<scene::Volume>(e);
-    if (is_hidden(scene.world, e)) continue;
+  for (const scene::Entity e : entities_with<scene::Volume>(scene.entities)) {
+    const scene::Volume& volume = scene.entities.get<scene::Volume>(e);
+    if (is_hidden(scene.entities, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
-    TransferTable transfer = transfer_table(volume.transfer, *grid);
-    transfer.labels = scene::labels_of(scene, volume.field) != nullptr;
+    TransferTable transfer = make_transfer_table(volume.transfer, *grid);
+    transfer.is_categorical = scene::find_label_map(scene, volume.field) != nullptr;
     CATENA_TRY(auto color_by, color_source(scene, volume.color_by, volume.field));
-    const std::uint32_t id = packet.add_object("volume", name_of(scene, volume.field), volume.where.label);
+    const std::uint32_t id = packet.add_object("volume", entity_name(scene, volume.field), volume.where.label);
     packet.volumes.push_back(
-        {std::move(grid), std::move(transfer), volume.shade, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
+        {std::move(grid), std::move(transfer), volume.shaded, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
   }
   return Done{};
 }
 
 Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::Isosurface>(scene.world)) {
-    const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
-    if (is_hidden(scene.world, e)) continue;
+  for (const scene::Entity e : entities_with<scene::Isosurface>(scene.entities)) {
+    const scene::Isosurface& surface = scene.entities.get<scene::Isosurface>(e);
+    if (is_hidden(scene.entities, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
-    CATENA_CHECK(scene::check_surface(scene, surface.field, json::member_or(surface.where, "field")));
-    CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or(surface.where, "level")));
+    CATENA_CHECK(scene::check_surface(scene, surface.field, json::member_or_parent(surface.where, "field")));
+    CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or_parent(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by, surface.field));
-    const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field), surface.where.label);
+    const std::uint32_t id = packet.add_object("isosurface", entity_name(scene, surface.field), surface.where.label);
     packet.isosurfaces.push_back(
         {std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped, std::move(color_by)});
   }
@@ -93,17 +93,17 @@ double strain_of(const scene::Scene& scene, const scene::Cursor& cursor) {
 /// Those that are drawn, in one order.
 template <class Work>
 void each_cursor(const scene::Scene& scene, const Work& work) {
-  scene.world.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
+  scene.entities.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
     if (cursor.visible && is_finite(cursor.probe)) work(cursor);
   });
 }
 
 /// What of the cursor is the hand's, and not its look.
 CursorItem hand_of(const scene::Scene& scene, const scene::Cursor& cursor) {
-  CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, 0, cursor.leaving, 0};
-  if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
-  item.active.resize(item.proxies.size(), true);
-  item.leaving.resize(item.proxies.size(), 0.0);
+  CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, 0, cursor.release_ratios, 0};
+  if (cursor.pseudo_haptic) item.force_ratio = strain_of(scene, cursor);
+  item.link_active.resize(item.proxies.size(), true);
+  item.release_ratios.resize(item.proxies.size(), 0.0);
   return item;
 }
 
@@ -111,32 +111,32 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
     // nothing but the cursor: its size follows the fields and meshes that the hand feels
-    scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-      if (const field::Field* field = source.loaded.get()) drawn.add(field->world_bounds());
+    scene.entities.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
+      if (const field::Field* field = source.loaded.get()) drawn.extend(field->world_bounds());
     });
     const auto add_box = [&](scene::Entity, const auto& source) {
       if (!source.loaded) return;
-      drawn.add(source.loaded->lowest);
-      drawn.add(source.loaded->highest);
+      drawn.extend(source.loaded->min_corner);
+      drawn.extend(source.loaded->max_corner);
     };
-    scene.world.each<scene::DrawnCurves>(add_box);
-    scene.world.each<scene::DrawnPoints>(add_box);
-    scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
+    scene.entities.each<scene::CurvesSource>(add_box);
+    scene.entities.each<scene::PointsSource>(add_box);
+    scene.entities.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
       if (!source.loaded) return;
-      drawn.add(source.loaded->lowest());
-      drawn.add(source.loaded->highest());
+      drawn.extend(source.loaded->min_corner());
+      drawn.extend(source.loaded->max_corner());
     });
   }
   double widest_tube = 0;
   for (const TubeItem& tube : packet.tubes) widest_tube = std::max(widest_tube, tube.radius);
   each_cursor(scene, [&](const scene::Cursor& cursor) {
     CursorItem item = hand_of(scene, cursor);
-    item.size = cursor.size;
+    item.radius = cursor.size;
     item.id = packet.add_object("cursor", "");
-    item.ghost = cursor.ghost;
-    item.crosshair = cursor.crosshair;
-    if (cursor.drop_line) item.foot = item.probe;  // extract_feet lowers it
-    if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
+    item.show_occluded = cursor.show_occluded;
+    item.is_crosshair = cursor.crosshair;
+    if (cursor.drop_line) item.foot_point = item.probe;  // extract_feet lowers it
+    if (!(item.radius > 0)) item.radius = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
     packet.cursors.push_back(std::move(item));
   });
 }
@@ -150,45 +150,45 @@ void extract_feet(const scene::Scene& scene, const Bounds& drawn, FramePacket& p
     if (std::fabs(up[other]) > std::fabs(up[axis])) axis = other;
   const double sign = up[axis] < 0 ? -1 : 1;
   for (CursorItem& cursor : packet.cursors) {
-    if (!cursor.foot) continue;
+    if (!cursor.foot_point) continue;
     const double floor = scene.ground ? ground_height(*scene.ground, drawn) : (sign > 0 ? drawn.lo : drawn.hi)[axis];
-    (*cursor.foot)[axis] = floor;
-    if (drawn.empty() || !(sign * (cursor.probe[axis] - floor) > 0)) cursor.foot.reset();
+    (*cursor.foot_point)[axis] = floor;
+    if (drawn.empty() || !(sign * (cursor.probe[axis] - floor) > 0)) cursor.foot_point.reset();
   }
 }
 
 View view_of(const scene::Scene& scene, const FramePacket& packet) {
   const scene::Camera& camera = scene.camera;
-  if (camera.given) return {camera.position, camera.target, camera.up, camera.fovy_deg, camera.orthographic, camera.height};
-  return first_view(scene, packet);
+  if (camera.is_explicit) return {camera.position, camera.target, camera.up, camera.fovy_deg, camera.orthographic, camera.ortho_height};
+  return make_auto_view(scene, packet);
 }
 
 }  // namespace
 
 Bounds data_bounds(const FramePacket& packet) {
   Bounds bounds;
-  for (const VolumeItem& volume : packet.volumes) bounds.add(volume.grid->world_bounds());
-  for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(surface.grid->world_bounds());
-  for (const SliceItem& slice : packet.slices) bounds.add(slice.grid->world_bounds());
+  for (const VolumeItem& volume : packet.volumes) bounds.extend(volume.grid->world_bounds());
+  for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.extend(surface.grid->world_bounds());
+  for (const SliceItem& slice : packet.slices) bounds.extend(slice.grid->world_bounds());
   for (const MeshItem& mesh : packet.meshes)
-    for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
+    for (const Vec3& p : mesh.geometry->vertices) bounds.extend(p);
   return bounds;
 }
 
 Bounds drawn_bounds(const FramePacket& packet) {
   Bounds bounds = data_bounds(packet);
   for (const TubeItem& tube : packet.tubes)
-    for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
-  for (const BallsItem& item : packet.balls)
-    for (std::size_t i = 0; i < item.balls->places.size(); ++i) bounds.add(item.balls->place(i), double(item.balls->radii[i]));
+    for (const Vec3& p : tube.points) bounds.extend(p, tube.radius);
+  for (const SpheresItem& item : packet.spheres)
+    for (std::size_t i = 0; i < item.spheres->offsets.size(); ++i) bounds.extend(item.spheres->position(i), double(item.spheres->radii[i]));
   for (const ArrowItem& arrow : packet.arrows) {
-    bounds.add(arrow.base, arrow.radius);
-    bounds.add(arrow.tip);
+    bounds.extend(arrow.base, arrow.radius);
+    bounds.extend(arrow.tip);
   }
   for (const GlyphItem& item : packet.glyphs)
     for (const Glyph& glyph : item.glyphs) {
-      bounds.add(glyph.tail);
-      bounds.add(glyph.tip);
+      bounds.extend(glyph.tail);
+      bounds.extend(glyph.tip);
     }
   return bounds;
 }
@@ -196,49 +196,49 @@ Bounds drawn_bounds(const FramePacket& packet) {
 Bounds packet_bounds(const FramePacket& packet) {
   Bounds bounds = drawn_bounds(packet);
   for (const IndicatorItem& indicator : packet.indicators)
-    for (const Vec3& p : indicator.tube.points) bounds.add(p, indicator.arrow.radius);
+    for (const Vec3& p : indicator.tube.points) bounds.extend(p, indicator.arrow.radius);
   for (const CursorItem& cursor : packet.cursors) {
-    bounds.add(cursor.probe, cursor.size);
-    for (const Vec3& p : cursor.proxies) bounds.add(p, cursor.size);
+    bounds.extend(cursor.probe, cursor.radius);
+    for (const Vec3& p : cursor.proxies) bounds.extend(p, cursor.radius);
   }
   return bounds;
 }
 
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
-  packet.view = through_screen(view, scene.stereo);
+  packet.view = make_screen_window_view(view, scene.stereo);
   const Bounds drawn = drawn_bounds(packet);
-  set_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
-  set_fog(scene, packet_bounds(packet), packet);
-  set_widgets(scene, data_bounds(packet), packet);
-  set_eyes(packet, scene.stereo);
+  update_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
+  update_fog(scene, packet_bounds(packet), packet);
+  update_widgets(scene, data_bounds(packet), packet);
+  update_eyes(packet, scene.stereo);
 }
 
-void move_cursors(const scene::Scene& scene, FramePacket& packet) {
+void update_cursors(const scene::Scene& scene, FramePacket& packet) {
   std::vector<CursorItem> hands;
   each_cursor(scene, [&](const scene::Cursor& cursor) { hands.push_back(hand_of(scene, cursor)); });
   if (hands.size() != packet.cursors.size()) return;
   for (std::size_t k = 0; k < hands.size(); ++k) {
     CursorItem& item = packet.cursors[k];
-    hands[k].size = item.size;
+    hands[k].radius = item.radius;
     hands[k].id = item.id;
-    hands[k].ghost = item.ghost;
-    hands[k].crosshair = item.crosshair;
-    if (item.foot) hands[k].foot = hands[k].probe;
+    hands[k].show_occluded = item.show_occluded;
+    hands[k].is_crosshair = item.is_crosshair;
+    if (item.foot_point) hands[k].foot_point = hands[k].probe;
     item = std::move(hands[k]);
   }
-  const bool any_foot = std::ranges::any_of(packet.cursors, [](const CursorItem& item) { return item.foot.has_value(); });
+  const bool any_foot = std::ranges::any_of(packet.cursors, [](const CursorItem& item) { return item.foot_point.has_value(); });
   if (any_foot) extract_feet(scene, drawn_bounds(packet), packet);
 }
 
 Outcome prepare_frame(scene::Scene& scene) {
-  CATENA_CHECK(scene::prepare(scene, scene::Streamlines::left));
+  CATENA_CHECK(scene::prepare(scene, scene::StreamlineTracing::deferred));
   CATENA_CHECK(prepare_meshes(scene));
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));
   CATENA_CHECK(prepare_glyphs(scene));
   CATENA_CHECK(prepare_curves(scene));
   CATENA_CHECK(prepare_points(scene));
-  prepare_visible(scene);
+  prepare_auto_camera(scene);
   return prepare_widgets(scene);
 }
 
@@ -253,7 +253,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   packet.width = width;
   packet.height = height;
   packet.jitter = scene.jitter;
-  packet.clip.assign(scene.clip.begin(), scene.clip.end());
+  packet.clip_planes.assign(scene.clip_planes.begin(), scene.clip_planes.end());
   const scene::Background& background = scene.background;
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
   CATENA_CHECK(extract_volumes(scene, packet));
@@ -267,14 +267,14 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
-  packet.view = through_screen(view_of(scene, packet), scene.stereo);
+  packet.view = make_screen_window_view(view_of(scene, packet), scene.stereo);
   // the box, its axes and the ground stay where the data are while the hand goes elsewhere
   const Bounds drawn = drawn_bounds(packet);
   extract_feet(scene, drawn, packet);
-  extract_aids(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
+  extract_environment(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
   extract_widgets(scene, data_bounds(packet), packet);
-  set_eyes(packet, scene.stereo);
-  CATENA_CHECK(check_eyes(packet, scene.stereo));
+  update_eyes(packet, scene.stereo);
+  CATENA_CHECK(check_eye_separation(packet, scene.stereo));
   return packet;
 }
 

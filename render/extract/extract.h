@@ -23,10 +23,10 @@ Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::ui
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
 
 /// The cursors of the packet of this scene where the hand is by now (late latching): all else, and how large they are, stays.
-void move_cursors(const scene::Scene& scene, FramePacket& packet);
+void update_cursors(const scene::Scene& scene, FramePacket& packet);
 
 /// An Error where the picture is of a screen, and the packet's eye is not before it: it is drawn as without the screen.
-Outcome check_head(const FramePacket& packet, const scene::Stereo& stereo);
+Outcome check_screen_view(const FramePacket& packet, const scene::Stereo& stereo);
 
 /// The world box of the data that the packet draws, which nothing that the hand moves changes: domains of grids, meshes. Empty without.
 Bounds data_bounds(const FramePacket& packet);
@@ -36,6 +36,6 @@ Bounds packet_bounds(const FramePacket& packet);
 
 /// Field values to colour and extinction; the scene has filled in what the file leaves out.
 ///   alpha a over the length u (0: the smallest voxel edge) at a point:  sigma = -ln(1 - a) / u;  between points sigma is linear
-TransferTable transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field);
+TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field);
 
 }  // namespace catena::render

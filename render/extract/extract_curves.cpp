@@ -7,8 +7,8 @@
 #include "engine/base/result.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/hidden.h"
-#include "render/extract/extract_parts.h"
+#include "engine/scene/visibility.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 
@@ -28,9 +28,9 @@ struct FlatCurves {
 
 /// The lines that are drawn: all, or an even choice of as many as the budget of points allows.
 std::vector<std::size_t> drawn_lines(const curves::CurveSet& set) {
-  const double share = std::min(1.0, static_cast<double>(kMostCurvePoints) / static_cast<double>(set.points.size()));
+  const double share = std::min(1.0, static_cast<double>(kMaxCurvePoints) / static_cast<double>(set.points.size()));
   std::vector<std::size_t> lines;
-  for (std::size_t k = 0; k < set.lines(); ++k)
+  for (std::size_t k = 0; k < set.line_count(); ++k)
     if (share == 1 || std::floor(share * static_cast<double>(k + 1)) > std::floor(share * static_cast<double>(k))) lines.push_back(k);
   if (lines.empty()) lines.push_back(0);
   return lines;
@@ -59,9 +59,9 @@ class CurveValue {
     double way = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i > 0) way += norm(points[i] - points[i - 1]);
-      out.push_back(by_->what == scene::ColorBy::What::value        ? static_cast<double>(values_->values[first + i])
-                    : by_->what == scene::ColorBy::What::arc_length ? way
-                                                                    : at(points[i]));
+      out.push_back(by_->source == scene::ColorBy::Source::value        ? static_cast<double>(values_->values[first + i])
+                    : by_->source == scene::ColorBy::Source::arc_length ? way
+                                                                        : at(points[i]));
     }
     return out;
   }
@@ -85,38 +85,37 @@ class CurveValue {
 
 Result<CurveValue> curve_value(scene::Scene& scene, const scene::ColorBy& by, const curves::CurveSet& set) {
   field::AnyField shown;
-  if (by.what == scene::ColorBy::What::field) {
-    CATENA_TRY(shown, scene::use_field(scene, by.field, by.where));
+  if (by.source == scene::ColorBy::Source::field) {
+    CATENA_TRY(shown, scene::resolve_field(scene, by.field, by.where));
   }
-  const curves::PointValues* values = by.what == scene::ColorBy::What::value ? set.find(by.value) : nullptr;
-  if (by.what == scene::ColorBy::What::value && values == nullptr) {
+  const curves::PointValues* values = by.source == scene::ColorBy::Source::value ? set.find_values(by.value_name) : nullptr;
+  if (by.source == scene::ColorBy::Source::value && values == nullptr) {
     std::vector<std::string_view> names;
     for (const curves::PointValues& one : set.values) names.push_back(one.name);
-    return json::error_at(json::member_or(by.where, "value"), "the file has no values called " + in_quotes(by.value) +
-                                                                  "; known: " + (names.empty() ? "none" : joined(names)) +
-                                                                  ", one of them was expected" + suggestion(by.value, names));
+    return json::error_at(json::member_or_parent(by.where, "value"), "the file has no values called " + in_quotes(by.value_name) +
+                                                                         "; known: " + (names.empty() ? "none" : join_words(names)) +
+                                                                         ", one of them was expected" + suggestion(by.value_name, names));
   }
   return CurveValue(by, std::move(shown), values);
 }
 
 double fitted_radius(const curves::CurveSet& set) {
-  const double many = std::sqrt(std::sqrt(kManyCurves / static_cast<double>(set.lines())));
-  return kShareOfAll * norm(set.highest - set.lowest) * std::clamp(many, kNarrowest, 1.0);
+  const double many = std::sqrt(std::sqrt(kManyCurves / static_cast<double>(set.line_count())));
+  return kShareOfAll * norm(set.max_corner - set.min_corner) * std::clamp(many, kNarrowest, 1.0);
 }
 
-Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& drawn, const std::string& name) {
+Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::CurvesSource& drawn, const std::string& name) {
   const curves::CurveSet& set = *drawn.loaded;
   FlatCurves flat;
   flat.of = drawn.loaded;
   const std::vector<std::size_t> lines = drawn_lines(set);
   std::size_t points = 0;
-  for (const std::size_t k : lines) points += set.first[k + 1] - set.first[k];
-  CATENA_CHECK(ask_for_memory("drawing " + std::to_string(lines.size()) + " lines of curves " + in_quotes(name),
-                              static_cast<double>(points * kBytesAPoint + lines.size() * kBytesALine)));
-  if (lines.size() < set.lines())
-    flat.left_out = "curves " + in_quotes(name) + ": " + std::to_string(lines.size()) + " of " + std::to_string(set.lines()) +
-                    " lines are drawn, evenly chosen, so that they have about " + std::to_string(kMostCurvePoints) +
-                    " points; all are felt";
+  for (const std::size_t k : lines) points += set.line_offsets[k + 1] - set.line_offsets[k];
+  CATENA_CHECK(check_memory_available("drawing " + std::to_string(lines.size()) + " lines of curves " + in_quotes(name),
+                                      static_cast<double>(points * kBytesAPoint + lines.size() * kBytesALine)));
+  if (lines.size() < set.line_count())
+    flat.left_out = "curves " + in_quotes(name) + ": " + std::to_string(lines.size()) + " of " + std::to_string(set.line_count()) +
+                    " lines are drawn, evenly chosen, so that they have about " + std::to_string(kMaxCurvePoints) + " points; all are felt";
 
   std::optional<CurveValue> value;
   if (drawn.color_by) {
@@ -127,10 +126,10 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& dr
   std::vector<double> all;
   flat.tubes.reserve(lines.size());
   for (const std::size_t k : lines) {
-    std::vector<Vec3> places(set.points.begin() + set.first[k], set.points.begin() + set.first[k + 1]);
+    std::vector<Vec3> places(set.points.begin() + set.line_offsets[k], set.points.begin() + set.line_offsets[k + 1]);
     TubeItem tube{{}, radius, drawn.color.value_or(Color{}), {}};
     if (value) {
-      values.push_back(value->of_line(places, set.first[k]));
+      values.push_back(value->of_line(places, set.line_offsets[k]));
       all.insert(all.end(), values.back().begin(), values.back().end());
     } else if (!drawn.color) {
       tube.colors = direction_colors(places);
@@ -141,11 +140,11 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& dr
   if (value) {
     const DisplayRange range = field::display_range(all, value->shown());
     CATENA_CHECK(scene::check_mapping(*drawn.color_by, range.lo));
-    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
+    flat.colors = scene::make_color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
     for (std::size_t i = 0; i < values.size(); ++i) {
       std::vector<Color> colors;
       colors.reserve(values[i].size());
-      for (const double v : values[i]) colors.push_back(table_color(flat.colors, v));
+      for (const double v : values[i]) colors.push_back(sample_color_table(flat.colors, v));
       flat.tubes[i].colors = std::move(colors);
     }
   }
@@ -154,19 +153,21 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& dr
 
 }  // namespace
 
-const ColorTable* shown_curve_colors(const scene::World& made, scene::Entity curves) { return kept_colors<FlatCurves>(made, curves); }
+const ColorTable* find_curve_colors(const scene::EntityStore& made, scene::Entity curves) {
+  return cached_colors<FlatCurves>(made, curves);
+}
 
-Outcome prepare_curves(scene::Scene& scene) { return prepare_loaded<FlatCurves, scene::DrawnCurves>(scene, flat_curves); }
+Outcome prepare_curves(scene::Scene& scene) { return prepare_cached<FlatCurves, scene::CurvesSource>(scene, flat_curves); }
 
 void extract_curves(const scene::Scene& scene, FramePacket& packet) {
-  scene.world.each<scene::DrawnCurves>([&](scene::Entity e, const scene::DrawnCurves& drawn) {
-    if (is_hidden(scene.world, e)) return;
-    const FlatCurves& flat = scene.made.get<FlatCurves>(e);
-    const std::uint32_t id = packet.add_object("curves", name_of(scene, e), drawn.where.label);
-    if (!flat.left_out.empty()) packet.left_out += (packet.left_out.empty() ? "" : "; ") + flat.left_out;
+  scene.entities.each<scene::CurvesSource>([&](scene::Entity e, const scene::CurvesSource& drawn) {
+    if (is_hidden(scene.entities, e)) return;
+    const FlatCurves& flat = scene.cache.get<FlatCurves>(e);
+    const std::uint32_t id = packet.add_object("curves", entity_name(scene, e), drawn.where.label);
+    if (!flat.left_out.empty()) packet.omitted += (packet.omitted.empty() ? "" : "; ") + flat.left_out;
     for (TubeItem tube : flat.tubes) {
       tube.id = id;
-      tube.clipped = drawn.clipped;
+      tube.is_clipped = drawn.clipped;
       packet.tubes.push_back(std::move(tube));
     }
   });

@@ -2,20 +2,20 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
-#include "engine/field/grid.h"
+#include "engine/base/system_failure.h"
+#include "engine/field/grid/grid.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/even_places.h"
-#include "engine/scene/hidden.h"
-#include "render/extract/extract_parts.h"
+#include "engine/scene/uniform_sampling.h"
+#include "engine/scene/visibility.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 
 namespace {
 
-using On = scene::GlyphSet::On;
+using On = scene::GlyphSet::Support;
 
 constexpr double kSurfaceShare = 1.0 / 24, kBoxShare = 1.0 / 16;  // fitted spacing by the domain's diagonal
 constexpr double kShaftShare = 0.06;                              // fitted radius of a shaft by its length
@@ -41,17 +41,17 @@ struct MadeGlyphs {
 
 /// Where a field has values: a formula is drawn in its box.
 scene::Domain domain_of(const scene::Scene& scene, scene::Entity field) {
-  const scene::FieldSource& source = scene.world.get<scene::FieldSource>(field);
+  const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(field);
   if (source.loaded.get()->is_grid()) return {source.loaded.get()->mapping(), source.loaded.get()->index_box()};
   return {{}, {Vec3(source.box[0]), Vec3(source.box[1])}};
 }
 
 const scene::Slice* slice_of(const scene::Scene& scene, const scene::GlyphSet& set) {
-  return set.on == On::slice ? &scene.world.get<scene::Slice>(set.base) : nullptr;
+  return set.support == On::slice ? &scene.entities.get<scene::Slice>(set.support_entity) : nullptr;
 }
 
 const scene::Isosurface* surface_of(const scene::Scene& scene, const scene::GlyphSet& set) {
-  return set.on == On::isosurface ? &scene.world.get<scene::Isosurface>(set.base) : nullptr;
+  return set.support == On::isosurface ? &scene.entities.get<scene::Isosurface>(set.support_entity) : nullptr;
 }
 
 GlyphBasis basis_of(const scene::Scene& scene, const scene::GlyphSet& set) {
@@ -60,76 +60,76 @@ GlyphBasis basis_of(const scene::Scene& scene, const scene::GlyphSet& set) {
   const scene::Domain domain = domain_of(scene, set.field);
   basis.lo = domain.box.lo;
   basis.hi = domain.box.hi;
-  if (set.color_by && set.color_by->what == scene::ColorBy::What::field)
+  if (set.color_by && set.color_by->source == scene::ColorBy::Source::field)
     basis.shown = scene::loaded_field(scene, set.color_by->field).get()->version();
   basis.point = set.point;
   basis.normal = set.normal;
   if (const scene::Slice* slice = slice_of(scene, set)) {
-    basis.base = scene::drawn_field(scene, slice->shown.field).get()->version();
+    basis.base = scene::rendered_field(scene, slice->color_by.field).get()->version();
     basis.point = slice->point;
     basis.normal = slice->normal;
   }
   if (const scene::Isosurface* surface = surface_of(scene, set)) {
-    basis.base = scene::drawn_field(scene, surface->field).get()->version();
+    basis.base = scene::rendered_field(scene, surface->field).get()->version();
     basis.level = surface->level;
   }
-  if (set.on == On::mesh) basis.base = scene.world.get<scene::MeshSource>(set.base).loaded->version();
+  if (set.support == On::mesh) basis.base = scene.entities.get<scene::MeshSource>(set.support_entity).loaded->version();
   return basis;
 }
 
-Result<scene::EvenPlaces> places_at(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis, double spacing) {
+Result<scene::UniformSamples> places_at(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis, double spacing) {
   const scene::Domain domain = domain_of(scene, set.field);
-  switch (set.on) {
+  switch (set.support) {
     case On::box:
-      return scene::even_places_in_box(set.box ? scene::Domain{{}, *set.box} : domain, spacing, scene::kMaxGlyphs);
+      return scene::sample_box(set.box ? scene::Domain{{}, *set.box} : domain, spacing, scene::kMaxGlyphs);
     case On::plane:
     case On::slice:
-      return scene::even_places_on_plane(domain, basis.point, basis.normal, spacing, scene::kMaxGlyphs);
+      return scene::sample_plane(domain, basis.point, basis.normal, spacing, scene::kMaxGlyphs);
     case On::mesh:
-      return scene::even_places_on_mesh(*scene.world.get<scene::MeshSource>(set.base).loaded, spacing, scene::kMaxGlyphs);
+      return scene::sample_mesh(*scene.entities.get<scene::MeshSource>(set.support_entity).loaded, spacing, scene::kMaxGlyphs);
     case On::isosurface:
       break;
   }
   const scene::Isosurface& surface = *surface_of(scene, set);
-  const field::AnyField& any = scene::drawn_field(scene, surface.field);
+  const field::AnyField& any = scene::rendered_field(scene, surface.field);
   if (!any.scalar)
-    return json::error_at(json::member_or(surface.where, "field"),
-                          "\"" + name_of(scene, surface.field) + "\" is a vector field; expected a scalar field for an isosurface");
-  CATENA_CHECK(scene::check_level(*any.scalar, surface.level, json::member_or(surface.where, "level")));
-  return scene::even_places_on_level(*any.scalar, surface.level, spacing, scene::kMaxGlyphs);
+    return json::error_at(json::member_or_parent(surface.where, "field"),
+                          "\"" + entity_name(scene, surface.field) + "\" is a vector field; expected a scalar field for an isosurface");
+  CATENA_CHECK(scene::check_level(*any.scalar, surface.level, json::member_or_parent(surface.where, "level")));
+  return scene::sample_isosurface(*any.scalar, surface.level, spacing, scene::kMaxGlyphs);
 }
 
 /// What follows the hand gets wider rather than wrong.
 bool follows_hand(const scene::Scene& scene, const scene::GlyphSet& set) {
   const scene::Slice* slice = slice_of(scene, set);
   const scene::Isosurface* surface = surface_of(scene, set);
-  return set.widget || (slice != nullptr && slice->widget) || (surface != nullptr && surface->level_from);
+  return set.widget || (slice != nullptr && slice->widget) || (surface != nullptr && surface->level_widget);
 }
 
 Result<std::vector<Vec3>> places_of(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis, double spacing) {
   const double most = static_cast<double>(scene::kMaxGlyphs);
   for (;;) {
-    CATENA_TRY(scene::EvenPlaces even, places_at(scene, set, basis, spacing));
-    if (even.wanted <= most) {
-      const Outcome asked = ask_for_text_memory(to_text(even.wanted) + " glyphs", kGlyphBytes * even.wanted);
-      if (!asked) return caused_by(json::error_at(set.where, asked.error().message), asked.error());
-      return std::move(even.places);
+    CATENA_TRY(scene::UniformSamples even, places_at(scene, set, basis, spacing));
+    if (even.expected_count <= most) {
+      const Outcome asked = check_text_memory_available(to_text(even.expected_count) + " glyphs", kGlyphBytes * even.expected_count);
+      if (!asked) return with_cause(json::error_at(set.where, asked.error().message), asked.error());
+      return std::move(even.positions);
     }
-    if (follows_hand(scene, set) && std::isfinite(even.wanted)) {
-      spacing *= 1.05 * std::sqrt(even.wanted / most);
+    if (follows_hand(scene, set) && std::isfinite(even.expected_count)) {
+      spacing *= 1.05 * std::sqrt(even.expected_count / most);
       continue;
     }
-    const std::string count = even.wanted < 1e15 ? to_text(std::round(even.wanted)) : to_text(even.wanted);
-    return json::error_at(json::member_or(set.where, "spacing"), "a \"spacing\" of " + to_text(spacing) + " would give about " + count +
-                                                                     " glyphs; a wider one that gives at most " +
-                                                                     std::to_string(scene::kMaxGlyphs) + " was expected");
+    const std::string count = even.expected_count < 1e15 ? to_text(std::round(even.expected_count)) : to_text(even.expected_count);
+    return json::error_at(json::member_or_parent(set.where, "spacing"), "a \"spacing\" of " + to_text(spacing) + " would give about " +
+                                                                            count + " glyphs; a wider one that gives at most " +
+                                                                            std::to_string(scene::kMaxGlyphs) + " was expected");
   }
 }
 
 /// A vector, or a line's axis times its magnitude; zero where there is none.
 Vec3 arrow_at(const scene::GlyphSet& set, const field::VectorField& field, const Vec3& p, field::Cursor& cursor) {
   Vec3 arrow(0.0);
-  if (set.line) {
+  if (set.is_line_field) {
     const field::LineSample sample = field.sample_line(p, cursor);
     if (sample.inside) arrow = sample.speed * sample.axis;
   } else {
@@ -154,32 +154,32 @@ Result<ColorTable> color_glyphs(const scene::Scene& scene, const scene::GlyphSet
                                 const std::vector<double>& speeds, std::vector<Glyph>& glyphs) {
   std::vector<double> values = speeds;
   field::AnyField shown = scene::loaded_field(scene, set.field);
-  if (set.color_by->what == scene::ColorBy::What::field) {
+  if (set.color_by->source == scene::ColorBy::Source::field) {
     field::Cursor cursor;
     shown = scene::loaded_field(scene, set.color_by->field);
     for (std::size_t i = 0; i < places.size(); ++i) values[i] = value_at(shown, places[i], cursor);
   }
   const DisplayRange range = field::display_range(values, shown);
   CATENA_CHECK(scene::check_mapping(*set.color_by, range.lo));
-  ColorTable table = scene::color_table(set.color_by->colors, set.color_by->named, range.lo, range.hi);
-  for (std::size_t i = 0; i < glyphs.size(); ++i) glyphs[i].color = table_color(table, values[i]);
+  ColorTable table = scene::make_color_table(set.color_by->colors, set.color_by->named, range.lo, range.hi);
+  for (std::size_t i = 0; i < glyphs.size(); ++i) glyphs[i].color = sample_color_table(table, values[i]);
   return table;
 }
 
 Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis) {
   const field::AnyField& any = scene::loaded_field(scene, set.field);
   if (!any.vector)
-    return json::error_at(json::member_or(set.where, "field"),
-                          "\"" + name_of(scene, set.field) + "\" is a scalar field; expected a vector field for glyphs");
+    return json::error_at(json::member_or_parent(set.where, "field"),
+                          "\"" + entity_name(scene, set.field) + "\" is a scalar field; expected a vector field for glyphs");
   const scene::Domain domain = domain_of(scene, set.field);
   const double diagonal = norm(domain.mapping.world_from_index_linear * (domain.box.hi - domain.box.lo));
-  const double fitted = (set.on == On::box ? kBoxShare : kSurfaceShare) * diagonal, spacing = set.spacing > 0 ? set.spacing : fitted;
+  const double fitted = (set.support == On::box ? kBoxShare : kSurfaceShare) * diagonal, spacing = set.spacing > 0 ? set.spacing : fitted;
   CATENA_TRY(const std::vector<Vec3> all, places_of(scene, set, basis, spacing));
 
   // within what is seen of a slice
   std::optional<scene::Domain> within;
   if (const scene::Slice* slice = slice_of(scene, set)) {
-    const field::Field& seen = *scene::drawn_field(scene, slice->shown.field).get();
+    const field::Field& seen = *scene::rendered_field(scene, slice->color_by.field).get();
     within = {seen.mapping(), seen.index_box()};
   }
   std::vector<Vec3> places, arrows;
@@ -199,13 +199,14 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
   // what lies beyond the field's display range is drawn as long as the longest
   const DisplayRange range = field::display_range(speeds, any);
   const double fastest = range.hi;
-  const double longest = set.length > 0 ? set.length : spacing, full = set.full_speed > 0 ? set.full_speed : fastest;
+  const double longest = set.length > 0 ? set.length : spacing, full = set.reference_speed > 0 ? set.reference_speed : fastest;
   made.shaft = set.radius > 0 ? set.radius / longest : kShaftShare;
-  made.head = set.line ? 0 : std::min(kLongestHead, kArrowLength * made.shaft);
-  const double before = set.at == scene::GlyphSet::At::tail ? 0 : set.at == scene::GlyphSet::At::head ? 1 : 0.5;
+  made.head = set.is_line_field ? 0 : std::min(kLongestHead, kArrowLength * made.shaft);
+  const double before = set.anchor == scene::GlyphSet::Anchor::tail ? 0 : set.anchor == scene::GlyphSet::Anchor::head ? 1 : 0.5;
   std::vector<Glyph> glyphs;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Vec3 whole = (set.constant ? longest : longest * (range.shows(speeds[i]) ? speeds[i] / full : 1)) * direction(arrows[i]),
+    const Vec3 whole =
+                   (set.constant_length ? longest : longest * (range.contains(speeds[i]) ? speeds[i] / full : 1)) * direction(arrows[i]),
                tail = places[i] - before * whole;
     glyphs.push_back({tail, tail + whole, set.color});
   }
@@ -218,26 +219,26 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
 
 }  // namespace
 
-const ColorTable* glyph_colors(const scene::World& made, scene::Entity set) { return kept_colors<MadeGlyphs>(made, set); }
+const ColorTable* find_glyph_colors(const scene::EntityStore& made, scene::Entity set) { return cached_colors<MadeGlyphs>(made, set); }
 
 Outcome prepare_glyphs(scene::Scene& scene) {
-  for (const scene::Entity e : owners_of<scene::GlyphSet>(scene.world)) {
-    if (is_hidden(scene.world, e)) continue;
-    const scene::GlyphSet& set = scene.world.get<scene::GlyphSet>(e);
-    if (!scene.made.has<MadeGlyphs>(e)) scene.made.emplace<MadeGlyphs>(e);
+  for (const scene::Entity e : entities_with<scene::GlyphSet>(scene.entities)) {
+    if (is_hidden(scene.entities, e)) continue;
+    const scene::GlyphSet& set = scene.entities.get<scene::GlyphSet>(e);
+    if (!scene.cache.has<MadeGlyphs>(e)) scene.cache.emplace<MadeGlyphs>(e);
     const GlyphBasis basis = basis_of(scene, set);
-    if (scene.made.get<MadeGlyphs>(e).basis == basis) continue;
+    if (scene.cache.get<MadeGlyphs>(e).basis == basis) continue;
     CATENA_TRY(MadeGlyphs made, make_glyphs(scene, set, basis));
-    scene.made.get<MadeGlyphs>(e) = std::move(made);
+    scene.cache.get<MadeGlyphs>(e) = std::move(made);
   }
   return Done{};
 }
 
 void extract_glyphs(const scene::Scene& scene, FramePacket& packet) {
-  scene.world.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
-    if (is_hidden(scene.world, e)) return;
-    const MadeGlyphs& made = scene.made.get<MadeGlyphs>(e);
-    const std::uint32_t id = packet.add_object("glyphs", name_of(scene, set.field), set.where.label);
+  scene.entities.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
+    if (is_hidden(scene.entities, e)) return;
+    const MadeGlyphs& made = scene.cache.get<MadeGlyphs>(e);
+    const std::uint32_t id = packet.add_object("glyphs", entity_name(scene, set.field), set.where.label);
     packet.glyphs.push_back({made.glyphs, made.shaft, made.head, kArrowRadius * made.shaft, id, set.clipped});
   });
 }

@@ -5,11 +5,11 @@
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
 #include "engine/base/text.h"
-#include "engine/scene/hidden.h"
 #include "engine/scene/labels.h"
-#include "engine/scene/steps.h"
+#include "engine/scene/time_steps.h"
 #include "engine/scene/units.h"
-#include "render/extract/extract_parts.h"
+#include "engine/scene/visibility.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 namespace {
@@ -87,8 +87,8 @@ std::string decade_text(double value) {
 
 }  // namespace
 
-BarScale bar_scale(double lo, double hi, int count, const std::string& format, double linear_below) {
-  BarScale scale;
+ScalarBarTicks make_scalar_bar_ticks(double lo, double hi, int count, const std::string& format, double linear_below) {
+  ScalarBarTicks scale;
   if (!std::isfinite(lo) || !std::isfinite(hi)) return scale;
   if (linear_below > 0 && lo < hi) {
     const std::vector<double> values = decade_ticks(lo, hi, linear_below, count);
@@ -97,19 +97,19 @@ BarScale bar_scale(double lo, double hi, int count, const std::string& format, d
     scale = {};
   }
   // nice steps are coarse: rather a few ticks more than too few
-  std::vector<Tick> ticks = nice_ticks(lo, hi, count);
+  std::vector<AxisTick> ticks = nice_ticks(lo, hi, count);
   for (int about = count + 1; about <= 2 * count && static_cast<int>(ticks.size()) + 1 < count; ++about) ticks = nice_ticks(lo, hi, about);
   if (!format.empty() || ticks.size() < 2) {
-    for (const Tick& tick : ticks) scale.ticks.push_back({tick.value, formatted(format.empty() ? "%.6g" : format, tick.value + 0.0)});
+    for (const AxisTick& tick : ticks) scale.ticks.push_back({tick.value, formatted(format.empty() ? "%.6g" : format, tick.value + 0.0)});
     return scale;
   }
   const double step = ticks[1].value - ticks[0].value;
   double most = 0;
-  for (const Tick& tick : ticks) most = std::max(most, std::fabs(tick.value));
+  for (const AxisTick& tick : ticks) most = std::max(most, std::fabs(tick.value));
   int exponent = most > 0 ? static_cast<int>(std::floor(std::log10(most) + kSlack)) : 0;
   if (exponent < kFromExponent && exponent > kToExponent) exponent = 0;
   const int decimals = std::clamp(exponent - static_cast<int>(std::floor(std::log10(step) + kSlack)), 0, 15);
-  for (const Tick& tick : ticks)
+  for (const AxisTick& tick : ticks)
     scale.ticks.push_back({tick.value, formatted("%." + std::to_string(decimals) + "f", tick.value / std::pow(10.0, exponent) + 0.0)});
   if (exponent != 0) scale.factor = "×10" + superscript(exponent);
   return scale;
@@ -130,7 +130,7 @@ struct Shown {
   std::vector<std::array<double, 4>> colors;
   std::string name;
   const scene::LabelMap* labels = nullptr;  ///< whose colours they are
-  double linear_below = 0;                  ///< the scale of the values (engine/base/value_scale.h)
+  double linear_below = 0;                  ///< the scale of the values (engine/base/symlog_scale.h)
 };
 
 std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunction::ColorPoint>& points) {
@@ -140,7 +140,7 @@ std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunc
 }
 
 /// The packet's slices are in the order of their owners, without the hidden ones.
-const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, const FramePacket& packet) {
+const SliceItem* slice_item(const scene::EntityStore& world, scene::Entity wanted, const FramePacket& packet) {
   std::size_t i = 0, found = packet.slices.size();
   world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
     if (is_hidden(world, e)) return;
@@ -154,71 +154,71 @@ const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, con
 std::string with_unit(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " (" + unit + ")"; }
 
 Shown colors_of(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
-  const scene::World& world = scene.world;
+  const scene::EntityStore& world = scene.entities;
   if (is_hidden(world, e)) return {};
-  const auto named = [&](scene::Entity field) { return with_unit(name_of(scene, field), scene::unit_of(scene, field)); };
+  const auto named = [&](scene::Entity field) { return with_unit(entity_name(scene, field), scene::unit_of(scene, field)); };
   const auto labels = [&](const scene::ColorBy& by) {
-    return shows_labels(scene, by.field, by.colors, by.named) ? labels_of(scene, by.field) : nullptr;
+    return shows_labels(scene, by.field, by.colors, by.named) ? find_label_map(scene, by.field) : nullptr;
   };
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
     const bool states = volume.where.find("color") != nullptr || volume.where.find("transfer") != nullptr;
-    return {rows_of(volume.transfer.colors), named(volume.field), states ? nullptr : labels_of(scene, volume.field)};
+    return {rows_of(volume.transfer.colors), named(volume.field), states ? nullptr : find_label_map(scene, volume.field)};
   }
   if (world.has<scene::Isosurface>(e)) {
     const scene::ColorBy& by = *world.get<scene::Isosurface>(e).color_by;
-    const field::AnyField& any = drawn_field(scene, by.field);
+    const field::AnyField& any = rendered_field(scene, by.field);
     if (!any.scalar) return {};
     const DisplayRange range = field::display_range(*any.scalar);
-    return {rows_of(shown_table(scene, by.field, by.colors, by.named, range.lo, range.hi)), named(by.field), labels(by)};
+    return {rows_of(make_display_color_table(scene, by.field, by.colors, by.named, range.lo, range.hi)), named(by.field), labels(by)};
   }
   if (world.has<scene::Slice>(e)) {
     const SliceItem* slice = slice_item(world, e, packet);
-    const scene::ColorBy& by = world.get<scene::Slice>(e).shown;
+    const scene::ColorBy& by = world.get<scene::Slice>(e).color_by;
     return slice ? Shown{slice->colors, named(by.field), labels(by)} : Shown{};
   }
-  if (world.has<scene::DrawnPoints>(e)) {
-    const auto* points = shown_point_colors(scene.made, e);
+  if (world.has<scene::PointsSource>(e)) {
+    const auto* points = find_point_colors(scene.cache, e);
     if (points == nullptr) return {};
-    const scene::ColorBy& by = *world.get<scene::DrawnPoints>(e).color_by;
-    return {rows_of(*points), by.what == scene::ColorBy::What::field ? named(by.field) : by.value};
+    const scene::ColorBy& by = *world.get<scene::PointsSource>(e).color_by;
+    return {rows_of(*points), by.source == scene::ColorBy::Source::field ? named(by.field) : by.value_name};
   }
-  if (world.has<scene::DrawnCurves>(e)) {
-    const auto* points = shown_curve_colors(scene.made, e);
+  if (world.has<scene::CurvesSource>(e)) {
+    const auto* points = find_curve_colors(scene.cache, e);
     if (points == nullptr) return {};
-    const scene::ColorBy& by = *world.get<scene::DrawnCurves>(e).color_by;
-    return {rows_of(*points), by.what == scene::ColorBy::What::field   ? named(by.field)
-                              : by.what == scene::ColorBy::What::value ? by.value
-                                                                       : with_unit("arc length", scene::unit_length(scene))};
+    const scene::ColorBy& by = *world.get<scene::CurvesSource>(e).color_by;
+    return {rows_of(*points), by.source == scene::ColorBy::Source::field   ? named(by.field)
+                              : by.source == scene::ColorBy::Source::value ? by.value_name
+                                                                           : with_unit("arc length", scene::length_unit(scene))};
   }
   const bool glyphs = world.has<scene::GlyphSet>(e);
-  const ColorTable* points = glyphs ? glyph_colors(scene.made, e) : shown_colors(scene.made, e);
+  const ColorTable* points = glyphs ? find_glyph_colors(scene.cache, e) : find_streamline_colors(scene.cache, e);
   if (points == nullptr) return {};
   const auto colors = rows_of(*points);
   const scene::Entity of = glyphs ? world.get<scene::GlyphSet>(e).field : world.get<scene::StreamlineSet>(e).field;
   const auto& color_by = glyphs ? world.get<scene::GlyphSet>(e).color_by : world.get<scene::StreamlineSet>(e).color_by;
   CATENA_ASSERT(color_by);
-  switch (color_by->what) {
-    case scene::ColorBy::What::field:
+  switch (color_by->source) {
+    case scene::ColorBy::Source::field:
       return {colors, named(color_by->field), labels(*color_by)};
-    case scene::ColorBy::What::speed:
-      return {colors, with_unit("|" + name_of(scene, of) + "|", scene::unit_of(scene, of))};
-    case scene::ColorBy::What::value:
+    case scene::ColorBy::Source::speed:
+      return {colors, with_unit("|" + entity_name(scene, of) + "|", scene::unit_of(scene, of))};
+    case scene::ColorBy::Source::value:
       break;
-    case scene::ColorBy::What::arc_length:
-      return {colors, with_unit("arc length", scene::unit_length(scene))};
+    case scene::ColorBy::Source::arc_length:
+      return {colors, with_unit("arc length", scene::length_unit(scene))};
   }
   return {};
 }
 
 /// How the entity's values lie along its colours.
-scene::ValueMapping mapping_of(const scene::World& world, scene::Entity e) {
+scene::ValueMapping mapping_of(const scene::EntityStore& world, scene::Entity e) {
   if (world.has<scene::Volume>(e)) return world.get<scene::Volume>(e).transfer.named.mapping;
-  if (world.has<scene::Slice>(e)) return world.get<scene::Slice>(e).shown.named.mapping;
+  if (world.has<scene::Slice>(e)) return world.get<scene::Slice>(e).color_by.named.mapping;
   const auto of = [&](const auto& item) { return item.color_by ? item.color_by->named.mapping : scene::ValueMapping{}; };
   if (world.has<scene::Isosurface>(e)) return of(world.get<scene::Isosurface>(e));
-  if (world.has<scene::DrawnPoints>(e)) return of(world.get<scene::DrawnPoints>(e));
-  if (world.has<scene::DrawnCurves>(e)) return of(world.get<scene::DrawnCurves>(e));
+  if (world.has<scene::PointsSource>(e)) return of(world.get<scene::PointsSource>(e));
+  if (world.has<scene::CurvesSource>(e)) return of(world.get<scene::CurvesSource>(e));
   if (world.has<scene::GlyphSet>(e)) return of(world.get<scene::GlyphSet>(e));
   return world.has<scene::StreamlineSet>(e) ? of(world.get<scene::StreamlineSet>(e)) : scene::ValueMapping{};
 }
@@ -228,22 +228,22 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
   if (shown.colors.empty()) return shown;
   // a volume's scale follows from its opacities, too
   const double lo = shown.colors.front()[0], hi = shown.colors.back()[0];
-  shown.linear_below = scene.world.has<scene::Volume>(e) && mapping_of(scene.world, e).kind == scene::ValueMapping::Kind::symlog
-                           ? scene::linear_below(scene.world.get<scene::Volume>(e).transfer)
-                           : scene::linear_below(mapping_of(scene.world, e), lo, hi);
+  shown.linear_below = scene.entities.has<scene::Volume>(e) && mapping_of(scene.entities, e).kind == scene::ValueMapping::Kind::symlog
+                           ? scene::linear_below(scene.entities.get<scene::Volume>(e).transfer)
+                           : scene::linear_below(mapping_of(scene.entities, e), lo, hi);
   return shown;
 }
 
-Anchor anchor_of(scene::PictureCorner corner) {
+Anchor anchor_of(scene::ImageCorner corner) {
   constexpr Anchor anchors[] = {Anchor::bottom_left, Anchor::bottom_right, Anchor::top_left, Anchor::top_right};
   return anchors[static_cast<int>(corner)];
 }
 
 /// The labels of the most voxels, by their numbers from above.
 void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
-  std::vector<scene::MapLabel> labels = map.labels;
+  std::vector<scene::LabelEntry> labels = map.labels;
   const std::size_t count = std::min<std::size_t>(labels.size(), kMostEntries), more = labels.size() - count;
-  std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.voxels > b.voxels; });
+  std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.voxel_count > b.voxel_count; });
   labels.resize(count);
   std::sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
   for (std::size_t i = 0; i < count; ++i) {
@@ -253,27 +253,28 @@ void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
     std::string text = labels[i].name.empty() ? to_text(labels[i].value) : labels[i].name;
     // the middle goes: names end with their side
     if (text.size() > kLongestName)
-      text = printable(text.substr(0, kLongestName - kNameEnd)) + "…" + printable(text.substr(text.size() - kNameEnd));
+      text =
+          sanitize_for_terminal(text.substr(0, kLongestName - kNameEnd)) + "…" + sanitize_for_terminal(text.substr(text.size() - kNameEnd));
     item.ticks.push_back({at + 0.5, std::move(text)});
   }
-  item.steps = static_cast<int>(count);
+  item.band_count = static_cast<int>(count);
   item.side = item.side == Side::left ? Side::left : Side::right;
-  if (more > 0) item.more = "and " + std::to_string(more) + " more";
+  if (more > 0) item.overflow_text = "and " + std::to_string(more) + " more";
 }
 
 void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, Overlay& overlay) {
   for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) {
-    Shown shown = shown_by(scene, bar.shown, packet);
+    Shown shown = shown_by(scene, bar.target, packet);
     if (shown.colors.empty()) continue;
     ScalarBarItem item;
-    item.title = bar.title ? scene::with_time(*bar.title, scene) : shown.name;
+    item.title = bar.title ? scene::substitute_time(*bar.title, scene) : shown.name;
     item.side = static_cast<Side>(bar.side);
     if (shown.labels != nullptr) {
       set_legend(*shown.labels, item);
     } else {
       item.colors = std::move(shown.colors);
       item.linear_below = shown.linear_below;
-      BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format, item.linear_below);
+      ScalarBarTicks scale = make_scalar_bar_ticks(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format, item.linear_below);
       item.ticks = std::move(scale.ticks);
       item.factor = std::move(scale.factor);
     }
@@ -283,15 +284,15 @@ void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, O
 
 /// What the visible cursor feels.
 void extract_status(const scene::Scene& scene, Overlay& overlay) {
-  if (!scene.annotations.status || !scene.cursor || !scene.world.has<scene::Cursor>(scene.cursor)) return;
-  const scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  if (!scene.annotations.show_status || !scene.cursor || !scene.entities.has<scene::Cursor>(scene.cursor)) return;
+  const scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
   if (!cursor.visible) return;
   StatusItem& status = overlay.status.emplace();
   status.force_n = norm(cursor.force_n);
   status.max_force_n = scene.coupling.max_force_n;
   for (std::size_t i = 0; i < cursor.statuses.size(); ++i)
-    status.rows.push_back({i < cursor.names.size() ? cursor.names[i] : "link " + std::to_string(i + 1),
-                           exchange::status_word(cursor.statuses[i]), i >= cursor.active.size() || cursor.active[i]});
+    status.rows.push_back({i < cursor.names.size() ? cursor.names[i] : "link " + std::to_string(i + 1), to_string(cursor.statuses[i]),
+                           i >= cursor.active.size() || cursor.active[i]});
 }
 
 }  // namespace
@@ -306,19 +307,19 @@ void extract_overlay(const scene::Scene& scene, FramePacket& packet) {
   extract_status(scene, overlay);
   for (const scene::Label& label : from.labels) {
     LabelItem item;
-    item.at = label.at;
+    item.position = label.position;
     item.text = label.text;
     item.color = optional_color(label.color);
     item.size_pt = label.size_pt;
-    item.dot = label.dot;
-    item.behind_hidden = label.hidden_behind;
-    item.offset_pt = {label.dot ? 6.0 : 0.0, 0.0};
-    item.anchor = label.dot ? Anchor::left : Anchor::centre;
+    item.show_dot = label.show_dot;
+    item.hide_if_occluded = label.hide_when_occluded;
+    item.offset_pt = {label.show_dot ? 6.0 : 0.0, 0.0};
+    item.anchor = label.show_dot ? Anchor::left : Anchor::center;
     overlay.labels.push_back(std::move(item));
   }
   if (!from.title.empty()) {
     TextItem title;
-    title.text = scene::with_time(from.title, scene);
+    title.text = scene::substitute_time(from.title, scene);
     title.anchor = Anchor::top;
     title.offset_pt = {0.0, kTitleTopPt};
     title.size_pt = kTitleSizePt;

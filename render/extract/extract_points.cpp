@@ -7,8 +7,8 @@
 #include "engine/base/result.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/hidden.h"
-#include "render/extract/extract_parts.h"
+#include "engine/scene/visibility.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 
@@ -21,7 +21,7 @@ constexpr double kBytesABall = 80;                       // place, radius, colou
 /// What this room keeps beside points: the balls that are drawn, made once.
 struct FlatPoints {
   curves::PointSetPtr of;
-  std::shared_ptr<const Balls> balls;
+  std::shared_ptr<const SphereSet> balls;
   ColorTable colors;  ///< of "color_by"
   std::string left_out;
 };
@@ -29,18 +29,18 @@ struct FlatPoints {
 /// The column of that name; an error at the key that names it.
 Result<const std::vector<float>*> column_of(const curves::PointSet& set, const json::Node& where, const char* key,
                                             const std::string& name) {
-  if (const curves::PointValues* found = set.find(name)) return &found->values;
+  if (const curves::PointValues* found = set.find_values(name)) return &found->values;
   std::vector<std::string_view> names;
   for (const curves::PointValues& one : set.values) names.push_back(one.name);
-  return json::error_at(json::member_or(where, key), "the table has no column of numbers called " + in_quotes(name) +
-                                                         "; known: " + (names.empty() ? "none" : joined(names)) +
-                                                         ", one of them was expected" + suggestion(name, names));
+  return json::error_at(json::member_or_parent(where, key), "the table has no column of numbers called " + in_quotes(name) +
+                                                                "; known: " + (names.empty() ? "none" : join_words(names)) +
+                                                                ", one of them was expected" + suggestion(name, names));
 }
 
 double fitted_ball(const curves::PointSet& set) {
-  const double diagonal = set.core.box.diagonal();
+  const double diagonal = set.robust_bounds.box.diagonal();
   if (!(diagonal > 0)) return 1;
-  return std::clamp(kShareOfSpacing * set.spacing, kLeastBall * diagonal, kMostBall * diagonal);
+  return std::clamp(kShareOfSpacing * set.median_spacing, kLeastBall * diagonal, kMostBall * diagonal);
 }
 
 /// Values of a field at all points; not a number outside of it.
@@ -49,7 +49,7 @@ std::vector<float> field_values(const field::AnyField& shown, const curves::Poin
   std::vector<float> values;
   values.reserve(set.points.size());
   for (std::size_t i = 0; i < set.points.size(); ++i) {
-    const Vec3 p = set.place(i);
+    const Vec3 p = set.position(i);
     double value = std::numeric_limits<double>::quiet_NaN();
     if (shown.vector) {
       if (const auto sample = shown.vector->sample(p, cursor); sample.inside) value = norm(sample.value);
@@ -61,13 +61,13 @@ std::vector<float> field_values(const field::AnyField& shown, const curves::Poin
   return values;
 }
 
-Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& drawn, const std::string& name) {
+Result<FlatPoints> flat_points(scene::Scene& scene, const scene::PointsSource& drawn, const std::string& name) {
   const curves::PointSet& set = *drawn.loaded;
   FlatPoints flat;
   flat.of = drawn.loaded;
-  const std::size_t count = std::min(set.points.size(), kMostBalls);
-  CATENA_CHECK(
-      ask_for_memory("drawing " + std::to_string(count) + " points of " + in_quotes(name), kBytesABall * static_cast<double>(count)));
+  const std::size_t count = std::min(set.points.size(), kMaxSpheres);
+  CATENA_CHECK(check_memory_available("drawing " + std::to_string(count) + " points of " + in_quotes(name),
+                                      kBytesABall * static_cast<double>(count)));
   if (count < set.points.size())
     flat.left_out = "points " + in_quotes(name) + ": " + std::to_string(count) + " of " + std::to_string(set.points.size()) +
                     " are drawn, evenly chosen; all are felt";
@@ -75,40 +75,40 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
   const std::vector<float>* radii = nullptr;
   if (!drawn.radius_by.empty()) {
     CATENA_TRY(radii, column_of(set, drawn.where, "radius_by", drawn.radius_by));
-  } else if (!(drawn.radius > 0) && set.find("radius") != nullptr) {
-    radii = &set.find("radius")->values;
+  } else if (!(drawn.radius > 0) && set.find_values("radius") != nullptr) {
+    radii = &set.find_values("radius")->values;
   }
   std::vector<float> sampled;
   field::AnyField shown;
   const std::vector<float>* values = nullptr;
-  if (drawn.color_by && drawn.color_by->what == scene::ColorBy::What::value) {
-    CATENA_TRY(values, column_of(set, drawn.color_by->where, "value", drawn.color_by->value));
+  if (drawn.color_by && drawn.color_by->source == scene::ColorBy::Source::value) {
+    CATENA_TRY(values, column_of(set, drawn.color_by->where, "value", drawn.color_by->value_name));
   } else if (drawn.color_by) {
-    CATENA_TRY(shown, scene::use_field(scene, drawn.color_by->field, drawn.color_by->where));
+    CATENA_TRY(shown, scene::resolve_field(scene, drawn.color_by->field, drawn.color_by->where));
     sampled = field_values(shown, set);
     values = &sampled;
   }
   if (values != nullptr) {
     const DisplayRange range = field::display_range(std::vector<double>(values->begin(), values->end()), shown);
     CATENA_CHECK(scene::check_mapping(*drawn.color_by, range.lo));
-    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
+    flat.colors = scene::make_color_table(drawn.color_by->colors, drawn.color_by->named, range.lo, range.hi);
   }
 
   // a ball without a radius is not drawn
   const auto fitted = static_cast<float>(drawn.radius > 0 ? drawn.radius : fitted_ball(set));
-  auto balls = std::make_shared<Balls>();
+  auto balls = std::make_shared<SphereSet>();
   balls->origin = set.origin;
-  balls->places.reserve(count);
+  balls->offsets.reserve(count);
   balls->radii.reserve(count);
   balls->colors.reserve(count);
-  if (set.core.strays > 0) balls->core = set.core.box;
+  if (set.robust_bounds.outliers > 0) balls->robust_bounds = set.robust_bounds.box;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = k * set.points.size() / count;
     const float radius = radii != nullptr ? (*radii)[i] : fitted;
     if (!(radius > 0)) continue;
-    balls->places.push_back(set.points[i]);
+    balls->offsets.push_back(set.points[i]);
     balls->radii.push_back(radius);
-    balls->colors.push_back(values != nullptr ? table_color(flat.colors, double((*values)[i])) : drawn.color);
+    balls->colors.push_back(values != nullptr ? sample_color_table(flat.colors, double((*values)[i])) : drawn.color);
   }
   flat.balls = std::move(balls);
   return flat;
@@ -116,16 +116,18 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
 
 }  // namespace
 
-const ColorTable* shown_point_colors(const scene::World& made, scene::Entity points) { return kept_colors<FlatPoints>(made, points); }
+const ColorTable* find_point_colors(const scene::EntityStore& made, scene::Entity points) {
+  return cached_colors<FlatPoints>(made, points);
+}
 
-Outcome prepare_points(scene::Scene& scene) { return prepare_loaded<FlatPoints, scene::DrawnPoints>(scene, flat_points); }
+Outcome prepare_points(scene::Scene& scene) { return prepare_cached<FlatPoints, scene::PointsSource>(scene, flat_points); }
 
 void extract_points(const scene::Scene& scene, FramePacket& packet) {
-  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints& drawn) {
-    if (is_hidden(scene.world, e)) return;
-    const FlatPoints& flat = scene.made.get<FlatPoints>(e);
-    if (!flat.left_out.empty()) packet.left_out += (packet.left_out.empty() ? "" : "; ") + flat.left_out;
-    packet.balls.push_back({flat.balls, packet.add_object("points", name_of(scene, e), drawn.where.label), drawn.clipped});
+  scene.entities.each<scene::PointsSource>([&](scene::Entity e, const scene::PointsSource& drawn) {
+    if (is_hidden(scene.entities, e)) return;
+    const FlatPoints& flat = scene.cache.get<FlatPoints>(e);
+    if (!flat.left_out.empty()) packet.omitted += (packet.omitted.empty() ? "" : "; ") + flat.left_out;
+    packet.spheres.push_back({flat.balls, packet.add_object("points", entity_name(scene, e), drawn.where.label), drawn.clipped});
   });
 }
 

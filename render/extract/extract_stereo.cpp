@@ -1,4 +1,4 @@
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 
 #include <fmt/core.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "render/stereo/eyes.h"
+#include "render/stereo/stereo_views.h"
 
 namespace catena::render {
 
 using scene::StereoMode;
 
-Packing packing_of(const scene::Stereo& stereo) {
+Packing stereo_packing(const scene::Stereo& stereo) {
   switch (stereo.mode) {
     case StereoMode::mono:
     case StereoMode::left:
@@ -29,8 +29,8 @@ Packing packing_of(const scene::Stereo& stereo) {
       return Packing::top_bottom_half;
     case StereoMode::anaglyph:
       return Packing::anaglyph;
-    case StereoMode::anaglyph_grey:
-      return Packing::anaglyph_grey;
+    case StereoMode::anaglyph_gray:
+      return Packing::anaglyph_gray;
     case StereoMode::row_interlaced:
       return Packing::rows;
     case StereoMode::column_interlaced:
@@ -41,22 +41,22 @@ Packing packing_of(const scene::Stereo& stereo) {
   return Packing::single;
 }
 
-std::size_t views_of(const scene::Stereo& stereo) {
+std::size_t stereo_view_count(const scene::Stereo& stereo) {
   if (stereo.mode == StereoMode::mono || stereo.mode == StereoMode::left || stereo.mode == StereoMode::right) return 1;
-  return scene::needs_a_pair(stereo.mode) ? 2 : static_cast<std::size_t>(stereo.views);
+  return scene::needs_two_views(stereo.mode) ? 2 : static_cast<std::size_t>(stereo.view_count);
 }
 
 namespace {
 
 Result<View> seen_through(const scene::Stereo& stereo, const Vec3& eye) {
-  const scene::DisplayScreen& screen = stereo.screens[*stereo.through];
-  return screen_view({screen.lower_left, screen.lower_right, screen.upper_left}, eye);
+  const scene::DisplayScreen& screen = stereo.screens[*stereo.screen_index];
+  return make_screen_view({screen.lower_left, screen.lower_right, screen.upper_left}, eye);
 }
 
 std::vector<View> eyes_before_screen(const View& head, const scene::Stereo& stereo, std::size_t views) {
-  const scene::DisplayScreen& screen = stereo.screens[*stereo.through];
+  const scene::DisplayScreen& screen = stereo.screens[*stereo.screen_index];
   const Vec3 right = direction(screen.lower_right - screen.lower_left);
-  const double separation = stereo.separation.value_or(kSeparationShare * norm(head.target - head.position));
+  const double separation = stereo.separation.value_or(kDefaultSeparationRatio * norm(head.target - head.position));
   std::vector<View> all;
   for (std::size_t k = 0; k < views; ++k) {
     const double offset = (double(k) - 0.5 * double(views - 1)) * separation;
@@ -68,23 +68,23 @@ std::vector<View> eyes_before_screen(const View& head, const scene::Stereo& ster
 
 }  // namespace
 
-View through_screen(const View& view, const scene::Stereo& stereo) {
-  if (!stereo.through) return view;
+View make_screen_window_view(const View& view, const scene::Stereo& stereo) {
+  if (!stereo.screen_index) return view;
   auto seen = seen_through(stereo, view.position);
   return seen ? *seen : view;
 }
 
-Outcome check_head(const FramePacket& packet, const scene::Stereo& stereo) {
-  if (!stereo.through) return Done{};
+Outcome check_screen_view(const FramePacket& packet, const scene::Stereo& stereo) {
+  if (!stereo.screen_index) return Done{};
   const auto seen = seen_through(stereo, packet.view.position);
   if (seen) return Done{};
-  return Error{"screen \"" + stereo.screens[*stereo.through].name + "\": " + seen.error().message};
+  return Error{"screen \"" + stereo.screens[*stereo.screen_index].name + "\": " + seen.error().message};
 }
 
-Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo) {
+Outcome check_eye_separation(const FramePacket& packet, const scene::Stereo& stereo) {
   constexpr double kMaxApart = 1e15;  // world units: a float of the picture still tells them apart
   const auto too_far = [&](const View& eye) {
-    return std::fabs(eye.window.left) > 0.5 * kMaxShift || !is_finite(eye.position) || !is_finite(eye.target) ||
+    return std::fabs(eye.window.left) > 0.5 * kMaxWindowShift || !is_finite(eye.position) || !is_finite(eye.target) ||
            max_abs(eye.position) > kMaxApart;
   };
   if (std::none_of(packet.eyes.begin(), packet.eyes.end(), too_far)) return Done{};
@@ -93,17 +93,17 @@ Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo) {
                            stereo.zero_parallax ? fmt::format("{:g}", *stereo.zero_parallax) : "the camera's target")};
 }
 
-void set_eyes(FramePacket& packet, const scene::Stereo& stereo) {
+void update_eyes(FramePacket& packet, const scene::Stereo& stereo) {
   packet.eyes.clear();
-  packet.packing = packing_of(stereo);
+  packet.packing = stereo_packing(stereo);
   if (stereo.mode == StereoMode::mono) return;
-  EyeSettings settings;
-  settings.views = std::max<std::size_t>(2, views_of(stereo));
+  StereoSettings settings;
+  settings.views = std::max<std::size_t>(2, stereo_view_count(stereo));
   settings.separation = stereo.separation;
   settings.zero_parallax = stereo.zero_parallax;
-  packet.eyes = stereo.through ? eyes_before_screen(packet.view, stereo, settings.views)
-                               : eyes(packet.view, frustum_aspect(packet.view, packet.width, packet.height), settings);
-  if (stereo.swap != (stereo.mode == StereoMode::cross_eyed)) std::reverse(packet.eyes.begin(), packet.eyes.end());
+  packet.eyes = stereo.screen_index ? eyes_before_screen(packet.view, stereo, settings.views)
+                                    : make_stereo_views(packet.view, frustum_aspect(packet.view, packet.width, packet.height), settings);
+  if (stereo.swap_eyes != (stereo.mode == StereoMode::cross_eyed)) std::reverse(packet.eyes.begin(), packet.eyes.end());
   if (stereo.mode == StereoMode::left || stereo.mode == StereoMode::right)
     packet.eyes = {stereo.mode == StereoMode::left ? packet.eyes.front() : packet.eyes.back()};
 }

@@ -1,22 +1,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/machine_failure.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
+#include "engine/base/symlog_scale.h"
+#include "engine/base/system_failure.h"
 #include "engine/base/text.h"
-#include "engine/base/value_scale.h"
-#include "engine/field/magnitude.h"
+#include "engine/field/derived/magnitude.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/hidden.h"
 #include "engine/scene/labels.h"
+#include "engine/scene/visibility.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 
-TransferTable transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field) {
+TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field) {
   CATENA_ASSERT(!transfer.colors.empty() && !(transfer.extinctions.empty() && transfer.opacities.empty()));
   constexpr double kOff = 1.0 / 32768;
   TransferTable table;
@@ -24,12 +24,12 @@ TransferTable transfer_table(const scene::TransferFunction& transfer, const fiel
   for (const auto& c : transfer.colors) table.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
   for (const auto& e : transfer.extinctions) table.extinctions.push_back({e.value, e.sigma});
   for (const auto& g : transfer.gradient_factors) table.gradient_factors.push_back({g.gradient, g.factor});
-  table.opacity_unit = transfer.opacity_unit;
-  const double unit = transfer.opacity_unit > 0 ? transfer.opacity_unit : field.mapping().smallest_edge();
+  table.opacity_length = transfer.opacity_unit;
+  const double unit = transfer.opacity_unit > 0 ? transfer.opacity_unit : field.mapping().min_voxel_edge();
   if (table.extinctions.empty())
     for (const auto& o : transfer.opacities) table.extinctions.push_back({o.value, -std::log1p(-o.alpha) / unit});
-  table.colors = refined(table.colors, table.linear_below, kOff);
-  table.extinctions = refined(table.extinctions, table.linear_below, kOff);
+  table.colors = refine_for_symlog(table.colors, table.linear_below, kOff);
+  table.extinctions = refine_for_symlog(table.extinctions, table.linear_below, kOff);
   return table;
 }
 
@@ -47,10 +47,11 @@ struct PlainMesh {
 
 /// The triangles as plain data take memory beside the mesh.
 Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& surface) {
-  const std::size_t vertex = sizeof(Vec3) * (surface.smooth ? 3 : 1) + (surface.color_by ? sizeof(Color) + sizeof(double) : 0);
-  auto asked = ask_for_text_memory("drawing the mesh " + in_quotes(mesh.name()),
-                                   static_cast<double>(mesh.vertices().size() * vertex + mesh.triangles().size() * sizeof(mesh::Triangle)));
-  if (!asked) return caused_by(json::error_at(surface.where, asked.error().message), asked.error());
+  const std::size_t vertex = sizeof(Vec3) * (surface.smooth_shading ? 3 : 1) + (surface.color_by ? sizeof(Color) + sizeof(double) : 0);
+  auto asked =
+      check_text_memory_available("drawing the mesh " + in_quotes(mesh.name()),
+                                  static_cast<double>(mesh.vertices().size() * vertex + mesh.triangles().size() * sizeof(mesh::Triangle)));
+  if (!asked) return with_cause(json::error_at(surface.where, asked.error().message), asked.error());
   return Done{};
 }
 
@@ -73,11 +74,11 @@ Result<std::vector<Color>> vertex_colors(const scene::Scene& scene, const mesh::
   }
   const DisplayRange range = field::display_range(values, shown);
   CATENA_CHECK(scene::check_mapping(by, range.lo));
-  const auto table = scene::shown_table(scene, by.field, by.colors, by.named, range.lo, range.hi);
-  const bool labels = scene::labels_of(scene, by.field) != nullptr;
+  const auto table = scene::make_display_color_table(scene, by.field, by.colors, by.named, range.lo, range.hi);
+  const bool labels = scene::find_label_map(scene, by.field) != nullptr;
   std::vector<Color> colors;
   colors.reserve(values.size());
-  for (const double value : values) colors.push_back(labels && value == 0 ? surface.color : table_color(table, value));
+  for (const double value : values) colors.push_back(labels && value == 0 ? surface.color : sample_color_table(table, value));
   return colors;
 }
 
@@ -90,35 +91,35 @@ struct PlainMagnitude {
 };
 
 Outcome prepare_slice(scene::Scene& scene, scene::Entity e) {
-  const scene::Entity field = scene.world.get<scene::Slice>(e).shown.field;
-  CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, field, scene.world.get<scene::Slice>(e).where));
+  const scene::Entity field = scene.entities.get<scene::Slice>(e).color_by.field;
+  CATENA_TRY(const field::AnyField any, scene::resolve_rendered_field(scene, field, scene.entities.get<scene::Slice>(e).where));
   if (any.scalar) return Done{};
   const field::VectorGrid& grid = *any.vector->grid();
-  if (!scene.made.has<PlainMagnitude>(e)) scene.made.emplace<PlainMagnitude>(e);
-  PlainMagnitude& plain = scene.made.get<PlainMagnitude>(e);
+  if (!scene.cache.has<PlainMagnitude>(e)) scene.cache.emplace<PlainMagnitude>(e);
+  PlainMagnitude& plain = scene.cache.get<PlainMagnitude>(e);
   if (plain.version == grid.version()) return Done{};
-  const json::Node& where = json::member_or(scene.world.get<scene::Slice>(e).where, "field");
+  const json::Node& where = json::member_or_parent(scene.entities.get<scene::Slice>(e).where, "field");
   const Vec3 size = grid.index_box().hi - grid.index_box().lo + 1.0;
   if (size.x * size.y * size.z > kMaxVoxels)
-    return json::error_at(where, "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
+    return json::error_at(where, "\"" + entity_name(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
                                      " voxels; a vector field of at most " + to_text(kMaxVoxels) + " was expected for a slice");
-  auto made = field::magnitude_grid(grid, "the magnitude of \"" + name_of(scene, field) + "\"");
-  if (!made) return caused_by(json::error_at(where, made.error().message), made.error());
+  auto made = field::make_magnitude_grid(grid, "the magnitude of \"" + entity_name(scene, field) + "\"");
+  if (!made) return with_cause(json::error_at(where, made.error().message), made.error());
   plain = {*made, grid.version()};
   return Done{};
 }
 
 std::shared_ptr<const field::ScalarGrid> sliced_grid(const scene::Scene& scene, scene::Entity e) {
-  const field::AnyField& any = scene::drawn_field(scene, scene.world.get<scene::Slice>(e).shown.field);
+  const field::AnyField& any = scene::rendered_field(scene, scene.entities.get<scene::Slice>(e).color_by.field);
   if (any.scalar) return {any.scalar, any.scalar->grid()};
-  return scene.made.get<PlainMagnitude>(e).grid;
+  return scene.cache.get<PlainMagnitude>(e).grid;
 }
 
 /// The same but for rounding.
 bool is_same_plane(const SliceItem& a, const SliceItem& b) {
   const Vec3 n = direction(a.normal), m = direction(b.normal);
   constexpr double kRounding = 1e-6;
-  const double reach = a.grid->mapping().smallest_edge();
+  const double reach = a.grid->mapping().min_voxel_edge();
   return norm(cross(n, m)) < kRounding && std::fabs(dot(n, b.point - a.point)) < kRounding * reach;
 }
 
@@ -138,24 +139,25 @@ bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
 }  // namespace
 
 Outcome prepare_meshes(scene::Scene& scene) {
-  for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
-    const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
-    if (is_hidden(scene.world, e)) continue;
-    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
+  for (const scene::Entity e : entities_with<scene::SurfaceMesh>(scene.entities)) {
+    const scene::SurfaceMesh& surface = scene.entities.get<scene::SurfaceMesh>(e);
+    if (is_hidden(scene.entities, e)) continue;
+    CATENA_TRY(const mesh::MeshPtr mesh, scene::resolve_mesh(scene, surface.mesh));
     field::AnyField shown;
     if (surface.color_by) {
-      CATENA_TRY(shown, scene::use_field(scene, surface.color_by->field, surface.where));
+      CATENA_TRY(shown, scene::resolve_field(scene, surface.color_by->field, surface.where));
     }
     const std::uint64_t field_version = shown.get() ? shown.get()->version() : 0;
-    if (!scene.made.has<PlainMesh>(e)) scene.made.emplace<PlainMesh>(e);
-    PlainMesh& plain = scene.made.get<PlainMesh>(e);
+    if (!scene.cache.has<PlainMesh>(e)) scene.cache.emplace<PlainMesh>(e);
+    PlainMesh& plain = scene.cache.get<PlainMesh>(e);
     if (plain.version == mesh->version() && plain.field_version == field_version) continue;
     CATENA_CHECK(ask_for_copy(*mesh, surface));
     auto geometry = std::make_shared<MeshGeometry>();
     geometry->vertices = mesh->vertices();
     geometry->triangles.reserve(3 * mesh->triangles().size());
     for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
-    for (std::uint32_t v = 0; surface.smooth && v < geometry->vertices.size(); ++v) geometry->normals.push_back(mesh->vertex_normal(v));
+    for (std::uint32_t v = 0; surface.smooth_shading && v < geometry->vertices.size(); ++v)
+      geometry->normals.push_back(mesh->vertex_normal(v));
     if (shown.get()) {
       CATENA_TRY(geometry->colors, vertex_colors(scene, *mesh, shown, surface));
     }
@@ -165,20 +167,20 @@ Outcome prepare_meshes(scene::Scene& scene) {
 }
 
 void extract_meshes(const scene::Scene& scene, FramePacket& packet) {
-  scene.world.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
-    if (is_hidden(scene.world, e)) return;
-    MeshItem item{scene.made.get<PlainMesh>(e).geometry, surface.color,
-                  packet.add_object("mesh", name_of(scene, surface.mesh), surface.where.label), surface.clipped};
+  scene.entities.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
+    if (is_hidden(scene.entities, e)) return;
+    MeshItem item{scene.cache.get<PlainMesh>(e).geometry, surface.color,
+                  packet.add_object("mesh", entity_name(scene, surface.mesh), surface.where.label), surface.clipped};
     item.opacity = static_cast<float>(surface.opacity);
-    item.smooth = surface.smooth;
-    item.edges = surface.edges;
+    item.smooth = surface.smooth_shading;
+    item.show_edges = surface.show_edges;
     packet.meshes.push_back(std::move(item));
   });
 }
 
 Outcome prepare_slices(scene::Scene& scene) {
-  for (const scene::Entity e : owners_of<scene::Slice>(scene.world))
-    if (!is_hidden(scene.world, e)) CATENA_CHECK(prepare_slice(scene, e));
+  for (const scene::Entity e : entities_with<scene::Slice>(scene.entities))
+    if (!is_hidden(scene.entities, e)) CATENA_CHECK(prepare_slice(scene, e));
   return Done{};
 }
 
@@ -189,32 +191,33 @@ Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contour
   if (!(contours.spacing > 0)) return levels;
   const double first = std::ceil(lo / contours.spacing), last = std::floor(hi / contours.spacing);
   if (last - first + 1 > scene::kMaxContours)
-    return json::error_at(json::member_or(contours.where, "spacing"), "\"spacing\" is " + to_text(contours.spacing) + ", which gives " +
-                                                                          to_text(last - first + 1) + " levels; at most " +
-                                                                          to_text(scene::kMaxContours) + " were expected");
+    return json::error_at(json::member_or_parent(contours.where, "spacing"),
+                          "\"spacing\" is " + to_text(contours.spacing) + ", which gives " + to_text(last - first + 1) +
+                              " levels; at most " + to_text(scene::kMaxContours) + " were expected");
   for (double n = first; n <= last; ++n) levels.push_back(n * contours.spacing);
   return levels;
 }
 
 Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::Slice>(scene.world)) {
-    if (is_hidden(scene.world, e)) continue;
+  for (const scene::Entity e : entities_with<scene::Slice>(scene.entities)) {
+    if (is_hidden(scene.entities, e)) continue;
     const std::shared_ptr<const field::ScalarGrid> grid = sliced_grid(scene, e);
-    const scene::Slice& slice = scene.world.get<scene::Slice>(e);
+    const scene::Slice& slice = scene.entities.get<scene::Slice>(e);
     // the hand may carry a widget's plane out of the domain: there nothing is seen
     if (!slice.widget && !cuts(slice, *grid))
-      return json::error_at(slice.where, "the slice's plane does not meet the domain of \"" + name_of(scene, slice.shown.field) +
+      return json::error_at(slice.where, "the slice's plane does not meet the domain of \"" + entity_name(scene, slice.color_by.field) +
                                              "\"; a plane that cuts it was expected");
     SliceItem item;
     item.grid = grid;
     item.point = slice.point;
     item.normal = slice.normal;
     const DisplayRange& range = display_range(*grid);
-    CATENA_CHECK(scene::check_mapping(slice.shown, range.lo));
-    for (const auto& row : scene::shown_table(scene, slice.shown.field, slice.shown.colors, slice.shown.named, range.lo, range.hi))
+    CATENA_CHECK(scene::check_mapping(slice.color_by, range.lo));
+    for (const auto& row :
+         scene::make_display_color_table(scene, slice.color_by.field, slice.color_by.colors, slice.color_by.named, range.lo, range.hi))
       item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
-    if (scene::labels_of(scene, slice.shown.field) != nullptr) item.hidden = 0;
-    item.over = static_cast<int>(
+    if (scene::find_label_map(scene, slice.color_by.field) != nullptr) item.hidden_label = 0;
+    item.stack_order = static_cast<int>(
         std::count_if(packet.slices.begin(), packet.slices.end(), [&](const SliceItem& before) { return is_same_plane(before, item); }));
     item.opacity = static_cast<float>(slice.opacity);
     item.lit = slice.lit;
@@ -223,12 +226,12 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
       const bool spread = item.colors.size() > 1 && item.colors.front()[0] < item.colors.back()[0];
       const double lo = spread ? item.colors.front()[0] : range.lo, hi = spread ? item.colors.back()[0] : range.hi;
       const bool multiples = slice.contours->spacing > 0;
-      CATENA_TRY(item.levels, contour_levels(*slice.contours, multiples ? range.lo : lo, multiples ? range.hi : hi));
+      CATENA_TRY(item.contour_levels, contour_levels(*slice.contours, multiples ? range.lo : lo, multiples ? range.hi : hi));
       item.line_color = slice.contours->color;
       item.line_width = static_cast<float>(slice.contours->width);
     }
-    item.id = packet.add_object("slice", name_of(scene, slice.shown.field), slice.where.label);
-    item.clipped = slice.clipped;
+    item.id = packet.add_object("slice", entity_name(scene, slice.color_by.field), slice.where.label);
+    item.is_clipped = slice.clipped;
     packet.slices.push_back(std::move(item));
   }
   return Done{};

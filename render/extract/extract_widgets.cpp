@@ -1,4 +1,4 @@
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 
 #include <fmt/format.h>
 
@@ -28,16 +28,16 @@ double radius_of(const scene::Widget& widget) {
   return (widget.spec.kind == Kind::cutting_plane ? kSphere : kBall) * length_of(widget);
 }
 
-bool is_held(const scene::Widget& widget, int axis) { return (widget.state.held >> axis & 1) != 0; }
+bool is_held(const scene::Widget& widget, int axis) { return (widget.report.active_planes >> axis & 1) != 0; }
 
 Vec3 axis_of(const scene::Widget& widget, int axis) {
   Vec3 e(0.0);
   e[axis] = 1;
-  return rotate(widget.state.pose.orientation, e);
+  return rotate(widget.report.pose.orientation, e);
 }
 
 bool is_drawable(const scene::Widget& widget) {
-  const widget::Pose& pose = widget.state.pose;
+  const widget::Pose& pose = widget.report.pose;
   return is_finite(pose.points[0]) && is_finite(pose.points[1]) && is_finite(pose.orientation) && std::isfinite(radius_of(widget));
 }
 
@@ -47,34 +47,34 @@ bool is_measured(const scene::Widget& widget) { return widget.spec.kind == Kind:
 void draw_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at, double reach, double square, double head) {
   for (int i = 0; i < 3; ++i) {
     if (is_held(widget, i))
-      shapes.plate(at, square * axis_of(widget, (i + 1) % 3), square * axis_of(widget, (i + 2) % 3), axis_color(i));
+      shapes.parallelogram(at, square * axis_of(widget, (i + 1) % 3), square * axis_of(widget, (i + 2) % 3), axis_color(i));
     else
-      shapes.double_arrow(at, reach * axis_of(widget, i), 1.8, head, brighter(axis_color(i), 0.2f));
+      shapes.double_arrow(at, reach * axis_of(widget, i), 1.8, head, brighten(axis_color(i), 0.2f));
   }
 }
 
 void draw_border(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
-  const Vec3 &centre = widget.state.pose.points[0], normal = axis_of(widget, 2);
+  const Vec3 &centre = widget.report.pose.points[0], normal = axis_of(widget, 2);
   std::vector<Vec3> border = plane_outline(centre, normal, drawn);
   if (border.empty()) {
     const Vec3 u = 0.5 * length_of(widget) * axis_of(widget, 0), v = 0.5 * length_of(widget) * axis_of(widget, 1);
     border = {centre + u + v, centre - u + v, centre - u - v, centre + u - v};
   }
-  const bool explored = widget.state.mode == Mode::explore, moved = widget.state.mode == Mode::translate;
+  const bool explored = widget.report.mode == Mode::explore, moved = widget.report.mode == Mode::translate;
   const Color color = widget.color;
-  shapes.loop(border, explored ? 2.2 : moved ? 1.6 : 1, explored ? brighter(color, 0.6f) : color);
+  shapes.loop(border, explored ? 2.2 : moved ? 1.6 : 1, explored ? brighten(color, 0.6f) : color);
 }
 
 void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
-  const Vec3& centre = widget.state.pose.points[0];
+  const Vec3& centre = widget.report.pose.points[0];
   const double radius = radius_of(widget);
-  const Mode mode = widget.state.mode;
+  const Mode mode = widget.report.mode;
   const bool turns = mode == Mode::turn, rotates = turns || mode == Mode::rotate, moves = mode == Mode::translate;
   draw_border(shapes, widget, drawn);
   for (int i = 0; i < 3; ++i) {
     const bool active = rotates && is_held(widget, i);
-    const Color muted = mixed(axis_color(i), {0.5f, 0.5f, 0.5f}, rotates ? 0 : moves ? 0.7f : 0.2f);
-    const Color color = active ? brighter(axis_color(i), turns ? 0.9f : 0.6f) : muted;
+    const Color muted = mix_colors(axis_color(i), {0.5f, 0.5f, 0.5f}, rotates ? 0 : moves ? 0.7f : 0.2f);
+    const Color color = active ? brighten(axis_color(i), turns ? 0.9f : 0.6f) : muted;
     const double weight = active ? 3.2 : turns ? 2.2 : rotates ? 1.8 : 1;
     shapes.circle(centre, axis_of(widget, i), radius, weight, color);
   }
@@ -86,46 +86,46 @@ void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const
 
 /// A ball of a widget, by what the hand does with it.
 void draw_handle(WidgetShapes& shapes, const scene::Widget& widget, int handle, const Vec3& at, double radius) {
-  const bool mine = widget.state.handle == handle || widget.spec.kind == Kind::seed || widget.spec.kind == Kind::isolevel;
-  const bool hovered = mine && widget.state.mode == Mode::hover, dragged = mine && widget.state.mode == Mode::drag;
-  const Color color = brighter(widget.color, dragged ? 0.7f : hovered ? 0.4f : 0);
-  shapes.ball(at, (dragged ? 1.5 : hovered ? 1.4 : 1) * shapes.ball_radius(at, radius), color);
+  const bool mine = widget.report.handle == handle || widget.spec.kind == Kind::seed || widget.spec.kind == Kind::isolevel;
+  const bool hovered = mine && widget.report.mode == Mode::hover, dragged = mine && widget.report.mode == Mode::drag;
+  const Color color = brighten(widget.color, dragged ? 0.7f : hovered ? 0.4f : 0);
+  shapes.sphere(at, (dragged ? 1.5 : hovered ? 1.4 : 1) * shapes.visible_radius(at, radius), color);
 }
 
-bool is_dragged(const scene::Widget& widget) { return widget.state.mode == Mode::drag; }
+bool is_dragged(const scene::Widget& widget) { return widget.report.mode == Mode::drag; }
 
 void draw_handle_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at) {
-  const double r = shapes.ball_radius(at, radius_of(widget));
+  const double r = shapes.visible_radius(at, radius_of(widget));
   draw_axes(shapes, widget, at, kHandleReach * r, kHandleSquare * r, kHandleHead * r);
 }
 
 void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
-  const Vec3& at = widget.state.pose.points[0];
-  const double radius = shapes.ball_radius(at, radius_of(widget));
+  const Vec3& at = widget.report.pose.points[0];
+  const double radius = shapes.visible_radius(at, radius_of(widget));
   draw_handle(shapes, widget, 0, at, radius);
   if (is_dragged(widget)) return draw_handle_axes(shapes, widget, at);
-  const bool hovered = widget.state.mode == Mode::hover;
-  shapes.circle(at, shapes.towards_eye(at), (hovered ? 2.6 : 2.1) * radius, 0.8, widget.color);
+  const bool hovered = widget.report.mode == Mode::hover;
+  shapes.circle(at, shapes.direction_to_camera(at), (hovered ? 2.6 : 2.1) * radius, 0.8, widget.color);
 }
 
 /// A rake's line of seeds, and a ruler with the way that it measures.
 void draw_line(WidgetShapes& shapes, const scene::Widget& widget, const scene::RulerMeasure* ruler) {
-  const auto& [a, b] = widget.state.pose.points;
+  const auto& [a, b] = widget.report.pose.points;
   const Vec3 middle = 0.5 * a + 0.5 * b;
   const double radius = radius_of(widget);
-  const bool bent = ruler != nullptr && ruler->how != scene::RulerMeasure::How::straight;
+  const bool bent = ruler != nullptr && ruler->path_kind != scene::RulerMeasure::PathKind::straight;
   const Color color = widget.color;
-  shapes.tube({a, b}, bent ? 0.8 : 1.2, bent ? mixed(color, {0.5f, 0.5f, 0.5f}, 0.6f) : color);
+  shapes.tube({a, b}, bent ? 0.8 : 1.2, bent ? mix_colors(color, {0.5f, 0.5f, 0.5f}, 0.6f) : color);
   if (bent) shapes.tube(ruler->points, 1.6, color);
   draw_handle(shapes, widget, 0, a, radius);
   draw_handle(shapes, widget, 1, b, radius);
   draw_handle(shapes, widget, 2, middle, 0.8 * radius);
-  if (is_dragged(widget)) draw_handle_axes(shapes, widget, widget.state.handle == 0 ? a : widget.state.handle == 1 ? b : middle);
+  if (is_dragged(widget)) draw_handle_axes(shapes, widget, widget.report.handle == 0 ? a : widget.report.handle == 1 ? b : middle);
 }
 
 void draw_isolevel(WidgetShapes& shapes, const scene::Widget& widget) {
-  const Vec3& at = widget.state.pose.points[0];
-  const double radius = shapes.ball_radius(at, radius_of(widget));
+  const Vec3& at = widget.report.pose.points[0];
+  const double radius = shapes.visible_radius(at, radius_of(widget));
   draw_handle(shapes, widget, 0, at, radius);
   if (!widget.spec.field) return;
   field::Cursor cursor;
@@ -138,22 +138,22 @@ void draw_isolevel(WidgetShapes& shapes, const scene::Widget& widget) {
 
 void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
   Bounds box;
-  for (const Vec3& p : widget.state.pose.points) box.add(p);
+  for (const Vec3& p : widget.report.pose.points) box.extend(p);
   const Color color = widget.color;
   const double radius = radius_of(widget);
   for (int i = 0; i < 8; ++i)
     for (int axis = 1; axis < 8; axis *= 2)
       if ((i & axis) == 0) shapes.tube({box.corner(i), box.corner(i | axis)}, 1, color);
   for (int face = 0; face < 6; ++face) {
-    Vec3 at = box.centre(), out(0.0);
+    Vec3 at = box.center(), out(0.0);
     at[face / 2] = face % 2 ? box.hi[face / 2] : box.lo[face / 2];
-    out[face / 2] = kHandleReach * shapes.ball_radius(at, radius);
+    out[face / 2] = kHandleReach * shapes.visible_radius(at, radius);
     draw_handle(shapes, widget, face, at, radius);
-    if (is_dragged(widget) && widget.state.handle == face)
-      shapes.double_arrow(at, out, 1.5, kHandleHead / kHandleReach * norm(out), brighter(axis_color(face / 2), 0.15f));
+    if (is_dragged(widget) && widget.report.handle == face)
+      shapes.double_arrow(at, out, 1.5, kHandleHead / kHandleReach * norm(out), brighten(axis_color(face / 2), 0.15f));
   }
-  draw_handle(shapes, widget, 6, box.centre(), 1.2 * radius);
-  if (is_dragged(widget) && widget.state.handle == 6) draw_handle_axes(shapes, widget, box.centre());
+  draw_handle(shapes, widget, 6, box.center(), 1.2 * radius);
+  if (is_dragged(widget) && widget.report.handle == 6) draw_handle_axes(shapes, widget, box.center());
 }
 
 void draw(WidgetShapes& shapes, const scene::Widget& widget, const scene::RulerMeasure* ruler, const Bounds& drawn) {
@@ -194,34 +194,34 @@ std::uint32_t id_of(FramePacket& packet, const std::string& name) {
 
 }  // namespace
 
-void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+void update_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   packet.widgets = {};
   WidgetShapes shapes(packet);
-  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+  scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (!is_drawable(widget)) return;
-    shapes.begin(id_of(packet, name_of(scene, e)), kLine * length_of(widget));
-    draw(shapes, widget, scene::ruler_measure(scene, e), drawn);
+    shapes.begin_object(id_of(packet, entity_name(scene, e)), kLine * length_of(widget));
+    draw(shapes, widget, scene::find_ruler_measure(scene, e), drawn);
   });
 }
 
 Outcome prepare_widgets(scene::Scene& scene) {
-  for (const scene::Entity e : owners_of<scene::Widget>(scene.world))
-    if (is_measured(scene.world.get<scene::Widget>(e))) CATENA_CHECK(scene::use_ruler(scene, e));
+  for (const scene::Entity e : entities_with<scene::Widget>(scene.entities))
+    if (is_measured(scene.entities.get<scene::Widget>(e))) CATENA_CHECK(scene::resolve_ruler(scene, e));
   return Done{};
 }
 
 void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
-  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+  scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (!is_measured(widget)) return;
-    const scene::RulerMeasure& measure = *scene::ruler_measure(scene, e);
+    const scene::RulerMeasure& measure = *scene::find_ruler_measure(scene, e);
     LabelItem label;
-    label.at = halfway(measure.points);
+    label.position = halfway(measure.points);
     label.text = fmt::format("{:.4g} units{}", measure.length, measure.note.empty() ? "" : " (straight)");
     label.anchor = Anchor::bottom_left;
     label.offset_pt = {6.0, -6.0};
     packet.overlay.labels.push_back(std::move(label));
   });
-  set_widgets(scene, drawn, packet);
+  update_widgets(scene, drawn, packet);
 }
 
 }  // namespace catena::render

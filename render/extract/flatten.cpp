@@ -17,7 +17,7 @@ constexpr double kLargestTurn = 0.8;    ///< radians of a segment
 double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
 struct Sample {
-  FlatPoint place;
+  FlattenedPoint place;
   Vec3 tangent{0.0};
 };
 
@@ -31,8 +31,8 @@ double parts_of(const flow::Knot& a, const flow::Knot& b, const FlattenOptions& 
              at_end = (2.0 * start + 4.0 * end) - chord;
   const double bend = h < 1e-3 ? 2 * length_of(end - start) : std::sqrt(std::max(dot(at_start, at_start), dot(at_end, at_end)));
   double parts = std::max(std::sqrt(bend / (8 * error)), bend / (h * 0.5 * kLargestTurn));
-  if (options.longest > 0) parts = std::max(parts, (b.s - a.s) / options.longest);
-  return std::min(std::ceil(parts), static_cast<double>(options.most_points));
+  if (options.max_segment > 0) parts = std::max(parts, (b.s - a.s) / options.max_segment);
+  return std::min(std::ceil(parts), static_cast<double>(options.max_points));
 }
 
 /// Calls visit(sample) from the first knot to the last, or until it returns false: every knot, and places between two as their chord's
@@ -47,10 +47,10 @@ void each_sample(const flow::Curve& curve, const FlattenOptions& options, double
     for (double i = 1; i < parts; ++i) {
       const double s = a.s + (b.s - a.s) * (i / parts);
       Vec3 p, derivative;
-      curve.evaluate_in(k, s, p, derivative);
+      curve.evaluate_interval(k, s, p, derivative);
       if (!visit(Sample{{p, s}, direction(derivative)})) return;
     }
-    if (!visit(Sample{{curve.closed() && k + 2 == knots.size() ? knots.front().p : b.p, b.s}, b.t})) return;
+    if (!visit(Sample{{curve.is_closed() && k + 2 == knots.size() ? knots.front().p : b.p, b.s}, b.t})) return;
   }
 }
 
@@ -67,9 +67,9 @@ class Segment {
   }
   /// False: a segment has to end before this sample. True: it is passed.
   bool reaches(const Sample& to) {
-    const Vec3 way = scale_ * (to.place.p - from_.place.p);
+    const Vec3 way = scale_ * (to.place.position - from_.place.position);
     const double length = length_of(way);
-    const bool reached = to.place.s - from_.place.s <= longest_ && allows(to, way, length);
+    const bool reached = to.place.arc_length - from_.place.arc_length <= longest_ && allows(to, way, length);
     pass(way, length);
     return reached;
   }
@@ -108,10 +108,10 @@ class Segment {
 
 }  // namespace
 
-std::vector<FlatPoint> flatten_places(const flow::Curve& curve, const FlattenOptions& options) {
-  CATENA_ASSERT(curve.knots().size() >= 2 && options.radius > 0 && options.most_points >= 2);
-  const double longest = options.longest > 0 ? options.longest : std::numeric_limits<double>::infinity();
-  std::vector<FlatPoint> points;
+std::vector<FlattenedPoint> flatten_with_arc_length(const flow::Curve& curve, const FlattenOptions& options) {
+  CATENA_ASSERT(curve.knots().size() >= 2 && options.radius > 0 && options.max_points >= 2);
+  const double longest = options.max_segment > 0 ? options.max_segment : std::numeric_limits<double>::infinity();
+  std::vector<FlattenedPoint> points;
   for (double coarsen = 1;; coarsen *= 2) {
     const double error = coarsen * coarsen * options.error;
     points.clear();
@@ -121,15 +121,15 @@ std::vector<FlatPoint> flatten_places(const flow::Curve& curve, const FlattenOpt
       if (points.empty()) {
         points.push_back(sample.place);
         segment.begin(sample);
-      } else if (!segment.reaches(sample) && last.place.s > points.back().s) {
+      } else if (!segment.reaches(sample) && last.place.arc_length > points.back().arc_length) {
         points.push_back(last.place);
         segment.begin(last);
         segment.reaches(sample);
       }
       last = sample;
-      return points.size() < options.most_points;
+      return points.size() < options.max_points;
     });
-    if (points.size() < options.most_points || !std::isfinite(error)) {
+    if (points.size() < options.max_points || !std::isfinite(error)) {
       points.push_back(last.place);
       return points;
     }
@@ -138,7 +138,7 @@ std::vector<FlatPoint> flatten_places(const flow::Curve& curve, const FlattenOpt
 
 std::vector<Vec3> flatten(const flow::Curve& curve, const FlattenOptions& options) {
   std::vector<Vec3> points;
-  for (const FlatPoint& point : flatten_places(curve, options)) points.push_back(point.p);
+  for (const FlattenedPoint& point : flatten_with_arc_length(curve, options)) points.push_back(point.position);
   return points;
 }
 

@@ -6,7 +6,7 @@
 
 namespace catena::render {
 
-Across across(const Vec3& normal) {
+PlaneBasis make_plane_basis(const Vec3& normal) {
   const Vec3 axis = std::fabs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 u = direction(cross(axis, normal));
   return {u, cross(normal, u)};
@@ -34,7 +34,7 @@ std::vector<Vec3> plane_outline(const Vec3& point, const Vec3& normal, const Bou
   // in order around their middle
   Vec3 middle(0.0);
   for (const Vec3& p : corners) middle += p / double(corners.size());
-  const auto [u, v] = across(n);
+  const auto [u, v] = make_plane_basis(n);
   const auto angle = [&](const Vec3& p) { return std::atan2(dot(p - middle, v), dot(p - middle, u)); };
   std::sort(corners.begin(), corners.end(), [&](const Vec3& a, const Vec3& b) { return angle(a) < angle(b); });
   return corners;
@@ -49,13 +49,13 @@ constexpr int kCircleSteps = 72;
 
 }  // namespace
 
-Color mixed(const Color& a, const Color& b, float share_of_b) {
+Color mix_colors(const Color& a, const Color& b, float share_of_b) {
   return {a.r + share_of_b * (b.r - a.r), a.g + share_of_b * (b.g - a.g), a.b + share_of_b * (b.b - a.b)};
 }
 
-Color brighter(const Color& color, float share) {
+Color brighten(const Color& color, float share) {
   const float more = 1 + 0.6f * share;  // what is lit stays below its colour
-  return mixed({more * color.r, more * color.g, more * color.b}, {1, 1, 1}, 0.55f * share);
+  return mix_colors({more * color.r, more * color.g, more * color.b}, {1, 1, 1}, 0.55f * share);
 }
 
 Color axis_color(int axis) {
@@ -66,16 +66,18 @@ Color axis_color(int axis) {
 WidgetShapes::WidgetShapes(FramePacket& packet)
     : items_(&packet.widgets), camera_(make_camera(packet.view, packet.width, packet.height, {})) {}
 
-double WidgetShapes::pixel_at(const Vec3& p) const {
+double WidgetShapes::pixel_size_at(const Vec3& p) const {
   const double depth = dot(camera_.position - p, camera_.back);
   return depth > 0 || camera_.orthographic ? pixel_size(camera_, depth) : 0;
 }
 
-Vec3 WidgetShapes::towards_eye(const Vec3& p) const { return camera_.orthographic ? camera_.back : direction(camera_.position - p); }
+Vec3 WidgetShapes::direction_to_camera(const Vec3& p) const {
+  return camera_.orthographic ? camera_.back : direction(camera_.position - p);
+}
 
 void WidgetShapes::tube(std::vector<Vec3> points, double weight, const Color& color) {
-  double radius = line_;
-  for (const Vec3& p : points) radius = std::max(radius, kLeastTubePx * pixel_at(p));
+  double radius = line_radius_;
+  for (const Vec3& p : points) radius = std::max(radius, kLeastTubePx * pixel_size_at(p));
   add(std::move(points), weight * radius, color);
 }
 
@@ -85,7 +87,7 @@ void WidgetShapes::add(std::vector<Vec3> points, double radius, const Color& col
   item.radius = radius;
   item.color = color;
   item.id = id_;
-  item.clipped = false;
+  item.is_clipped = false;
   items_->tubes.push_back(std::move(item));
 }
 
@@ -96,7 +98,7 @@ void WidgetShapes::loop(std::span<const Vec3> points, double weight, const Color
 }
 
 void WidgetShapes::circle(const Vec3& centre, const Vec3& normal, double radius, double weight, const Color& color) {
-  const auto [u, v] = across(direction(normal));
+  const auto [u, v] = make_plane_basis(direction(normal));
   std::vector<Vec3> points;
   for (int k = 0; k < kCircleSteps; ++k) {
     const double angle = 2 * std::numbers::pi * k / kCircleSteps;
@@ -105,21 +107,23 @@ void WidgetShapes::circle(const Vec3& centre, const Vec3& normal, double radius,
   loop(points, weight, color);
 }
 
-void WidgetShapes::plate(const Vec3& middle, const Vec3& u, const Vec3& v, const Color& color) {
+void WidgetShapes::parallelogram(const Vec3& middle, const Vec3& u, const Vec3& v, const Color& color) {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = {middle + u + v, middle - u + v, middle - u - v, middle + u - v};
   geometry->triangles = {0, 1, 2, 0, 2, 3};
   items_->meshes.push_back({std::move(geometry), color, id_, false});
 }
 
-void WidgetShapes::ball(const Vec3& centre, double radius, const Color& color) { add({centre}, ball_radius(centre, radius), color); }
+void WidgetShapes::sphere(const Vec3& centre, double radius, const Color& color) { add({centre}, visible_radius(centre, radius), color); }
 
-double WidgetShapes::ball_radius(const Vec3& centre, double radius) const { return std::max(radius, kLeastBallPx * pixel_at(centre)); }
+double WidgetShapes::visible_radius(const Vec3& centre, double radius) const {
+  return std::max(radius, kLeastBallPx * pixel_size_at(centre));
+}
 
 void WidgetShapes::arrow(const Vec3& from, const Vec3& tip, double weight, double head, const Color& color) {
   const double length = norm(tip - from);
   if (!(length > 0)) return;
-  const double cone = std::min(std::max(head, kLeastHeadPx * pixel_at(tip)), 0.6 * length);
+  const double cone = std::min(std::max(head, kLeastHeadPx * pixel_size_at(tip)), 0.6 * length);
   const Vec3 along = direction(tip - from), neck = tip - cone * along;
   tube({from, neck}, weight, color);
   ArrowItem item;
@@ -128,7 +132,7 @@ void WidgetShapes::arrow(const Vec3& from, const Vec3& tip, double weight, doubl
   item.radius = std::max(kHeadWidth * cone, 1.6 * items_->tubes.back().radius);
   item.color = color;
   item.id = id_;
-  item.clipped = false;
+  item.is_clipped = false;
   items_->arrows.push_back(item);
 }
 

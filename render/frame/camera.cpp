@@ -51,7 +51,7 @@ void set_depth_range(Camera& camera, const Bounds& bounds, double fallback_dista
 
 double frustum_aspect(const View& view, double width_px, double height_px) {
   if (view.aspect > 0) return view.aspect;
-  const Window& w = view.window;
+  const FrustumWindow& w = view.window;
   return (w.top - w.bottom) / (w.right - w.left) * width_px / height_px;
 }
 
@@ -63,12 +63,12 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   camera.height = height_px;
   camera.orthographic = view.orthographic;
   camera.half_height = view.orthographic ? 0.5 * view.height : std::tan(0.5 * view.fovy_deg * std::numbers::pi / 180);
-  const Window& w = view.window;
+  const FrustumWindow& w = view.window;
   const double share_x = 0.5 * (w.right - w.left), share_y = 0.5 * (w.top - w.bottom);
   CATENA_ASSERT(share_x > 0 && share_y > 0);
   const double whole_width = camera.half_height * frustum_aspect(view, width_px, height_px);
-  camera.centre_x = 0.5 * (w.left + w.right) * whole_width;
-  camera.centre_y = 0.5 * (w.bottom + w.top) * camera.half_height;
+  camera.center_x = 0.5 * (w.left + w.right) * whole_width;
+  camera.center_y = 0.5 * (w.bottom + w.top) * camera.half_height;
   camera.half_width = share_x * whole_width;
   camera.half_height *= share_y;
   set_axes(camera, view.position - view.target, view.up);
@@ -77,13 +77,13 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   return camera;
 }
 
-double smallest_pixel(const Camera& c, const Bounds& box) {
+double min_pixel_size(const Camera& c, const Bounds& box) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 8; ++i) nearest = std::min(nearest, -dot(box.corner(i) - c.position, c.back));
   return pixel_size(c, std::max(0.0, nearest));
 }
 
-bool may_be_seen(const Camera& c, const Vec3& centre, double radius) {
+bool may_be_visible(const Camera& c, const Vec3& centre, double radius) {
   const Vec3 from_eye = centre - c.position;
   const double x = dot(from_eye, c.right), y = dot(from_eye, c.up), depth = -dot(from_eye, c.back);
   if (!c.orthographic && depth < -radius) return false;
@@ -95,7 +95,7 @@ bool may_be_seen(const Camera& c, const Vec3& centre, double radius) {
     }
     return true;
   };
-  return reaches(x, c.centre_x, c.half_width) && reaches(y, c.centre_y, c.half_height);
+  return reaches(x, c.center_x, c.half_width) && reaches(y, c.center_y, c.half_height);
 }
 
 Mat4 view_from_world(const Camera& c) {
@@ -116,14 +116,14 @@ Mat4 clip_from_view(const Camera& c) {
   m[0][0] = 1 / c.half_width;
   m[1][1] = -1 / c.half_height;
   if (c.orthographic) {
-    m[3][0] = -c.centre_x / c.half_width;
-    m[3][1] = c.centre_y / c.half_height;
+    m[3][0] = -c.center_x / c.half_width;
+    m[3][1] = c.center_y / c.half_height;
     m[2][2] = -1 / (c.far - c.near);
     m[3][2] = -c.near / (c.far - c.near);
     m[3][3] = 1;
   } else {
-    m[2][0] = c.centre_x / c.half_width;
-    m[2][1] = -c.centre_y / c.half_height;
+    m[2][0] = c.center_x / c.half_width;
+    m[2][1] = -c.center_y / c.half_height;
     m[2][2] = -c.far / (c.far - c.near);
     m[3][2] = -c.far * c.near / (c.far - c.near);
     m[2][3] = -1;
@@ -137,8 +137,8 @@ Mat4 world_from_clip(const Camera& c) {
   Mat4 view_from_clip(0.0);
   view_from_clip[0][0] = c.half_width;
   view_from_clip[1][1] = -c.half_height;
-  view_from_clip[3][0] = c.centre_x;
-  view_from_clip[3][1] = c.centre_y;
+  view_from_clip[3][0] = c.center_x;
+  view_from_clip[3][1] = c.center_y;
   if (c.orthographic) {
     view_from_clip[2][2] = -(c.far - c.near);
     view_from_clip[3][2] = -c.near;
@@ -156,8 +156,8 @@ Mat4 world_from_clip(const Camera& c) {
   return world_from_view * view_from_clip;
 }
 
-Ray ray_through(const Camera& c, double x_px, double y_px) {
-  const double x = c.centre_x + (2 * x_px / c.width - 1) * c.half_width, y = c.centre_y + (1 - 2 * y_px / c.height) * c.half_height;
+Ray pixel_ray(const Camera& c, double x_px, double y_px) {
+  const double x = c.center_x + (2 * x_px / c.width - 1) * c.half_width, y = c.center_y + (1 - 2 * y_px / c.height) * c.half_height;
   const Vec3 offset = x * c.right + y * c.up;
   if (c.orthographic) return {c.position + offset, -c.back};
   return {c.position, direction(offset - c.back)};
@@ -168,26 +168,26 @@ std::optional<Vec3> project(const Camera& c, const Vec3& world) {
   const double depth = -dot(d, c.back);
   if (!c.orthographic && !(depth > 0)) return std::nullopt;
   const double scale = c.orthographic ? 1 : 1 / depth;
-  const double x = (dot(d, c.right) * scale - c.centre_x) / c.half_width, y = (dot(d, c.up) * scale - c.centre_y) / c.half_height;
+  const double x = (dot(d, c.right) * scale - c.center_x) / c.half_width, y = (dot(d, c.up) * scale - c.center_y) / c.half_height;
   return Vec3(0.5 * (x + 1) * c.width, 0.5 * (1 - y) * c.height, depth);
 }
 
 Vec3 unproject(const Camera& c, double x_px, double y_px, double depth) {
   const double scale = c.orthographic ? 1 : depth;
-  const double x = (c.centre_x + (2 * x_px / c.width - 1) * c.half_width) * scale;
-  const double y = (c.centre_y + (1 - 2 * y_px / c.height) * c.half_height) * scale;
+  const double x = (c.center_x + (2 * x_px / c.width - 1) * c.half_width) * scale;
+  const double y = (c.center_y + (1 - 2 * y_px / c.height) * c.half_height) * scale;
   return c.position + x * c.right + y * c.up - depth * c.back;
 }
 
 double pixel_size(const Camera& c, double depth) { return 2 * c.half_height / c.height * (c.orthographic ? 1 : std::max(depth, c.near)); }
 
-Vec3 default_direction() { return direction(Vec3(0.5, -1.0, 0.45)); }
+Vec3 default_view_direction() { return direction(Vec3(0.5, -1.0, 0.45)); }
 
 View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg, const Vec3& up) {
   Bounds bounds = given;
   if (bounds.empty()) {
-    bounds.add(Vec3(-1.0));
-    bounds.add(Vec3(1.0));
+    bounds.extend(Vec3(-1.0));
+    bounds.extend(Vec3(1.0));
   }
   Camera axes;
   set_axes(axes, towards_eye, up);
@@ -196,14 +196,14 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
   // the nearest distance from which every corner lies inside the four planes of the frustum
   double distance = 0, half_height = 0;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 q = bounds.corner(i) - bounds.centre();
+    const Vec3 q = bounds.corner(i) - bounds.center();
     const double x = std::fabs(dot(q, axes.right)), y = std::fabs(dot(q, axes.up)), z = dot(q, axes.back);
     distance = std::max(distance, z + std::max(x / tan_x, y / tan_y));
     half_height = std::max(half_height, std::max(y, x / aspect));
   }
   if (!(distance > 0)) distance = half_height = 1;  // a single point
   View view;
-  view.target = bounds.centre();
+  view.target = bounds.center();
   view.position = view.target + 1.05 * distance * axes.back;
   view.up = std::fabs(dot(axes.back, direction(up))) < 0.999 ? up : axes.up;
   view.fovy_deg = fovy_deg;
@@ -214,18 +214,18 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
 namespace {
 
 /// The largest of a x + b z over the places, or the quantile that leaves the ignored ones out.
-double support(const std::vector<FitPlaces>& clouds, const Vec3& along) {
+double support(const std::vector<FitPoints>& clouds, const Vec3& along) {
   double most = -INFINITY;
   std::vector<double> reach;
-  for (const FitPlaces& cloud : clouds) {
-    if (cloud.places.empty()) continue;
-    if (cloud.ignored == 0) {  // nothing to sort out
-      for (const Vec3& p : cloud.places) most = std::max(most, dot(p, along));
+  for (const FitPoints& cloud : clouds) {
+    if (cloud.points.empty()) continue;
+    if (cloud.outlier_share == 0) {  // nothing to sort out
+      for (const Vec3& p : cloud.points) most = std::max(most, dot(p, along));
       continue;
     }
     reach.clear();
-    for (const Vec3& p : cloud.places) reach.push_back(dot(p, along));
-    const auto n = static_cast<std::ptrdiff_t>((1 - cloud.ignored) * static_cast<double>(reach.size() - 1));
+    for (const Vec3& p : cloud.points) reach.push_back(dot(p, along));
+    const auto n = static_cast<std::ptrdiff_t>((1 - cloud.outlier_share) * static_cast<double>(reach.size() - 1));
     std::nth_element(reach.begin(), reach.begin() + n, reach.end());
     most = std::max(most, reach[static_cast<std::size_t>(n)]);
   }
@@ -234,9 +234,9 @@ double support(const std::vector<FitPlaces>& clouds, const Vec3& along) {
 
 }  // namespace
 
-View fit_view(const std::vector<FitPlaces>& clouds, double aspect, double width, double height, const Vec3& towards_eye, double fovy_deg,
+View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height, const Vec3& towards_eye, double fovy_deg,
               const Vec3& up) {
-  if (std::ranges::all_of(clouds, [](const FitPlaces& c) { return c.places.empty(); })) return fit_view(Bounds(), aspect, towards_eye);
+  if (std::ranges::all_of(clouds, [](const FitPoints& c) { return c.points.empty(); })) return fit_view(Bounds(), aspect, towards_eye);
   Camera axes;
   set_axes(axes, towards_eye, up);
   const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
@@ -271,7 +271,7 @@ Vec3 turned_about(const Vec3& axis, double degrees, const Vec3& v) {
 
 }  // namespace
 
-View turned(const View& view, double azimuth_deg, double elevation_deg) {
+View orbit_view(const View& view, double azimuth_deg, double elevation_deg) {
   View moved = view;
   const Vec3 axis = direction(view.up);
   Vec3 arm = view.position - view.target;
@@ -286,7 +286,7 @@ View turned(const View& view, double azimuth_deg, double elevation_deg) {
   return moved;
 }
 
-View zoomed(const View& view, double factor) {
+View zoom_view(const View& view, double factor) {
   View closer = view;
   const double half = 0.5 * view.fovy_deg * std::numbers::pi / 180;
   closer.fovy_deg = 2 * std::atan(std::tan(half) / factor) * 180 / std::numbers::pi;
@@ -308,7 +308,7 @@ std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_v
   return fit_view(bounds, aspect, *towards_eye, fovy_deg);
 }
 
-View fitted(const View& view, const Bounds& bounds, double aspect) {
+View refit_view(const View& view, const Bounds& bounds, double aspect) {
   View fit = fit_view(bounds, aspect, view.position - view.target, view.fovy_deg, view.up);
   fit.orthographic = view.orthographic;
   return fit;

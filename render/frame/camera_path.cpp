@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/camera_limits.h"
 #include "engine/base/csv.h"
-#include "engine/base/eye_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
 
@@ -14,25 +14,27 @@ namespace {
 const std::vector<std::string_view> kRequired{"t", "px", "py", "pz", "tx", "ty", "tz"};
 const std::vector<std::string_view> kOptional{"ux,uy,uz", "fovy"};
 
-Result<CameraPath> path_of(const Table& table) {
+Result<CameraPath> path_of(const NumberTable& table) {
   const auto value = [&](std::string_view column, std::size_t row) { return (*table.find(column))[row]; };
   std::vector<CameraKey> keys(table.rows());
   for (std::size_t i = 0; i < keys.size(); ++i) {
     CameraKey& key = keys[i];
-    const auto refuse = [&](const std::string& what) { return Error{table.file + ":" + std::to_string(table.line(i)) + ": " + what}; };
+    const auto refuse = [&](const std::string& what) {
+      return Error{table.file + ":" + std::to_string(table.line_number(i)) + ": " + what};
+    };
     key.t_s = value("t", i);
     key.position = {value("px", i), value("py", i), value("pz", i)};
     key.target = {value("tx", i), value("ty", i), value("tz", i)};
     if (i > 0 && !(key.t_s > keys[i - 1].t_s))
       return refuse("t is " + to_text(key.t_s) + " after " + to_text(keys[i - 1].t_s) + "; strictly rising t was expected");
-    if (const std::string problem = eye_problem(key.position, key.target); !problem.empty()) return refuse(problem);
+    if (const std::string problem = validate_view(key.position, key.target); !problem.empty()) return refuse(problem);
     if (table.find("ux") != nullptr) {
       key.up = Vec3(value("ux", i), value("uy", i), value("uz", i));
       if (!(norm(*key.up) > 0)) return refuse("up is 0,0,0; a direction was expected");
     }
     if (table.find("fovy") != nullptr) {
       key.fovy_deg = value("fovy", i);
-      if (const std::string problem = fovy_problem(*key.fovy_deg); !problem.empty()) return refuse("fovy " + problem);
+      if (const std::string problem = validate_fovy(*key.fovy_deg); !problem.empty()) return refuse("fovy " + problem);
     }
   }
   return CameraPath(std::move(keys));
@@ -75,12 +77,12 @@ View CameraPath::at(const View& base, double t_s) const {
 }
 
 Result<CameraPath> read_camera_path(const std::string& path) {
-  CATENA_TRY(const Table table, read_csv(path, kRequired, kOptional));
+  CATENA_TRY(const NumberTable table, read_csv(path, kRequired, kOptional));
   return path_of(table);
 }
 
 Result<CameraPath> parse_camera_path(std::string_view text, const std::string& file) {
-  CATENA_TRY(const Table table, parse_csv(text, file, kRequired, kOptional));
+  CATENA_TRY(const NumberTable table, parse_csv(text, file, kRequired, kOptional));
   return path_of(table);
 }
 

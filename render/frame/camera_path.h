@@ -1,7 +1,7 @@
 /// A camera that moves through key frames, read from CSV: t, position p, target t, and optionally up u and the vertical field of view.
 ///   t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]
 /// Seconds (strictly rising), world units, degrees. Between keys: cubic Hermite curves through every key with the tangents of
-/// Catmull-Rom for uneven times, m_i = (p_(i+1) - p_(i-1)) / (t_(i+1) - t_(i-1)), one-sided at both ends; up and fovy are linear.
+/// Catmull-Rom for uneven times, m_i = (p_(i+1) - p_(i-1)) / (t_s_(i+1) - t_s_(i-1)), one-sided at both ends; up and fovy are linear.
 /// Before the first and after the last key the camera rests. Pure functions, any thread.
 #pragma once
 #include <optional>

@@ -1,5 +1,5 @@
 /// What is written and drawn over the finished picture, as plain data.
-///   points   lengths and text sizes are in points of a picture whose shorter side has kPicturePoints of them, so that a picture of
+///   points   lengths and text sizes are in points of a picture whose shorter side has kImagePoints of them, so that a picture of
 ///            640 x 480 and one of 3840 x 2880 look alike; x to the right, y down
 ///   text     UTF-8, '\n' ends a line; without a colour it is white or black, whichever the background leaves readable
 /// A packet whose overlay is empty has no overlay pass. World units elsewhere. Plain data, any thread.
@@ -12,18 +12,18 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/color.h"
 #include "engine/base/vec.h"
-#include "engine/geometry/color.h"
 
 namespace catena::render {
 
 /// Two doubles: x to the right, y down.
 using Vec2 = glm::dvec2;
 
-inline constexpr double kPicturePoints = 576;  ///< Points of a picture's shorter side.
+inline constexpr double kImagePoints = 576;  ///< Points of a picture's shorter side.
 
 /// A point of a box: of the picture, of a block of text.
-enum class Anchor { top_left, top, top_right, left, centre, right, bottom_left, bottom, bottom_right };
+enum class Anchor { top_left, top, top_right, left, center, right, bottom_left, bottom, bottom_right };
 
 /// Text at a place of the picture: the text's own anchor point lies on the picture's, moved by `offset_pt`.
 struct TextItem {
@@ -38,14 +38,14 @@ struct TextItem {
 /// Text at a point of the world: the anchor point of the text's box lies where `at` projects to, moved by `offset_pt`. Not drawn
 /// where `at` is behind the eye.
 struct LabelItem {
-  Vec3 at{0.0};                  ///< world units
-  std::string text;              ///< UTF-8
-  Anchor anchor = Anchor::left;  ///< of the text's box
-  Vec2 offset_pt{4.0, 0.0};      ///< points
-  double size_pt = 12;           ///< height of the letters, points
-  std::optional<Color> color{};  ///< none: readable over the background
-  bool dot = false;              ///< a small dot at the point itself
-  bool behind_hidden = false;    ///< left out where an opaque surface stands before `at`
+  Vec3 position{0.0};             ///< world units
+  std::string text;               ///< UTF-8
+  Anchor anchor = Anchor::left;   ///< of the text's box
+  Vec2 offset_pt{4.0, 0.0};       ///< points
+  double size_pt = 12;            ///< height of the letters, points
+  std::optional<Color> color{};   ///< none: readable over the background
+  bool show_dot = false;          ///< a small dot at the point itself
+  bool hide_if_occluded = false;  ///< left out where an opaque surface stands before `at`
 };
 
 /// A side of the picture.
@@ -63,10 +63,10 @@ struct ScalarBarItem {
   std::vector<BarTick> ticks;                 ///< values rising
   std::string title;                          ///< what it shows
   std::string factor;                         ///< beside the values, for instance "x 10^-5"
-  double linear_below = 0;                    ///< the scale of the values along it (engine/base/value_scale.h)
+  double linear_below = 0;                    ///< the scale of the values along it (engine/base/symlog_scale.h)
   Side side = Side::right;                    ///< where it stands
-  int steps = 0;     ///< of a legend of labels, upright: so many bands of one colour; values count them from below. 0: a bar
-  std::string more;  ///< below a legend: "and 96 more"
+  int band_count = 0;         ///< of a legend of labels, upright: so many bands of one colour; values count them from below. 0: a bar
+  std::string overflow_text;  ///< below a legend: "and 96 more"
 };
 
 /// The world's axes as the camera sees them: arrows in red, green and blue with their letters.
@@ -80,8 +80,8 @@ struct OrientationMarkerItem {
 struct StatusItem {
   /// A line for a link.
   struct Row {
-    std::string name, word;  ///< "curve", "OK"
-    bool active = true;      ///< the link holds
+    std::string name, status_text;  ///< "curve", "OK"
+    bool is_active = true;          ///< the link holds
   };
   double force_n = 0, max_force_n = 0;  ///< newtons; no bar if the largest is 0
   std::vector<Row> rows;                ///< in the order of the chain
@@ -140,7 +140,7 @@ struct UiItems {
   std::vector<UiDraw> draws;           ///< in order
   /// Where the window shows the picture (x0, y0, x1, y1, pixels), black beside it; none, or what of it the window holds is empty:
   /// everywhere.
-  std::optional<std::array<std::uint32_t, 4>> area{};
+  std::optional<std::array<std::uint32_t, 4>> image_area{};
 };
 
 }  // namespace catena::render

@@ -5,7 +5,7 @@
 ///   top_bottom         the first view on top                         W x n H
 ///   top_bottom_half    n pixels of a column averaged to one          W x n (H / n)
 ///   anaglyph           two views; red from the first eye, cyan from the second, by Dubois' matrices for LCD screens, in linear light
-///   anaglyph_grey      the same of the luminance
+///   anaglyph_gray      the same of the luminance
 ///   rows, columns, checkerboard   pixel (x, y) from view y, x, x + y modulo n
 #pragma once
 #include <algorithm>
@@ -27,7 +27,7 @@ enum class Packing {
   top_bottom,
   top_bottom_half,
   anaglyph,
-  anaglyph_grey,
+  anaglyph_gray,
   rows,
   columns,
   checkerboard
@@ -70,7 +70,7 @@ inline PackedSize view_size(Packing packing, std::size_t views, std::uint32_t wi
 }
 
 /// Each eye has a part of the picture for itself.
-inline bool is_apart(Packing packing) { return packing >= Packing::side_by_side && packing <= Packing::top_bottom_half; }
+inline bool has_separate_views(Packing packing) { return packing >= Packing::side_by_side && packing <= Packing::top_bottom_half; }
 
 /// Whether a finished picture has to be shown pixel by pixel.
 inline bool is_interlaced(Packing packing) {
@@ -110,13 +110,13 @@ class SharedList {
   /// As std::vector has it; the list is not empty.
   const T& back() const { return list().back(); }
   /// Appends; a list that is shared is copied first.
-  void push_back(const T& item) { own().push_back(item); }
+  void push_back(const T& item) { mutable_list().push_back(item); }
   /// One list in memory: nothing has to be compared.
-  bool is_same(const SharedList& other) const { return items_ == other.items_; }
-  friend bool operator==(const SharedList& a, const SharedList& b) { return a.is_same(b) || a.list() == b.list(); }
+  bool shares_storage(const SharedList& other) const { return items_ == other.items_; }
+  friend bool operator==(const SharedList& a, const SharedList& b) { return a.shares_storage(b) || a.list() == b.list(); }
 
  private:
-  std::vector<T>& own() {
+  std::vector<T>& mutable_list() {
     if (!items_ || items_.use_count() > 1) items_ = std::make_shared<std::vector<T>>(list());
     return *items_;
   }

@@ -1,5 +1,5 @@
 /// A large or supersampled picture as tiles: parts of one view, each drawn as a picture of its own (View::window). Sizes in samples:
-/// pixels times `antialias`. Tiles begin at multiples of kTileStep, so that every lattice of rays that a raycast interpolates on falls
+/// pixels times `antialias`. Tiles begin at multiples of kTileAlignment, so that every lattice of rays that a raycast interpolates on falls
 /// on the same places in a tile as in the whole; `margin` samples around a tile are drawn and dropped. Pure functions, any thread.
 #pragma once
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace catena::render {
 
-inline constexpr std::uint32_t kTileStep = 8;
+inline constexpr std::uint32_t kTileAlignment = 8;
 /// What interpolation and refinement on lattices of 4 and 2 look at, and a little more.
-inline constexpr std::uint32_t kLatticeMargin = 40;
+inline constexpr std::uint32_t kRayGridMargin = 40;
 /// Pictures of up to so many samples, and of sides that the device can hold, are drawn in one piece.
-inline constexpr std::uint64_t kOnePiece = std::uint64_t(4) << 20;
+inline constexpr std::uint64_t kMaxUntiledSamples = std::uint64_t(4) << 20;
 
 /// A rectangle of samples: kept, and drawn around it.
 struct TileArea {
   std::uint32_t x = 0, y = 0, width = 0, height = 0;
-  std::uint32_t drawn_x = 0, drawn_y = 0, drawn_width = 0, drawn_height = 0;
+  std::uint32_t render_x = 0, render_y = 0, render_width = 0, render_height = 0;
 };
 
 struct TilePlan {
   std::uint32_t width = 0, height = 0;  ///< of the picture, pixels
   std::uint32_t antialias = 1;          ///< samples a pixel, each way
-  /// Of a tile, in samples; multiples of kTileStep and of antialias where there is more than one.
+  /// Of a tile, in samples; multiples of kTileAlignment and of antialias where there is more than one.
   std::uint32_t tile_width = 0, tile_height = 0;
   std::uint32_t margin = 0;
 
@@ -42,6 +42,6 @@ TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t ant
 
 /// The packet of one tile: its size, its window and the place of what lies in pixels of the picture (Overlay::frame). `packet` is that of
 /// the whole picture.
-FramePacket tile_packet(const FramePacket& packet, const TilePlan& plan, const TileArea& area);
+FramePacket make_tile_packet(const FramePacket& packet, const TilePlan& plan, const TileArea& area);
 
 }  // namespace catena::render

@@ -7,7 +7,7 @@
 
 namespace catena::render {
 
-Result<std::string> jpeg_bytes(const Picture& picture, int quality) {
+Result<std::string> encode_jpeg(const Image8& picture, int quality) {
   CATENA_ASSERT(picture.width > 0 && picture.height > 0 && quality >= 1 && quality <= 100);
   const auto end = [](void* encoder) { tjDestroy(encoder); };
   const std::unique_ptr<void, decltype(end)> encoder(tjInitCompress(), end);
@@ -22,7 +22,7 @@ Result<std::string> jpeg_bytes(const Picture& picture, int quality) {
   return bytes;
 }
 
-Result<std::string> png_bytes(const Picture& picture) {
+Result<std::string> encode_png(const Image8& picture) {
   CATENA_ASSERT(picture.width > 0 && picture.height > 0);
   std::string rgb(std::size_t(3) * picture.width * picture.height, '\0');
   for (std::size_t i = 0; i < std::size_t(picture.width) * picture.height; ++i)

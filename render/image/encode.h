@@ -6,11 +6,11 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "render/image/picture.h"
+#include "render/image/image.h"
 
 namespace catena::render {
 
-Result<std::string> jpeg_bytes(const Picture& picture, int quality);
-Result<std::string> png_bytes(const Picture& picture);
+Result<std::string> encode_jpeg(const Image8& picture, int quality);
+Result<std::string> encode_png(const Image8& picture);
 
 }  // namespace catena::render

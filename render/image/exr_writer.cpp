@@ -54,8 +54,8 @@ class Stream : public Imf::OStream {
 
 }  // namespace
 
-struct ExrWriter::Parts {
-  Parts(OutputFile output, const ExrFormat& f, const std::string& name) : file(std::move(output)), format(f), path(name), stream(file) {}
+struct ExrWriter::Impl {
+  Impl(OutputFile output, const ExrFormat& f, const std::string& name) : file(std::move(output)), format(f), path(name), stream(file) {}
   Error error(const std::exception& e) const { return Error{path + ": the picture cannot be encoded as EXR: " + e.what()}; }
 
   OutputFile file;
@@ -65,14 +65,14 @@ struct ExrWriter::Parts {
   std::optional<Imf::OutputFile> exr;  // first out
 };
 
-ExrWriter::ExrWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+ExrWriter::ExrWriter(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}
 ExrWriter::~ExrWriter() = default;
 ExrWriter::ExrWriter(ExrWriter&&) noexcept = default;
 
 Result<ExrWriter> ExrWriter::open(const std::string& path, const ExrFormat& format) {
   CATENA_ASSERT(format.width > 0 && format.height > 0 && !format.channels.empty());
   CATENA_TRY(OutputFile file, OutputFile::open(path));
-  auto parts = std::make_unique<Parts>(std::move(file), format, path);
+  auto parts = std::make_unique<Impl>(std::move(file), format, path);
   try {
     Imf::Header header(static_cast<int>(format.width), static_cast<int>(format.height));
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -85,33 +85,33 @@ Result<ExrWriter> ExrWriter::open(const std::string& path, const ExrFormat& form
   return ExrWriter(std::move(parts));
 }
 
-Outcome ExrWriter::rows(std::span<const float> values) {
-  const std::size_t channels = parts_->format.channels.size(), row = channels * parts_->format.width;
+Outcome ExrWriter::write_rows(std::span<const float> values) {
+  const std::size_t channels = impl_->format.channels.size(), row = channels * impl_->format.width;
   CATENA_ASSERT(values.size() % row == 0);
   try {
     // OpenEXR counts rows from the top of the whole picture
-    const std::ptrdiff_t done = parts_->exr->currentScanLine() * static_cast<std::ptrdiff_t>(row * sizeof(float));
+    const std::ptrdiff_t done = impl_->exr->currentScanLine() * static_cast<std::ptrdiff_t>(row * sizeof(float));
     char* first = const_cast<char*>(reinterpret_cast<const char*>(values.data())) - done;
     Imf::FrameBuffer frame;
     for (std::size_t c = 0; c < channels; ++c)
-      frame.insert(parts_->format.channels[c],
+      frame.insert(impl_->format.channels[c],
                    Imf::Slice(Imf::FLOAT, first + c * sizeof(float), channels * sizeof(float), row * sizeof(float)));
-    parts_->exr->setFrameBuffer(frame);
-    parts_->exr->writePixels(static_cast<int>(values.size() / row));
+    impl_->exr->setFrameBuffer(frame);
+    impl_->exr->writePixels(static_cast<int>(values.size() / row));
   } catch (const std::exception& e) {
-    return parts_->error(e);
+    return impl_->error(e);
   }
-  if (parts_->file.failed()) return parts_->file.finish();
+  if (impl_->file.failed()) return impl_->file.finish();
   return Done{};
 }
 
 Outcome ExrWriter::finish() {
-  parts_->exr.reset();
-  parts_->stream.finish();
-  return parts_->file.finish();
+  impl_->exr.reset();
+  impl_->stream.finish();
+  return impl_->file.finish();
 }
 
-Outcome ExrWriter::commit() { return parts_->file.commit(); }
+Outcome ExrWriter::commit() { return impl_->file.commit(); }
 
 float linear_from_display(float display) {
   if (!(display > 0)) return 0;

@@ -26,16 +26,16 @@ class ExrWriter {
   ExrWriter& operator=(ExrWriter&&) = delete;
 
   /// The next rows, whole ones, from the top; the channels of a pixel lie together.
-  Outcome rows(std::span<const float> values);
+  Outcome write_rows(std::span<const float> values);
   /// After the last row: all of it is on its way to the disk.
   Outcome finish();
   /// The rename to the final name.
   Outcome commit();
 
  private:
-  struct Parts;
-  explicit ExrWriter(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  explicit ExrWriter(std::unique_ptr<Impl> parts);
+  std::unique_ptr<Impl> impl_;
 };
 
 /// The standard's transfer function of a display (sRGB) value: linear below 0.04045, a power of 2.4 above.

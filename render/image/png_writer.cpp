@@ -42,9 +42,9 @@ bool end(png_structp png) {
 
 }  // namespace
 
-struct PngWriter::Parts {
-  Parts(OutputFile output, const PngFormat& f, const std::string& name) : file(std::move(output)), format(f), path(name) {}
-  ~Parts() { png_destroy_write_struct(&png, &info); }
+struct PngWriter::Impl {
+  Impl(OutputFile output, const PngFormat& f, const std::string& name) : file(std::move(output)), format(f), path(name) {}
+  ~Impl() { png_destroy_write_struct(&png, &info); }
   Error error() const { return Error{path + ": the picture cannot be encoded as PNG"}; }
   std::size_t row_values() const { return std::size_t(format.width) * format.channels; }
 
@@ -56,7 +56,7 @@ struct PngWriter::Parts {
   std::vector<std::uint8_t> big_endian;  // a row of 16 bits
 };
 
-PngWriter::PngWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+PngWriter::PngWriter(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}
 PngWriter::~PngWriter() = default;
 PngWriter::PngWriter(PngWriter&&) noexcept = default;
 
@@ -64,7 +64,7 @@ Result<PngWriter> PngWriter::open(const std::string& path, const PngFormat& form
   CATENA_ASSERT(format.width > 0 && format.height > 0 && (format.bits == 8 || format.bits == 16));
   CATENA_ASSERT(format.channels == 1 || format.channels == 3 || format.channels == 4);
   CATENA_TRY(OutputFile file, OutputFile::open(path));
-  auto parts = std::make_unique<Parts>(std::move(file), format, path);
+  auto parts = std::make_unique<Impl>(std::move(file), format, path);
   parts->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, give_up, quiet);
   if (parts->png != nullptr) parts->info = png_create_info_struct(parts->png);
   if (parts->info == nullptr) return parts->error();
@@ -77,38 +77,38 @@ Result<PngWriter> PngWriter::open(const std::string& path, const PngFormat& form
   return PngWriter(std::move(parts));
 }
 
-Outcome PngWriter::put(const std::uint8_t* row) {
-  if (!write_row(parts_->png, row)) return parts_->error();
-  if (parts_->file.failed()) return parts_->file.finish();
+Outcome PngWriter::encode_row(const std::uint8_t* row) {
+  if (!write_row(impl_->png, row)) return impl_->error();
+  if (impl_->file.failed()) return impl_->file.finish();
   return Done{};
 }
 
-Outcome PngWriter::rows(std::span<const std::uint8_t> values) {
-  const std::size_t row = parts_->row_values();
-  CATENA_ASSERT(parts_->format.bits == 8 && values.size() % row == 0);
-  for (std::size_t at = 0; at < values.size(); at += row) CATENA_CHECK(put(values.data() + at));
+Outcome PngWriter::write_rows(std::span<const std::uint8_t> values) {
+  const std::size_t row = impl_->row_values();
+  CATENA_ASSERT(impl_->format.bits == 8 && values.size() % row == 0);
+  for (std::size_t at = 0; at < values.size(); at += row) CATENA_CHECK(encode_row(values.data() + at));
   return Done{};
 }
 
-Outcome PngWriter::rows(std::span<const std::uint16_t> values) {
-  const std::size_t row = parts_->row_values();
-  CATENA_ASSERT(parts_->format.bits == 16 && values.size() % row == 0);
-  parts_->big_endian.resize(2 * row);
+Outcome PngWriter::write_rows(std::span<const std::uint16_t> values) {
+  const std::size_t row = impl_->row_values();
+  CATENA_ASSERT(impl_->format.bits == 16 && values.size() % row == 0);
+  impl_->big_endian.resize(2 * row);
   for (std::size_t at = 0; at < values.size(); at += row) {
     for (std::size_t i = 0; i < row; ++i) {
-      parts_->big_endian[2 * i] = std::uint8_t(values[at + i] >> 8);
-      parts_->big_endian[2 * i + 1] = std::uint8_t(values[at + i] & 0xff);
+      impl_->big_endian[2 * i] = std::uint8_t(values[at + i] >> 8);
+      impl_->big_endian[2 * i + 1] = std::uint8_t(values[at + i] & 0xff);
     }
-    CATENA_CHECK(put(parts_->big_endian.data()));
+    CATENA_CHECK(encode_row(impl_->big_endian.data()));
   }
   return Done{};
 }
 
 Outcome PngWriter::finish() {
-  if (!end(parts_->png)) return parts_->error();
-  return parts_->file.finish();
+  if (!end(impl_->png)) return impl_->error();
+  return impl_->file.finish();
 }
 
-Outcome PngWriter::commit() { return parts_->file.commit(); }
+Outcome PngWriter::commit() { return impl_->file.commit(); }
 
 }  // namespace catena::render

@@ -30,22 +30,22 @@ class PngWriter {
   PngWriter& operator=(PngWriter&&) = delete;
 
   /// The next rows, whole ones, from the top.
-  Outcome rows(std::span<const std::uint8_t> values);   ///< 8 bits
-  Outcome rows(std::span<const std::uint16_t> values);  ///< 16 bits
+  Outcome write_rows(std::span<const std::uint8_t> values);   ///< 8 bits
+  Outcome write_rows(std::span<const std::uint16_t> values);  ///< 16 bits
   /// After the last row: all of it is on its way to the disk.
   Outcome finish();
   /// The rename to the final name.
   Outcome commit();
 
  private:
-  struct Parts;
-  explicit PngWriter(std::unique_ptr<Parts> parts);
-  Outcome put(const std::uint8_t* row);
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  explicit PngWriter(std::unique_ptr<Impl> parts);
+  Outcome encode_row(const std::uint8_t* row);
+  std::unique_ptr<Impl> impl_;
 };
 
-/// round(65535 x) of a display value; the same for 255. Outside 0 .. 1 and not a number: clamped, 0.
-constexpr std::uint32_t to_level(float x, std::uint32_t most) {
+/// round(65535 x) of a display value; the same for 255. OutwardSide 0 .. 1 and not a number: clamped, 0.
+constexpr std::uint32_t quantize(float x, std::uint32_t most) {
   return x > 0 ? x < 1 ? std::uint32_t(double(most) * double(x) + 0.5) : most : 0;
 }
 

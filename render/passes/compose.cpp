@@ -20,7 +20,7 @@ class ComposePass final : public Pass {
   explicit ComposePass(vk::Device& device) : upsample_(device) {}
   static Result<std::unique_ptr<Pass>> create(vk::Device& device) { return std::unique_ptr<Pass>(new ComposePass(device)); }
   PassUse use(const Frame& frame) const override {
-    return {frame.written & (target::opaque_color | target::volume | target::ghost), target::picture, true};
+    return {frame.written_targets & (target::opaque_color | target::volume | target::occluded_overlay), target::output, true};
   }
   Outcome prepare(Frame&) override { return Done{}; }
   Outcome record(vk::Commands& commands, Frame& frame) override;
@@ -33,14 +33,17 @@ class ComposePass final : public Pass {
 };
 
 Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
-  const VkFormat format = frame.targets.picture_format;
+  const VkFormat format = frame.targets.output_format;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
   vk::Pipeline& pipeline = pipelines_[{format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kComposeVertexShader;
     info.fragment = kComposeFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {1, vk::DescriptorKind::texture},
+                            {2, vk::DescriptorKind::texture},
+                            {3, vk::DescriptorKind::texture}};
     info.constants = {opaque, volume, ghost};
     info.colors = {format};
     CATENA_TRY(pipeline, vk::Pipeline::create(frame.device, info));
@@ -52,12 +55,12 @@ Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
 Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
-  const bool ghost = frame.has(target::ghost) && frame.ghost_area.extent.width > 0 && frame.ghost_area.extent.height > 0;
+  const bool ghost = frame.has(target::occluded_overlay) && frame.occluded_area.extent.width > 0 && frame.occluded_area.extent.height > 0;
   const std::array<float, 4>& background = frame.packet.background;
-  if (frame.half_lattice) {
+  if (frame.half_resolution_volume) {
     CATENA_ASSERT(!ghost);  // nothing opaque is drawn with it, so no hand
-    return upsample_.record(commands, *frame.half_lattice, opaque ? &targets.opaque_color : nullptr, targets.none, background,
-                            frame.half_area, targets.picture);
+    return upsample_.record(commands, *frame.half_resolution_volume, opaque ? &targets.opaque_color : nullptr, targets.placeholder,
+                            background, frame.half_resolution_area, targets.output);
   }
   CATENA_TRY(const vk::Pipeline* plain, pipeline(frame, false));
   const vk::Pipeline* with_ghost = nullptr;
@@ -67,15 +70,16 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   shared::ComposeData data{};
   data.background = {background[0], background[1], background[2], background[3]};
   CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
-  targets.begin(commands, target::picture, target::picture);
-  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, opaque ? &targets.opaque_color : &targets.none, nullptr},
-                                  {2, vk::Resource::texture, nullptr, volume ? &targets.volume : &targets.none, nullptr},
-                                  {3, vk::Resource::texture, nullptr, ghost ? &targets.ghost : &targets.none, nullptr}};
+  targets.begin(commands, target::output, target::output);
+  const vk::Binding bindings[] = {
+      {0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
+      {1, vk::DescriptorKind::texture, nullptr, opaque ? &targets.opaque_color : &targets.placeholder, nullptr},
+      {2, vk::DescriptorKind::texture, nullptr, volume ? &targets.volume : &targets.placeholder, nullptr},
+      {3, vk::DescriptorKind::texture, nullptr, ghost ? &targets.occluded_overlay : &targets.placeholder, nullptr}};
   commands.bind(*plain, bindings);
   commands.draw_triangle();
   if (with_ghost) {
-    commands.scissor(frame.ghost_area);
+    commands.set_scissor(frame.occluded_area);
     commands.bind(*with_ghost, bindings);
     commands.draw_triangle();
   }
@@ -85,6 +89,6 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
 
 }  // namespace
 
-const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create, target::picture};
+const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create, target::output};
 
 }  // namespace catena::render

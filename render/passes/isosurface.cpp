@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <map>
 
-#include "render/mirror/cell_map.h"
 #include "render/passes/passes.h"
-#include "render/passes/still_surfaces.h"
-#include "render/raycast/bound_grids.h"
+#include "render/passes/surface_cache.h"
+#include "render/raycast/grid_bindings.h"
+#include "render/residency/cell_map.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -18,7 +18,7 @@ constexpr std::uint32_t kIsosurfaceFragmentShader[] = {
 };
 
 /// The pixels that the bricks with the level can cover.
-VkRect2D surface_area(const CellMap& cells, const GridMirror& mirror, const field::Mapping& mapping, const Camera& camera) {
+VkRect2D surface_area(const CellMap& cells, const ResidentGrid& mirror, const field::Mapping& mapping, const Camera& camera) {
   if (cells.lo == cells.hi) return {};
   const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
   std::array<Vec3, 8> corners;
@@ -38,12 +38,12 @@ class IsosurfacePass final : public Pass {
     CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
     return std::unique_ptr<Pass>(std::move(self));
   }
-  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.keep}; }
+  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.reuse_rays}; }
   Outcome prepare(Frame& frame) override;
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
-  bool finds_surfaces() const override { return true; }
-  bool has_kept() const override { return keeps_ && still_[eye_].has_kept(); }
+  bool casts_surface_rays() const override { return true; }
+  bool reused_previous() const override { return keeps_ && still_[eye_].reused_previous(); }
 
  private:
   struct Surface {
@@ -61,7 +61,7 @@ class IsosurfacePass final : public Pass {
   Outcome draw(vk::Commands& commands, Frame& frame);
 
   std::vector<Surface> surfaces_;
-  std::vector<StillSurfaces> still_;  ///< an eye's each
+  std::vector<SurfaceCache> still_;  ///< an eye's each
   std::size_t eye_ = 0;
   std::uint64_t version_ = 0;  ///< counts what prepare() has found new
   bool keeps_ = false;
@@ -73,11 +73,11 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
     vk::GraphicsInfo info;
     info.vertex = kIsosurfaceVertexShader;
     info.fragment = kIsosurfaceFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
-    add_grid_slots(info.slots, 1);
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}};
+    add_grid_layout(info.layout_bindings, 1);
     info.constants = {flags, has_cells ? 1u : 0u};
     info.colors = opaque_formats();
-    info.depth = true;
+    info.has_depth = true;
     CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }
   return &pipeline;
@@ -85,11 +85,11 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
 
 Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
   cell_map = {};
-  if (state.mirror->cubic) {
+  if (state.resident->cubic) {
     cells = state.cells;
     return Done{};
   }
-  cells = make_cell_map(state.mirror->source(*item.grid), *state.mirror, state.level);
+  cells = make_cell_map(state.resident->source(*item.grid), *state.resident, state.level);
   if (!cells.texels.empty()) {
     CATENA_TRY(cell_map, upload_cell_map(device, cells));
   }
@@ -101,11 +101,11 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
   std::size_t count = 0;
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_opaque(item)) continue;
-    CATENA_TRY(auto mirror, frame.mirror(*item.grid));
-    if (!mirror->drawable) continue;
+    CATENA_TRY(auto mirror, frame.resident_grid(*item.grid));
+    if (!mirror->is_drawable) continue;
     if (count == surfaces_.size()) surfaces_.emplace_back();
     Surface& surface = surfaces_[count++];
-    const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item.level);
+    const bool same = surface.state.map.image && surface.state.resident == mirror && surface.state.level == float(item.level);
     CATENA_CHECK(surface.state.update(frame.device, *item.grid, std::move(mirror), item.level));
     surface.item = item;
     version_ += !same;
@@ -117,50 +117,51 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
 
 Bounds IsosurfacePass::bounds() const {
   Bounds all;
-  for (const Surface& surface : surfaces_) all.add(surface.item.grid->world_bounds());
+  for (const Surface& surface : surfaces_) all.extend(surface.item.grid->world_bounds());
   return all;
 }
 
 Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   keeps_ = false;
-  if (!frame.settings.keep) return draw(commands, frame);
-  still_.resize(frame.eyes);
-  StillSurfaces& still = still_[eye_ = frame.eye];
-  keeps_ = bool(still.fit(frame.device, {frame.packet.width, frame.packet.height, 1}));
+  if (!frame.settings.reuse_rays) return draw(commands, frame);
+  still_.resize(frame.eye_count);
+  SurfaceCache& still = still_[eye_ = frame.eye_index];
+  keeps_ = bool(still.ensure(frame.device, {frame.packet.width, frame.packet.height, 1}));
   if (keeps_) {
-    StillSurfaces::Look look{{}, version_};
+    SurfaceCache::Key look{{}, version_};
     for (const Surface& surface : surfaces_) {
-      look.surfaces.push_back(frame.rays.frame());
+      look.surfaces.push_back(frame.rays.frame_data());
       look.surfaces.back().grids[0] = surface_data(frame.rays, surface.state, surface.item);
     }
     CATENA_CHECK(still.update(commands, std::move(look), [&] { return draw(commands, frame); }));
   }
-  frame.targets.begin(commands, target::opaque, target::opaque & ~frame.written);
-  CATENA_CHECK(keeps_ ? still.draw(frame.device, commands, frame.rays.frame()) : draw(commands, frame));
+  frame.targets.begin(commands, target::opaque, target::opaque & ~frame.written_targets);
+  CATENA_CHECK(keeps_ ? still.draw(frame.device, commands, frame.rays.frame_data()) : draw(commands, frame));
   commands.end_pass();
   return Done{};
 }
 
 Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    const GridMirror& mirror = *surface.state.mirror;
+    const ResidentGrid& mirror = *surface.state.resident;
     const VkRect2D area = surface_area(surface.cells, mirror, mirror.source(*surface.item.grid).mapping(), frame.rays.camera);
     if (area.extent.width == 0 || area.extent.height == 0) continue;
-    shared::FrameData data = frame.rays.frame();
+    shared::FrameData data = frame.rays.frame_data();
     data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
-    const BoundGrid bound = surface.state.bound();
-    const bool has_cells = frame.settings.skip && surface.cell_map;
+    const GridBinding bound = surface.state.binding();
+    const bool has_cells = frame.settings.skip_empty && surface.cell_map;
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags({&bound, 1}), has_cells));
     // without the map of cells its binding is never read; the map of bricks has the right type
-    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
-                                      {1, vk::Resource::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};
+    std::vector<vk::Binding> bindings{
+        {0, vk::DescriptorKind::uniform, &surface.uniform, nullptr, nullptr},
+        {1, vk::DescriptorKind::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
-    commands.scissor(area);
+    commands.set_scissor(area);
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }
-  commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
+  commands.set_scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
   return Done{};
 }
 

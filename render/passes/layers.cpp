@@ -50,9 +50,9 @@ class LayersPass final : public Pass {
   Outcome prepare_meshes(Frame& frame);
   Outcome prepare_images(Frame& frame);
   Result<const vk::Pipeline*> mesh_pipeline(vk::Device& device, std::uint32_t mode, bool has_opaque);
-  Outcome draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const Peel& peel);
-  Outcome draw_all(vk::Commands& commands, Frame& frame, const Peel& peel);
-  Outcome draw_rest(vk::Commands& commands, Frame& frame, const Peel& peel, Images& last, vk::Image& id);
+  Outcome draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const PeelState& peel);
+  Outcome draw_all(vk::Commands& commands, Frame& frame, const PeelState& peel);
+  Outcome draw_rest(vk::Commands& commands, Frame& frame, const PeelState& peel, Images& last, vk::Image& id);
   bool collects_rest() const { return !meshes_.empty() || slices_.size() > MAX_LAYERS; }
 
   SliceDrawer slice_drawer_;
@@ -75,7 +75,7 @@ Outcome LayersPass::prepare_meshes(Frame& frame) {
     if (count == meshes_.size()) meshes_.emplace_back();
     TranslucentMesh& mesh = meshes_[count++];
     if (mesh.item == item) continue;
-    Shape shape;
+    ShapeMesh shape;
     add_mesh(shape, item);
     CATENA_CHECK(mesh.triangles.upload(frame.device, shape));
     mesh.item = item;
@@ -88,7 +88,7 @@ Outcome LayersPass::prepare_meshes(Frame& frame) {
 
 Outcome LayersPass::prepare_images(Frame& frame) {
   const auto fit = [&](vk::Image& image, VkFormat format, VkImageUsageFlags usage) -> Outcome {
-    return vk::fit_image(frame.device, image, format, frame.packet.width, frame.packet.height, usage);
+    return vk::ensure_image(frame.device, image, format, frame.packet.width, frame.packet.height, usage);
   };
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {
@@ -102,7 +102,7 @@ Outcome LayersPass::prepare_images(Frame& frame) {
   for (vk::Image& id : ids_) CATENA_CHECK(fit(id, kIdFormat, color));
   CATENA_CHECK(fit(depth_buffer_, kDepthBufferFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
   if (!collects_rest()) rest_ = {};
-  return collects_rest() ? fit(rest_, kRestFormat, color) : Done{};
+  return collects_rest() ? fit(rest_, kTailFormat, color) : Done{};
 }
 
 Outcome LayersPass::prepare(Frame& frame) {
@@ -123,8 +123,8 @@ Outcome LayersPass::prepare(Frame& frame) {
 
 Bounds LayersPass::bounds() const {
   Bounds all;
-  for (const TranslucentMesh& mesh : meshes_) all.add(mesh.triangles.bounds());
-  for (const Slice& slice : slices_) all.add(slice.grid().world_bounds());
+  for (const TranslucentMesh& mesh : meshes_) all.extend(mesh.triangles.bounds());
+  for (const Slice& slice : slices_) all.extend(slice.grid().world_bounds());
   return all;
 }
 
@@ -141,21 +141,21 @@ Result<const vk::Pipeline*> LayersPass::mesh_pipeline(vk::Device& device, std::u
   return &pipeline;
 }
 
-Outcome LayersPass::draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const Peel& peel) {
+Outcome LayersPass::draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const PeelState& peel) {
   if (mesh.triangles.empty()) return Done{};
   CATENA_CHECK(vk::write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
   CATENA_TRY(const vk::Pipeline* pipe, mesh_pipeline(frame.device, peel.mode, peel.opaque_depth != nullptr));
   CATENA_TRY(const vk::Binding binding, mesh.triangles.frame_binding(frame.device, frame.rays));
   std::vector<vk::Binding> bindings{binding};
   add_peel_bindings(bindings, peel, mesh.layer_data);
-  commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
+  commands.set_scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
   commands.bind(*pipe, bindings);
   mesh.triangles.draw(commands);
   return Done{};
 }
 
 /// In the order of ids: of things at one depth the depth buffer keeps the first, the next layer the next.
-Outcome LayersPass::draw_all(vk::Commands& commands, Frame& frame, const Peel& peel) {
+Outcome LayersPass::draw_all(vk::Commands& commands, Frame& frame, const PeelState& peel) {
   std::size_t m = 0, s = 0;
   while (m < meshes_.size() || s < slices_.size()) {
     const bool mesh = s == slices_.size() || (m < meshes_.size() && meshes_[m].item.id <= slices_[s].id());
@@ -165,7 +165,7 @@ Outcome LayersPass::draw_all(vk::Commands& commands, Frame& frame, const Peel& p
 }
 
 /// All that is left, into the last layer.
-Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const Peel& peel, Images& last, vk::Image& id) {
+Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const PeelState& peel, Images& last, vk::Image& id) {
   const vk::ColorTarget targets[] = {{&rest_, Clear{0, 0, 0, 1}}, {&last.depth, Clear{NO_DEPTH, 0, 0, 0}}, {&id, Clear{0, 0, 0, 0}}};
   commands.begin_pass(targets, {});
   CATENA_CHECK(draw_all(commands, frame, peel));
@@ -174,14 +174,14 @@ Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const Peel& 
     vk::GraphicsInfo info;
     info.vertex = kLayersScreenShader;
     info.fragment = kLayersRestShader;
-    info.slots = {{0, vk::Resource::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::texture}};
     info.colors = {kOpaqueFormat};
     CATENA_TRY(rest_pipeline_, vk::Pipeline::create(frame.device, info));
   }
-  commands.use(rest_, vk::kFragmentRead);
+  commands.transition(rest_, vk::kFragmentRead);
   const vk::ColorTarget color{&last.color, Clear{0, 0, 0, 0}};
   commands.begin_pass({&color, 1}, {});
-  const vk::Binding binding{0, vk::Resource::texture, nullptr, &rest_, nullptr};
+  const vk::Binding binding{0, vk::DescriptorKind::texture, nullptr, &rest_, nullptr};
   commands.bind(rest_pipeline_, {&binding, 1});
   commands.draw_triangle();
   commands.end_pass();
@@ -189,20 +189,20 @@ Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const Peel& 
 }
 
 Outcome LayersPass::record(vk::Commands& commands, Frame& frame) {
-  Peel peel;
-  peel.none = &frame.targets.none;
-  peel.none_id = &slice_drawer_.none_id();
+  PeelState peel;
+  peel.placeholder = &frame.targets.placeholder;
+  peel.placeholder_id = &slice_drawer_.placeholder_id();
   peel.opaque_depth = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   for (std::uint32_t k = 0; k < count_; ++k) {
     vk::Image &id = ids_[k % 2], &passed_id = ids_[(k + 1) % 2];
     if (k > 0) {
-      peel.passed_depth = &layers_[k - 1].depth;
-      peel.passed_id = &passed_id;
-      commands.use(layers_[k - 1].depth, vk::kFragmentRead);
-      commands.use(passed_id, vk::kFragmentRead);
+      peel.previous_depth = &layers_[k - 1].depth;
+      peel.previous_id = &passed_id;
+      commands.transition(layers_[k - 1].depth, vk::kFragmentRead);
+      commands.transition(passed_id, vk::kFragmentRead);
     }
     if (k + 1 == MAX_LAYERS && collects_rest()) {
-      peel.mode = MODE_REST;
+      peel.mode = MODE_TAIL;
       CATENA_CHECK(draw_rest(commands, frame, peel, layers_[k], id));
       break;
     }
@@ -214,7 +214,7 @@ Outcome LayersPass::record(vk::Commands& commands, Frame& frame) {
     commands.end_pass();
   }
   for (std::uint32_t k = 0; k < count_; ++k)
-    for (vk::Image* image : {&layers_[k].color, &layers_[k].depth}) commands.use(*image, vk::kFragmentRead);
+    for (vk::Image* image : {&layers_[k].color, &layers_[k].depth}) commands.transition(*image, vk::kFragmentRead);
   return Done{};
 }
 
@@ -222,14 +222,14 @@ Outcome LayersPass::record(vk::Commands& commands, Frame& frame) {
 
 bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
-bool has_layers(const FramePacket& packet) {
+bool needs_layers(const FramePacket& packet) {
   const auto any = [](const auto& items) {
     return std::any_of(items.begin(), items.end(), [](const auto& item) { return is_translucent(item); });
   };
   return any(packet.meshes) || any(packet.slices);
 }
 
-const PassEntry kLayersPass{"layers", [](const Frame& frame) { return has_layers(frame.packet); }, LayersPass::create, target::opaque,
+const PassEntry kLayersPass{"layers", [](const Frame& frame) { return needs_layers(frame.packet); }, LayersPass::create, target::opaque,
                             kLayerBytes};
 
 }  // namespace catena::render

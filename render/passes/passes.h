@@ -4,14 +4,14 @@
 
 namespace catena::render {
 
-// Shapes (shape_passes.cpp): lit triangles and tubes, into the opaque targets.
-extern const PassEntry kAidPass;         ///< bounding boxes, axes, the ground; clip planes do not touch them
-extern const PassEntry kWidgetPass;      ///< what the hand takes hold of
-extern const PassEntry kMeshPass;        ///< the opaque meshes
-extern const PassEntry kStreamlinePass;  ///< tubes and their arrowheads
-extern const PassEntry kGlyphPass;       ///< arrows of vectors
-extern const PassEntry kBallPass;        ///< balls of point sets (ball_pass.cpp)
-extern const PassEntry kCursorPass;      ///< probe, proxies, links, force; local indicators
+// PrimitiveKinds (shape_passes.cpp): lit triangles and tubes, into the opaque targets.
+extern const PassEntry kEnvironmentPass;  ///< bounding boxes, axes, the ground; clip planes do not touch them
+extern const PassEntry kWidgetPass;       ///< what the hand takes hold of
+extern const PassEntry kMeshPass;         ///< the opaque meshes
+extern const PassEntry kStreamlinePass;   ///< tubes and their arrowheads
+extern const PassEntry kGlyphPass;        ///< arrows of vectors
+extern const PassEntry kSpherePass;       ///< balls of point sets (ball_pass.cpp)
+extern const PassEntry kCursorPass;       ///< probe, proxies, links, force; local indicators
 
 /// Opaque isosurfaces: the drawn surface is the level set of the trilinear field itself, found along each pixel's ray from the
 /// cubic of the cell (no triangles), written with its depth. Translucent ones are drawn by the raycast, in order with volumes.
@@ -33,7 +33,7 @@ extern const PassEntry kSlicePass;
 /// Images exist only while something translucent is in the packet.
 extern const PassEntry kLayersPass;
 /// Whether the packet holds something translucent that layers are for.
-bool has_layers(const FramePacket& packet);
+bool needs_layers(const FramePacket& packet);
 /// In the layers.
 bool is_translucent(const MeshItem& item);
 
@@ -43,14 +43,14 @@ bool is_translucent(const MeshItem& item);
 extern const PassEntry kRaycastPass;
 /// What the fast raycast draws: one volume and no translucent isosurface, of a grid that can be packed; composite, its look a matter of its
 /// value alone.
-bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet);
+bool supports_fast_raycast(const vk::Device& device, const FramePacket& packet);
 
 /// The hand where something hides it (CursorItem::ghost): its triangles once more, with a depth buffer of their own, into target::ghost.
 ///   alpha    kGhostFace where the surface faces the eye .. kGhostRim at its silhouette, an outline
 ///   hidden   1 behind something opaque: another object's id is at the pixel; else the alpha of the volume there, which `compose`
 ///   multiplies
 /// So a hand that nothing hides leaves the picture as it is. Depths and ids do not know of it.
-extern const PassEntry kGhostPass;
+extern const PassEntry kOccludedOverlayPass;
 
 /// Ghost over volume over opaque over background, into the finished picture (RGBA8, straight alpha).
 extern const PassEntry kComposePass;

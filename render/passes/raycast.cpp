@@ -25,11 +25,12 @@ bool is_projected(const VolumeItem& item) { return item.projection != Projection
 
 RaySettings ray_settings(const Frame& frame) {
   const RenderSettings& s = frame.settings;
-  return {s.step_voxels, s.termination, s.skip, frame.packet.jitter.value_or(s.jitter)};
+  return {s.step_voxels, s.termination, s.skip_empty, frame.packet.jitter.value_or(s.jitter)};
 }
 
 RayScene ray_scene(const Frame& frame) {
-  return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, frame.layers_version, &frame.targets.none};
+  return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, frame.layers_version,
+          &frame.targets.placeholder};
 }
 
 /// What can be drawn together.
@@ -52,7 +53,7 @@ Outcome check(const FramePacket& packet, std::size_t layers, std::size_t volumes
   return Done{};
 }
 
-class RaycastPass final : public Pass, public RayProbe {
+class RaycastPass final : public Pass, public RaySampler {
  public:
   static Result<std::unique_ptr<Pass>> create(vk::Device& device);
   PassUse use(const Frame& frame) const override;
@@ -61,20 +62,22 @@ class RaycastPass final : public Pass, public RayProbe {
   Outcome record(vk::Commands& commands, Frame& frame) override;
   double build_ms() const override { return fast_pass_ ? fast_pass_->build_ms() : 0; }
   std::uint64_t grid_bytes() const override { return fast_pass_ ? fast_pass_->grid_bytes() : 0; }
-  std::string note() const override { return wanted_fast_ && !fast_ ? refused_.reason : std::string(); }
+  std::string warning() const override { return wanted_fast_ && !fast_ ? refused_.reason : std::string(); }
 
-  RayProbe* probe() override { return this; }
-  Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
-  Outcome record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
-  bool has_half_depth() const override { return fast_ || (any_ && !projected_ && exact_pass_->has_half_depth()); }
-  bool leaps() const override { return fast_ && fast_pass_->leaps(); }
-  bool has_kept() const override { return fast_ ? fast_pass_->has_kept() : any_ && !projected_ && exact_pass_->has_kept(); }
-  vk::Image* changed_tiles() override {
-    if (!has_kept()) return nullptr;
-    return fast_ ? fast_pass_->changed_tiles() : exact_pass_->changed_tiles();
+  RaySampler* ray_sampler() override { return this; }
+  Outcome record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  Outcome record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  bool has_half_opacity_depth() const override { return fast_ || (any_ && !projected_ && exact_pass_->has_half_opacity_depth()); }
+  bool skips_empty_space() const override { return fast_ && fast_pass_->skips_empty_space(); }
+  bool reused_previous() const override {
+    return fast_ ? fast_pass_->reused_previous() : any_ && !projected_ && exact_pass_->reused_previous();
+  }
+  vk::Image* dirty_tiles() override {
+    if (!reused_previous()) return nullptr;
+    return fast_ ? fast_pass_->dirty_tiles() : exact_pass_->dirty_tiles();
   }
   std::array<vk::Image*, 2> marked_blocks() override { return fast_ ? fast_pass_->marked_blocks() : std::array<vk::Image*, 2>{}; }
-  bool has_refused(const FramePacket& packet) const override {
+  bool was_out_of_memory(const FramePacket& packet) const override {
     return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
   }
 
@@ -104,7 +107,7 @@ class RaycastPass final : public Pass, public RayProbe {
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
 
 bool RaycastPass::ends_at_half(const Frame& frame) const {
-  return fast_ && frame.settings.fast->ends_at_half() && !frame.settings.float_picture && !frame.has(target::opaque_depth);
+  return fast_ && frame.settings.fast->ends_at_half_resolution() && !frame.settings.float_image && !frame.has(target::opaque_depth);
 }
 
 PassUse RaycastPass::use(const Frame& frame) const {
@@ -117,12 +120,12 @@ PassUse RaycastPass::use(const Frame& frame) const {
 bool RaycastPass::prepare_fast(Frame& frame) {
   const VolumeItem& item = frame.packet.volumes.front();
   const FastSettings& settings = *frame.settings.fast;
-  const bool gradients = item.shade && settings.smooth_gradients;
+  const bool gradients = item.is_shaded && settings.smooth_gradients;
   const std::uint64_t version = item.grid->version();
-  if (!refused_.reason.empty() && refused_.version == version && refused_.most_bytes == settings.most_bytes &&
+  if (!refused_.reason.empty() && refused_.version == version && refused_.most_bytes == settings.max_bytes &&
       refused_.gradients == gradients)
     return false;
-  refused_ = {version, settings.most_bytes, gradients, {}};
+  refused_ = {version, settings.max_bytes, gradients, {}};
   Outcome prepared = Done{};
   if (!fast_pass_) {
     auto created = FastVolumeRaycast::create(frame.device);
@@ -131,11 +134,11 @@ bool RaycastPass::prepare_fast(Frame& frame) {
     else
       prepared = created.error();
   }
-  if (prepared && !can_be_packed(frame.device, *item.grid)) {
+  if (prepared && !can_pack_dense(frame.device, *item.grid)) {
     exact_pass_.reset();
-    frame.mirrors.drop_unused(*item.grid);
+    frame.residency.drop_unused(*item.grid);
   }
-  if (prepared) prepared = fast_pass_->prepare(item, settings, frame.mirrors.left());
+  if (prepared) prepared = fast_pass_->prepare(item, settings, frame.residency.available_bytes());
   if (prepared) return true;
   fast_pass_.reset();
   refused_.reason = fmt::format("the grid \"{}\" is drawn by exact rays, slower: {}", item.grid->name(), prepared.error().message);
@@ -145,26 +148,26 @@ bool RaycastPass::prepare_fast(Frame& frame) {
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  wanted_fast_ = frame.settings.fast && frame.layers.empty() && can_be_drawn_fast(frame.device, packet);
+  wanted_fast_ = frame.settings.fast && frame.layers.empty() && supports_fast_raycast(frame.device, packet);
   fast_ = wanted_fast_ && prepare_fast(frame) ? &packet.volumes.front() : nullptr;
   if (fast_) {
     grids_.push_back(fast_->grid.get());
     return Done{};
   }
-  if (fast_pass_ && fast_pass_->is_large()) fast_pass_.reset();
+  if (fast_pass_ && fast_pass_->is_bricked()) fast_pass_.reset();
 
-  std::vector<Mirrored<VolumeItem>> volumes;
-  std::vector<Mirrored<IsosurfaceItem>> surfaces;
+  std::vector<ResidentItem<VolumeItem>> volumes;
+  std::vector<ResidentItem<IsosurfaceItem>> surfaces;
   std::size_t colors = 0;
   const auto mirror = [&](const auto& item, auto& list) -> Outcome {
-    CATENA_TRY(auto mirrored, frame.mirror(*item.grid));
-    if (!mirrored->drawable) return Done{};
+    CATENA_TRY(auto mirrored, frame.resident_grid(*item.grid));
+    if (!mirrored->is_drawable) return Done{};
     grids_.push_back(item.grid.get());
     list.push_back({&item, std::move(mirrored), nullptr});
     if (!item.color_by) return Done{};
-    CATENA_TRY(mirrored, frame.mirror(*item.color_by->grid));
-    if (!mirrored->drawable) return Done{};
-    list.back().colors = std::move(mirrored);
+    CATENA_TRY(mirrored, frame.resident_grid(*item.color_by->grid));
+    if (!mirrored->is_drawable) return Done{};
+    list.back().color_grid = std::move(mirrored);
     ++colors;
     return Done{};
   };
@@ -179,7 +182,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
     if (!projection_pass_) {
       CATENA_TRY(projection_pass_, ProjectionRaycast::create(frame.device));
     }
-    return projection_pass_->prepare(*volumes.front().item, volumes.front().mirror);
+    return projection_pass_->prepare(*volumes.front().item, volumes.front().resident);
   }
   if (!exact_pass_) {
     CATENA_TRY(exact_pass_, VolumeRaycast::create(frame.device));
@@ -189,7 +192,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
 
 Bounds RaycastPass::bounds() const {
   Bounds all;
-  for (const field::ScalarGrid* grid : grids_) all.add(grid->world_bounds());
+  for (const field::ScalarGrid* grid : grids_) all.extend(grid->world_bounds());
   return all;
 }
 
@@ -197,26 +200,27 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &targets.opaque_depth : nullptr;
   for (const Layer& layer : frame.layers)
-    for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
-  if (exact_pass_) exact_pass_->turn_to(frame.eye, frame.eyes);
-  if (fast_pass_) fast_pass_->turn_to(frame.eye, frame.eyes);
+    for (vk::Image* image : {layer.color, layer.depth}) commands.transition(*image, vk::kFragmentRead);
+  if (exact_pass_) exact_pass_->select_eye(frame.eye_index, frame.eye_count);
+  if (fast_pass_) fast_pass_->select_eye(frame.eye_index, frame.eye_count);
   const VkRect2D whole{{0, 0}, {frame.packet.width, frame.packet.height}};
   const VkRect2D area = frame.layers.empty() ? covered_area(grids_, frame.rays.camera) : whole;
   if (fast_) {
-    if (exact_pass_) exact_pass_->forget_target();
+    if (exact_pass_) exact_pass_->invalidate_target();
     const bool half = ends_at_half(frame);
-    CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.picture.info().extent,
-                                    half ? nullptr : &targets.volume, opaque, targets.none, frame.settings.keep));
+    CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.output.info().extent,
+                                    half ? nullptr : &targets.volume, opaque, targets.placeholder, frame.settings.reuse_rays));
     if (half) {
-      frame.half_lattice = &fast_pass_->half();
-      frame.half_area = area;
+      frame.half_resolution_volume = &fast_pass_->half_resolution();
+      frame.half_resolution_area = area;
     }
     return Done{};
   }
-  if (fast_pass_) fast_pass_->forget_target();
+  if (fast_pass_) fast_pass_->invalidate_target();
   if (any_ && !projected_)
-    return exact_pass_->record_into(commands, frame.rays, ray_settings(frame), area, ray_scene(frame), targets.volume, frame.settings.keep);
-  if (exact_pass_) exact_pass_->forget_target();
+    return exact_pass_->record_into(commands, frame.rays, ray_settings(frame), area, ray_scene(frame), targets.volume,
+                                    frame.settings.reuse_rays);
+  if (exact_pass_) exact_pass_->invalidate_target();
   targets.begin(commands, target::volume, target::volume);
   CATENA_CHECK(record_exact(commands, frame, frame.rays, area));
   commands.end_pass();
@@ -229,11 +233,12 @@ Outcome RaycastPass::record_exact(vk::Commands& commands, Frame& frame, const Ca
   return exact_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
 }
 
-Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
+Outcome RaycastPass::record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
-  if (fast_) return fast_pass_->record_probe(commands, frame.rays, *frame.settings.fast, spacing, target, opaque, frame.targets.none);
+  if (fast_)
+    return fast_pass_->record_ray_samples(commands, frame.rays, *frame.settings.fast, spacing, target, opaque, frame.targets.placeholder);
   for (const Layer& layer : frame.layers)
-    for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
+    for (vk::Image* image : {layer.color, layer.depth}) commands.transition(*image, vk::kFragmentRead);
   CameraRays rays = frame.rays;
   rays.spacing = spacing;
   const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
@@ -244,13 +249,13 @@ Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uin
   return Done{};
 }
 
-Outcome RaycastPass::record_half_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
+Outcome RaycastPass::record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
   constexpr double kHalf = 0.5;  // what is behind does not count
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_) {
     FastSettings settings = *frame.settings.fast;
     settings.termination = kHalf;
-    return fast_pass_->record_half_depth(commands, frame.rays, settings, spacing, target, opaque, frame.targets.none);
+    return fast_pass_->record_half_opacity_depth(commands, frame.rays, settings, spacing, target, opaque, frame.targets.placeholder);
   }
   CameraRays rays = frame.rays;
   rays.spacing = spacing;
@@ -259,36 +264,36 @@ Outcome RaycastPass::record_half_depth(vk::Commands& commands, Frame& frame, std
   const vk::ColorTarget depth{&target, std::array<float, 4>{NO_DEPTH, 0, 0, 0}};
   commands.begin_pass({&depth, 1}, {});
   const VkExtent3D& extent = target.info().extent;
-  CATENA_CHECK(exact_pass_->record_half_depth(commands, rays, settings, {{0, 0}, {extent.width, extent.height}}, ray_scene(frame)));
+  CATENA_CHECK(exact_pass_->record_half_opacity_depth(commands, rays, settings, {{0, 0}, {extent.width, extent.height}}, ray_scene(frame)));
   commands.end_pass();
   return Done{};
 }
 
 }  // namespace
 
-bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
+bool supports_fast_raycast(const vk::Device& device, const FramePacket& packet) {
   if (packet.volumes.size() != 1) return false;
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
-         !has_layers(packet) && surfaces_of(packet) == 0 && item.grid->interpolation() == field::Interpolation::linear &&
-         PackedLook::can_pack(device, *item.grid) && PackedLook::can_show(item);
+         !needs_layers(packet) && surfaces_of(packet) == 0 && item.grid->interpolation() == field::Interpolation::linear &&
+         FastVolumeResources::can_pack(device, *item.grid) && FastVolumeResources::can_quantize(item);
 }
 
-bool draws_rays(const FramePacket& packet) { return !packet.volumes.empty() || has_layers(packet) || surfaces_of(packet) > 0; }
+bool uses_raycast(const FramePacket& packet) { return !packet.volumes.empty() || needs_layers(packet) || surfaces_of(packet) > 0; }
 
-bool same_rays(const FramePacket& a, const FramePacket& b) {
+bool rays_match(const FramePacket& a, const FramePacket& b) {
   const auto same = []<class Item>(const std::vector<Item>& some, const std::vector<Item>& others) {
     const auto translucent = std::views::filter([](const Item& item) { return is_translucent(item); });
     return std::ranges::equal(some | translucent, others | translucent);
   };
   return a.view == b.view && a.eyes == b.eyes && a.packing == b.packing && a.width == b.width && a.height == b.height &&
          a.volumes == b.volumes && same(a.isosurfaces, b.isosurfaces) && same(a.meshes, b.meshes) && same(a.slices, b.slices) &&
-         a.clip == b.clip && a.lights == b.lights && a.fog == b.fog;
+         a.clip_planes == b.clip_planes && a.lights == b.lights && a.fog == b.fog;
 }
 
-const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },
+const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return uses_raycast(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
 
-Outcome check_rays(const FramePacket& packet) { return check(packet, 0, packet.volumes.size(), surfaces_of(packet), 0); }
+Outcome check_ray_items(const FramePacket& packet) { return check(packet, 0, packet.volumes.size(), surfaces_of(packet), 0); }
 
 }  // namespace catena::render

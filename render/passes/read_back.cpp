@@ -3,8 +3,8 @@
 #include <cstring>
 #include <limits>
 
-#include "render/mirror/half.h"
-#include "render/passes/renderer_parts.h"
+#include "render/passes/renderer_impl.h"
+#include "render/residency/half.h"
 
 namespace catena::render {
 namespace {
@@ -24,7 +24,7 @@ Result<std::vector<T>> bytes_of(vk::Device& device, vk::Image& image, std::size_
 
 /// One texel of 4 bytes.
 void copy_texel(vk::Commands& commands, vk::Image& from, std::uint32_t x, std::uint32_t y, const vk::Buffer& to, VkDeviceSize offset) {
-  commands.use(from, vk::kTransferRead);
+  commands.transition(from, vk::kTransferRead);
   VkBufferImageCopy region{};
   region.bufferOffset = offset;
   region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
@@ -35,72 +35,70 @@ void copy_texel(vk::Commands& commands, vk::Image& from, std::uint32_t x, std::u
 
 }  // namespace
 
-Result<Picture> Renderer::read_back() {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kPictureFormat);
-  Picture picture;
-  picture.width = p.shown().info().extent.width;
-  picture.height = p.shown().info().extent.height;
+Result<Image8> Renderer::read_back() {
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.drawn_targets != 0 && p.targets.output.info().format == kOutputFormat);
+  Image8 picture;
+  picture.width = p.output_image().info().extent.width;
+  picture.height = p.output_image().info().extent.height;
   CATENA_TRY(picture.rgba,
-             p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height)));
+             p.reset_on_error(bytes_of<std::uint8_t>(*p.device, p.output_image(), std::size_t(4) * picture.width * picture.height)));
   return picture;
 }
 
-Result<FloatPicture> Renderer::read_back_float() {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kFloatPictureFormat);
-  FloatPicture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
-  CATENA_TRY(picture.rgba,
-             p.kept_or_dropped(bytes_of<float>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height)));
+Result<ImageF32> Renderer::read_back_float() {
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.drawn_targets != 0 && p.targets.output.info().format == kFloatOutputFormat);
+  ImageF32 picture;
+  picture.width = p.targets.output.info().extent.width;
+  picture.height = p.targets.output.info().extent.height;
+  CATENA_TRY(picture.rgba, p.reset_on_error(bytes_of<float>(*p.device, p.targets.output, std::size_t(4) * picture.width * picture.height)));
   return picture;
 }
 
-Result<DepthPicture> Renderer::read_depth() {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0);
-  DepthPicture picture;
+Result<DepthImage> Renderer::read_depth() {
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.drawn_targets != 0);
+  DepthImage picture;
   picture.width = p.view_width;
   picture.height = p.view_height;
   picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
-  if ((p.drawn & target::opaque_depth) == 0) return picture;
-  CATENA_TRY(const std::vector<float> relative,
-             p.kept_or_dropped(bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size())));
+  if ((p.drawn_targets & target::opaque_depth) == 0) return picture;
+  CATENA_TRY(const std::vector<float> relative, p.reset_on_error(bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size())));
   for (std::size_t i = 0; i < relative.size(); ++i)
     if (relative[i] < NO_DEPTH) picture.depth[i] = float(double(relative[i]) + p.reference_depth);
   return picture;
 }
 
-Result<IdPicture> Renderer::read_ids() {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0);
-  IdPicture picture;
+Result<IdImage> Renderer::read_ids() {
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.drawn_targets != 0);
+  IdImage picture;
   picture.width = p.view_width;
   picture.height = p.view_height;
   picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
-  if ((p.drawn & target::opaque_id) == 0) return picture;
-  CATENA_TRY(picture.ids, p.kept_or_dropped(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
+  if ((p.drawn_targets & target::opaque_id) == 0) return picture;
+  CATENA_TRY(picture.ids, p.reset_on_error(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
   return picture;
 }
 
 /// Texels of an R8_UINT image that are 1.
-Result<std::uint64_t> Renderer::Parts::count_marks(vk::Image& marks) {
+Result<std::uint64_t> Renderer::Impl::count_marks(vk::Image& marks) {
   const VkExtent3D& size = marks.info().extent;
-  CATENA_TRY(const auto bytes, kept_or_dropped(bytes_of<std::uint8_t>(*device, marks, std::size_t(size.width) * size.height)));
+  CATENA_TRY(const auto bytes, reset_on_error(bytes_of<std::uint8_t>(*device, marks, std::size_t(size.width) * size.height)));
   return std::uint64_t(std::ranges::count(bytes, std::uint8_t(1)));
 }
 
 Result<MarchedTiles> Renderer::marched_tiles() {
-  Parts& p = *parts_;
+  Impl& p = *impl_;
   constexpr std::uint32_t kTile = 16;
   MarchedTiles tiles;
-  tiles.all = tiles.marched = (p.view_width + kTile - 1) / kTile * ((p.view_height + kTile - 1) / kTile);
-  for (Pass* pass : p.active()) {
-    RayProbe* rays = pass->probe();
-    if (!rays || !rays->has_kept()) continue;
+  tiles.total = tiles.marched = (p.view_width + kTile - 1) / kTile * ((p.view_height + kTile - 1) / kTile);
+  for (Pass* pass : p.active_passes()) {
+    RaySampler* rays = pass->ray_sampler();
+    if (!rays || !rays->reused_previous()) continue;
     tiles.marched = 0;
-    if (vk::Image* changed = rays->changed_tiles()) {
+    if (vk::Image* changed = rays->dirty_tiles()) {
       CATENA_TRY(const std::uint64_t marked, p.count_marks(*changed));
       tiles.marched = std::uint32_t(marked);
     }
@@ -108,12 +106,12 @@ Result<MarchedTiles> Renderer::marched_tiles() {
   return tiles;
 }
 
-Result<std::array<std::uint64_t, 2>> Renderer::refined_rays() {
-  Parts& p = *parts_;
+Result<std::array<std::uint64_t, 2>> Renderer::refined_ray_counts() {
+  Impl& p = *impl_;
   std::array<std::uint64_t, 2> rays{};
-  for (Pass* pass : p.active()) {
-    if (!pass->probe()) continue;
-    const std::array<vk::Image*, 2> blocks = pass->probe()->marked_blocks();
+  for (Pass* pass : p.active_passes()) {
+    if (!pass->ray_sampler()) continue;
+    const std::array<vk::Image*, 2> blocks = pass->ray_sampler()->marked_blocks();
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       if (blocks[k] == nullptr) continue;
       CATENA_TRY(const std::uint64_t marked, p.count_marks(*blocks[k]));
@@ -123,12 +121,12 @@ Result<std::array<std::uint64_t, 2>> Renderer::refined_rays() {
   return rays;
 }
 
-Result<Picked> Renderer::pick(std::uint32_t x, std::uint32_t y) {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0 && x < p.view_width && y < p.view_height);
-  Picked picked{0, std::numeric_limits<double>::infinity()};
+Result<PickResult> Renderer::pick(std::uint32_t x, std::uint32_t y) {
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.drawn_targets != 0 && x < p.view_width && y < p.view_height);
+  PickResult picked{0, std::numeric_limits<double>::infinity()};
   constexpr TargetSet kBoth = target::opaque_depth | target::opaque_id;
-  if ((p.drawn & kBoth) != kBoth) return picked;
+  if ((p.drawn_targets & kBoth) != kBoth) return picked;
   const auto read = [&]() -> Outcome {
     CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(*p.device, 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
@@ -142,38 +140,38 @@ Result<Picked> Renderer::pick(std::uint32_t x, std::uint32_t y) {
     if (relative < NO_DEPTH) picked.depth = double(relative) + p.reference_depth;
     return Done{};
   };
-  CATENA_CHECK(p.kept_or_dropped(read()));
+  CATENA_CHECK(p.reset_on_error(read()));
   return picked;
 }
 
-Result<Picture> Renderer::read_back_window() {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.ui && p.ui->window());
-  vk::Image& window = p.ui->window();
-  Picture picture;
+Result<Image8> Renderer::read_back_window() {
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.window_painter && p.window_painter->window());
+  vk::Image& window = p.window_painter->window();
+  Image8 picture;
   picture.width = window.info().extent.width;
   picture.height = window.info().extent.height;
-  CATENA_TRY(picture.rgba, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, window, std::size_t(4) * picture.width * picture.height)));
+  CATENA_TRY(picture.rgba, p.reset_on_error(bytes_of<std::uint8_t>(*p.device, window, std::size_t(4) * picture.width * picture.height)));
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
   return picture;
 }
 
-Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
-  Parts& p = *parts_;
-  Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
+Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
+  Impl& p = *impl_;
+  Frame frame{*p.device, *p.residency, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
   // all before the rays, whole; then the rays, into an image of their own
-  Picture picture;
+  Image8 picture;
   picture.width = (packet.width + spacing - 1) / spacing;
   picture.height = (packet.height + spacing - 1) / spacing;
   const std::size_t count = std::size_t(picture.width) * picture.height;
   vk::Image target;
   std::vector<Pass*> before;
-  RayProbe* rays = nullptr;
-  for (Pass* pass : p.active()) {
-    if ((rays = pass->probe())) break;
-    if ((pass->use(frame).writes & target::picture) == 0) before.push_back(pass);
+  RaySampler* rays = nullptr;
+  for (Pass* pass : p.active_passes()) {
+    if ((rays = pass->ray_sampler())) break;
+    if ((pass->use(frame).writes & target::output) == 0) before.push_back(pass);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
   CATENA_CHECK(p.record(commands, frame, before));
@@ -183,8 +181,8 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
     info.extent = {picture.width, picture.height, 1};
     info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     CATENA_TRY(target, vk::Image::create(*p.device, info));
-    if (frame.has(target::opaque_depth)) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
-    CATENA_CHECK(rays->record_probe(commands, frame, spacing, target));
+    if (frame.has(target::opaque_depth)) commands.transition(p.targets.opaque_depth, vk::kFragmentRead);
+    CATENA_CHECK(rays->record_ray_samples(commands, frame, spacing, target));
   }
   CATENA_CHECK(commands.finish());
   std::vector<float> volume(4 * count);

@@ -5,18 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/eye_limits.h"
+#include "engine/base/camera_limits.h"
 #include "render/passes/passes.h"
-#include "render/passes/renderer_parts.h"
+#include "render/passes/renderer_impl.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,    &kWidgetPass,     &kMeshPass,         &kStreamlinePass, &kGlyphPass,  &kBallPass,
-                                        &kCursorPass, &kIsosurfacePass, &kSurfaceColorPass, &kSlicePass,      &kLayersPass, &kRaycastPass,
-                                        &kGhostPass,  &kComposePass,    &kVignettePass,     &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kEnvironmentPass,     &kWidgetPass,  &kMeshPass,     &kStreamlinePass,
+                                        &kGlyphPass,           &kSpherePass,  &kCursorPass,   &kIsosurfacePass,
+                                        &kSurfaceColorPass,    &kSlicePass,   &kLayersPass,   &kRaycastPass,
+                                        &kOccludedOverlayPass, &kComposePass, &kVignettePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -24,8 +25,8 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("a picture of {} x {} pixels cannot be drawn, expected 1 to {} each way", packet.width, packet.height, most)};
   if (!(settings.step_voxels > 0) || !std::isfinite(settings.step_voxels))
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
-  if (packet.clip.size() > kMaxClipPlanes)
-    return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMaxClipPlanes)};
+  if (packet.clip_planes.size() > kMaxClipPlanes)
+    return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip_planes.size(), kMaxClipPlanes)};
   if (packet.lights.size() > kMaxLights)
     return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMaxLights)};
   return Done{};
@@ -33,17 +34,17 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
 
 }  // namespace
 
-Renderer::Renderer() : parts_(std::make_unique<Parts>()) { parts_->passes.resize(std::size(kPasses)); }
+Renderer::Renderer() : impl_(std::make_unique<Impl>()) { impl_->passes.resize(std::size(kPasses)); }
 Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& options) {
   std::unique_ptr<Renderer> self(new Renderer);
-  CATENA_TRY(self->parts_->device, vk::Device::create(options));
-  self->parts_->mirrors.emplace(*self->parts_->device);
+  CATENA_TRY(self->impl_->device, vk::Device::create(options));
+  self->impl_->residency.emplace(*self->impl_->device);
   return self;
 }
 
-std::vector<Pass*> Renderer::Parts::active(std::vector<std::string>* names) const {
+std::vector<Pass*> Renderer::Impl::active_passes(std::vector<std::string>* names) const {
   std::vector<Pass*> list;
   for (std::size_t i = 0; i < passes.size(); ++i) {
     if (!passes[i]) continue;
@@ -54,50 +55,50 @@ std::vector<Pass*> Renderer::Parts::active(std::vector<std::string>* names) cons
 }
 
 /// With their pipelines; the next picture makes them anew.
-void Renderer::Parts::drop_passes() {
+void Renderer::Impl::drop_passes() {
   for (auto& pass : passes) {
-    if (pass) gone_build_ms += pass->build_ms();
+    if (pass) retired_build_ms += pass->build_ms();
     pass.reset();
   }
-  pack.reset();
-  ui.reset();
-  drawn = 0;
+  stereo_composer.reset();
+  window_painter.reset();
+  drawn_targets = 0;
 }
 
 /// Once more where the budget refused and older frames, or the first of several grids, held what this one needs.
 template <class Work>
-auto Renderer::Parts::within_budget(const FramePacket& packet, const Work& work) -> decltype(work()) {
+auto Renderer::Impl::within_budget(const FramePacket& packet, const Work& work) -> decltype(work()) {
   const std::size_t grids = packet.volumes.size() + packet.isosurfaces.size() + packet.slices.size();
-  if (sharers != grids) sharers = 1;
-  const std::uint64_t refused = device->counters().refused;
-  const bool held = device->counters().bytes > 0;
-  auto result = kept_or_dropped(work());
-  if (result || device->counters().refused == refused || !(held || grids > 1)) return result;
-  sharers = grids;
-  return kept_or_dropped(work());
+  if (budget_sharers != grids) budget_sharers = 1;
+  const std::uint64_t refused = device->counters().refused_allocations;
+  const bool held = device->counters().allocated_bytes > 0;
+  auto result = reset_on_error(work());
+  if (result || device->counters().refused_allocations == refused || !(held || grids > 1)) return result;
+  budget_sharers = grids;
+  return reset_on_error(work());
 }
 
 /// Bytes of the budget that are not for mirrors: the targets, their copy on the way back, layers, and 1 MB of tables and vertices.
-std::uint64_t Renderer::Parts::reserved(const Frame& frame) const {
-  TargetSet needed = target::picture | target::volume;
-  std::uint64_t a_pixel = vk::texel_bytes(targets.picture_format);
+std::uint64_t Renderer::Impl::reserved_bytes(const Frame& frame) const {
+  TargetSet needed = target::output | target::volume;
+  std::uint64_t a_pixel = vk::texel_bytes(targets.output_format);
   for (const PassEntry* entry : kPasses)
-    if (entry->wanted(frame)) {
-      needed |= entry->reserves;
+    if (entry->is_needed(frame)) {
+      needed |= entry->reserved_targets;
       a_pixel += entry->reserved_pixel_bytes;
     }
   const std::uint64_t pixels = std::uint64_t(frame.packet.width) * frame.packet.height;
-  if (frame.eyes > volumes.size() + 1) a_pixel += (frame.eyes - 1 - volumes.size()) * vk::texel_bytes(kVolumeFormat);
-  return pixels * a_pixel + targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) + 1'000'000;
+  if (frame.eye_count > eye_volumes.size() + 1) a_pixel += (frame.eye_count - 1 - eye_volumes.size()) * vk::texel_bytes(kVolumeFormat);
+  return pixels * a_pixel + targets.missing_bytes(frame.packet.width, frame.packet.height, needed) + 1'000'000;
 }
 
 /// Makes the passes that the packet wants and no others, uploads, and fixes the targets and the rays.
-Outcome Renderer::Parts::prepare(Frame& frame) {
-  targets.picture_format = frame.settings.float_picture ? kFloatPictureFormat : kPictureFormat;
-  mirrors->begin_frame(reserved(frame), sharers);
+Outcome Renderer::Impl::prepare(Frame& frame) {
+  targets.output_format = frame.settings.float_image ? kFloatOutputFormat : kOutputFormat;
+  residency->begin_frame(reserved_bytes(frame), budget_sharers);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    if (!kPasses[i]->wanted(frame)) {
-      if (passes[i]) gone_build_ms += passes[i]->build_ms();
+    if (!kPasses[i]->is_needed(frame)) {
+      if (passes[i]) retired_build_ms += passes[i]->build_ms();
       passes[i].reset();
       continue;
     }
@@ -106,24 +107,24 @@ Outcome Renderer::Parts::prepare(Frame& frame) {
     }
     CATENA_CHECK(passes[i]->prepare(frame));
   }
-  mirrors->drop_unused();
+  residency->drop_unused();
   Bounds bounds, of_rays, of_surfaces;
-  TargetSet needed = target::picture;
-  for (Pass* pass : active()) {
-    bounds.add(pass->bounds());
-    if (pass->probe()) of_rays.add(pass->bounds());
-    if (pass->finds_surfaces()) of_surfaces.add(pass->bounds());
+  TargetSet needed = target::output;
+  for (Pass* pass : active_passes()) {
+    bounds.extend(pass->bounds());
+    if (pass->ray_sampler()) of_rays.extend(pass->bounds());
+    if (pass->casts_surface_rays()) of_surfaces.extend(pass->bounds());
     const TargetSet writes = pass->use(frame).writes;
-    frame.written |= writes;
+    frame.written_targets |= writes;
     needed |= writes;
   }
-  frame.written = 0;
+  frame.written_targets = 0;
   frame.rays = CameraRays::make(frame.packet, bounds, of_rays.empty() ? of_surfaces : of_rays);
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
 /// Neighbours with equal targets share one rendering scope; what is written first is cleared, what is read is moved there before.
-Outcome Renderer::Parts::record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list) {
+Outcome Renderer::Impl::record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list) {
   TargetSet open = 0;
   const auto close = [&] {
     if (open != 0) commands.end_pass();
@@ -131,51 +132,51 @@ Outcome Renderer::Parts::record(vk::Commands& commands, Frame& frame, const std:
   };
   for (Pass* pass : list) {
     const PassUse use = pass->use(frame);
-    CATENA_ASSERT((use.reads & ~frame.written) == 0);
-    if (use.own_scope || use.writes != open || use.reads != 0) close();
+    CATENA_ASSERT((use.reads & ~frame.written_targets) == 0);
+    if (use.owns_rendering || use.writes != open || use.reads != 0) close();
     for (TargetSet one = 1; one <= use.reads; one <<= 1)
-      if ((use.reads & one) != 0) commands.use(targets.image(one), vk::kFragmentRead);
-    if (!use.own_scope) {
-      if (open == 0) targets.begin(commands, use.writes, use.writes & ~frame.written);
+      if ((use.reads & one) != 0) commands.transition(targets.image(one), vk::kFragmentRead);
+    if (!use.owns_rendering) {
+      if (open == 0) targets.begin(commands, use.writes, use.writes & ~frame.written_targets);
       open = use.writes;
-      commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
+      commands.set_scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
     }
     CATENA_CHECK(pass->record(commands, frame));
-    frame.written |= use.writes;
+    frame.written_targets |= use.writes;
   }
   close();
   return Done{};
 }
 
 /// One view, into targets.picture.
-Outcome Renderer::Parts::draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye, std::size_t eyes) {
-  Frame frame{*device, *mirrors, targets, packet, settings, {}};
-  frame.eye = eye;
-  frame.eyes = eyes;
+Outcome Renderer::Impl::draw(const FramePacket& packet, const RenderSettings& settings, std::size_t eye, std::size_t eyes) {
+  Frame frame{*device, *residency, targets, packet, settings, {}};
+  frame.eye_index = eye;
+  frame.eye_count = eyes;
   CATENA_CHECK(prepare(frame));
-  drawn_passes.clear();
+  rendered_passes.clear();
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
-  CATENA_CHECK(record(commands, frame, active(&drawn_passes)));
-  commands.use(targets.picture, vk::kTransferRead);
+  CATENA_CHECK(record(commands, frame, active_passes(&rendered_passes)));
+  commands.transition(targets.output, vk::kTransferRead);
   CATENA_CHECK(commands.finish());
-  drawn = frame.written;
+  drawn_targets = frame.written_targets;
   view_width = packet.width;
   view_height = packet.height;
   reference_depth = frame.rays.reference_depth;
   return draw_ray_depth(frame);
 }
 
-Outcome Renderer::Parts::draw_ray_depth(Frame& frame) {
+Outcome Renderer::Impl::draw_ray_depth(Frame& frame) {
   ray_depth_spacing = 0;
   const std::uint32_t spacing = frame.settings.ray_depth_spacing;
   if (spacing == 0) return Done{};
-  for (Pass* pass : active()) {
-    RayProbe* rays = pass->probe();
-    if (!rays || !rays->has_half_depth()) continue;
-    CATENA_CHECK(vk::fit_image(*device, ray_depth, kVolumeFormat, (frame.packet.width + spacing - 1) / spacing,
-                               (frame.packet.height + spacing - 1) / spacing));
+  for (Pass* pass : active_passes()) {
+    RaySampler* rays = pass->ray_sampler();
+    if (!rays || !rays->has_half_opacity_depth()) continue;
+    CATENA_CHECK(vk::ensure_image(*device, ray_depth, kVolumeFormat, (frame.packet.width + spacing - 1) / spacing,
+                                  (frame.packet.height + spacing - 1) / spacing));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
-    CATENA_CHECK(rays->record_half_depth(commands, frame, spacing, ray_depth));
+    CATENA_CHECK(rays->record_half_opacity_depth(commands, frame, spacing, ray_depth));
     CATENA_CHECK(commands.finish());
     ray_depth_spacing = spacing;
   }
@@ -183,117 +184,119 @@ Outcome Renderer::Parts::draw_ray_depth(Frame& frame) {
 }
 
 /// One eye after the other (passes upload only what changed since the last); the first comes last, so that its depth and ids stay.
-Outcome Renderer::Parts::draw_eyes(const FramePacket& packet, const RenderSettings& settings) {
-  if (!pack) pack.emplace(*device);
-  CATENA_CHECK(pack->begin(packet.packing, packet.eyes.size(), packet.width, packet.height));
+Outcome Renderer::Impl::draw_eyes(const FramePacket& packet, const RenderSettings& settings) {
+  if (!stereo_composer) stereo_composer.emplace(*device);
+  CATENA_CHECK(stereo_composer->begin(packet.packing, packet.eyes.size(), packet.width, packet.height));
   FramePacket one = packet;
   one.eyes.clear();
-  volumes.resize(packet.packing == Packing::single ? 0 : packet.eyes.size() - 1);
-  for (std::size_t k = volumes.size() + 1; k-- > 0;) {
+  eye_volumes.resize(packet.packing == Packing::single ? 0 : packet.eyes.size() - 1);
+  for (std::size_t k = eye_volumes.size() + 1; k-- > 0;) {
     one.view = packet.eyes[k];
-    if (k > 0) std::swap(targets.volume, volumes[k - 1]);
-    CATENA_CHECK(draw(one, settings, k, volumes.size() + 1));
-    if (k > 0) std::swap(targets.volume, volumes[k - 1]);
-    pack->keep(k, targets.picture);
+    if (k > 0) std::swap(targets.volume, eye_volumes[k - 1]);
+    CATENA_CHECK(draw(one, settings, k, eye_volumes.size() + 1));
+    if (k > 0) std::swap(targets.volume, eye_volumes[k - 1]);
+    stereo_composer->store_view(k, targets.output);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
-  CATENA_CHECK(pack->record(commands));
+  CATENA_CHECK(stereo_composer->record(commands));
   return commands.finish();
 }
 
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
-  parts_->drawn = 0;
-  CATENA_CHECK(check(packet, settings, parts_->device->info()));
-  return parts_->within_budget(packet, [&] { return draw_once(packet, settings); });
+  impl_->drawn_targets = 0;
+  CATENA_CHECK(check(packet, settings, impl_->device->info()));
+  return impl_->within_budget(packet, [&] { return draw_once(packet, settings); });
 }
 
-Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
-  parts_->drawn = 0;
-  CATENA_CHECK(check(packet, settings, parts_->device->info()));
-  return parts_->within_budget(packet, [&] { return probe_once(packet, settings, spacing); });
+Result<Image8> Renderer::sample_rays(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
+  impl_->drawn_targets = 0;
+  CATENA_CHECK(check(packet, settings, impl_->device->info()));
+  return impl_->within_budget(packet, [&] { return sample_rays_once(packet, settings, spacing); });
 }
 
 Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& settings) {
-  Parts& p = *parts_;
-  p.packed = !packet.eyes.empty();
-  if (!p.packed) p.pack.reset(), p.volumes.clear();
-  return p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
+  Impl& p = *impl_;
+  p.is_composed = !packet.eyes.empty();
+  if (!p.is_composed) p.stereo_composer.reset(), p.eye_volumes.clear();
+  return p.is_composed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
 }
 
-DrawnImage Renderer::image() const {
-  CATENA_ASSERT(parts_->drawn != 0);
-  const vk::Image& shown = parts_->shown();
+RenderedImage Renderer::rendered_image() const {
+  CATENA_ASSERT(impl_->drawn_targets != 0);
+  const vk::Image& shown = impl_->output_image();
   const VkExtent3D& size = shown.info().extent;
-  return {shown.handle(), shown.info().format,        {size.width, size.height},
-          shown.layout,   parts_->device->timeline(), parts_->device->submitted()};
+  return {shown.handle(), shown.info().format,       {size.width, size.height},
+          shown.layout,   impl_->device->timeline(), impl_->device->submitted_value()};
 }
 
-vk::Image& Renderer::picture() {
-  CATENA_ASSERT(parts_->drawn != 0);
-  return parts_->shown();
+vk::Image& Renderer::output_image() {
+  CATENA_ASSERT(impl_->drawn_targets != 0);
+  return impl_->output_image();
 }
 
 std::optional<Renderer::OpaqueDepth> Renderer::opaque_depth() {
-  if ((parts_->drawn & target::opaque_depth) == 0) return std::nullopt;
-  return OpaqueDepth{&parts_->targets.opaque_depth, parts_->reference_depth};
+  if ((impl_->drawn_targets & target::opaque_depth) == 0) return std::nullopt;
+  return OpaqueDepth{&impl_->targets.opaque_depth, impl_->reference_depth};
 }
 
 std::optional<Renderer::RayDepth> Renderer::ray_depth() {
-  CATENA_ASSERT(parts_->drawn != 0);
-  if (parts_->ray_depth_spacing == 0) return std::nullopt;
-  return RayDepth{&parts_->ray_depth, parts_->reference_depth, parts_->ray_depth_spacing};
+  CATENA_ASSERT(impl_->drawn_targets != 0);
+  if (impl_->ray_depth_spacing == 0) return std::nullopt;
+  return RayDepth{&impl_->ray_depth, impl_->reference_depth, impl_->ray_depth_spacing};
 }
 
-vk::Image& Renderer::no_image() { return parts_->targets.none; }
+vk::Image& Renderer::placeholder_image() { return impl_->targets.placeholder; }
 
-std::uint32_t Renderer::longest_side() const { return parts_->device->info().limits.maxImageDimension2D; }
+std::uint32_t Renderer::max_image_side() const { return impl_->device->info().limits.maxImageDimension2D; }
 
-bool Renderer::draws_fast(const FramePacket& packet) const {
-  for (Pass* pass : parts_->active())
-    if (const RayProbe* rays = pass->probe(); rays && rays->has_refused(packet)) return false;
-  return can_be_drawn_fast(*parts_->device, packet);
+bool Renderer::can_draw_fast(const FramePacket& packet) const {
+  for (Pass* pass : impl_->active_passes())
+    if (const RaySampler* rays = pass->ray_sampler(); rays && rays->was_out_of_memory(packet)) return false;
+  return supports_fast_raycast(*impl_->device, packet);
 }
 
-bool Renderer::leaps() const {
-  for (Pass* pass : parts_->active())
-    if (const RayProbe* rays = pass->probe(); rays && rays->leaps()) return true;
+bool Renderer::skips_empty_space() const {
+  for (Pass* pass : impl_->active_passes())
+    if (const RaySampler* rays = pass->ray_sampler(); rays && rays->skips_empty_space()) return true;
   return false;
 }
 
-std::array<std::uint32_t, 2> Renderer::view_size() const { return {parts_->view_width, parts_->view_height}; }
+std::array<std::uint32_t, 2> Renderer::view_size() const { return {impl_->view_width, impl_->view_height}; }
 
 /// Where mirrors hold what the window needs, they go: the next picture makes them anew in what is left. The picture stays.
-Outcome Renderer::Parts::paint(std::uint32_t width, std::uint32_t height, const UiItems& items) {
-  CATENA_ASSERT(drawn != 0);
-  if (!ui) ui.emplace(*device);
-  const std::uint64_t refused = device->counters().refused;
-  Outcome painted = ui->paint(shown(), width, height, items);
-  if (!painted && device->counters().refused != refused && mirrors->count() > 0) {
+Outcome Renderer::Impl::paint(std::uint32_t width, std::uint32_t height, const UiItems& items) {
+  CATENA_ASSERT(drawn_targets != 0);
+  if (!window_painter) window_painter.emplace(*device);
+  const std::uint64_t refused = device->counters().refused_allocations;
+  Outcome painted = window_painter->paint(output_image(), width, height, items);
+  if (!painted && device->counters().refused_allocations != refused && residency->count() > 0) {
     for (auto& pass : passes) {
-      if (pass) gone_build_ms += pass->build_ms();
+      if (pass) retired_build_ms += pass->build_ms();
       pass.reset();
     }
-    mirrors->clear();
+    residency->clear();
     CATENA_CHECK(device->wait_idle());
-    painted = ui->paint(shown(), width, height, items);
+    painted = window_painter->paint(output_image(), width, height, items);
   }
-  if (!painted) ui.reset();
+  if (!painted) window_painter.reset();
   return painted;
 }
 
-Outcome Renderer::paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui) { return parts_->paint(width, height, ui); }
+Outcome Renderer::paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui) { return impl_->paint(width, height, ui); }
 
 Result<bool> Renderer::present(vk::Swapchain& swapchain, const UiItems* ui) {
-  Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0);
+  Impl& p = *impl_;
+  CATENA_ASSERT(p.drawn_targets != 0);
   const VkExtent2D extent = swapchain.extent();
   if (extent.width == 0 || extent.height == 0) return false;
-  if (ui == nullptr) return swapchain.present(p.shown());
+  if (ui == nullptr) return swapchain.present(p.output_image());
   CATENA_CHECK(p.paint(extent.width, extent.height, *ui));
-  return swapchain.present(p.ui->window());
+  return swapchain.present(p.window_painter->window());
 }
 
-vk::Image* Renderer::window_image() { return parts_->ui && parts_->ui->window() ? &parts_->ui->window() : nullptr; }
+vk::Image* Renderer::window_image() {
+  return impl_->window_painter && impl_->window_painter->window() ? &impl_->window_painter->window() : nullptr;
+}
 
 Result<bool> Renderer::replace_shader(std::string_view name, std::vector<std::uint32_t> words) {
   const auto all = embedded_shaders();
@@ -304,45 +307,45 @@ Result<bool> Renderer::replace_shader(std::string_view name, std::vector<std::ui
     if (!std::ranges::binary_search(bound, binding))
       return Error{fmt::format("{}: binding {} is not one that the program binds, expected the bindings of the shader it was built with",
                                name, binding)};
-  vk::ShaderReplacements& shaders = parts_->device->shaders();
-  if (std::ranges::equal(shaders.of(found->words), words)) return false;
+  vk::ShaderReplacements& shaders = impl_->device->shaders();
+  if (std::ranges::equal(shaders.resolve(found->words), words)) return false;
   shaders.replace(found->words, std::move(words));
-  parts_->drop_passes();
+  impl_->drop_passes();
   return true;
 }
 
 void Renderer::restore_shaders() {
-  parts_->device->shaders().clear();
-  parts_->drop_passes();
+  impl_->device->shaders().clear();
+  impl_->drop_passes();
 }
 
 RenderStats Renderer::stats() const {
-  const vk::Device& device = *parts_->device;
+  const vk::Device& device = *impl_->device;
   RenderStats stats;
   stats.device = device.info().name;
   stats.driver = device.info().driver;
-  stats.gpu_bytes = device.counters().bytes;
+  stats.gpu_bytes = device.counters().allocated_bytes;
   stats.uploads = device.counters().uploads;
   stats.upload_bytes = device.counters().upload_bytes;
   stats.pipelines = device.counters().pipelines;
-  stats.mirrors = parts_->mirrors->count();
-  stats.mirror_bytes = parts_->mirrors->bytes();
-  stats.mirror_coarsening = parts_->mirrors->coarsenings();
+  stats.resident_grids = impl_->residency->count();
+  stats.resident_bytes = impl_->residency->bytes();
+  stats.downsampled_grids = impl_->residency->downsampled_grids();
   stats.gpu_budget = device.info().memory_budget;
-  stats.passes = parts_->drawn_passes;
-  stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
-  for (Pass* pass : parts_->active()) {
-    stats.mirror_ms += pass->build_ms();
-    stats.mirror_bytes += pass->grid_bytes();
-    if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
-    if (pass->probe()) stats.rays_kept = pass->probe()->has_kept();
-    if (!pass->probe() && pass->has_kept()) stats.surfaces_kept = true;
+  stats.passes = impl_->rendered_passes;
+  stats.residency_ms = impl_->residency->build_ms() + impl_->retired_build_ms;
+  for (Pass* pass : impl_->active_passes()) {
+    stats.residency_ms += pass->build_ms();
+    stats.resident_bytes += pass->grid_bytes();
+    if (std::string note = pass->warning(); !note.empty()) stats.warnings.push_back(std::move(note));
+    if (pass->ray_sampler()) stats.rays_reused = pass->ray_sampler()->reused_previous();
+    if (!pass->ray_sampler() && pass->reused_previous()) stats.surfaces_reused = true;
   }
   stats.validation_messages = device.messages().count();
   return stats;
 }
 
-std::vector<std::string> Renderer::validation_texts() const { return parts_->device->messages().texts(); }
-vk::Device& Renderer::device() { return *parts_->device; }
+std::vector<std::string> Renderer::validation_texts() const { return impl_->device->messages().texts(); }
+vk::Device& Renderer::device() { return *impl_->device; }
 
 }  // namespace catena::render

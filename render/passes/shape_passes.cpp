@@ -8,10 +8,10 @@
 namespace catena::render {
 namespace {
 
-void add_arrow(Shape& shape, const ArrowItem& arrow) {
+void add_arrow(ShapeMesh& shape, const ArrowItem& arrow) {
   const std::size_t first = shape.vertices.size();
   add_cone(shape, arrow.base, arrow.tip, arrow.radius, arrow.color);
-  mark(shape, first, arrow.id, arrow.clipped);
+  assign_object(shape, first, arrow.id, arrow.is_clipped);
 }
 
 /// Triangles of some of a packet's items, made anew when those differ from what they were made of.
@@ -30,7 +30,7 @@ class ShapePass final : public Pass {
   Outcome prepare(Frame& frame) override {
     decltype(auto) items = Kind::of(frame.packet);
     if (items == built_) return Done{};
-    Shape shape;
+    ShapeMesh shape;
     Kind::add(shape, items);
     CATENA_CHECK(triangles_.upload(frame.device, shape));
     built_ = items;
@@ -47,19 +47,19 @@ class ShapePass final : public Pass {
 };
 
 struct Aids {
-  using Items = AidItems;
+  using Items = EnvironmentItems;
   static constexpr int kSides = 8;
-  static const Items& of(const FramePacket& packet) { return packet.aids; }
-  static void add(Shape& shape, const Items& items) {
+  static const Items& of(const FramePacket& packet) { return packet.environment; }
+  static void add(ShapeMesh& shape, const Items& items) {
     for (const TubeItem& tube : items.tubes) {
       const std::size_t first = shape.vertices.size();
       add_tube(shape, tube, kSides);
-      mark(shape, first, tube.id, false);
+      assign_object(shape, first, tube.id, false);
     }
     for (const MeshItem& mesh : items.meshes) {
       const std::size_t first = shape.vertices.size();
       add_mesh(shape, mesh);
-      mark(shape, first, mesh.id, false);
+      assign_object(shape, first, mesh.id, false);
     }
   }
 };
@@ -68,11 +68,11 @@ struct Widgets {
   using Items = WidgetItems;
   static constexpr int kSides = 10, kBallSides = 20;
   static const Items& of(const FramePacket& packet) { return packet.widgets; }
-  static void add(Shape& shape, const Items& items) {
+  static void add(ShapeMesh& shape, const Items& items) {
     for (const TubeItem& tube : items.tubes) {
       const std::size_t first = shape.vertices.size();
       add_tube(shape, tube, tube.points.size() == 1 ? kBallSides : kSides);
-      mark(shape, first, tube.id, tube.clipped);
+      assign_object(shape, first, tube.id, tube.is_clipped);
     }
     for (const ArrowItem& arrow : items.arrows) add_arrow(shape, arrow);
     for (const MeshItem& mesh : items.meshes) add_mesh(shape, mesh);
@@ -83,16 +83,16 @@ struct GlyphArrows {
   using Items = std::vector<GlyphItem>;
   static constexpr int kShaftSides = 8, kHeadSides = 12;
   static const Items& of(const FramePacket& packet) { return packet.glyphs; }
-  static void add(Shape& shape, const Items& items) {
+  static void add(ShapeMesh& shape, const Items& items) {
     for (const GlyphItem& item : items) {
       const std::size_t first = shape.vertices.size();
       for (const Glyph& glyph : item.glyphs) {
-        const Vec3 whole = glyph.tip - glyph.tail, neck = glyph.tip - item.head * whole;
+        const Vec3 whole = glyph.tip - glyph.tail, neck = glyph.tip - item.head_length * whole;
         const double length = norm(whole);
-        add_cylinder(shape, glyph.tail, neck, item.shaft * length, glyph.color, kShaftSides);
-        if (item.head > 0) add_cone(shape, neck, glyph.tip, item.head_radius * length, glyph.color, kHeadSides);
+        add_cylinder(shape, glyph.tail, neck, item.shaft_radius * length, glyph.color, kShaftSides);
+        if (item.head_length > 0) add_cone(shape, neck, glyph.tip, item.head_radius * length, glyph.color, kHeadSides);
       }
-      mark(shape, first, item.id, item.clipped);
+      assign_object(shape, first, item.id, item.is_clipped);
     }
   }
 };
@@ -106,7 +106,7 @@ struct OpaqueMeshes {
     std::ranges::copy_if(packet.meshes, std::back_inserter(items), has);
     return items;
   }
-  static void add(Shape& shape, const Items& items) {
+  static void add(ShapeMesh& shape, const Items& items) {
     for (const MeshItem& mesh : items) add_mesh(shape, mesh);
   }
 };
@@ -126,7 +126,7 @@ class CursorPass final : public Pass {
     if (packet.cursors != cursors_ || packet.indicators != indicators_) {
       cursors_.clear();
       indicators_.clear();
-      Shape shape;
+      ShapeMesh shape;
       add_cursors(shape, packet, true);
       ghost_indices_ = std::uint32_t(shape.triangles.size());
       add_cursors(shape, packet, false);
@@ -135,8 +135,8 @@ class CursorPass final : public Pass {
       cursors_ = packet.cursors;
       indicators_ = packet.indicators;
     }
-    frame.ghosts = &triangles_;
-    frame.ghost_indices = ghost_indices_;
+    frame.occluded_triangles = &triangles_;
+    frame.occluded_index_count = ghost_indices_;
     return Done{};
   }
   Bounds bounds() const override { return triangles_.bounds(); }
@@ -144,19 +144,19 @@ class CursorPass final : public Pass {
 
  private:
   explicit CursorPass(TriangleDrawer drawer) : drawer_(std::move(drawer)) {}
-  static void add_cursors(Shape& shape, const FramePacket& packet, bool ghosts) {
+  static void add_cursors(ShapeMesh& shape, const FramePacket& packet, bool ghosts) {
     for (const CursorItem& cursor : packet.cursors) {
-      if (cursor.ghost != ghosts) continue;
+      if (cursor.show_occluded != ghosts) continue;
       const std::size_t first = shape.vertices.size();
       add_cursor(shape, cursor);
-      mark(shape, first, cursor.id, false);
+      assign_object(shape, first, cursor.id, false);
     }
   }
-  static void add_indicator(Shape& shape, const IndicatorItem& indicator) {
+  static void add_indicator(ShapeMesh& shape, const IndicatorItem& indicator) {
     const std::size_t first = shape.vertices.size();
     add_tube(shape, indicator.tube, kIndicatorSides);
     add_cone(shape, indicator.arrow.base, indicator.arrow.tip, indicator.arrow.radius, indicator.arrow.color);
-    mark(shape, first, indicator.tube.id, false);
+    assign_object(shape, first, indicator.tube.id, false);
   }
 
   TriangleDrawer drawer_;
@@ -174,7 +174,7 @@ class StreamlinePass final : public Pass {
 
   Outcome prepare(Frame& frame) override {
     const FramePacket& packet = frame.packet;
-    left_out_ = packet.left_out;
+    left_out_ = packet.omitted;
     if (packet.tubes != tubes_) {
       tubes_.clear();
       CATENA_CHECK(lines_.upload(frame.device, packet.tubes));
@@ -182,7 +182,7 @@ class StreamlinePass final : public Pass {
     }
     if (packet.arrows == arrows_) return Done{};
     arrows_.clear();
-    Shape shape;
+    ShapeMesh shape;
     for (const ArrowItem& arrow : packet.arrows) add_arrow(shape, arrow);
     if (!head_drawer_) {
       CATENA_TRY(head_drawer_, TriangleDrawer::create(frame.device));
@@ -191,17 +191,17 @@ class StreamlinePass final : public Pass {
     arrows_ = packet.arrows;
     return Done{};
   }
-  std::string note() const override { return left_out_; }
+  std::string warning() const override { return left_out_; }
   Bounds bounds() const override {
     Bounds all = lines_.bounds();
-    all.add(heads_.bounds());
+    all.extend(heads_.bounds());
     return all;
   }
   Outcome record(vk::Commands& commands, Frame& frame) override {
     const auto pause = [&] {
       commands.end_pass();
       frame.targets.begin(commands, target::opaque, 0);
-      commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
+      commands.set_scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
     };
     CATENA_CHECK(line_drawer_.draw(commands, frame.rays, lines_, pause));
     return head_drawer_ ? head_drawer_->draw(commands, frame.rays, heads_) : Outcome(Done{});
@@ -220,7 +220,7 @@ class StreamlinePass final : public Pass {
 
 }  // namespace
 
-const PassEntry kAidPass{"aids", [](const Frame& frame) { return !frame.packet.aids.empty(); }, ShapePass<Aids>::create};
+const PassEntry kEnvironmentPass{"aids", [](const Frame& frame) { return !frame.packet.environment.empty(); }, ShapePass<Aids>::create};
 
 const PassEntry kWidgetPass{"widgets", [](const Frame& frame) { return !frame.packet.widgets.empty(); }, ShapePass<Widgets>::create};
 

@@ -14,12 +14,12 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kJointTurn = 0.35;  // a corner that turns more than this (radians) gets several rings
 
-std::uint32_t add_vertex(Shape& shape, const Vec3& position, const Vec3& normal, const Color& color) {
+std::uint32_t add_vertex(ShapeMesh& shape, const Vec3& position, const Vec3& normal, const Color& color) {
   shape.vertices.push_back({position, normal, color, 0});
   return static_cast<std::uint32_t>(shape.vertices.size() - 1);
 }
 
-void add_triangle(Shape& shape, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+void add_triangle(ShapeMesh& shape, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   shape.triangles.insert(shape.triangles.end(), {a, b, c});
 }
 
@@ -35,27 +35,27 @@ Vec3 transport(const Vec3& v, const Vec3& from, const Vec3& to) {
   return direction(w - dot(w, to) * to);
 }
 
-Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {  // v across the axis
+Vec3 orbit_view(const Vec3& v, const Vec3& axis, double angle) {  // v across the axis
   return std::cos(angle) * v + std::sin(angle) * cross(axis, v);
 }
 
 using Ring = TubeRing;
 
 /// `sides` vertices around centre + height * tangent, at `radius`; vertex normals lean by `slope` along the tangent.
-std::uint32_t add_ring(Shape& shape, const Ring& ring, double radius, double height, double across, double along, int sides,
+std::uint32_t add_ring(ShapeMesh& shape, const Ring& ring, double radius, double height, double across, double along, int sides,
                        const Color& color) {
   const Vec3 binormal = cross(ring.tangent, ring.normal);
   const std::uint32_t first = static_cast<std::uint32_t>(shape.vertices.size());
   for (int k = 0; k < sides; ++k) {
     const double angle = 2 * kPi * k / sides;
     const Vec3 out = std::cos(angle) * ring.normal + std::sin(angle) * binormal;
-    add_vertex(shape, ring.centre + height * ring.tangent + radius * out, across * out + along * ring.tangent, color);
+    add_vertex(shape, ring.center + height * ring.tangent + radius * out, across * out + along * ring.tangent, color);
   }
   return first;
 }
 
 /// The wall between two rings, `b` further along the tangent; `shift` turns b's numbering.
-void add_wall(Shape& shape, std::uint32_t a, std::uint32_t b, int sides, int shift = 0) {
+void add_wall(ShapeMesh& shape, std::uint32_t a, std::uint32_t b, int sides, int shift = 0) {
   const auto n = static_cast<std::uint32_t>(sides);
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t l = (k + 1) % n, kb = (k + static_cast<std::uint32_t>(shift)) % n, lb = (kb + 1) % n;
@@ -65,7 +65,7 @@ void add_wall(Shape& shape, std::uint32_t a, std::uint32_t b, int sides, int shi
 }
 
 /// The fan that closes a ring with one vertex, `ahead` of it along the tangent or behind.
-void add_fan(Shape& shape, std::uint32_t ring, std::uint32_t apex, int sides, bool ahead) {
+void add_fan(ShapeMesh& shape, std::uint32_t ring, std::uint32_t apex, int sides, bool ahead) {
   const auto n = static_cast<std::uint32_t>(sides);
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t a = ring + k, b = ring + (k + 1) % n;
@@ -76,7 +76,7 @@ void add_fan(Shape& shape, std::uint32_t ring, std::uint32_t apex, int sides, bo
 int cap_steps(int sides) { return std::max(2, sides / 4); }
 
 /// A half sphere on a ring that exists already.
-void add_round_cap(Shape& shape, const Ring& ring, std::uint32_t equator, double radius, int sides, const Color& color, bool ahead) {
+void add_round_cap(ShapeMesh& shape, const Ring& ring, std::uint32_t equator, double radius, int sides, const Color& color, bool ahead) {
   const int steps = cap_steps(sides);
   const double sign = ahead ? 1 : -1;
   std::uint32_t last = equator;
@@ -86,7 +86,7 @@ void add_round_cap(Shape& shape, const Ring& ring, std::uint32_t equator, double
     ahead ? add_wall(shape, last, next, sides) : add_wall(shape, next, last, sides);
     last = next;
   }
-  add_fan(shape, last, add_vertex(shape, ring.centre + sign * radius * ring.tangent, sign * ring.tangent, color), sides, ahead);
+  add_fan(shape, last, add_vertex(shape, ring.center + sign * radius * ring.tangent, sign * ring.tangent, color), sides, ahead);
 }
 
 struct ColoredPoint {
@@ -128,7 +128,7 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed)
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
     const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
-    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(turned(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
+    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(orbit_view(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
   }
   return rings;
 }
@@ -145,13 +145,13 @@ std::vector<Ring> framed_rings(const std::vector<ColoredPoint>& points, bool clo
   const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
   const double count = static_cast<double>(rings.size());
   for (std::size_t i = 0; i < rings.size(); ++i)
-    rings[i].normal = turned(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
+    rings[i].normal = orbit_view(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
   return rings;
 }
 
 }  // namespace
 
-void mark(Shape& shape, std::size_t first, std::uint32_t id, bool clipped) {
+void assign_object(ShapeMesh& shape, std::size_t first, std::uint32_t id, bool clipped) {
   for (std::size_t i = first; i < shape.vertices.size(); ++i) shape.vertices[i].id = id | (clipped ? 0u : UNCLIPPED);
 }
 
@@ -180,9 +180,9 @@ std::vector<TubeRing> tube_rings(const TubeItem& tube, bool& closed) {
   constexpr int steps = 3;
   const auto latitude = [&](TubeRing ring, int i, double sign) {
     const double angle = 0.5 * kPi * i / steps;
-    ring.centre += sign * tube.radius * std::sin(angle) * ring.tangent;
+    ring.center += sign * tube.radius * std::sin(angle) * ring.tangent;
     ring.radius = i == steps ? 0 : tube.radius * std::cos(angle);
-    ring.lean = i == steps ? sign : sign * std::sin(angle);
+    ring.normal_tilt = i == steps ? sign : sign * std::sin(angle);
     return ring;
   };
   std::vector<TubeRing> rings;
@@ -193,13 +193,13 @@ std::vector<TubeRing> tube_rings(const TubeItem& tube, bool& closed) {
   return rings;
 }
 
-void add_tube(Shape& shape, const TubeItem& tube, int sides) {
+void add_tube(ShapeMesh& shape, const TubeItem& tube, int sides) {
   CATENA_ASSERT(sides >= 3);
   if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return;
   bool closed = false;
   const std::vector<ColoredPoint> points = distinct_points(tube, closed);
   if (points.empty()) return;
-  if (points.size() == 1) return add_ball(shape, points.front().p, tube.radius, points.front().color, std::max(8, sides));
+  if (points.size() == 1) return add_sphere(shape, points.front().p, tube.radius, points.front().color, std::max(8, sides));
   const std::vector<Ring> rings = framed_rings(points, closed);
 
   std::uint32_t first = 0, last = 0;
@@ -214,7 +214,7 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
   add_round_cap(shape, rings.back(), last, tube.radius, sides, rings.back().color, true);
 }
 
-void add_mesh(Shape& shape, const MeshItem& mesh) {
+void add_mesh(ShapeMesh& shape, const MeshItem& mesh) {
   CATENA_ASSERT(mesh.geometry != nullptr && mesh.geometry->triangles.size() % 3 == 0);
   const MeshGeometry& geometry = *mesh.geometry;
   const std::vector<std::uint32_t>& triangles = geometry.triangles;
@@ -234,13 +234,13 @@ void add_mesh(Shape& shape, const MeshItem& mesh) {
     }
     add_triangle(shape, first, first + 1, first + 2);
   }
-  mark(shape, start, mesh.id, mesh.clipped);
-  if (!mesh.edges) return;
+  assign_object(shape, start, mesh.id, mesh.is_clipped);
+  if (!mesh.show_edges) return;
   for (std::size_t i = start; i < shape.vertices.size(); ++i)
     shape.vertices[i].id |= static_cast<std::uint32_t>(1 + (i - start) % 3) << CORNER_SHIFT;
 }
 
-void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides) {
+void add_sphere(ShapeMesh& shape, const Vec3& centre, double radius, const Color& color, int sides) {
   CATENA_ASSERT(is_finite(centre) && sides >= 4);
   if (!(radius > 0) || !std::isfinite(radius)) return;
   const Ring ring{centre, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, color, radius, 0};
@@ -249,7 +249,7 @@ void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& colo
   add_round_cap(shape, ring, equator, radius, sides, color, true);
 }
 
-void add_cylinder(Shape& shape, const Vec3& a, const Vec3& b, double radius, const Color& color, int sides) {
+void add_cylinder(ShapeMesh& shape, const Vec3& a, const Vec3& b, double radius, const Color& color, int sides) {
   CATENA_ASSERT(is_finite(a) && is_finite(b) && sides >= 3);
   const double length = norm(b - a);
   if (!(length > 0) || !(radius > 0)) return;
@@ -260,7 +260,7 @@ void add_cylinder(Shape& shape, const Vec3& a, const Vec3& b, double radius, con
   add_fan(shape, add_ring(shape, ring, radius, length, 0, 1, sides, color), add_vertex(shape, b, t, color), sides, true);
 }
 
-void add_cone(Shape& shape, const Vec3& base, const Vec3& tip, double radius, const Color& color, int sides) {
+void add_cone(ShapeMesh& shape, const Vec3& base, const Vec3& tip, double radius, const Color& color, int sides) {
   CATENA_ASSERT(is_finite(base) && is_finite(tip) && sides >= 3);
   const double length = norm(tip - base);
   if (!(length > 0) || !(radius > 0)) return;
@@ -285,7 +285,7 @@ Color link_color(std::size_t i, bool active) {
   return active ? c : Color{0.4f * c.r, 0.4f * c.g, 0.4f * c.b};
 }
 
-Color leaving_color(double leaving) {
+Color release_color(double leaving) {
   constexpr Color on{0.65f, 0.65f, 0.65f}, near{0.90f, 0.62f, 0.00f}, gone{0.84f, 0.15f, 0.00f};
   const auto t = static_cast<float>(std::clamp(leaving, 0.0, 1.0));
   const auto mix = [](const Color& a, const Color& b, float f) {
@@ -301,7 +301,7 @@ double cursor_arrow_length(double force_n, double size) {
 
 namespace {
 /// Three rings around a place where a link has let go: seen from any side.
-void add_rings(Shape& shape, const Vec3& centre, double radius, double thickness, const Color& color) {
+void add_rings(ShapeMesh& shape, const Vec3& centre, double radius, double thickness, const Color& color) {
   constexpr int steps = 32;
   for (int axis = 0; axis < 3; ++axis) {
     TubeItem ring{{}, thickness, color, {}};
@@ -326,81 +326,83 @@ Color strain_color(double strain) {
 }
 
 /// The force, from where it acts.
-void add_force(Shape& shape, const CursorItem& cursor, const Vec3& from) {
+void add_force(ShapeMesh& shape, const CursorItem& cursor, const Vec3& from) {
   const Color lime{0.60f, 0.95f, 0.25f};
-  const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.size) : 0;
+  const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.radius) : 0;
   if (!(length > 0)) return;
-  const Vec3 along = direction(cursor.force_n), tip = from + length * along, neck = tip - 1.1 * cursor.size * along;
-  add_cylinder(shape, from, neck, 0.25 * cursor.size, lime);
-  add_cone(shape, neck, tip, 0.55 * cursor.size, lime);
+  const Vec3 along = direction(cursor.force_n), tip = from + length * along, neck = tip - 1.1 * cursor.radius * along;
+  add_cylinder(shape, from, neck, 0.25 * cursor.radius, lime);
+  add_cone(shape, neck, tip, 0.55 * cursor.radius, lime);
 }
 
 /// The hand as a mouse feels it: it is where the chain holds it, and lags behind the probe.
-void add_pseudo_haptic(Shape& shape, const CursorItem& cursor) {
+void add_pseudo_haptic(ShapeMesh& shape, const CursorItem& cursor) {
   Vec3 held = cursor.probe, before = cursor.probe;
-  const Color color = strain_color(*cursor.strain);
-  const double tether = (0.12 + 0.3 * std::clamp(*cursor.strain, 0.0, 1.0)) * cursor.size;
+  const Color color = strain_color(*cursor.force_ratio);
+  const double tether = (0.12 + 0.3 * std::clamp(*cursor.force_ratio, 0.0, 1.0)) * cursor.radius;
   for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
     if (!is_finite(cursor.proxies[i])) continue;
-    const bool active = i < cursor.active.size() && cursor.active[i];
-    const double leaving = i < cursor.leaving.size() ? cursor.leaving[i] : 0;
-    if (!active && leaving >= 1) add_rings(shape, cursor.proxies[i], cursor.size * 1.5, 0.12 * cursor.size, leaving_color(1));
+    const bool active = i < cursor.link_active.size() && cursor.link_active[i];
+    const double leaving = i < cursor.release_ratios.size() ? cursor.release_ratios[i] : 0;
+    if (!active && leaving >= 1) add_rings(shape, cursor.proxies[i], cursor.radius * 1.5, 0.12 * cursor.radius, release_color(1));
     if (!active) continue;
     held = cursor.proxies[i];
     add_cylinder(shape, before, held, tether, color);
-    if (held != before) add_ball(shape, held, 0.5 * cursor.size, link_color(i, true));
+    if (held != before) add_sphere(shape, held, 0.5 * cursor.radius, link_color(i, true));
     before = held;
   }
   // white while nothing pushes, and soon of the force's colour: a push along the view hides the tether behind this ball
   const Color calm{0.95f, 0.95f, 0.95f};
-  const auto t = static_cast<float>(std::clamp(8 * *cursor.strain, 0.0, 1.0));
-  add_ball(shape, held, cursor.size, {calm.r + t * (color.r - calm.r), calm.g + t * (color.g - calm.g), calm.b + t * (color.b - calm.b)});
+  const auto t = static_cast<float>(std::clamp(8 * *cursor.force_ratio, 0.0, 1.0));
+  add_sphere(shape, held, cursor.radius,
+             {calm.r + t * (color.r - calm.r), calm.g + t * (color.g - calm.g), calm.b + t * (color.b - calm.b)});
   add_force(shape, cursor, held);
-  if (held != cursor.probe) add_ball(shape, cursor.probe, 0.45 * cursor.size, {0.6f, 0.62f, 0.66f});
+  if (held != cursor.probe) add_sphere(shape, cursor.probe, 0.45 * cursor.radius, {0.6f, 0.62f, 0.66f});
 }
 
 /// From the probe to its foot, which is marked by a cross.
-void add_drop_line(Shape& shape, const CursorItem& cursor) {
-  if (!is_finite(*cursor.foot) || *cursor.foot == cursor.probe) return;
+void add_drop_line(ShapeMesh& shape, const CursorItem& cursor) {
+  if (!is_finite(*cursor.foot_point) || *cursor.foot_point == cursor.probe) return;
   const Color grey{0.62f, 0.62f, 0.62f};
-  const double radius = 0.15 * cursor.size, reach = 1.5 * cursor.size;
-  add_cylinder(shape, cursor.probe, *cursor.foot, radius, grey);
-  const Vec3 down = direction(*cursor.foot - cursor.probe), one = any_perpendicular(down), other = cross(down, one);
-  for (const Vec3& arm : {one, other}) add_cylinder(shape, *cursor.foot - reach * arm, *cursor.foot + reach * arm, radius, grey);
+  const double radius = 0.15 * cursor.radius, reach = 1.5 * cursor.radius;
+  add_cylinder(shape, cursor.probe, *cursor.foot_point, radius, grey);
+  const Vec3 down = direction(*cursor.foot_point - cursor.probe), one = any_perpendicular(down), other = cross(down, one);
+  for (const Vec3& arm : {one, other})
+    add_cylinder(shape, *cursor.foot_point - reach * arm, *cursor.foot_point + reach * arm, radius, grey);
 }
 
 /// Along the world's axes; dark and thin, to be seen on light and on lines.
-void add_crosshair(Shape& shape, const CursorItem& cursor) {
+void add_crosshair(ShapeMesh& shape, const CursorItem& cursor) {
   const Color dark{0.05f, 0.05f, 0.08f};
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 arm(0.0);
-    arm[axis] = cursor.size;
-    add_cylinder(shape, cursor.probe - arm, cursor.probe + arm, 0.06 * cursor.size, dark);
+    arm[axis] = cursor.radius;
+    add_cylinder(shape, cursor.probe - arm, cursor.probe + arm, 0.06 * cursor.radius, dark);
   }
 }
 
 }  // namespace
 
-void add_cursor(Shape& shape, const CursorItem& cursor) {
-  if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
-  if (cursor.foot) add_drop_line(shape, cursor);
-  if (cursor.crosshair) return add_crosshair(shape, cursor);
-  if (cursor.strain) return add_pseudo_haptic(shape, cursor);
+void add_cursor(ShapeMesh& shape, const CursorItem& cursor) {
+  if (!(cursor.radius > 0) || !is_finite(cursor.probe)) return;
+  if (cursor.foot_point) add_drop_line(shape, cursor);
+  if (cursor.is_crosshair) return add_crosshair(shape, cursor);
+  if (cursor.force_ratio) return add_pseudo_haptic(shape, cursor);
   const Color white{0.95f, 0.95f, 0.95f};
-  add_ball(shape, cursor.probe, cursor.size, white);
+  add_sphere(shape, cursor.probe, cursor.radius, white);
 
   // every proxy, joined to the one before; radii fall a little, so that balls in one place do not fight
   Vec3 before = cursor.probe;
   for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
     if (!is_finite(cursor.proxies[i])) continue;
-    const bool active = i < cursor.active.size() && cursor.active[i];
-    const double radius = cursor.size * (0.9 - 0.03 * static_cast<double>(std::min<std::size_t>(i, 8)));
-    add_ball(shape, cursor.proxies[i], radius, link_color(i, active));
-    const double leaving = i < cursor.leaving.size() ? cursor.leaving[i] : 0;
-    add_cylinder(shape, before, cursor.proxies[i], (0.18 + 0.2 * std::clamp(leaving, 0.0, 1.0)) * cursor.size,
-                 active ? leaving_color(leaving) : Color{0.3f, 0.3f, 0.3f});
+    const bool active = i < cursor.link_active.size() && cursor.link_active[i];
+    const double radius = cursor.radius * (0.9 - 0.03 * static_cast<double>(std::min<std::size_t>(i, 8)));
+    add_sphere(shape, cursor.proxies[i], radius, link_color(i, active));
+    const double leaving = i < cursor.release_ratios.size() ? cursor.release_ratios[i] : 0;
+    add_cylinder(shape, before, cursor.proxies[i], (0.18 + 0.2 * std::clamp(leaving, 0.0, 1.0)) * cursor.radius,
+                 active ? release_color(leaving) : Color{0.3f, 0.3f, 0.3f});
     if (!active && leaving >= 1)
-      add_rings(shape, cursor.proxies[i], cursor.size * (1.5 + 0.35 * static_cast<double>(i)), 0.12 * cursor.size, leaving_color(1));
+      add_rings(shape, cursor.proxies[i], cursor.radius * (1.5 + 0.35 * static_cast<double>(i)), 0.12 * cursor.radius, release_color(1));
     before = cursor.proxies[i];
   }
 

@@ -25,14 +25,14 @@ bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
 
 }  // namespace
 
-bool is_translucent(const SliceItem& item) { return item.opacity < 1 && (item.opacity > 0 || !item.levels.empty()); }
+bool is_translucent(const SliceItem& item) { return item.opacity < 1 && (item.opacity > 0 || !item.contour_levels.empty()); }
 
 Result<bool> Slice::prepare(Frame& frame, const SliceItem& item) {
-  CATENA_TRY(auto mirror, frame.mirror(*item.grid));
-  if (!mirror->drawable) return false;
-  if (mirror_ != mirror) {
-    mirror_ = std::move(mirror);
-    CATENA_TRY(map_, make_brick_map(frame.device, *mirror_, [](const BrickRange&) { return true; }));
+  CATENA_TRY(auto mirror, frame.resident_grid(*item.grid));
+  if (!mirror->is_drawable) return false;
+  if (resident_ != mirror) {
+    resident_ = std::move(mirror);
+    CATENA_TRY(map_, make_brick_map(frame.device, *resident_, [](const BrickRange&) { return true; }));
   }
   if (!colors_ || item.colors != item_.colors) {
     std::vector<glm::vec4> rows;
@@ -40,8 +40,8 @@ Result<bool> Slice::prepare(Frame& frame, const SliceItem& item) {
     CATENA_ASSERT(!rows.empty());
     CATENA_TRY(colors_, vk::upload_buffer(frame.device, std::as_bytes(std::span(rows)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   }
-  if (!levels_ || item.levels != item_.levels) {
-    std::vector<float> levels(item.levels.begin(), item.levels.end());
+  if (!levels_ || item.contour_levels != item_.contour_levels) {
+    std::vector<float> levels(item.contour_levels.begin(), item.contour_levels.end());
     if (levels.empty()) levels.push_back(0);
     CATENA_TRY(levels_, vk::upload_buffer(frame.device, std::as_bytes(std::span(levels)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   }
@@ -56,9 +56,9 @@ Result<SliceDrawer> SliceDrawer::create(vk::Device& device) {
   vk::ImageInfo info;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
   info.format = kIdFormat;
-  CATENA_TRY(self.none_id_, vk::Image::create(device, info));
+  CATENA_TRY(self.placeholder_id_, vk::Image::create(device, info));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
-  commands.use(self.none_id_, vk::kFragmentRead);
+  commands.transition(self.placeholder_id_, vk::kFragmentRead);
   CATENA_CHECK(commands.finish());
   return self;
 }
@@ -69,9 +69,11 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
     vk::GraphicsInfo info;
     info.vertex = kSliceVertexShader;
     info.fragment = kSliceFragmentShader;
-    info.slots = {
-        {0, vk::Resource::uniform}, {kSlice, vk::Resource::uniform}, {kColors, vk::Resource::buffer}, {kLevels, vk::Resource::buffer}};
-    add_grid_slots(info.slots, 1);
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {kSlice, vk::DescriptorKind::uniform},
+                            {kColors, vk::DescriptorKind::buffer},
+                            {kLevels, vk::DescriptorKind::buffer}};
+    add_grid_layout(info.layout_bindings, 1);
     info.constants = {flags};
     set_peel_stage(info, mode, has_opaque);
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
@@ -79,7 +81,7 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
   return &pipeline;
 }
 
-Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const Peel& peel) {
+Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const PeelState& peel) {
   const SliceItem& item = slice.item_;
   const field::ScalarGrid* grid = item.grid.get();
   // a plane through the eye is seen edge-on: where a ray meets it, if at all, is rounding
@@ -87,35 +89,35 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   if (!rays.camera.orthographic && away < rays.depth_near) return Done{};
 
   // the frame's data
-  shared::FrameData frame = rays.frame();
-  frame.grids[0] = rays.grid(*slice.mirror_, grid->mapping());
+  shared::FrameData frame = rays.frame_data();
+  frame.grids[0] = rays.grid_data(*slice.resident_, grid->mapping());
   frame.grids[0].id = item.id;
-  frame.grids[0].clipped = item.clipped;
+  frame.grids[0].is_clipped = item.is_clipped;
   CATENA_CHECK(vk::write_uniform(*device_, slice.frame_data_, frame));
   shared::SliceData data{};
-  data.plane = rays.plane({item.point, item.normal});
+  data.plane = rays.clip_data({item.point, item.normal});
   data.normal = glm::vec3(direction(item.normal));
-  data.clip_slack = float(kClipSlack * grid->mapping().smallest_edge());
-  data.lit = item.lit;
+  data.clip_slack = float(kClipSlack * grid->mapping().min_voxel_edge());
+  data.is_lit = item.lit;
   data.color_last = std::uint32_t(item.colors.size() - 1);
-  data.level_count = std::uint32_t(item.levels.size());
+  data.level_count = std::uint32_t(item.contour_levels.size());
   data.line_color = {item.line_color.r, item.line_color.g, item.line_color.b};
   data.half_width = 0.5f * item.line_width;
-  data.nearer = float(kNearer * (kOverSurfaces + item.over));
-  data.hidden = item.hidden ? float(*item.hidden) : NAN;
+  data.depth_bias = float(kNearer * (kOverSurfaces + item.stack_order));
+  data.hidden_label = item.hidden_label ? float(*item.hidden_label) : NAN;
   CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
   CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
 
   // draw
-  const BoundGrid bound{slice.mirror_, &slice.map_, false, true};
+  const GridBinding bound{slice.resident_, &slice.map_, false, true};
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(grid_flags({&bound, 1}), peel.mode, peel.opaque_depth != nullptr));
-  std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &slice.frame_data_, nullptr, nullptr},
-                                    {kSlice, vk::Resource::uniform, &slice.slice_data_, nullptr, nullptr},
-                                    {kColors, vk::Resource::buffer, &slice.colors_, nullptr, nullptr},
-                                    {kLevels, vk::Resource::buffer, &slice.levels_, nullptr, nullptr}};
+  std::vector<vk::Binding> bindings{{0, vk::DescriptorKind::uniform, &slice.frame_data_, nullptr, nullptr},
+                                    {kSlice, vk::DescriptorKind::uniform, &slice.slice_data_, nullptr, nullptr},
+                                    {kColors, vk::DescriptorKind::buffer, &slice.colors_, nullptr, nullptr},
+                                    {kLevels, vk::DescriptorKind::buffer, &slice.levels_, nullptr, nullptr}};
   add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
   add_peel_bindings(bindings, peel, slice.layer_data_);
-  commands.scissor(covered_area({&grid, 1}, rays.camera));
+  commands.set_scissor(covered_area({&grid, 1}, rays.camera));
   commands.bind(*pipe, bindings);
   commands.draw_triangle();
   return Done{};
@@ -146,13 +148,13 @@ class SlicePass final : public Pass {
   Outcome prepare(Frame& frame) override { return prepare_slices(frame, slices_, is_opaque); }
   Bounds bounds() const override {
     Bounds all;
-    for (const Slice& slice : slices_) all.add(slice.grid().world_bounds());
+    for (const Slice& slice : slices_) all.extend(slice.grid().world_bounds());
     return all;
   }
   Outcome record(vk::Commands& commands, Frame& frame) override {
-    Peel peel;
-    peel.none = &frame.targets.none;
-    peel.none_id = &drawer_.none_id();
+    PeelState peel;
+    peel.placeholder = &frame.targets.placeholder;
+    peel.placeholder_id = &drawer_.placeholder_id();
     for (Slice& slice : slices_) CATENA_CHECK(drawer_.draw(commands, frame.rays, slice, peel));
     return Done{};
   }

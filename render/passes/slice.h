@@ -3,12 +3,12 @@
 ///   colour: the table, piecewise linear, at full precision
 ///   line of a level: |value - level| / |gradient a pixel| pixels away, measured a second time at the foot of that distance;
 ///                    drawn by coverage over `line_width` pixels
-/// Cells that are masked or not finite are transparent. Opaque slices are drawn by SlicePass, others in the layers (passes.h).
+/// CellCache that are masked or not finite are transparent. Opaque slices are drawn by SlicePass, others in the layers (passes.h).
 #pragma once
 #include <map>
 
 #include "render/passes/triangles.h"
-#include "render/raycast/bound_grids.h"
+#include "render/raycast/grid_bindings.h"
 
 namespace catena::render {
 
@@ -23,7 +23,7 @@ class Slice {
  private:
   friend class SliceDrawer;
   SliceItem item_;
-  std::shared_ptr<const GridMirror> mirror_;
+  std::shared_ptr<const ResidentGrid> resident_;
   BrickMap map_;
   vk::Buffer colors_, levels_, frame_data_, slice_data_, layer_data_;
 };
@@ -31,17 +31,17 @@ class Slice {
 class SliceDrawer {
  public:
   static Result<SliceDrawer> create(vk::Device& device);
-  /// Within a pass over target::opaque, or a layer's.
-  Outcome draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const Peel& peel);
+  /// CellFinder a pass over target::opaque, or a layer's.
+  Outcome draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const PeelState& peel);
   /// One texel, bound where there is no id to be read.
-  const vk::Image& none_id() const { return none_id_; }
+  const vk::Image& placeholder_id() const { return placeholder_id_; }
 
  private:
   SliceDrawer() = default;
   Result<const vk::Pipeline*> pipeline(std::uint32_t flags, std::uint32_t mode, bool has_opaque);
   vk::Device* device_ = nullptr;
   vk::Sampler linear_;
-  vk::Image none_id_;
+  vk::Image placeholder_id_;
   std::map<std::array<std::uint32_t, 3>, vk::Pipeline> pipelines_;
 };
 

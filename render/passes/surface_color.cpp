@@ -2,7 +2,7 @@
 #include <map>
 
 #include "render/passes/passes.h"
-#include "render/raycast/bound_grids.h"
+#include "render/raycast/grid_bindings.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -32,7 +32,7 @@ class SurfaceColorPass final : public Pass {
  private:
   struct Surface {
     IsosurfaceItem item;
-    std::shared_ptr<const GridMirror> mirror;
+    std::shared_ptr<const ResidentGrid> mirror;
     BrickMap map;  ///< of the surface's own grid
     ColorGrid colors;
     vk::Buffer uniform, table;
@@ -50,8 +50,11 @@ Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::
     vk::GraphicsInfo info;
     info.vertex = kSurfaceColorVertexShader;
     info.fragment = kSurfaceColorFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}, {kIds, vk::Resource::texture}};
-    add_grid_slots(info.slots, 2);
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {1, vk::DescriptorKind::buffer},
+                            {2, vk::DescriptorKind::texture},
+                            {kIds, vk::DescriptorKind::texture}};
+    add_grid_layout(info.layout_bindings, 2);
     info.constants = {flags};
     add_table_flags(info.constants, lut);
     info.colors = {kOpaqueFormat};
@@ -64,19 +67,20 @@ Outcome SurfaceColorPass::prepare(Frame& frame) {
   std::size_t count = 0;
   for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
     if (!is_wanted(item)) continue;
-    CATENA_TRY(auto mirror, frame.mirror(*item.grid));
-    CATENA_TRY(auto colors, frame.mirror(*item.color_by->grid));
-    if (!mirror->drawable || !colors->drawable) continue;
+    CATENA_TRY(auto mirror, frame.resident_grid(*item.grid));
+    CATENA_TRY(auto colors, frame.resident_grid(*item.color_by->grid));
+    if (!mirror->is_drawable || !colors->is_drawable) continue;
     if (count == surfaces_.size()) surfaces_.emplace_back();
     Surface& surface = surfaces_[count++];
     surface.item = item;
     if (surface.mirror != mirror) {
       surface.mirror = std::move(mirror);
-      CATENA_TRY(surface.map, make_word_map(frame.device, *surface.mirror, std::vector<std::uint8_t>(surface.mirror->ranges.size())));
+      CATENA_TRY(surface.map,
+                 make_brick_word_map(frame.device, *surface.mirror, std::vector<std::uint8_t>(surface.mirror->brick_ranges.size())));
     }
     CATENA_TRY(const bool fresh, surface.colors.update(frame.device, std::move(colors), *item.color_by));
     if (!fresh) continue;
-    const std::vector<glm::vec4> words = surface.colors.lut.words();
+    const std::vector<glm::vec4> words = surface.colors.lut.pack_for_shader();
     CATENA_TRY(surface.table, vk::upload_buffer(frame.device, std::as_bytes(std::span(words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   }
   while (surfaces_.size() > count) surfaces_.pop_back();
@@ -87,20 +91,20 @@ Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
     const field::ScalarGrid* grid = surface.item.grid.get();
     const Color& own = surface.item.color;
-    shared::FrameData data = frame.rays.frame();
-    data.grids[0] = frame.rays.grid(*surface.mirror, grid->mapping());
+    shared::FrameData data = frame.rays.frame_data();
+    data.grids[0] = frame.rays.grid_data(*surface.mirror, grid->mapping());
     data.grids[0].id = surface.item.id;
     data.grids[0].color = {own.r, own.g, own.b};
     data.grids[1] = color_data(frame.rays, surface.colors, 0);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
-    const BoundGrid bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.bound()};
+    const GridBinding bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.binding()};
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags(bound), surface.colors.lut));
-    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
-                                      {1, vk::Resource::buffer, &surface.table, nullptr, nullptr},
-                                      {2, vk::Resource::texture, nullptr, &frame.targets.opaque_depth, nullptr},
-                                      {kIds, vk::Resource::texture, nullptr, &frame.targets.opaque_id, nullptr}};
+    std::vector<vk::Binding> bindings{{0, vk::DescriptorKind::uniform, &surface.uniform, nullptr, nullptr},
+                                      {1, vk::DescriptorKind::buffer, &surface.table, nullptr, nullptr},
+                                      {2, vk::DescriptorKind::texture, nullptr, &frame.targets.opaque_depth, nullptr},
+                                      {kIds, vk::DescriptorKind::texture, nullptr, &frame.targets.opaque_id, nullptr}};
     add_grid_bindings(bindings, bound, 2, linear_);
-    commands.scissor(covered_area({&grid, 1}, frame.rays.camera));
+    commands.set_scissor(covered_area({&grid, 1}, frame.rays.camera));
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }

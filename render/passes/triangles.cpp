@@ -24,12 +24,12 @@ struct Vertex {
 
 }  // namespace
 
-Outcome Triangles::upload(vk::Device& device, const Shape& shape) {
+Outcome Triangles::upload(vk::Device& device, const ShapeMesh& shape) {
   index_count_ = 0;
   bounds_ = {};
   if (shape.triangles.empty()) return Done{};
-  for (const MeshVertex& v : shape.vertices) bounds_.add(v.position);
-  origin_ = bounds_.centre();
+  for (const MeshVertex& v : shape.vertices) bounds_.extend(v.position);
+  origin_ = bounds_.center();
   std::vector<Vertex> vertices;
   vertices.reserve(shape.vertices.size());
   for (const MeshVertex& v : shape.vertices)
@@ -41,13 +41,13 @@ Outcome Triangles::upload(vk::Device& device, const Shape& shape) {
 }
 
 Result<vk::Binding> Triangles::frame_binding(vk::Device& device, const CameraRays& rays) {
-  CATENA_CHECK(vk::write_uniform(device, uniform_, rays.mesh(origin_)));
-  return vk::Binding{0, vk::Resource::uniform, &uniform_, nullptr, nullptr};
+  CATENA_CHECK(vk::write_uniform(device, uniform_, rays.mesh_frame_data(origin_)));
+  return vk::Binding{0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr};
 }
 
 void set_triangle_stage(vk::GraphicsInfo& info) {
   info.vertex = kTrianglesVertexShader;
-  info.slots.push_back({0, vk::Resource::uniform});
+  info.layout_bindings.push_back({0, vk::DescriptorKind::uniform});
   info.vertex_stride = sizeof(Vertex);
   info.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
                      {1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
@@ -62,7 +62,7 @@ Result<TriangleDrawer> TriangleDrawer::create(vk::Device& device) {
   set_triangle_stage(info);
   info.fragment = kTrianglesFragmentShader;
   info.colors = opaque_formats();
-  info.depth = true;
+  info.has_depth = true;
   CATENA_TRY(self.pipeline_, vk::Pipeline::create(device, info));
   return self;
 }
@@ -82,25 +82,26 @@ constexpr std::uint32_t kData = 5, kOpaqueDepth = 6, kPassedDepth = 7, kPassedId
 }  // namespace
 
 void set_peel_stage(vk::GraphicsInfo& info, std::uint32_t mode, bool has_opaque) {
-  info.slots.push_back({kData, vk::Resource::uniform});
-  for (const std::uint32_t binding : {kOpaqueDepth, kPassedDepth, kPassedId}) info.slots.push_back({binding, vk::Resource::texture});
+  info.layout_bindings.push_back({kData, vk::DescriptorKind::uniform});
+  for (const std::uint32_t binding : {kOpaqueDepth, kPassedDepth, kPassedId})
+    info.layout_bindings.push_back({binding, vk::DescriptorKind::texture});
   CATENA_ASSERT(info.constants.size() == 1);  // constants 1 and 2 are these
   info.constants.insert(info.constants.end(), {mode, has_opaque});
   info.colors = opaque_formats();
-  info.depth = mode != MODE_REST;
-  if (mode != MODE_REST) return;
-  info.colors[0] = kRestFormat;
-  info.blends = {vk::Blend::collect, vk::Blend::least, vk::Blend::keep};
+  info.has_depth = mode != MODE_TAIL;
+  if (mode != MODE_TAIL) return;
+  info.colors[0] = kTailFormat;
+  info.blends = {vk::Blend::accumulate, vk::Blend::min, vk::Blend::keep};
 }
 
-void add_peel_bindings(std::vector<vk::Binding>& bindings, const Peel& peel, const vk::Buffer& layer_data) {
+void add_peel_bindings(std::vector<vk::Binding>& bindings, const PeelState& peel, const vk::Buffer& layer_data) {
   const auto texture = [&](std::uint32_t binding, const vk::Image* image, const vk::Image* otherwise) {
-    bindings.push_back({binding, vk::Resource::texture, nullptr, image ? image : otherwise, nullptr});
+    bindings.push_back({binding, vk::DescriptorKind::texture, nullptr, image ? image : otherwise, nullptr});
   };
-  bindings.push_back({kData, vk::Resource::uniform, &layer_data, nullptr, nullptr});
-  texture(kOpaqueDepth, peel.opaque_depth, peel.none);
-  texture(kPassedDepth, peel.passed_depth, peel.none);
-  texture(kPassedId, peel.passed_id, peel.none_id);
+  bindings.push_back({kData, vk::DescriptorKind::uniform, &layer_data, nullptr, nullptr});
+  texture(kOpaqueDepth, peel.opaque_depth, peel.placeholder);
+  texture(kPassedDepth, peel.previous_depth, peel.placeholder);
+  texture(kPassedId, peel.previous_id, peel.placeholder_id);
 }
 
 shared::LayerData layer_data(const CameraRays& rays, float opacity) {

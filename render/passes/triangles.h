@@ -11,7 +11,7 @@ namespace catena::render {
 /// A shape on the device.
 class Triangles {
  public:
-  Outcome upload(vk::Device& device, const Shape& shape);
+  Outcome upload(vk::Device& device, const ShapeMesh& shape);
   const Bounds& bounds() const { return bounds_; }
   bool empty() const { return index_count_ == 0; }
   /// Writes the frame's numbers and binds them at 0.
@@ -34,7 +34,7 @@ void set_triangle_stage(vk::GraphicsInfo& info);
 class TriangleDrawer {
  public:
   static Result<TriangleDrawer> create(vk::Device& device);
-  /// Within a pass over target::opaque.
+  /// CellFinder a pass over target::opaque.
   Outcome draw(vk::Commands& commands, const CameraRays& rays, Triangles& triangles);
 
  private:
@@ -46,22 +46,22 @@ class TriangleDrawer {
 /// How a thing is drawn into the opaque targets or into a translucent layer: the bindings and constants of shaders/lib/peel.glsl.
 
 /// Where something is drawn.
-struct Peel {
+struct PeelState {
   std::uint32_t mode = MODE_OPAQUE;
-  const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
-  const vk::Image* passed_depth = nullptr;  ///< of the layer before; null: there is none
-  const vk::Image* passed_id = nullptr;
-  const vk::Image* none = nullptr;     ///< bound where the others are null
-  const vk::Image* none_id = nullptr;  ///< the same for ids
+  const vk::Image* opaque_depth = nullptr;    ///< null: nothing opaque
+  const vk::Image* previous_depth = nullptr;  ///< of the layer before; null: there is none
+  const vk::Image* previous_id = nullptr;
+  const vk::Image* placeholder = nullptr;     ///< bound where the others are null
+  const vk::Image* placeholder_id = nullptr;  ///< the same for ids
 
   bool has_opaque() const { return opaque_depth != nullptr; }
 };
 
-inline constexpr VkFormat kRestFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< what lies behind the layers, collected
+inline constexpr VkFormat kTailFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< what lies behind the layers, collected
 
 /// Slots, targets, depth and blending of a pipeline for a mode; constants 1 and 2 follow the caller's constant 0.
 void set_peel_stage(vk::GraphicsInfo& info, std::uint32_t mode, bool has_opaque);
-void add_peel_bindings(std::vector<vk::Binding>& bindings, const Peel& peel, const vk::Buffer& layer_data);
+void add_peel_bindings(std::vector<vk::Binding>& bindings, const PeelState& peel, const vk::Buffer& layer_data);
 shared::LayerData layer_data(const CameraRays& rays, float opacity);
 
 }  // namespace catena::render

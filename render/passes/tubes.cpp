@@ -44,7 +44,7 @@ std::uint32_t packed_direction(const Vec3& unit) {
 }
 
 std::uint32_t packed_color(const Color& c) {
-  const auto share = [](float x) { return static_cast<std::uint32_t>(std::lround(std::clamp(x, 0.0f, 1.0f) * RING_COLOR_MOST)); };
+  const auto share = [](float x) { return static_cast<std::uint32_t>(std::lround(std::clamp(x, 0.0f, 1.0f) * RING_COLOR_MAX)); };
   return share(c.r) | share(c.g) << 10 | share(c.b) << 20;
 }
 
@@ -68,11 +68,11 @@ std::vector<std::uint32_t> wall_indices(std::size_t rings, std::uint32_t sides) 
 std::vector<shared::TubeRingData> packed_rings(const TubeItem& tube, const Vec3& origin) {
   bool closed = false;
   const std::vector<TubeRing> rings = tube_rings(tube, closed);
-  const std::uint32_t id = tube.id | (tube.clipped ? 0u : UNCLIPPED);
+  const std::uint32_t id = tube.id | (tube.is_clipped ? 0u : UNCLIPPED);
   std::vector<shared::TubeRingData> packed;
   packed.reserve(rings.size() + 2);
   const auto add = [&](const TubeRing& ring, double radius, std::uint32_t what) {
-    packed.push_back({glm::vec3(ring.centre - origin), static_cast<float>(radius), static_cast<float>(ring.lean),
+    packed.push_back({glm::vec3(ring.center - origin), static_cast<float>(radius), static_cast<float>(ring.normal_tilt),
                       packed_direction(ring.tangent), packed_direction(ring.normal), packed_color(ring.color) | what, id});
   };
   if (closed) add(rings.front(), 0, RING_GAP);
@@ -101,10 +101,10 @@ class Tubes::Filler {
   }
   Outcome flush() {
     if (rings_.size() >= 2) {
-      Piece piece{{}, static_cast<std::uint32_t>(rings_.size()), std::move(runs_)};
+      Chunk piece{{}, static_cast<std::uint32_t>(rings_.size()), std::move(runs_)};
       CATENA_TRY(piece.rings, vk::upload_buffer(device_, std::as_bytes(std::span(rings_)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
-      tubes_.longest_ = std::max(tubes_.longest_, piece.count);
-      tubes_.pieces_.push_back(std::move(piece));
+      tubes_.longest_chunk_ = std::max(tubes_.longest_chunk_, piece.count);
+      tubes_.chunks_.push_back(std::move(piece));
     }
     rings_.clear();
     runs_.clear();
@@ -122,11 +122,11 @@ class Tubes::Filler {
   }
   void put(const shared::TubeRingData& ring, double radius) {
     const auto reach = [&](Run& run) {
-      run.bounds.add(tubes_.origin_ + Vec3(ring.centre), radius);
+      run.bounds.extend(tubes_.origin_ + Vec3(ring.center), radius);
       run.radius = std::max(run.radius, radius);
     };
     if (!runs_.empty()) reach(runs_.back());
-    if (rings_.size() % kRun == 0) reach(runs_.emplace_back());
+    if (rings_.size() % kRunLength == 0) reach(runs_.emplace_back());
     rings_.push_back(ring);
   }
 
@@ -137,14 +137,14 @@ class Tubes::Filler {
 };
 
 Outcome Tubes::upload(vk::Device& device, std::span<const TubeItem> tubes) {
-  pieces_.clear();
+  chunks_.clear();
   indices_.clear();
-  longest_ = 0;
+  longest_chunk_ = 0;
   bounds_ = {};
   for (const TubeItem& tube : tubes)
-    for (const Vec3& p : tube.points) bounds_.add(p, tube.radius);
+    for (const Vec3& p : tube.points) bounds_.extend(p, tube.radius);
   if (bounds_.empty()) return Done{};
-  origin_ = bounds_.centre();
+  origin_ = bounds_.center();
   Filler filler(*this, device);
   for (std::size_t i = 0; i < tubes.size(); i += kTubesAtOnce)
     CATENA_CHECK(filler.add(tubes.subspan(i, std::min(kTubesAtOnce, tubes.size() - i))));
@@ -154,7 +154,7 @@ Outcome Tubes::upload(vk::Device& device, std::span<const TubeItem> tubes) {
 Result<const vk::Buffer*> Tubes::indices(vk::Device& device, std::uint32_t sides) {
   vk::Buffer& buffer = indices_[sides];
   if (!buffer.handle()) {
-    const std::vector<std::uint32_t> walls = wall_indices(longest_, sides);
+    const std::vector<std::uint32_t> walls = wall_indices(longest_chunk_, sides);
     CATENA_TRY(buffer, vk::upload_buffer(device, std::as_bytes(std::span(walls)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
   }
   return &buffer;
@@ -164,9 +164,9 @@ Result<const vk::Pipeline*> TubeDrawer::pipeline(std::uint32_t sides) {
   std::optional<vk::Pipeline>& made = sides > 0 ? tubes_ : ribbons_;
   if (made) return &*made;
   vk::GraphicsInfo info;
-  info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}};
+  info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer}};
   info.colors = opaque_formats();
-  info.depth = true;
+  info.has_depth = true;
   info.vertex = sides > 0 ? std::span<const std::uint32_t>(kTubesVertexShader) : kRibbonsVertexShader;
   info.fragment = sides > 0 ? std::span<const std::uint32_t>(kTubesFragmentShader) : kRibbonsFragmentShader;
   CATENA_TRY(made, vk::Pipeline::create(*device_, info));
@@ -175,14 +175,14 @@ Result<const vk::Pipeline*> TubeDrawer::pipeline(std::uint32_t sides) {
 
 Outcome TubeDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tubes& tubes, const std::function<void()>& pause) {
   if (tubes.empty()) return Done{};
-  CATENA_CHECK(vk::write_uniform(*device_, tubes.uniform_, rays.mesh(tubes.origin_)));
+  CATENA_CHECK(vk::write_uniform(*device_, tubes.uniform_, rays.mesh_frame_data(tubes.origin_)));
   std::uint32_t since_pause = 0;  // triangles
-  for (const Tubes::Piece& piece : tubes.pieces_) {
-    const vk::Binding bindings[] = {{0, vk::Resource::uniform, &tubes.uniform_, nullptr, nullptr},
-                                    {1, vk::Resource::buffer, &piece.rings, nullptr, nullptr}};
+  for (const Tubes::Chunk& piece : tubes.chunks_) {
+    const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &tubes.uniform_, nullptr, nullptr},
+                                    {1, vk::DescriptorKind::buffer, &piece.rings, nullptr, nullptr}};
     const auto sides_of = [&](const Tubes::Run& run) -> std::optional<std::uint32_t> {
-      if (!may_be_seen(rays.camera, run.bounds.centre(), 0.5 * run.bounds.diagonal())) return std::nullopt;
-      return static_cast<std::uint32_t>(tube_sides(run.radius, smallest_pixel(rays.camera, run.bounds)));
+      if (!may_be_visible(rays.camera, run.bounds.center(), 0.5 * run.bounds.diagonal())) return std::nullopt;
+      return static_cast<std::uint32_t>(tube_sides(run.radius, min_pixel_size(rays.camera, run.bounds)));
     };
     for (std::size_t first = 0, end = 0; first < piece.runs.size(); first = end) {
       const std::optional<std::uint32_t> sides = sides_of(piece.runs[first]);
@@ -193,8 +193,8 @@ Outcome TubeDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tubes& 
       commands.bind(*pipeline, bindings);
       commands.bind_indices(*indices, VK_INDEX_TYPE_UINT32);
       const std::uint32_t a_wall = 2 * (*sides > 0 ? *sides : RIBBON_WALLS), most = kTrianglesAtOnce / a_wall;
-      const std::uint32_t last = std::min<std::uint32_t>(static_cast<std::uint32_t>(end) * Tubes::kRun, piece.count - 1);
-      for (std::uint32_t wall = static_cast<std::uint32_t>(first) * Tubes::kRun; wall < last; wall += most) {
+      const std::uint32_t last = std::min<std::uint32_t>(static_cast<std::uint32_t>(end) * Tubes::kRunLength, piece.count - 1);
+      for (std::uint32_t wall = static_cast<std::uint32_t>(first) * Tubes::kRunLength; wall < last; wall += most) {
         const std::uint32_t count = std::min(last - wall, most);
         if (since_pause + count * a_wall > kTrianglesAtOnce) {
           pause();

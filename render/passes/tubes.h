@@ -18,16 +18,16 @@ class Tubes {
  public:
   Outcome upload(vk::Device& device, std::span<const TubeItem> tubes);
   const Bounds& bounds() const { return bounds_; }
-  bool empty() const { return pieces_.empty(); }
+  bool empty() const { return chunks_.empty(); }
 
  private:
   friend class TubeDrawer;
-  static constexpr std::uint32_t kRun = 128;  ///< walls
+  static constexpr std::uint32_t kRunLength = 128;  ///< walls
   struct Run {
     Bounds bounds;
     double radius = 0;  ///< the largest
   };
-  struct Piece {
+  struct Chunk {
     vk::Buffer rings;
     std::uint32_t count = 0;  ///< of the rings; the last of a run is the first of the next
     std::vector<Run> runs;
@@ -36,8 +36,8 @@ class Tubes {
   /// The walls of the longest piece with that many sides; made once.
   Result<const vk::Buffer*> indices(vk::Device& device, std::uint32_t sides);
 
-  std::vector<Piece> pieces_;
-  std::uint32_t longest_ = 0;                    ///< piece, in rings
+  std::vector<Chunk> chunks_;
+  std::uint32_t longest_chunk_ = 0;              ///< piece, in rings
   std::map<std::uint32_t, vk::Buffer> indices_;  ///< by sides; 0: ribbons
   vk::Buffer uniform_;
   Vec3 origin_{0.0};
@@ -47,7 +47,7 @@ class Tubes {
 class TubeDrawer {
  public:
   explicit TubeDrawer(vk::Device& device) : device_(&device) {}
-  /// Within a pass over target::opaque. `pause` is called after about every 50,000 triangles; it ends the pass and goes on in another:
+  /// CellFinder a pass over target::opaque. `pause` is called after about every 50,000 triangles; it ends the pass and goes on in another:
   /// what a software driver has sorted into tiles is drawn by then, and takes no more memory. (Of 10 million it would take gigabytes.)
   Outcome draw(vk::Commands& commands, const CameraRays& rays, Tubes& tubes, const std::function<void()>& pause);
 

@@ -57,7 +57,7 @@ bool indices_lead_inside(const UiItems& items) {
 }  // namespace
 
 /// An image of the window's size; what does not depend on the items.
-Outcome WindowPainter::fit(std::uint32_t width, std::uint32_t height) {
+Outcome WindowPainter::ensure_window(std::uint32_t width, std::uint32_t height) {
   const std::uint32_t most = device_->info().limits.maxImageDimension2D;
   if (width == 0 || height == 0 || width > most || height > most)
     return Error{fmt::format("a window of {} x {} pixels cannot be painted, expected 1 to {} each way", width, height, most)};
@@ -73,9 +73,9 @@ Outcome WindowPainter::fit(std::uint32_t width, std::uint32_t height) {
   return vk::write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
 }
 
-Outcome WindowPainter::keep(const std::shared_ptr<const UiTexture>& texture) {
+Outcome WindowPainter::retain_texture(const std::shared_ptr<const UiTexture>& texture) {
   Texture& kept = textures_[texture];
-  kept.used = paints_;
+  kept.last_used = paint_count_;
   if (kept.image) return Done{};
   CATENA_ASSERT(texture->width > 0 && texture->height > 0 && texture->rgba.size() == std::size_t(4) * texture->width * texture->height);
   vk::ImageInfo info;
@@ -94,7 +94,7 @@ Outcome WindowPainter::upload(const UiItems& items) {
     vk::GraphicsInfo info;
     info.vertex = kUiVertexShader;
     info.fragment = kUiFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::sampled}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::sampled}};
     info.colors = {kWindowFormat};
     info.blends = {vk::Blend::over_straight};
     info.vertex_stride = sizeof(UiVertex);
@@ -107,8 +107,8 @@ Outcome WindowPainter::upload(const UiItems& items) {
   }
   CATENA_CHECK(vk::write_items(*device_, vertices_, items.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
   CATENA_CHECK(vk::write_items(*device_, indices_, items.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
-  for (const UiDraw& draw : items.draws) CATENA_CHECK(keep(draw.texture ? draw.texture : white_));
-  std::erase_if(textures_, [&](const auto& entry) { return entry.second.used + kTextureRest < paints_; });
+  for (const UiDraw& draw : items.draws) CATENA_CHECK(retain_texture(draw.texture ? draw.texture : white_));
+  std::erase_if(textures_, [&](const auto& entry) { return entry.second.last_used + kTextureIdlePaints < paint_count_; });
   return Done{};
 }
 
@@ -122,26 +122,26 @@ void WindowPainter::record(vk::Commands& commands, const UiItems& items) {
     const Texture& texture = textures_.at(draw.texture ? draw.texture : white_);
     if (bound == nullptr) commands.bind_mesh(vertices_, indices_, VK_INDEX_TYPE_UINT16);
     if (bound != &texture) {
-      const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                                      {1, vk::Resource::sampled, nullptr, &texture.image, &linear_}};
+      const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
+                                      {1, vk::DescriptorKind::sampled, nullptr, &texture.image, &linear_}};
       commands.bind(pipeline_, bindings);
       bound = &texture;
     }
-    commands.scissor(clip);
+    commands.set_scissor(clip);
     commands.draw_mesh(draw.first_index, draw.index_count, draw.first_vertex);
   }
   commands.end_pass();
 }
 
 Outcome WindowPainter::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
-  ++paints_;
-  CATENA_CHECK(fit(width, height));
+  ++paint_count_;
+  CATENA_CHECK(ensure_window(width, height));
   CATENA_CHECK(upload(items));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device_));
-  commands.use(picture, vk::kTransferRead);
+  commands.transition(picture, vk::kTransferRead);
   // the window may be smaller by now than when its area was worked out
   const std::array<std::uint32_t, 4> whole{0, 0, width, height};
-  std::array<std::uint32_t, 4> area = items.area.value_or(whole);
+  std::array<std::uint32_t, 4> area = items.image_area.value_or(whole);
   area = {area[0], area[1], std::min(area[2], width), std::min(area[3], height)};
   if (area[0] >= area[2] || area[1] >= area[3]) area = whole;
   if (area != whole) {
@@ -149,10 +149,10 @@ Outcome WindowPainter::paint(vk::Image& picture, std::uint32_t width, std::uint3
     commands.begin_pass({&cleared, 1}, {});
     commands.end_pass();
   }
-  commands.use(window_, vk::kTransferWrite);
+  commands.transition(window_, vk::kTransferWrite);
   show_picture(commands, picture, window_, area);
   record(commands, items);
-  commands.use(window_, vk::kTransferRead);
+  commands.transition(window_, vk::kTransferRead);
   return commands.finish();
 }
 

@@ -4,8 +4,8 @@
 /// A pixel is drawn where its centre lies within the triangle and within the draw's clip rectangle; draws are blended in order. The
 /// picture itself stays as it is, so that the next paint needs no new one. Not one of the packet's passes: the renderer paints with it
 /// when a window is presented. Frame thread only.
-/// Buffers grow to what they once held and are used again. A texture is uploaded once an object and goes when kTextureRest paints have
-/// done without it.
+/// Buffers grow to what they once held and are used again. A texture is uploaded once an object and goes when kTextureIdlePaints paints
+/// have done without it.
 #pragma once
 #include <map>
 #include <memory>
@@ -17,7 +17,7 @@ namespace catena::render {
 
 class WindowPainter {
  public:
-  static constexpr std::uint64_t kTextureRest = 4;
+  static constexpr std::uint64_t kTextureIdlePaints = 4;
 
   explicit WindowPainter(vk::Device& device) : device_(&device) {}
 
@@ -31,11 +31,11 @@ class WindowPainter {
  private:
   struct Texture {
     vk::Image image;
-    std::uint64_t used = 0;  ///< by this paint at last
+    std::uint64_t last_used = 0;  ///< by this paint at last
   };
-  Outcome fit(std::uint32_t width, std::uint32_t height);
+  Outcome ensure_window(std::uint32_t width, std::uint32_t height);
   Outcome upload(const UiItems& items);
-  Outcome keep(const std::shared_ptr<const UiTexture>& texture);
+  Outcome retain_texture(const std::shared_ptr<const UiTexture>& texture);
   void record(vk::Commands& commands, const UiItems& items);
 
   vk::Device* device_;
@@ -46,7 +46,7 @@ class WindowPainter {
   /// By object, which is kept as long, so that its address is not another's.
   std::map<std::shared_ptr<const UiTexture>, Texture> textures_;
   std::shared_ptr<const UiTexture> white_;  ///< for draws without a texture
-  std::uint64_t paints_ = 0;
+  std::uint64_t paint_count_ = 0;
 };
 
 }  // namespace catena::render

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "render/quality/refinement.h"
-#include "render/quality/search.h"
+#include "render/quality/settings_search.h"
 
 namespace catena::render {
 namespace {
@@ -21,10 +21,10 @@ FramePacket first_eye(const FramePacket& packet) {
 
 }  // namespace
 
-std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
+std::size_t best_within(const std::vector<SettingsTrial>& tried, double ms) {
   CATENA_ASSERT(!tried.empty());
   std::size_t best = 0;
-  const auto better = [ms](const TimedPicture& a, const TimedPicture& b) {
+  const auto better = [ms](const SettingsTrial& a, const SettingsTrial& b) {
     if ((a.ms <= ms) != (b.ms <= ms)) return a.ms <= ms;
     return a.ms <= ms ? a.rmse < b.rmse : a.ms < b.ms;
   };
@@ -34,68 +34,68 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
 }
 
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const SearchProgress& progress,
-                                     const DrawTimer& timer) {
+                                     const RenderTimeFn& timer) {
   if (!packet.eyes.empty()) {
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
-    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share, goal.once}, progress, timer);
+    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share, goal.single_image}, progress, timer);
   }
-  if (!draws_rays(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
-  const bool has_error = goal.kind == QualityGoal::Kind::error, once = has_error && goal.once;
-  Lattice lattice(renderer, packet, once ? LatticeSize::small : LatticeSize::whole);
+  if (!uses_raycast(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
+  const bool has_error = goal.kind == QualityGoal::Kind::error, once = has_error && goal.single_image;
+  ErrorEstimator lattice(renderer, packet, once ? EstimatorSize::reduced : EstimatorSize::full);
   CATENA_CHECK(lattice.begin(has_error ? goal.value : 0, has_error && !once));
   const SearchProgress told = [&progress](double done) {
     if (progress) progress(kBegun + (1 - kBegun) * done);
   };
   told(0);
-  CATENA_TRY(QualityChoice chosen, once        ? settings_for_one(lattice, goal.value)
-                                   : has_error ? settings_for_error(lattice, goal.value, told)
-                                               : settings_for_time(lattice, goal.value, told, timer));
-  chosen.empty = lattice.empty();
+  CATENA_TRY(QualityChoice chosen, once        ? find_settings_for_single_image(lattice, goal.value)
+                                   : has_error ? find_settings_for_error(lattice, goal.value, told)
+                                               : find_settings_for_time(lattice, goal.value, told, timer));
+  chosen.is_empty = lattice.empty();
   return chosen;
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
   if (!packet.eyes.empty()) return estimate_rmse(renderer, first_eye(packet), settings);
-  if (!draws_rays(packet)) return 0.0;
-  Lattice lattice(renderer, packet);
+  if (!uses_raycast(packet)) return 0.0;
+  ErrorEstimator lattice(renderer, packet);
   // what is coarse is told from a truth that is quicker to have
-  CATENA_CHECK(lattice.begin(settings.fast && settings.fast->step_voxels >= 1 ? kRoughGoal : 0));
-  CATENA_TRY(const LatticeError error, lattice.of_picture(settings));
-  return error.above;
+  CATENA_CHECK(lattice.begin(settings.fast && settings.fast->step_voxels >= 1 ? kCoarseErrorGoal : 0));
+  CATENA_TRY(const ErrorEstimate error, lattice.estimate_image(settings));
+  return error.upper_bound;
 }
 
-Result<double> change_of_half_step(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
-  if (!packet.eyes.empty()) return change_of_half_step(renderer, first_eye(packet), settings);
-  if (!draws_rays(packet)) return 0.0;
-  return Lattice(renderer, packet).change_of_half_step(settings);
+Result<double> half_step_difference(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
+  if (!packet.eyes.empty()) return half_step_difference(renderer, first_eye(packet), settings);
+  if (!uses_raycast(packet)) return 0.0;
+  return ErrorEstimator(renderer, packet).half_step_difference(settings);
 }
 
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
                                       const std::function<bool(double last)>& go_on) {
   if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, go_on);
   MeasuredSettings all;
-  Lattice lattice(renderer, packet);
-  CATENA_CHECK(lattice.begin(kLeastTold));
-  all.reference_rmse = lattice.truth_error();
+  ErrorEstimator lattice(renderer, packet);
+  CATENA_CHECK(lattice.begin(kMinReportedRmse));
+  all.reference_rmse = lattice.reference_error();
   for (const RenderSettings& next : settings) {
     if (!go_on(all.rmse.empty() ? 0 : all.rmse.back())) break;
     // rays alone are what an exact picture is made of
-    CATENA_TRY(const LatticeError error, next.fast ? lattice.of_picture(next) : lattice.of_rays(next));
+    CATENA_TRY(const ErrorEstimate error, next.fast ? lattice.estimate_image(next) : lattice.estimate_rays(next));
     all.rmse.push_back(error.rmse);
   }
   return all;
 }
 
-Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
-  if (!draws_rays(packet)) return 0.0;
+Result<double> measure_single_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
+  if (!uses_raycast(packet)) return 0.0;
   CATENA_TRY(const MeasuredSettings one, measure_rmse(renderer, packet, {settings}, [](double) { return true; }));
   return one.rmse.front();
 }
 
 std::string describe(const RenderSettings& settings) {
-  const char* bits = settings.texels == TexelFormat::automatic ? ""
-                     : settings.texels == TexelFormat::r16f    ? ", 16 bits a voxel"
-                                                               : ", 32 bits a voxel";
+  const char* bits = settings.texel_format == TexelFormat::automatic ? ""
+                     : settings.texel_format == TexelFormat::r16f    ? ", 16 bits a voxel"
+                                                                     : ", 32 bits a voxel";
   if (!settings.fast) return fmt::format("exact, step {:g}{}", settings.step_voxels, bits);
   const FastSettings& f = *settings.fast;
   std::string text = fmt::format("fast, step {:g}", f.step_voxels);

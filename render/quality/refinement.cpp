@@ -27,7 +27,7 @@ Share share_of(const FastSettings& f) {
 
 }  // namespace
 
-RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth) {
+RenderSettings fast_level(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth) {
   RenderSettings s;
   s.fast = FastSettings{step_voxels, spacing, half, full};
   s.fast->smooth_gradients = smooth;
@@ -35,15 +35,15 @@ RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half,
   return s;
 }
 
-RenderSettings exact_rung(double step_voxels) {
+RenderSettings exact_level(double step_voxels) {
   RenderSettings s;
   s.step_voxels = step_voxels;
   if (step_voxels < 1) s.termination = 1e-3;
   return s;
 }
 
-RenderSettings converged_rung(double step_voxels) {
-  RenderSettings s = exact_rung(step_voxels);
+RenderSettings converged_level(double step_voxels) {
+  RenderSettings s = exact_level(step_voxels);
   s.termination = 1e-4;
   return s;
 }
@@ -52,13 +52,13 @@ double relative_cost(const RenderSettings& settings, bool shaded) {
   if (!settings.fast) return (shaded ? 3.5 : 1.1) / settings.step_voxels + 0.05;
   const FastSettings& f = *settings.fast;
   const Share share = share_of(f);
-  const double a_ray = shaded ? 1.1 * (f.smooth_gradients ? kSmoothCost : 1) : 1.0;
-  return share.overhead + share.rays * a_ray * (kStepless + (1 - kStepless) / f.step_voxels);
+  const double a_ray = shaded ? 1.1 * (f.smooth_gradients ? kSmoothGradientCost : 1) : 1.0;
+  return share.overhead + share.rays * a_ray * (kFixedRayCost + (1 - kFixedRayCost) / f.step_voxels);
 }
 
 namespace {
 
-/// The fast raycast's rungs: step, spacing, thresholds. Measured on a head, a heart, vessels, and noise: what lies on the front of error
+/// The fast raycast's rungs: step, spacing, thresholds. TrialResult on a head, a heart, vessels, and noise: what lies on the front of error
 /// against time of most of them. What a threshold refines is the data's own; those that refine nothing more take no longer.
 struct FastRung {
   double step;
@@ -83,112 +83,113 @@ constexpr double kLastSteps[] = {0.25, 0.1, 0.05}, kLastShadedSteps[] = {0.0625,
 
 }  // namespace
 
-std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
+std::vector<RenderSettings> quality_levels(const QualityLevelOptions& kind) {
   std::vector<RenderSettings> all;
-  if (kind.fast) {
-    for (const FastRung& r : kind.shaded ? std::span<const FastRung>(kShaded) : kPlain)
-      all.push_back(fast_rung(r.step, r.spacing, r.half, r.full, kind.shaded && r.smooth));
-    for (const double step : kind.shaded ? std::span<const double>(kLastShadedSteps) : kLastSteps) all.push_back(exact_rung(step));
+  if (kind.can_draw_fast) {
+    for (const FastRung& r : kind.is_shaded ? std::span<const FastRung>(kShaded) : kPlain)
+      all.push_back(fast_level(r.step, r.spacing, r.half, r.full, kind.is_shaded && r.smooth));
+    for (const double step : kind.is_shaded ? std::span<const double>(kLastShadedSteps) : kLastSteps) all.push_back(exact_level(step));
   } else {
-    for (const double step : kExactLadder) all.push_back(exact_rung(step));
+    for (const double step : kExactLadder) all.push_back(exact_level(step));
   }
   std::stable_sort(all.begin(), all.end(), [&](const RenderSettings& a, const RenderSettings& b) {
-    return relative_cost(a, kind.shaded) < relative_cost(b, kind.shaded);
+    return relative_cost(a, kind.is_shaded) < relative_cost(b, kind.is_shaded);
   });
   return all;
 }
 
-std::uint32_t coarser_pixels(double expected_ms, std::uint32_t before, double budget_ms) {
+std::uint32_t choose_pixel_scale(double expected_ms, std::uint32_t before, double budget_ms) {
   const auto fits = [&](std::uint32_t scale) {
     const double room = scale < before ? kFinerBelow : 1;
     return expected_ms / (scale * scale) <= room * budget_ms;
   };
   std::uint32_t scale = 1;
-  while (scale < kMaxScale && !fits(scale)) scale *= 2;
+  while (scale < kMaxPixelScale && !fits(scale)) scale *= 2;
   return scale;
 }
 
 TimeModel::TimeModel(std::vector<double> costs, double first_guess_ms) : unit_ms_(first_guess_ms) {
-  for (const double cost : costs) rungs_.push_back({cost});
+  for (const double cost : costs) levels_.push_back({cost});
 }
 
-double TimeModel::factor_of(std::size_t rung) const {
-  for (std::size_t away = 0; away < rungs_.size(); ++away) {
+double TimeModel::correction_factor(std::size_t rung) const {
+  for (std::size_t away = 0; away < levels_.size(); ++away) {
     double factor = 0;
-    if (away <= rung && rungs_[rung - away].drawn) factor = rungs_[rung - away].factor;
-    if (rung + away < rungs_.size() && rungs_[rung + away].drawn) factor = std::max(factor, rungs_[rung + away].factor);
+    if (away <= rung && levels_[rung - away].is_measured) factor = levels_[rung - away].factor;
+    if (rung + away < levels_.size() && levels_[rung + away].is_measured) factor = std::max(factor, levels_[rung + away].factor);
     if (factor > 0) return factor;
   }
   return 1;
 }
 
-void TimeModel::measured(std::size_t rung, double ms) {
-  Rung& r = rungs_[rung];
+void TimeModel::add_measurement(std::size_t rung, double ms) {
+  Level& r = levels_[rung];
   const double ratio = std::clamp(ms / expected_ms(rung), 0.01, 100.0);
-  const bool counts = r.drawn || ratio < 1;
-  r.factor = factor_of(rung);
-  r.drawn = true;
+  const bool counts = r.is_measured || ratio < 1;
+  r.factor = correction_factor(rung);
+  r.is_measured = true;
   if (!counts) return;
   unit_ms_ *= std::sqrt(ratio);
   r.factor *= std::sqrt(ratio);
 }
 
-Refinement::Refinement(double budget_ms, const LadderKind& kind) : budget_ms_(budget_ms), times_({}, 0) {
+Refinement::Refinement(double budget_ms, const QualityLevelOptions& kind) : budget_ms_(budget_ms), times_({}, 0) {
   std::vector<double> costs;
-  for (const RenderSettings& settings : quality_ladder(kind)) {
+  for (const RenderSettings& settings : quality_levels(kind)) {
     // finer rays are for files: a window's picture ends before
-    if (kind.fast ? !settings.fast || settings.fast->step_voxels < 0.5 : settings.step_voxels < 0.5) continue;
-    rungs_.push_back(settings);
-    costs.push_back(relative_cost(settings, kind.shaded));
+    if (kind.can_draw_fast ? !settings.fast || settings.fast->step_voxels < 0.5 : settings.step_voxels < 0.5) continue;
+    levels_.push_back(settings);
+    costs.push_back(relative_cost(settings, kind.is_shaded));
   }
   times_ = TimeModel(std::move(costs), kFirstGuessMs);
   // the last rung of every spacing; without the fast raycast, where the step is half of that of the stop before
   double step = 1e9;
-  for (std::size_t i = 0; i < rungs_.size(); ++i) {
-    const bool last = i + 1 == rungs_.size();
-    const bool stop = rungs_[i].fast ? !last && rungs_[i].fast->spacing > rungs_[i + 1].fast->spacing : rungs_[i].step_voxels <= 0.5 * step;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const bool last = i + 1 == levels_.size();
+    const bool stop =
+        levels_[i].fast ? !last && levels_[i].fast->spacing > levels_[i + 1].fast->spacing : levels_[i].step_voxels <= 0.5 * step;
     if (!last && !stop) continue;
     stops_.push_back(i);
-    step = rungs_[i].step_voxels;
+    step = levels_[i].step_voxels;
   }
 }
 
 std::size_t Refinement::best_within_budget() const {
   std::size_t best = 0;
-  for (std::size_t i = 1; i < rungs_.size(); ++i)
-    if (times_.expected_ms(i) <= (i > moving_ ? kUpBelow : 1.0) * budget_ms_) best = i;
+  for (std::size_t i = 1; i < levels_.size(); ++i)
+    if (times_.expected_ms(i) <= (i > moving_level_ ? kUpBelow : 1.0) * budget_ms_) best = i;
   return best;
 }
 
-std::size_t Refinement::stop_after(std::size_t rung) const {
+std::size_t Refinement::next_stop(std::size_t rung) const {
   const auto next = std::upper_bound(stops_.begin(), stops_.end(), rung);
-  return next == stops_.end() ? rungs_.size() - 1 : *next;
+  return next == stops_.end() ? levels_.size() - 1 : *next;
 }
 
-RefinementStep Refinement::step(std::size_t rung) {
-  shown_ = rung;
-  asked_ = true;
-  return {rungs_[rung], times_.expected_ms(rung), rung + 1 == rungs_.size()};
+RefinementStep Refinement::make_step(std::size_t rung) {
+  last_level_ = rung;
+  is_pending_ = true;
+  return {levels_[rung], times_.expected_ms(rung), rung + 1 == levels_.size()};
 }
 
 std::optional<RefinementStep> Refinement::next(bool changed) {
-  if (changed || !shown_) {
-    moving_ = best_within_budget();
-    return step(moving_);
+  if (changed || !last_level_) {
+    moving_level_ = best_within_budget();
+    return make_step(moving_level_);
   }
-  if (*shown_ + 1 == rungs_.size()) return std::nullopt;
-  return step(stop_after(*shown_));
+  if (*last_level_ + 1 == levels_.size()) return std::nullopt;
+  return make_step(next_stop(*last_level_));
 }
 
-std::optional<double> Refinement::expected_better_ms() const {
-  if (!shown_ || *shown_ + 1 == rungs_.size()) return std::nullopt;
-  return times_.expected_ms(stop_after(*shown_));
+std::optional<double> Refinement::expected_next_ms() const {
+  if (!last_level_ || *last_level_ + 1 == levels_.size()) return std::nullopt;
+  return times_.expected_ms(next_stop(*last_level_));
 }
 
-void Refinement::drawn(double ms) {
-  CATENA_ASSERT(asked_);
-  asked_ = false;
-  times_.measured(*shown_, ms);
+void Refinement::record_render_ms(double ms) {
+  CATENA_ASSERT(is_pending_);
+  is_pending_ = false;
+  times_.add_measurement(*last_level_, ms);
 }
 
 }  // namespace catena::render

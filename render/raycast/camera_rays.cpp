@@ -12,16 +12,16 @@ glm::vec3 color_of(const Color& c) { return {c.r, c.g, c.b}; }
 /// Unit, in the world.
 Vec3 towards(const Camera& c, const LightItem& light) {
   const Vec3 d = direction(light.direction);
-  return light.with_camera ? d.x * c.right + d.y * c.up + d.z * c.back : d;
+  return light.camera_relative ? d.x * c.right + d.y * c.up + d.z * c.back : d;
 }
 
 shared::FogData fog_of(const CameraRays& rays) {
   shared::FogData fog{};
   if (!rays.fog) return fog;
   fog.color = color_of(rays.fog->color);
-  fog.start = float(rays.fog->start - rays.reference_depth);
-  fog.per_depth = float(1 / std::max(rays.fog->end - rays.fog->start, 1e-30));
-  fog.most = float(rays.fog->most);
+  fog.near = float(rays.fog->near - rays.reference_depth);
+  fog.per_depth = float(1 / std::max(rays.fog->far - rays.fog->near, 1e-30));
+  fog.max_opacity = float(rays.fog->max_opacity);
   return fog;
 }
 
@@ -31,11 +31,11 @@ CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, con
   CameraRays rays;
   rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
   rays.forward = -rays.camera.back;
-  rays.clip = packet.clip;
+  rays.clip_planes = packet.clip_planes;
   rays.lights = packet.lights;
   rays.fog = packet.fog;
   if (bounds.empty()) return rays;
-  rays.reference_depth = std::max(0.0, rays.view_depth((of_rays.empty() ? bounds : of_rays).centre()));
+  rays.reference_depth = std::max(0.0, rays.view_depth((of_rays.empty() ? bounds : of_rays).center()));
   double farthest = 0;
   for (int i = 0; i < 8; ++i) farthest = std::max(farthest, rays.view_depth(bounds.corner(i)));
   const double scale = std::max(farthest, bounds.diagonal());
@@ -45,32 +45,32 @@ CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, con
   return rays;
 }
 
-shared::FrameData CameraRays::frame() const {
+shared::FrameData CameraRays::frame_data() const {
   shared::FrameData f{};
   f.half_size = {float(0.5 * camera.width), float(0.5 * camera.height)};
   const double slope_x = camera.half_width / (0.5 * camera.width), slope_y = camera.half_height / (0.5 * camera.height);
   if (!camera.orthographic) f.slope = {float(slope_x), float(slope_y)};
-  f.axis = {float(0.5 * camera.width - camera.centre_x / slope_x), float(0.5 * camera.height + camera.centre_y / slope_y)};
+  f.axis = {float(0.5 * camera.width - camera.center_x / slope_x), float(0.5 * camera.height + camera.center_y / slope_y)};
   f.right = narrow(camera.right);
   f.up = narrow(camera.up);
   f.forward = narrow(forward);
   f.reference_depth = float(reference_depth);
-  f.front = float(-reference_depth);
+  f.front_depth = float(-reference_depth);
   f.depth_near = float(depth_near);
   f.depth_far = float(depth_far);
   f.orthographic = camera.orthographic;
   f.spacing = float(spacing);
   f.first = glm::vec2(0.5f - 0.5f * float(spacing));
-  f.clip_count = std::uint32_t(clip.size());
-  for (std::size_t i = 0; i < clip.size(); ++i) f.clips[i] = plane(clip[i]);
+  f.clip_count = std::uint32_t(clip_planes.size());
+  for (std::size_t i = 0; i < clip_planes.size(); ++i) f.clips[i] = clip_data(clip_planes[i]);
   f.light_count = std::uint32_t(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) f.lights[i] = {narrow(towards(camera, lights[i])), color_of(lights[i].color)};
   f.fog = fog_of(*this);
   return f;
 }
 
-shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping& whole) const {
-  const field::Mapping& mapping = mirror.coarse ? mirror.coarse->mapping() : whole;
+shared::GridData CameraRays::grid_data(const ResidentGrid& mirror, const field::Mapping& whole) const {
+  const field::Mapping& mapping = mirror.downsampled ? mirror.downsampled->mapping() : whole;
   const Mat3& inverse = mapping.index_from_world_linear;
   const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
   // one pixel to the right and down, in index space at depth 1 (perspective) or anywhere (orthographic)
@@ -92,8 +92,8 @@ shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping
   }
   g.lo = narrow(mirror.box_lo);
   g.hi = narrow(mirror.box_hi);
-  g.domain_lo = mirror.coarse ? narrow(mirror.domain_lo) : g.lo;
-  g.domain_hi = mirror.coarse ? narrow(mirror.domain_hi) : g.hi;
+  g.domain_lo = mirror.downsampled ? narrow(mirror.domain_lo) : g.lo;
+  g.domain_hi = mirror.downsampled ? narrow(mirror.domain_hi) : g.hi;
   const VkExtent3D extent = mirror.values.info().extent;
   g.texel = {1.0f / float(extent.width), 1.0f / float(extent.height), 1.0f / float(extent.depth)};
   g.world_gradient = glm::mat3(glm::transpose(inverse));
@@ -103,7 +103,7 @@ shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping
   return g;
 }
 
-shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
+shared::MeshFrameData CameraRays::mesh_frame_data(const Vec3& origin) const {
   shared::MeshFrameData m{};
   // columns of the matrix whose rows are right, up, forward
   for (int i = 0; i < 3; ++i) m.view_from_world[i] = {float(camera.right[i]), float(camera.up[i]), float(forward[i])};
@@ -111,7 +111,7 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
   m.offset = {float(dot(from_eye, camera.right)), float(dot(from_eye, camera.up)), float(dot(from_eye, forward))};
   m.offset_depth = float(dot(from_eye, forward) - reference_depth);
   m.scale = {float(1 / camera.half_width), float(1 / camera.half_height)};
-  m.shift = {float(-camera.centre_x / camera.half_width), float(camera.centre_y / camera.half_height)};
+  m.shift = {float(-camera.center_x / camera.half_width), float(camera.center_y / camera.half_height)};
   m.pixel = {float(2 / camera.width), float(2 / camera.height)};
   m.depth_near = float(depth_near);
   m.depth_far = float(depth_far);
@@ -122,15 +122,15 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
     m.lights[i] = {{float(dot(l, camera.right)), float(dot(l, camera.up)), float(dot(l, forward))}, color_of(lights[i].color)};
   }
   m.fog = fog_of(*this);
-  m.clip_count = std::uint32_t(clip.size());
-  for (std::size_t i = 0; i < clip.size(); ++i) {
-    const Vec3 normal = direction(clip[i].normal);
-    m.clips[i] = glm::vec4(narrow(normal), float(dot(normal, origin - clip[i].point)));
+  m.clip_count = std::uint32_t(clip_planes.size());
+  for (std::size_t i = 0; i < clip_planes.size(); ++i) {
+    const Vec3 normal = direction(clip_planes[i].normal);
+    m.clips[i] = glm::vec4(narrow(normal), float(dot(normal, origin - clip_planes[i].point)));
   }
   return m;
 }
 
-shared::ClipData CameraRays::plane(const Plane& plane) const {
+shared::ClipData CameraRays::clip_data(const Plane& plane) const {
   const Camera& c = camera;
   const Vec3 normal = direction(plane.normal);
   const double x = dot(normal, c.right) * (c.half_width / (0.5 * c.width)), y = -dot(normal, c.up) * (c.half_height / (0.5 * c.height));

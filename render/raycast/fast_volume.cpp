@@ -21,8 +21,8 @@ constexpr std::uint32_t kGroupX = 16, kGroupY = 4;  // as in the shaders
 
 }  // namespace
 
-UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture) {
-  UpsampleGroups groups;
+UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& picture) {
+  UpsampleDispatch groups;
   groups.data.first_x = std::uint32_t(area.offset.x) / 2;
   groups.data.first_y = std::uint32_t(area.offset.y) / 2;
   groups.data.width = picture.width;
@@ -41,7 +41,10 @@ Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::I
   if (!pipeline) {
     vk::ComputeInfo info;
     info.shader = kUpsampleShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::storage_image}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {1, vk::DescriptorKind::texture},
+                            {2, vk::DescriptorKind::texture},
+                            {3, vk::DescriptorKind::storage_image}};
     info.constants = {opaque ? 1u : 0u};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
@@ -49,7 +52,7 @@ Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::I
   VkRect2D pixels = area;
   if (opaque) {
     pixels = {{0, 0}, {size.width, size.height}};
-    commands.use(*opaque, vk::kFragmentRead);
+    commands.transition(*opaque, vk::kFragmentRead);
   } else {
     // beyond the area there is the background
     const bool seen = background[3] > 0;
@@ -57,18 +60,18 @@ Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::I
     commands.begin_pass({&target, 1}, {});
     commands.end_pass();
   }
-  UpsampleGroups groups = upsample_groups(pixels, size);
+  UpsampleDispatch groups = make_upsample_dispatch(pixels, size);
   groups.data.background = {background[0], background[1], background[2], background[3]};
   CATENA_CHECK(vk::write_uniform(*device_, uniform_, groups.data));
-  commands.use(half_lattice, vk::kFragmentRead);
-  commands.use(picture, vk::kComputeWrite);
-  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, opaque ? opaque : &none, nullptr},
-                                  {2, vk::Resource::texture, nullptr, &half_lattice, nullptr},
-                                  {3, vk::Resource::storage_image, nullptr, &picture, nullptr}};
+  commands.transition(half_lattice, vk::kFragmentRead);
+  commands.transition(picture, vk::kComputeWrite);
+  const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
+                                  {1, vk::DescriptorKind::texture, nullptr, opaque ? opaque : &none, nullptr},
+                                  {2, vk::DescriptorKind::texture, nullptr, &half_lattice, nullptr},
+                                  {3, vk::DescriptorKind::storage_image, nullptr, &picture, nullptr}};
   commands.bind(pipeline, bindings);
   if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
-  commands.use(picture, vk::kTransferRead);
+  commands.transition(picture, vk::kTransferRead);
   return Done{};
 }
 
@@ -104,15 +107,15 @@ std::uint32_t lattice_size(std::uint32_t pixels, std::uint32_t spacing) {
 
 /// Where the eye looks, in pixels, and the tangents that a pixel covers, by the fovea's.
 struct Gaze {
-  decltype(shared::LatticeData::gaze) at{}, per_fovea{};
+  decltype(shared::RayGridData::gaze) at{}, per_fovea{};
 };
 Gaze gaze_of(const FastSettings& settings, const Camera& camera) {
-  if (!(settings.fovea > 0) || camera.orthographic) return {};
-  const double x = (settings.gaze_right - camera.centre_x + camera.half_width) / (2 * camera.half_width),
-               y = (camera.centre_y + camera.half_height - settings.gaze_up) / (2 * camera.half_height);
-  return {
-      {float(x * camera.width), float(y * camera.height)},
-      {float(2 * camera.half_width / (camera.width * settings.fovea)), float(2 * camera.half_height / (camera.height * settings.fovea))}};
+  if (!(settings.fovea_tangent > 0) || camera.orthographic) return {};
+  const double x = (settings.gaze_right - camera.center_x + camera.half_width) / (2 * camera.half_width),
+               y = (camera.center_y + camera.half_height - settings.gaze_up) / (2 * camera.half_height);
+  return {{float(x * camera.width), float(y * camera.height)},
+          {float(2 * camera.half_width / (camera.width * settings.fovea_tangent)),
+           float(2 * camera.half_height / (camera.height * settings.fovea_tangent))}};
 }
 
 /// The texels of a lattice that the pixels of an area need.
@@ -133,18 +136,18 @@ VkRect2D lattice_area(const VkRect2D& area, std::uint32_t spacing, const VkExten
 Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
   FastVolumeRaycast self(device);
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
-  CATENA_CHECK(vk::fit_image(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
-  CATENA_TRY(self.no_gradients_, vk::Image::create(device, vk::volume_info(kGradientFormat, 1, 1, 1)));
-  CATENA_CHECK(vk::upload_planes(device, self.no_gradients_, 1,
+  CATENA_CHECK(vk::ensure_image(device, self.placeholder_tiles_, VK_FORMAT_R8_UINT, 1, 1));
+  CATENA_TRY(self.placeholder_gradients_, vk::Image::create(device, vk::volume_image_info(kGradientFormat, 1, 1, 1)));
+  CATENA_CHECK(vk::upload_planes(device, self.placeholder_gradients_, 1,
                                  [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 0, kGradientBytes); }));
   return self;
 }
 
-Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
+Outcome FastVolumeRaycast::ensure(RayGrid& level, std::uint32_t spacing, const VkExtent3D& target) {
   const std::uint32_t width = lattice_size(target.width, spacing), height = lattice_size(target.height, spacing);
-  if (spacing > 1) CATENA_CHECK(vk::fit_image(*device_, level.color, kLatticeFormat, width, height));
-  return vk::fit_image(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock,
-                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+  if (spacing > 1) CATENA_CHECK(vk::ensure_image(*device_, level.color, kLatticeFormat, width, height));
+  return vk::ensure_image(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock,
+                          VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
 }
 
 Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, bool tiles) {
@@ -153,9 +156,10 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
     vk::GraphicsInfo info;
     info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
     info.fragment = kFastVolumeFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture}, {3, vk::Resource::texture},
-                  {4, vk::Resource::texture}, {5, vk::Resource::texture}, {6, vk::Resource::texture}, {7, vk::Resource::texture},
-                  {8, vk::Resource::sampled}, {9, vk::Resource::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::uniform}, {2, vk::DescriptorKind::texture},
+                            {3, vk::DescriptorKind::texture}, {4, vk::DescriptorKind::texture}, {5, vk::DescriptorKind::texture},
+                            {6, vk::DescriptorKind::texture}, {7, vk::DescriptorKind::texture}, {8, vk::DescriptorKind::sampled},
+                            {9, vk::DescriptorKind::texture}};
     info.constants.assign(constants.begin(), constants.end());
     // every pixel goes to the volume target, coarser lattices to their own
     info.colors = {constants[4] & 2u ? kVolumeFormat : kLatticeFormat};
@@ -165,64 +169,66 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
   return &pipeline;
 }
 
-Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque) {
+Outcome FastVolumeRaycast::mark(vk::Commands& commands, RayGrid& level, vk::Image& coarser, bool opaque) {
   vk::Pipeline& pipe = mark_pipelines_[opaque];
   if (!pipe) {
     vk::GraphicsInfo info;
     info.vertex = kFastVolumeVertexShader;
     info.fragment = kFastVolumeMarkShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::texture}, {2, vk::DescriptorKind::texture}};
     info.constants = {opaque};
     info.colors = {VK_FORMAT_R8_UINT};
     CATENA_TRY(pipe, vk::Pipeline::create(*device_, info));
   }
   const vk::ColorTarget target{&level.marks, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&target, 1}, {});
-  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &level.data, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, &coarser, nullptr},
-                                  {2, vk::Resource::texture, nullptr, opaque ? &eye().opaque->opaque() : &no_tiles_, nullptr}};
+  const vk::Binding bindings[] = {
+      {0, vk::DescriptorKind::uniform, &level.data, nullptr, nullptr},
+      {1, vk::DescriptorKind::texture, nullptr, &coarser, nullptr},
+      {2, vk::DescriptorKind::texture, nullptr, opaque ? &eye_state().opaque_tiles->opaque_tiles() : &placeholder_tiles_, nullptr}};
   commands.bind(pipe, bindings);
   commands.draw_triangle();
   commands.end_pass();
-  commands.use(level.marks, vk::kShaderRead);
+  commands.transition(level.marks, vk::kShaderRead);
   return Done{};
 }
 
 /// The frame's data; grid 0 counts from the origin of what is packed.
 Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
-  shared::FrameData frame = rays.frame();
-  frame.grids[0] = rays.grid(look_.place(), look_.item().grid->mapping());
-  frame.grids[0].id = look_.item().id;
-  frame.grids[0].clipped = look_.item().clipped;
+  shared::FrameData frame = rays.frame_data();
+  frame.grids[0] = rays.grid_data(resources_.local_geometry(), resources_.item().grid->mapping());
+  frame.grids[0].id = resources_.item().id;
+  frame.grids[0].is_clipped = resources_.item().is_clipped;
   frame.termination = float(settings.termination);
-  frame.step_world = float(settings.step_voxels * look_.item().grid->mapping().smallest_edge());
+  frame.step_world = float(settings.step_voxels * resources_.item().grid->mapping().min_voxel_edge());
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
 }
 
-bool FastVolumeRaycast::leaps() const { return look_.leaping() > kLeapAbove; }
+bool FastVolumeRaycast::skips_empty_space() const { return resources_.skippable_share() > kLeapAbove; }
 
-Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw& draw) {
-  const bool leaps = draw.skips && this->leaps();
+Outcome FastVolumeRaycast::draw(vk::Commands& commands, RayGrid& level, const DrawParams& draw) {
+  const bool leaps = draw.skips_empty && this->skips_empty_space();
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
-                                                 look_.as_bricks(), look_.masked(), draw.half_depth},
+                                                 resources_.is_bricked(), resources_.is_masked(), draw.half_opacity_depth},
                                                 draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
   commands.begin_pass({&color, 1}, {});
   const vk::Binding bindings[] = {
-      {0, vk::Resource::uniform, &frame_, nullptr, nullptr},
-      {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
-      {2, vk::Resource::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.none, nullptr},
-      {3, vk::Resource::texture, nullptr, &look_.words(), nullptr},
-      {4, vk::Resource::texture, nullptr, &look_.table(), nullptr},
-      {5, vk::Resource::texture, nullptr, &look_.map(), nullptr},
-      {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
-      {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
-      {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &look_.gradients() : &no_gradients_, &linear_},
-      {9, vk::Resource::texture, nullptr, draw.tiles == Tiles::changed ? &eye().opaque->changed() : &no_tiles_, nullptr}};
-  commands.scissor(draw.area);
+      {0, vk::DescriptorKind::uniform, &frame_, nullptr, nullptr},
+      {1, vk::DescriptorKind::uniform, &level.data, nullptr, nullptr},
+      {2, vk::DescriptorKind::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.placeholder, nullptr},
+      {3, vk::DescriptorKind::texture, nullptr, &resources_.words(), nullptr},
+      {4, vk::DescriptorKind::texture, nullptr, &resources_.table(), nullptr},
+      {5, vk::DescriptorKind::texture, nullptr, &resources_.map(), nullptr},
+      {6, vk::DescriptorKind::texture, nullptr, draw.coarser ? draw.coarser : draw.placeholder, nullptr},
+      {7, vk::DescriptorKind::texture, nullptr, &level.marks, nullptr},
+      {8, vk::DescriptorKind::sampled, nullptr, draw.shading == 2 ? &resources_.gradients() : &placeholder_gradients_, &linear_},
+      {9, vk::DescriptorKind::texture, nullptr, draw.tiles == Tiles::dirty ? &eye_state().opaque_tiles->dirty_tiles() : &placeholder_tiles_,
+       nullptr}};
+  commands.set_scissor(draw.area);
   commands.bind(*pipe, bindings);
   if (draw.tiles == Tiles::all) {
     commands.draw_triangle();
@@ -240,7 +246,10 @@ Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, 
   if (!pipeline) {
     vk::ComputeInfo info;
     info.shader = kFastVolumeInterpolateShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::storage_image}, {3, vk::Resource::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                            {1, vk::DescriptorKind::texture},
+                            {2, vk::DescriptorKind::storage_image},
+                            {3, vk::DescriptorKind::texture}};
     info.constants = {keep};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
@@ -249,14 +258,15 @@ Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, 
     commands.begin_pass({&empty, 1}, {});
     commands.end_pass();
   }
-  const UpsampleGroups groups = upsample_groups(area, target.info().extent);
+  const UpsampleDispatch groups = make_upsample_dispatch(area, target.info().extent);
   CATENA_CHECK(vk::write_uniform(*device_, interpolate_data_, groups.data));
-  commands.use(half, vk::kFragmentRead);
-  commands.use(target, vk::kComputeWrite);
-  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &interpolate_data_, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, &half, nullptr},
-                                  {2, vk::Resource::storage_image, nullptr, &target, nullptr},
-                                  {3, vk::Resource::texture, nullptr, keep ? &eye().opaque->changed() : &no_tiles_, nullptr}};
+  commands.transition(half, vk::kFragmentRead);
+  commands.transition(target, vk::kComputeWrite);
+  const vk::Binding bindings[] = {
+      {0, vk::DescriptorKind::uniform, &interpolate_data_, nullptr, nullptr},
+      {1, vk::DescriptorKind::texture, nullptr, &half, nullptr},
+      {2, vk::DescriptorKind::storage_image, nullptr, &target, nullptr},
+      {3, vk::DescriptorKind::texture, nullptr, keep ? &eye_state().opaque_tiles->dirty_tiles() : &placeholder_tiles_, nullptr}};
   commands.bind(pipeline, bindings);
   if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
   return Done{};
@@ -266,23 +276,24 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
                                   const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none,
                                   bool keep) {
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
-  CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
+  CATENA_ASSERT(target || (settings.ends_at_half_resolution() && !opaque_depth));
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
-  Eye& own = eye();
-  const Kept now{settings, {frame, look_.version(), 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
-  const bool same = keep && target && own.kept && own.kept->picture.is(now.picture);
-  const bool still = has_kept_ = same && own.kept->settings == settings;
-  const bool first_is_marched = same && !opaque_depth && settings.spacing > 1 && own.kept->settings.march_alike(settings);
-  own.kept.reset();
+  EyeState& own = eye_state();
+  const ReuseState now{settings,
+                       {frame, resources_.version(), 0, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
+  const bool same = keep && target && own.reuse && own.reuse->state.matches(now.state);
+  const bool still = reused_previous_ = same && own.reuse->settings == settings;
+  const bool first_is_marched = same && !opaque_depth && settings.spacing > 1 && own.reuse->settings.marches_same_rays(settings);
+  own.reuse.reset();
   marched_half_ = marched_full_ = false;
-  commands.use(no_tiles_, vk::kShaderRead);
+  commands.transition(placeholder_tiles_, vk::kShaderRead);
   if (opaque_depth) {
-    if (!own.opaque) own.opaque.emplace(*device_);
-    CATENA_CHECK(own.opaque->look(commands, *opaque_depth));
-    if (still) CATENA_CHECK(own.opaque->find_changed(commands, kReach[settings.spacing]));
+    if (!own.opaque_tiles) own.opaque_tiles.emplace(*device_);
+    CATENA_CHECK(own.opaque_tiles->analyze(commands, *opaque_depth));
+    if (still) CATENA_CHECK(own.opaque_tiles->find_dirty(commands, kReach[settings.spacing]));
   }
   if (still && !opaque_depth) {
-    own.kept = now;
+    own.reuse = now;
     return Done{};
   }
 
@@ -291,7 +302,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   vk::Image* coarser = nullptr;
   const std::uint32_t finest = target ? 1 : 2;
   for (std::uint32_t spacing = settings.spacing; spacing >= finest; spacing /= 2) {
-    Level& level = spacing == 4 ? own.quarter : spacing == 2 ? own.half : own.full;
+    RayGrid& level = spacing == 4 ? own.quarter : spacing == 2 ? own.half : own.full;
     CATENA_CHECK(ensure(level, spacing, picture));
     vk::Image& image = spacing == 1 ? *target : level.color;
     double refine_255 = spacing == 2 ? settings.refine_half_255 : settings.refine_full_255;
@@ -301,56 +312,58 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
     const VkExtent3D& size = image.info().extent;
     const bool refines = coarser && spacing == 1;
-    const shared::LatticeData data{float(spacing), apron,       float(refine_255 / 255), gaze.at,    gaze.per_fovea,
-                                   from.width,     from.height, look_.gradient_nodes(),  size.width, size.height,
+    const shared::RayGridData data{float(spacing), apron,       float(refine_255 / 255),     gaze.at,    gaze.per_fovea,
+                                   from.width,     from.height, resources_.gradient_nodes(), size.width, size.height,
                                    refines,        still};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       (spacing == 2 ? marched_half_ : marched_full_) = true;
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
     } else {
-      commands.use(level.marks, vk::kFragmentRead);
+      commands.transition(level.marks, vk::kFragmentRead);
     }
     // most of the last step is interpolation: all of it first, then what is marked
     if (refines) CATENA_CHECK(interpolate(commands, *coarser, image, area, still));
     if (refines && !marches) break;
-    const Tiles tiles = still ? Tiles::changed : refines ? Tiles::marked : Tiles::all;
+    const Tiles tiles = still ? Tiles::dirty : refines ? Tiles::marked : Tiles::all;
     if (coarser || !first_is_marched)
       CATENA_CHECK(draw(commands, level,
-                        {&image, coarser, marches, tiles, shading(settings), settings.skip,
+                        {&image, coarser, marches, tiles, shading(settings), settings.skip_empty,
                          lattice_area(area, spacing, image.info().extent), opaque_depth, &none}));
-    if (spacing > 1) commands.use(image, vk::kFragmentRead);
+    if (spacing > 1) commands.transition(image, vk::kFragmentRead);
     coarser = &image;
   }
-  if (target) own.kept = now;
+  if (target) own.reuse = now;
   return Done{};
 }
 
-Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
-                                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
-  return probe(commands, rays, settings, spacing,
-               {.target = &target, .shading = shading(settings), .opaque_depth = opaque_depth, .none = &none});
+Outcome FastVolumeRaycast::record_ray_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
+                                              std::uint32_t spacing, vk::Image& target, const vk::Image* opaque_depth,
+                                              const vk::Image& none) {
+  return record_samples(commands, rays, settings, spacing,
+                        {.target = &target, .shading = shading(settings), .opaque_depth = opaque_depth, .placeholder = &none});
 }
 
-Outcome FastVolumeRaycast::record_half_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
-                                             std::uint32_t spacing, vk::Image& target, const vk::Image* opaque_depth,
-                                             const vk::Image& none) {
-  return probe(commands, rays, settings, spacing, {.target = &target, .opaque_depth = opaque_depth, .none = &none, .half_depth = true});
+Outcome FastVolumeRaycast::record_half_opacity_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
+                                                     std::uint32_t spacing, vk::Image& target, const vk::Image* opaque_depth,
+                                                     const vk::Image& none) {
+  return record_samples(commands, rays, settings, spacing,
+                        {.target = &target, .opaque_depth = opaque_depth, .placeholder = &none, .half_opacity_depth = true});
 }
 
 /// Rays alone, of a lattice that nothing refines.
-Outcome FastVolumeRaycast::probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
-                                 Draw wanted) {
+Outcome FastVolumeRaycast::record_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings,
+                                          std::uint32_t spacing, DrawParams wanted) {
   CATENA_ASSERT(wanted.target->info().format == kVolumeFormat);
   CATENA_CHECK(write_frame(rays, settings));
-  CATENA_CHECK(vk::fit_image(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
-  commands.use(probe_.marks, vk::kFragmentRead);
-  CATENA_CHECK(vk::write_uniform(*device_, probe_.data,
-                                 shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_nodes(), 0, 0, 0, 0}));
+  CATENA_CHECK(vk::ensure_image(*device_, sample_grid_.marks, VK_FORMAT_R8_UINT, 1, 1));
+  commands.transition(sample_grid_.marks, vk::kFragmentRead);
+  CATENA_CHECK(vk::write_uniform(*device_, sample_grid_.data,
+                                 shared::RayGridData{float(spacing), 0, 0, {}, {}, 1, 1, resources_.gradient_nodes(), 0, 0, 0, 0}));
   const VkExtent3D& extent = wanted.target->info().extent;
-  wanted.skips = settings.skip;
+  wanted.skips_empty = settings.skip_empty;
   wanted.area = {{0, 0}, {extent.width, extent.height}};
-  return draw(commands, probe_, wanted);
+  return draw(commands, sample_grid_, wanted);
 }
 
 }  // namespace catena::render

@@ -58,8 +58,8 @@ bool takes_peaks(const TransferTable& table, double lo, double hi, int samples) 
 }  // namespace
 
 ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded) {
-  if (!(values.least < values.greatest)) return values;
-  const std::vector<double> points = points_between(table, values.least, values.greatest);
+  if (!(values.min < values.max)) return values;
+  const std::vector<double> points = control_values_between(table, values.min, values.max);
   std::vector<Look> looks;
   for (const double value : points) looks.push_back(look_at(table, value));
   std::size_t first = 0, final = points.size() - 1;
@@ -69,9 +69,9 @@ ValueInterval active_interval(const TransferTable& table, const ValueInterval& v
   return {points[first], points[final]};
 }
 
-double changed_by_codes(const TransferTable& table, const ValueInterval& active, std::span<const float> values, double length) {
-  if (!(active.least < active.greatest) || values.empty()) return 0;
-  const double per_code = (active.greatest - active.least) / (kCodes - 1);
+double quantization_change(const TransferTable& table, const ValueInterval& active, std::span<const float> values, double length) {
+  if (!(active.min < active.max) || values.empty()) return 0;
+  const double per_code = (active.max - active.min) / (kCodes - 1);
   const auto shown = [&](double value) {
     Look look = look_at(table, value);
     const double alpha = -std::expm1(-look[0] * length), share = look[0] > 0 ? alpha / look[0] : 0;
@@ -81,8 +81,8 @@ double changed_by_codes(const TransferTable& table, const ValueInterval& active,
   };
   double sum = 0;
   for (const float raw : values) {
-    const double value = std::clamp(double(raw), active.least, active.greatest);
-    const Look exact = shown(value), rounded = shown(active.least + per_code * std::round((value - active.least) / per_code));
+    const double value = std::clamp(double(raw), active.min, active.max);
+    const Look exact = shown(value), rounded = shown(active.min + per_code * std::round((value - active.min) / per_code));
     double change = 0;
     for (int c = 0; c < 4; ++c) change = std::max(change, std::fabs(exact[c] - rounded[c]));
     sum += change;
@@ -90,8 +90,8 @@ double changed_by_codes(const TransferTable& table, const ValueInterval& active,
   return sum / double(values.size());
 }
 
-bool is_packed_whole(const TransferTable& table, const ValueInterval& active) {
-  return !(active.least < active.greatest) || takes_peaks(table, active.least, active.greatest, (kCodes - 1) * kFine + 1);
+bool resolves_transfer_function(const TransferTable& table, const ValueInterval& active) {
+  return !(active.min < active.max) || takes_peaks(table, active.min, active.max, (kCodes - 1) * kFine + 1);
 }
 
 namespace {
@@ -107,7 +107,7 @@ struct Piece {
 Piece piece_between(const TransferTable& table, double from, double to) {
   Piece piece;
   if (!(from < to)) return piece;
-  const std::vector<double> values = points_between(table, from, to);
+  const std::vector<double> values = control_values_between(table, from, to);
   Look before = look_at(table, from);
   for (std::size_t i = 1; i < values.size(); ++i) {
     const Look middle = look_at(table, 0.5 * (values[i - 1] + values[i])), after = look_at(table, values[i]);
@@ -128,13 +128,13 @@ PreintegratedTable make_preintegrated(const TransferTable& table, double lo, dou
   PreintegratedTable out;
   for (int a = 0; a < kCodes; ++a) {
     looks[a] = look_at(table, lo + per_code * a);
-    out.greatest_sigma = std::max(out.greatest_sigma, looks[a][0]);
+    out.max_sigma = std::max(out.max_sigma, looks[a][0]);
     if (a == 0) continue;
     const Piece piece = piece_between(table, lo + per_code * (a - 1), lo + per_code * a);
     for (int c = 0; c < 4; ++c) integral[a][c] = integral[a - 1][c] + piece.integral[c];
     alike[a - 1] = piece.level && (!shaded || !(looks[a - 1][0] > 0));
-    out.greatest_sigma = std::max(out.greatest_sigma, piece.greatest_sigma);
-    out.looks.look[a] = std::uint16_t(out.looks.look[a - 1] + (alike[a - 1] ? 0 : 1));
+    out.max_sigma = std::max(out.max_sigma, piece.greatest_sigma);
+    out.appearance.appearance_id[a] = std::uint16_t(out.appearance.appearance_id[a - 1] + (alike[a - 1] ? 0 : 1));
   }
   const auto mean = [&](int a, int b) {
     Look m;
@@ -144,10 +144,10 @@ PreintegratedTable make_preintegrated(const TransferTable& table, double lo, dou
 
   out.entries.resize(std::size_t(kCodes) * kCodes);
   for (int a = 0; a < kCodes; ++a) {
-    out.looks.invisible[a] = !(looks[a][0] > 0);
+    out.appearance.is_invisible[a] = !(looks[a][0] > 0);
     out.entries[std::size_t(a) * kCodes + a] = entry(looks[a]);
     for (int b = a + 1; b < kCodes; ++b) {
-      const bool same = out.looks.look[a] == out.looks.look[b];
+      const bool same = out.appearance.appearance_id[a] == out.appearance.appearance_id[b];
       out.entries[std::size_t(a) * kCodes + b] = out.entries[std::size_t(b) * kCodes + a] = entry(same ? looks[a] : mean(a, b));
     }
   }

@@ -23,7 +23,7 @@ RenderSettings reference_settings() {
   RenderSettings s;
   s.step_voxels = 0.1;
   s.termination = 1e-4;
-  s.texels = TexelFormat::r32f;
+  s.texel_format = TexelFormat::r32f;
   return s;
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/base/result.h"
-#include "engine/base/value_scale.h"
+#include "engine/base/symlog_scale.h"
 
 namespace catena::render {
 
@@ -29,7 +29,7 @@ float nearest_above(double value) {
 /// The floats between which the function is linear at every float: its points, or their neighbours where they are no floats.
 std::vector<float> float_points(const TransferTable& table, double lo, double hi) {
   std::vector<float> values;
-  for (const double value : points_between(table, lo, hi))
+  for (const double value : control_values_between(table, lo, hi))
     for (const float f : {nearest_below(value), nearest_above(value)}) values.push_back(f);
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -49,31 +49,31 @@ struct Allowance {
 
 bool errs(const glm::vec4& exact, const glm::vec4& read, bool colors_alone, double length, const Allowance& allowed) {
   const double depth = double(exact.a) * length, share = colors_alone ? 1 : std::min(1.0, depth);
-  if (std::fabs(double(exact.a) - read.a) * length > kTableError * allowed.sigma * (1 + depth)) return true;
+  if (std::fabs(double(exact.a) - read.a) * length > kTableTolerance * allowed.sigma * (1 + depth)) return true;
   for (int c = 0; c < 3; ++c)
-    if (std::fabs(double(exact[c]) - read[c]) * share > kTableError * allowed.color) return true;
+    if (std::fabs(double(exact[c]) - read[c]) * share > kTableTolerance * allowed.color) return true;
   return false;
 }
 
 /// The place of a value among the samples, in double precision.
 double place_of(const TransferLut& lut, double value) {
-  return std::clamp((scaled(value, lut.linear_below) - double(lut.lo)) * double(lut.per_unit), 0.0, double(lut.last()));
+  return std::clamp((symlog(value, lut.linear_below) - double(lut.lo)) * double(lut.entries_per_unit), 0.0, double(lut.last_index()));
 }
 
 std::size_t interval_of(const TransferLut& lut, double place) {
-  return std::size_t(std::clamp(std::floor(place), 0.0, double(lut.last()) - 1));
+  return std::size_t(std::clamp(std::floor(place), 0.0, double(lut.last_index()) - 1));
 }
 
 /// Of each interval, by how many of the values lie in it.
 std::vector<Allowance> allowances(const TransferLut& lut, std::span<const float> values) {
   constexpr double kMostSigma = 16, kMostColor = 4;
-  std::vector<Allowance> all(lut.last());
+  std::vector<Allowance> all(lut.last_index());
   if (values.empty()) return all;
-  std::vector<std::uint32_t> counts(lut.last(), 1);
+  std::vector<std::uint32_t> counts(lut.last_index(), 1);
   for (const float value : values)
     if (std::isfinite(value)) ++counts[interval_of(lut, place_of(lut, value))];
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const double rare = kRareShare * double(values.size()) / counts[i];
+    const double rare = kRareValueShare * double(values.size()) / counts[i];
     all[i] = {std::clamp(rare, 1.0, kMostSigma), std::clamp(rare, 1.0, kMostColor)};
   }
   return all;
@@ -81,14 +81,14 @@ std::vector<Allowance> allowances(const TransferLut& lut, std::span<const float>
 
 /// Marks the intervals in which the samples err at a point.
 bool mark_intervals(TransferLut& lut, bool colors_alone, double length, std::span<const float> values) {
-  std::vector<std::uint8_t> marked(lut.last());
+  std::vector<std::uint8_t> marked(lut.last_index());
   const std::vector<Allowance> allowed = allowances(lut, values);
-  for (std::size_t i = 0; i < lut.values.size(); ++i) {
-    const double place = place_of(lut, lut.values[i]);
+  for (std::size_t i = 0; i < lut.control_values.size(); ++i) {
+    const double place = place_of(lut, lut.control_values[i]);
     const std::size_t cell = interval_of(lut, place);
     const auto f = float(place - double(cell));
     const glm::vec4 read = lut.entries[cell] * (1 - f) + lut.entries[cell + 1] * f;
-    if (!errs(lut.points[i], read, colors_alone, length, allowed[cell])) continue;
+    if (!errs(lut.control_points[i], read, colors_alone, length, allowed[cell])) continue;
     for (const double side : {-kRoundedPlace, kRoundedPlace}) marked[interval_of(lut, place + side)] = 1;
   }
   for (std::size_t i = 0; i < marked.size(); ++i)
@@ -98,20 +98,21 @@ bool mark_intervals(TransferLut& lut, bool colors_alone, double length, std::spa
 
 /// Counts what is visible and what is equal, among the points or the samples.
 void number_looks(TransferLut& lut) {
-  const std::vector<glm::vec4>& all = lut.has_points() ? lut.points : lut.entries;
-  lut.visible_before.resize(all.size() + 1);
-  for (std::size_t i = 0; i < all.size(); ++i) lut.visible_before[i + 1] = lut.visible_before[i] + (all[i].a > 0);
-  lut.run.resize(all.size());
-  for (std::size_t i = 1; i < all.size(); ++i) lut.run[i] = lut.run[i - 1] + (all[i] != all[i - 1]);
+  const std::vector<glm::vec4>& all = lut.has_control_points() ? lut.control_points : lut.entries;
+  lut.visible_prefix.resize(all.size() + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) lut.visible_prefix[i + 1] = lut.visible_prefix[i] + (all[i].a > 0);
+  lut.run_ids.resize(all.size());
+  for (std::size_t i = 1; i < all.size(); ++i) lut.run_ids[i] = lut.run_ids[i - 1] + (all[i] != all[i - 1]);
 }
 
 }  // namespace
 
 double table_value(const TransferTable& table, double value, int channel) {
-  return channel == 3 ? piecewise(table.extinctions, value, 1) : piecewise(table.colors, value, std::size_t(channel) + 1);
+  return channel == 3 ? interpolate_piecewise(table.extinctions, value, 1)
+                      : interpolate_piecewise(table.colors, value, std::size_t(channel) + 1);
 }
 
-std::vector<double> points_between(const TransferTable& table, double lo, double hi) {
+std::vector<double> control_values_between(const TransferTable& table, double lo, double hi) {
   std::vector<double> values{lo, hi};
   const auto add = [&](const auto& points) {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -130,16 +131,16 @@ std::vector<double> points_between(const TransferTable& table, double lo, double
 
 TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range, double length, std::span<const float> values) {
   // the values where anything changes
-  double lo = range.least, hi = range.greatest, first = HUGE_VAL, last = -HUGE_VAL;
+  double lo = range.min, hi = range.max, first = HUGE_VAL, last = -HUGE_VAL;
   for (const auto& p : table.colors) first = std::min(first, p[0]), last = std::max(last, p[0]);
   for (const auto& p : table.extinctions) first = std::min(first, p[0]), last = std::max(last, p[0]);
-  if (first <= last && !table.labels) {
+  if (first <= last && !table.is_categorical) {
     lo = std::clamp(lo, first, last);
     hi = std::clamp(hi, first, last);
   }
   std::uint32_t count = kEntries;
   const double first_label = std::floor(lo + 0.5), labels = std::ceil(hi - 0.5) - first_label + 1;
-  const bool each_label = table.labels && labels >= 2 && labels <= kMostLabels;
+  const bool each_label = table.is_categorical && labels >= 2 && labels <= kMostLabels;
   if (each_label) {
     count = std::uint32_t(labels);
     lo = first_label;
@@ -150,70 +151,71 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   // of one sign the scale is the same but for a constant, whose digits a float would lack for the rest
   if (lut.linear_below > 0 && (lo > 0 || hi < 0)) lut.linear_below = std::max(lut.linear_below, std::min(std::fabs(lo), std::fabs(hi)));
   // over less than a factor of about 1.6 a logarithm in floats tells fewer values apart than the values themselves
-  if (lut.is_scaled() && scaled(hi, lut.linear_below) - scaled(lo, lut.linear_below) < 0.5) lut.linear_below = 0;
-  const double from = scaled(lo, lut.linear_below), to = scaled(hi, lut.linear_below);
+  if (lut.has_nonlinear_scale() && symlog(hi, lut.linear_below) - symlog(lo, lut.linear_below) < 0.5) lut.linear_below = 0;
+  const double from = symlog(lo, lut.linear_below), to = symlog(hi, lut.linear_below);
   lut.lo = float(from);
-  lut.per_unit = to > from ? float((count - 1) / (to - from)) : 0;
-  if (!std::isfinite(lut.per_unit)) lut.per_unit = 0;
-  if (!(lut.per_unit > 0)) count = 2;
+  lut.entries_per_unit = to > from ? float((count - 1) / (to - from)) : 0;
+  if (!std::isfinite(lut.entries_per_unit)) lut.entries_per_unit = 0;
+  if (!(lut.entries_per_unit > 0)) count = 2;
   for (std::uint32_t i = 0; i < count; ++i)
-    lut.entries.push_back(look_of(table, lut.per_unit > 0 ? unscaled(double(lut.lo) + i / double(lut.per_unit), lut.linear_below) : lo));
+    lut.entries.push_back(look_of(
+        table, lut.entries_per_unit > 0 ? symlog_inverse(double(lut.lo) + i / double(lut.entries_per_unit), lut.linear_below) : lo));
   if (!each_label && hi > lo) {
-    lut.values = float_points(table, lo, hi);
-    for (const float value : lut.values) lut.points.push_back(look_of(table, value));
+    lut.control_values = float_points(table, lo, hi);
+    for (const float value : lut.control_values) lut.control_points.push_back(look_of(table, value));
     if (!mark_intervals(lut, table.extinctions.empty(), length, values)) {
-      lut.values.clear();
-      lut.points.clear();
+      lut.control_values.clear();
+      lut.control_points.clear();
     }
   }
   number_looks(lut);
   return lut;
 }
 
-TransferLut make_factor_lut(const std::vector<std::array<double, 2>>& factors) {
+TransferLut make_gradient_factor_lut(const std::vector<std::array<double, 2>>& factors) {
   CATENA_ASSERT(!factors.empty());
   TransferTable table;
   for (const auto& [gradient, factor] : factors) table.colors.push_back({gradient, factor, 0, 0});
   return make_transfer_lut(table, {float(factors.front()[0]), float(factors.back()[0])}, 0);
 }
 
-std::vector<glm::vec4> TransferLut::words() const {
+std::vector<glm::vec4> TransferLut::pack_for_shader() const {
   std::vector<glm::vec4> all = entries;
-  all.insert(all.end(), points.begin(), points.end());
+  all.insert(all.end(), control_points.begin(), control_points.end());
   const std::size_t start = all.size();
-  all.resize(start + (values.size() + 3) / 4);
-  for (std::size_t i = 0; i < values.size(); ++i) all[start + i / 4][int(i % 4)] = values[i];
+  all.resize(start + (control_values.size() + 3) / 4);
+  for (std::size_t i = 0; i < control_values.size(); ++i) all[start + i / 4][int(i % 4)] = control_values[i];
   return all;
 }
 
 float TransferLut::sample_index(float value) const {
-  return std::clamp((float(scaled(value, linear_below)) - lo) * per_unit, 0.0f, float(last()));
+  return std::clamp((float(symlog(value, linear_below)) - lo) * entries_per_unit, 0.0f, float(last_index()));
 }
 
 float TransferLut::index(float value) const {
-  if (!has_points()) return sample_index(value);
-  const auto after = std::clamp(std::ranges::upper_bound(values, value), values.begin() + 1, values.end() - 1);
+  if (!has_control_points()) return sample_index(value);
+  const auto after = std::clamp(std::ranges::upper_bound(control_values, value), control_values.begin() + 1, control_values.end() - 1);
   const float a = after[-1], b = *after;
-  return float(after - values.begin() - 1) + std::clamp((value - a) / (b - a), 0.0f, 1.0f);
+  return float(after - control_values.begin() - 1) + std::clamp((value - a) / (b - a), 0.0f, 1.0f);
 }
 
-bool TransferLut::visible(const BrickRange& range) const {
-  const auto from = std::uint32_t(std::floor(index(range.least))), to = std::uint32_t(std::ceil(index(range.greatest)));
-  return visible_before[to + 1] > visible_before[from];
+bool TransferLut::any_visible(const BrickRange& range) const {
+  const auto from = std::uint32_t(std::floor(index(range.min))), to = std::uint32_t(std::ceil(index(range.max)));
+  return visible_prefix[to + 1] > visible_prefix[from];
 }
 
-std::uint16_t TransferLut::look(const BrickRange& range) const {
-  if (!visible(range)) return 1;
-  if (double(run.size()) > kMostLooks) return 0;
-  const auto from = std::size_t(std::floor(index(range.least))), to = std::size_t(std::ceil(index(range.greatest)));
-  if (run[from] == run[to]) return std::uint16_t(2 + run[from]);
+std::uint16_t TransferLut::appearance(const BrickRange& range) const {
+  if (!any_visible(range)) return 1;
+  if (double(run_ids.size()) > kMostLooks) return 0;
+  const auto from = std::size_t(std::floor(index(range.min))), to = std::size_t(std::ceil(index(range.max)));
+  if (run_ids[from] == run_ids[to]) return std::uint16_t(2 + run_ids[from]);
   // one value between two different entries
   constexpr float parts = 8;
   static_assert(2 + kMostLooks + parts * kMostLooks < 65536 && kEntries < kMostLooks);
-  const float place = sample_index(range.least);
-  const bool marked = std::signbit(entries[std::min(std::size_t(place), std::size_t(last()) - 1)].a);
-  if (range.least != range.greatest || marked) return 0;
-  return std::uint16_t(2 + run.size() + std::size_t(std::lround(parts * place)));
+  const float place = sample_index(range.min);
+  const bool marked = std::signbit(entries[std::min(std::size_t(place), std::size_t(last_index()) - 1)].a);
+  if (range.min != range.max || marked) return 0;
+  return std::uint16_t(2 + run_ids.size() + std::size_t(std::lround(parts * place)));
 }
 
 }  // namespace catena::render

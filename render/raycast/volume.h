@@ -6,22 +6,22 @@
 #include <map>
 #include <optional>
 
-#include "render/raycast/bound_grids.h"
+#include "render/raycast/dirty_tiles.h"
+#include "render/raycast/grid_bindings.h"
 #include "render/raycast/render_settings.h"
-#include "render/raycast/still_tiles.h"
 
 namespace catena::render {
 
 class VolumeRaycast {
  public:
   static Result<VolumeRaycast> create(vk::Device& device);
-  Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
-  /// Within a pass over a target of any size: a picture's rays, or some of them.
+  Outcome prepare(std::span<const ResidentItem<VolumeItem>> volumes, std::span<const ResidentItem<IsosurfaceItem>> surfaces);
+  /// CellFinder a pass over a target of any size: a picture's rays, or some of them.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
   /// What follows is one of so many eyes' pictures: each keeps its own from picture to picture.
-  void turn_to(std::size_t eye, std::size_t eyes) {
-    eyes_.resize(eyes);
-    eye_ = eye;
+  void select_eye(std::size_t eye, std::size_t eyes) {
+    eye_states_.resize(eyes);
+    eye_index_ = eye;
   }
   /// Into `target` of the picture's size, not within a pass. `keep`: what it holds since the last call stays where it would come out the
   /// same, to the bit (still_tiles.h).
@@ -29,19 +29,21 @@ class VolumeRaycast {
                       const RayScene& scene, vk::Image& target, bool keep);
   /// As record(), of settings that end at half of the light: instead of colours the depth t at which alpha passes 0.5 (red), NO_DEPTH where
   /// it never does. Not of layers alone.
-  Outcome record_half_depth(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                            const RayScene& scene);
-  bool has_half_depth() const { return !volumes_.empty() || !surfaces_.empty(); }
+  Outcome record_half_opacity_depth(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                                    const RayScene& scene);
+  bool has_half_opacity_depth() const { return !volumes_.empty() || !surfaces_.empty(); }
   /// Whether the last record_into() left most of it as it was.
-  bool has_kept() const { return has_kept_; }
+  bool reused_previous() const { return reused_previous_; }
   /// Something else has drawn into the eye's target.
-  void forget_target() { eye().kept.reset(); }
+  void invalidate_target() { eye_state().reuse.reset(); }
   /// Tiles that record_into() has marched again, where it has kept the others; null: it has not, or nothing was opaque.
-  vk::Image* changed_tiles() { return has_kept_ && eye().kept->picture.opaque ? &eye().opaque->changed() : nullptr; }
+  vk::Image* dirty_tiles() {
+    return reused_previous_ && eye_state().reuse->state.has_opaque ? &eye_state().opaque_tiles->dirty_tiles() : nullptr;
+  }
 
  private:
   struct Volume {
-    std::shared_ptr<const GridMirror> mirror;
+    std::shared_ptr<const ResidentGrid> resident;
     VolumeItem item;
     TransferLut lut;
     TransferLut factors;  ///< without entries: 1 everywhere
@@ -52,59 +54,61 @@ class VolumeRaycast {
     SurfaceState state;
     IsosurfaceItem item;
   };
-  struct Colors {
+  struct ColorGridUse {
     ColorGrid grid;
     std::size_t owner = 0;  ///< a volume, or behind those a surface
     std::uint32_t table_start = 0;
   };
   /// What a pipeline is made for.
-  struct Kind {
-    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0,
-                  tables = 0;
-    bool tiles = false;  ///< only those that have changed
-    bool half_depth = false;
-    auto operator<=>(const Kind&) const = default;
-    bool single() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
-    bool layers_alone() const { return volumes == 0 && surfaces == 0; }
-    std::uint32_t grid_slots() const { return layers_alone() ? 0 : single() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS; }
+  struct PipelineKey {
+    std::uint32_t flags = 0, has_opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0,
+                  fog = 0, tables = 0;
+    bool dirty_only = false;  ///< only those that have changed
+    bool half_opacity_depth = false;
+    auto operator<=>(const PipelineKey&) const = default;
+    bool is_single_volume() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
+    bool is_layers_only() const { return volumes == 0 && surfaces == 0; }
+    std::uint32_t grid_slots() const {
+      return is_layers_only() ? 0 : is_single_volume() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS;
+    }
   };
   /// What is to be drawn, and how.
-  struct Ready {
-    Kind kind;
+  struct DrawState {
+    PipelineKey key;
     shared::FrameData frame;
-    std::vector<BoundGrid> grids;
+    std::vector<GridBinding> grids;
   };
-  struct Kept {
-    Kind kind;
-    StillPicture picture;
+  struct ReuseState {
+    PipelineKey key;
+    RayImageState state;
   };
   /// What stays of an eye's picture.
-  struct Eye {
-    std::optional<StillTiles> opaque;
-    std::optional<Kept> kept;
+  struct EyeState {
+    std::optional<DirtyTiles> opaque_tiles;
+    std::optional<ReuseState> reuse;
   };
-  Eye& eye() { return eyes_[eye_]; }
+  EyeState& eye_state() { return eye_states_[eye_index_]; }
   VolumeRaycast() = default;
-  Ready ready(const CameraRays& rays, const RaySettings& settings, const RayScene& scene) const;
-  Outcome draw(vk::Commands& commands, const Ready& ready, const VkRect2D& area, const RayScene& scene);
-  Result<bool> update_volume(Volume& volume, const Mirrored<VolumeItem>& next);
-  Result<bool> update_colors(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
+  DrawState make_draw_state(const CameraRays& rays, const RaySettings& settings, const RayScene& scene) const;
+  Outcome draw(vk::Commands& commands, const DrawState& ready, const VkRect2D& area, const RayScene& scene);
+  Result<bool> update_volume(Volume& volume, const ResidentItem<VolumeItem>& next);
+  Result<bool> update_colors(std::span<const ResidentItem<VolumeItem>> volumes, std::span<const ResidentItem<IsosurfaceItem>> surfaces);
   Outcome upload_tables();
   shared::GridData volume_data(const CameraRays& rays, const Volume& volume) const;
-  std::vector<vk::Binding> bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene);
-  Result<const vk::Pipeline*> pipeline(const Kind& kind);
+  std::vector<vk::Binding> bindings(const PipelineKey& kind, std::span<const GridBinding> bound, const RayScene& scene);
+  Result<const vk::Pipeline*> pipeline(const PipelineKey& kind);
 
   vk::Device* device_ = nullptr;
   vk::Sampler linear_;
-  std::map<Kind, vk::Pipeline> pipelines_;
+  std::map<PipelineKey, vk::Pipeline> pipelines_;
   std::vector<Volume> volumes_;
   std::vector<Surface> surfaces_;
-  std::vector<Colors> colors_;
+  std::vector<ColorGridUse> colors_;
   vk::Buffer tables_, uniform_;
-  std::uint64_t looks_ = 0;  ///< counts what prepare() has found new
-  std::vector<Eye> eyes_{1};
-  std::size_t eye_ = 0;
-  bool has_kept_ = false;
+  std::uint64_t appearance_version_ = 0;  ///< counts what prepare() has found new
+  std::vector<EyeState> eye_states_{1};
+  std::size_t eye_index_ = 0;
+  bool reused_previous_ = false;
 };
 
 }  // namespace catena::render

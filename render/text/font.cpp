@@ -30,16 +30,16 @@ struct GlyphOwner {
 
 }  // namespace
 
-struct Font::Parts {
+struct Font::Impl {
   FT_Library library = nullptr;
   FT_Face face = nullptr;
   FT_Stroker stroker = nullptr;
   double cap_height = 0;  // font units
 
-  Parts() = default;
-  Parts(const Parts&) = delete;
-  Parts& operator=(const Parts&) = delete;
-  ~Parts() {
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
     if (stroker != nullptr) FT_Stroker_Done(stroker);
     if (face != nullptr) FT_Done_Face(face);
     if (library != nullptr) FT_Done_FreeType(library);
@@ -48,14 +48,14 @@ struct Font::Parts {
   void set_size(double size_px) const { FT_Set_Char_Size(face, 0, std::max<FT_F26Dot6>(1, fixed(size_px)), 72, 72); }
 };
 
-Font::Font() : parts_(std::make_unique<Parts>()) {}
+Font::Font() : impl_(std::make_unique<Impl>()) {}
 Font::~Font() = default;
 Font::Font(Font&&) noexcept = default;
 Font& Font::operator=(Font&&) noexcept = default;
 
 Result<Font> Font::open(const FontFile& file) {
   Font self;
-  Parts& p = *self.parts_;
+  Impl& p = *self.impl_;
   const bool good = FT_Init_FreeType(&p.library) == 0 && FT_New_Face(p.library, file.path.c_str(), file.index, &p.face) == 0 &&
                     FT_IS_SCALABLE(p.face) && p.face->units_per_EM > 0 && FT_Stroker_New(p.library, &p.stroker) == 0;
   if (!good) return Error{file.path + ": the font cannot be read: text is left out; a TrueType or OpenType font was expected"};
@@ -68,34 +68,34 @@ Result<Font> Font::open(const FontFile& file) {
   return self;
 }
 
-FontMeasures Font::measures(double size_px) const {
-  const double unit = parts_->per_unit(size_px);
-  return {unit * parts_->cap_height, -unit * parts_->face->descender, unit * parts_->face->height};
+FontMetrics Font::metrics(double size_px) const {
+  const double unit = impl_->per_unit(size_px);
+  return {unit * impl_->cap_height, -unit * impl_->face->descender, unit * impl_->face->height};
 }
 
-std::uint32_t Font::glyph_of(char32_t code) const { return FT_Get_Char_Index(parts_->face, code); }
+std::uint32_t Font::glyph_index(char32_t code) const { return FT_Get_Char_Index(impl_->face, code); }
 
 double Font::advance(std::uint32_t glyph, double size_px) const {
-  if (FT_Load_Glyph(parts_->face, glyph, kUnscaled) != 0) return 0;
-  return parts_->per_unit(size_px) * static_cast<double>(parts_->face->glyph->metrics.horiAdvance);
+  if (FT_Load_Glyph(impl_->face, glyph, kUnscaled) != 0) return 0;
+  return impl_->per_unit(size_px) * static_cast<double>(impl_->face->glyph->metrics.horiAdvance);
 }
 
 double Font::kerning(std::uint32_t left, std::uint32_t right, double size_px) const {
   FT_Vector by{};
-  if (!FT_HAS_KERNING(parts_->face) || FT_Get_Kerning(parts_->face, left, right, FT_KERNING_UNSCALED, &by) != 0) return 0;
-  return parts_->per_unit(size_px) * static_cast<double>(by.x);
+  if (!FT_HAS_KERNING(impl_->face) || FT_Get_Kerning(impl_->face, left, right, FT_KERNING_UNSCALED, &by) != 0) return 0;
+  return impl_->per_unit(size_px) * static_cast<double>(by.x);
 }
 
-GlyphBitmap Font::rasterise(std::uint32_t glyph, double size_px, double shift_px, double halo_px) const {
-  const FT_Face face = parts_->face;
-  parts_->set_size(size_px);
+GlyphBitmap Font::rasterize(std::uint32_t glyph, double size_px, double shift_px, double halo_px) const {
+  const FT_Face face = impl_->face;
+  impl_->set_size(size_px);
   GlyphOwner owner;
   if (FT_Load_Glyph(face, glyph, kHinted) != 0 || face->glyph->format != FT_GLYPH_FORMAT_OUTLINE ||
       FT_Get_Glyph(face->glyph, &owner.glyph) != 0)
     return {};
   if (halo_px > 0) {
-    FT_Stroker_Set(parts_->stroker, fixed(halo_px), FT_STROKER_LINECAP_ROUND, FT_STROKER_LINEJOIN_ROUND, 0);
-    if (FT_Glyph_StrokeBorder(&owner.glyph, parts_->stroker, 0, 1) != 0) return {};
+    FT_Stroker_Set(impl_->stroker, fixed(halo_px), FT_STROKER_LINECAP_ROUND, FT_STROKER_LINEJOIN_ROUND, 0);
+    if (FT_Glyph_StrokeBorder(&owner.glyph, impl_->stroker, 0, 1) != 0) return {};
   }
   FT_Vector shift{fixed(shift_px), 0};
   if (FT_Glyph_To_Bitmap(&owner.glyph, FT_RENDER_MODE_NORMAL, &shift, 1) != 0) return {};

@@ -17,7 +17,7 @@ struct FontFile {
 };
 Result<FontFile> find_font(const std::string& family, bool bold);
 
-struct FontMeasures {
+struct FontMetrics {
   double cap_height = 0;   ///< of capitals and digits above the baseline
   double descent = 0;      ///< below the baseline, positive
   double line_height = 0;  ///< from baseline to baseline
@@ -36,19 +36,19 @@ class Font {
   Font(Font&&) noexcept;
   Font& operator=(Font&&) noexcept;
 
-  FontMeasures measures(double size_px) const;
+  FontMetrics metrics(double size_px) const;
   /// 0 (an empty box is drawn) where the font has no glyph for it.
-  std::uint32_t glyph_of(char32_t code) const;
+  std::uint32_t glyph_index(char32_t code) const;
   double advance(std::uint32_t glyph, double size_px) const;
   /// To be added between two glyphs; 0 if the font has no kerning.
   double kerning(std::uint32_t left, std::uint32_t right, double size_px) const;
   /// The glyph with its pen `shift_px` right of a pixel's edge; widened by `halo_px` on all sides. Empty for blanks.
-  GlyphBitmap rasterise(std::uint32_t glyph, double size_px, double shift_px, double halo_px) const;
+  GlyphBitmap rasterize(std::uint32_t glyph, double size_px, double shift_px, double halo_px) const;
 
  private:
   Font();
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace catena::render

@@ -25,7 +25,7 @@ void GlyphAtlas::clear() {
   ++version_;
 }
 
-bool GlyphAtlas::place(Entry& entry) {
+bool GlyphAtlas::allocate(Entry& entry) {
   const int rows = (entry.height + kShelfStep - 1) / kShelfStep * kShelfStep;
   for (Shelf& shelf : shelves_) {
     if (shelf.height != rows || shelf.used + entry.width > kWidth) continue;
@@ -50,12 +50,12 @@ bool GlyphAtlas::place(Entry& entry) {
 const GlyphAtlas::Entry* GlyphAtlas::get(const Font& font, std::uint32_t glyph, double size_px, int quarter, double halo_px) {
   const Key key{&font, glyph, std::lround(64 * size_px), std::lround(64 * halo_px), quarter};
   if (const auto it = entries_.find(key); it != entries_.end()) return &it->second;
-  const GlyphBitmap bitmap = font.rasterise(glyph, size_px, 0.25 * quarter, halo_px);
+  const GlyphBitmap bitmap = font.rasterize(glyph, size_px, 0.25 * quarter, halo_px);
   Entry entry{0, 0, bitmap.width, bitmap.height, bitmap.left, bitmap.top};
   if (entry.width > kWidth || entry.height > kMaxHeight) return nullptr;
-  if (entry.width > 0 && !place(entry)) {
+  if (entry.width > 0 && !allocate(entry)) {
     clear();
-    if (!place(entry)) return nullptr;
+    if (!allocate(entry)) return nullptr;
   }
   for (int y = 0; y < entry.height; ++y)
     std::copy_n(bitmap.coverage.begin() + static_cast<std::ptrdiff_t>(y) * entry.width, entry.width,
@@ -64,18 +64,18 @@ const GlyphAtlas::Entry* GlyphAtlas::get(const Font& font, std::uint32_t glyph, 
   return &(entries_[key] = entry);
 }
 
-void Typesetter::use_family(const std::string& family) {
+void Typesetter::set_family(const std::string& family) {
   if (family == family_) return;
   family_ = family;
-  fault_.clear();
+  error_message_.clear();
   atlas_.clear();
   for (Face& face : faces_) face = {};
 }
 
 const Font* Typesetter::font(bool bold) {
   Face& face = faces_[bold ? 1 : 0];
-  if (!face.tried) {
-    face.tried = true;
+  if (!face.load_attempted) {
+    face.load_attempted = true;
     const auto open = [&]() -> Result<Font> {
       CATENA_TRY(const FontFile file, find_font(family_, bold));
       return Font::open(file);
@@ -83,24 +83,24 @@ const Font* Typesetter::font(bool bold) {
     if (auto font = open()) {
       face.font = std::make_unique<Font>(std::move(*font));
     } else {
-      fault_ = font.error().message;
+      error_message_ = font.error().message;
     }
   }
   return face.font.get();
 }
 
-SetText Typesetter::set(std::string_view text, const TextStyle& style) {
-  SetText out;
+TextLayout Typesetter::layout(std::string_view text, const TextStyle& style) {
+  TextLayout out;
   const Font* font = this->font(style.bold);
   if (font == nullptr || text.empty()) return out;
-  const FontMeasures measures = font->measures(style.size_px);
+  const FontMetrics measures = font->metrics(style.size_px);
 
   // lines from the left
   std::vector<std::size_t> line_starts{0};
   std::vector<double> widths;
   double x = 0, y = measures.cap_height;
   std::uint32_t before = 0;
-  for (const char32_t code : code_points(text)) {
+  for (const char32_t code : decode_utf8(text)) {
     if (code == U'\n') {
       widths.push_back(x);
       line_starts.push_back(out.glyphs.size());
@@ -109,7 +109,7 @@ SetText Typesetter::set(std::string_view text, const TextStyle& style) {
       before = 0;
       continue;
     }
-    const std::uint32_t glyph = font->glyph_of(code);
+    const std::uint32_t glyph = font->glyph_index(code);
     if (before != 0) x += font->kerning(before, glyph, style.size_px);
     out.glyphs.push_back({glyph, x, y});
     x += font->advance(glyph, style.size_px);

@@ -10,7 +10,7 @@
 namespace catena::render {
 
 /// UTF-8 to code points. What is no UTF-8 becomes U+FFFD, one for each byte that fits nowhere. Any thread.
-inline std::vector<char32_t> code_points(std::string_view text) {
+inline std::vector<char32_t> decode_utf8(std::string_view text) {
   constexpr char32_t bad = 0xfffd;
   std::vector<char32_t> out;
   for (std::size_t i = 0; i < text.size();) {
@@ -65,13 +65,13 @@ class GlyphAtlas {
     const Font* font;
     std::uint32_t glyph;
     long size, halo;  // 1/64 pixel
-    int quarter;
+    int subpixel_quarter;
     auto operator<=>(const Key&) const = default;
   };
   struct Shelf {
     int y, height, used;
   };
-  bool place(Entry& entry);
+  bool allocate(Entry& entry);
   void grow(int height);
 
   std::map<Key, Entry> entries_;
@@ -93,13 +93,13 @@ struct TextExtent {
 };
 
 /// A glyph's pen on its baseline, from the box's top left corner.
-struct SetGlyph {
+struct PlacedGlyph {
   std::uint32_t glyph = 0;
   double x = 0, y = 0;
 };
 
-struct SetText {
-  std::vector<SetGlyph> glyphs;
+struct TextLayout {
+  std::vector<PlacedGlyph> glyphs;
   TextExtent extent;
 };
 
@@ -109,21 +109,21 @@ struct SetText {
 class Typesetter {
  public:
   /// Another family drops the fonts (and so the atlas).
-  void use_family(const std::string& family);
-  SetText set(std::string_view text, const TextStyle& style);
-  TextExtent measure(std::string_view text, const TextStyle& style) { return set(text, style).extent; }
+  void set_family(const std::string& family);
+  TextLayout layout(std::string_view text, const TextStyle& style);
+  TextExtent measure(std::string_view text, const TextStyle& style) { return layout(text, style).extent; }
   /// The font of a style, or none.
   const Font* font(bool bold);
   GlyphAtlas& atlas() { return atlas_; }
   /// One sentence, once a font was asked for that is not there.
-  const std::string& fault() const { return fault_; }
+  const std::string& error_message() const { return error_message_; }
 
  private:
   struct Face {
-    bool tried = false;
+    bool load_attempted = false;
     std::unique_ptr<Font> font;
   };
-  std::string family_ = "DejaVu Sans", fault_;
+  std::string family_ = "DejaVu Sans", error_message_;
   Face faces_[2];
   GlyphAtlas atlas_;
 };

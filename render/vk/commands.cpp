@@ -9,22 +9,22 @@
 namespace catena::render::vk {
 
 Result<Commands> Commands::begin(Device& device) {
-  CATENA_TRY(const VkCommandBuffer buffer, device.lend_commands());
+  CATENA_TRY(const VkCommandBuffer buffer, device.acquire_command_buffer());
   Commands self(device, buffer);
   VkCommandBufferBeginInfo begin{};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   CATENA_VK(vkBeginCommandBuffer(buffer, &begin), "begin a command buffer");
-  self.lap_ = device.stopwatch().begin(buffer);
+  self.timestamp_ = device.timestamps().begin(buffer);
   return self;
 }
 
 Commands::~Commands() {
-  device_->stopwatch().drop(lap_);
-  if (buffer_) device_->retire([device = device_, buffer = buffer_] { device->take_back_commands(buffer); });
+  device_->timestamps().cancel(timestamp_);
+  if (buffer_) device_->retire([device = device_, buffer = buffer_] { device->release_command_buffer(buffer); });
 }
 
-void Commands::use(Image& image, const Use& next) {
+void Commands::transition(Image& image, const ResourceUse& next) {
   constexpr VkAccessFlags2 writes = VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
   const bool same = image.layout == next.layout && image.stage == next.stage && image.access == next.access;
@@ -35,7 +35,7 @@ void Commands::use(Image& image, const Use& next) {
   image.access = next.access;
 }
 
-void Commands::barrier(VkImage image, VkImageAspectFlags aspect, const Use& from, const Use& to) {
+void Commands::barrier(VkImage image, VkImageAspectFlags aspect, const ResourceUse& from, const ResourceUse& to) {
   VkImageMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = from.stage;
@@ -54,7 +54,7 @@ void Commands::barrier(VkImage image, VkImageAspectFlags aspect, const Use& from
   vkCmdPipelineBarrier2(buffer_, &info);
 }
 
-void Commands::barrier(const Buffer& buffer, const Use& from, const Use& to) {
+void Commands::barrier(const Buffer& buffer, const ResourceUse& from, const ResourceUse& to) {
   VkBufferMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
   barrier.srcStageMask = from.stage;
@@ -90,7 +90,7 @@ void Commands::copy(const Buffer& from, const Buffer& to, VkDeviceSize size) {
 }
 
 void Commands::copy(Image& from, const Buffer& to) {
-  use(from, kTransferRead);
+  transition(from, kTransferRead);
   VkBufferImageCopy region{};
   region.imageSubresource = {from.aspect(), 0, 0, 1};
   region.imageExtent = from.info().extent;
@@ -113,7 +113,7 @@ void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget
   VkExtent3D extent = depth.image ? depth.image->info().extent : colors.front().image->info().extent;
   std::vector<VkRenderingAttachmentInfo> attachments;
   for (const ColorTarget& target : colors) {
-    use(*target.image, kColorTarget);
+    transition(*target.image, kColorTarget);
     VkRenderingAttachmentInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
     info.imageView = target.image->view();
@@ -126,7 +126,7 @@ void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget
   VkRenderingAttachmentInfo depth_info{};
   depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   if (depth.image) {
-    use(*depth.image, kDepthTarget);
+    transition(*depth.image, kDepthTarget);
     depth_info.imageView = depth.image->view();
     depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     depth_info.loadOp = depth.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
@@ -143,11 +143,11 @@ void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget
   vkCmdBeginRendering(buffer_, &info);
   const VkViewport viewport{0, 0, float(extent.width), float(extent.height), 0, 1};
   vkCmdSetViewport(buffer_, 0, 1, &viewport);
-  scissor(info.renderArea);
+  set_scissor(info.renderArea);
 }
 
 void Commands::end_pass() { vkCmdEndRendering(buffer_); }
-void Commands::scissor(const VkRect2D& area) { vkCmdSetScissor(buffer_, 0, 1, &area); }
+void Commands::set_scissor(const VkRect2D& area) { vkCmdSetScissor(buffer_, 0, 1, &area); }
 
 void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings) {
   vkCmdBindPipeline(buffer_, pipeline.bind_point(), pipeline.handle());
@@ -160,13 +160,13 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings)
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstBinding = b.binding;
     write.descriptorCount = 1;
-    write.descriptorType = descriptor_type(b.resource);
-    if (b.resource == Resource::buffer || b.resource == Resource::uniform) {
+    write.descriptorType = descriptor_type(b.kind);
+    if (b.kind == DescriptorKind::buffer || b.kind == DescriptorKind::uniform) {
       buffers[i] = {b.buffer->handle(), 0, VK_WHOLE_SIZE};
       write.pBufferInfo = &buffers[i];
     } else {
       images[i] = {b.sampler ? b.sampler->handle() : VK_NULL_HANDLE, b.image->view(),
-                   b.resource == Resource::storage_image ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+                   b.kind == DescriptorKind::storage_image ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.pImageInfo = &images[i];
     }
     writes.push_back(write);
@@ -199,11 +199,11 @@ void Commands::draw_mesh(std::uint32_t first_index, std::uint32_t index_count, s
 void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) { vkCmdDispatch(buffer_, x, y, z); }
 
 Result<std::uint64_t> Commands::submit(VkSemaphore wait, VkSemaphore signal) {
-  device_->stopwatch().end(buffer_, lap_);
+  device_->timestamps().end(buffer_, timestamp_);
   CATENA_VK(vkEndCommandBuffer(buffer_), "record commands");
   CATENA_TRY(const std::uint64_t value, device_->submit(buffer_, wait, signal));
-  device_->retire([device = device_, lap = lap_] { device->counters().work_ns += device->stopwatch().take(lap); });
-  lap_.reset();
+  device_->retire([device = device_, lap = timestamp_] { device->counters().gpu_ns += device->timestamps().read_ns(lap); });
+  timestamp_.reset();
   return value;
 }
 
@@ -215,7 +215,7 @@ Outcome Commands::finish() {
 Outcome upload_planes(Device& device, Image& image, std::uint32_t granule,
                       const std::function<void(std::uint32_t first, std::uint32_t count, std::byte* out)>& fill) {
   // staging memory counts in the budget: little is taken of little
-  const VkDeviceSize staging_limit = std::min<VkDeviceSize>(VkDeviceSize(32) << 20, device.memory_left() / 4);
+  const VkDeviceSize staging_limit = std::min<VkDeviceSize>(VkDeviceSize(32) << 20, device.memory_available() / 4);
   const VkExtent3D extent = image.info().extent;
   const VkDeviceSize plane = texel_bytes(image.info().format) * extent.width * extent.height;
   const auto granules = std::uint32_t(std::max<VkDeviceSize>(1, staging_limit / (plane * granule)));
@@ -225,9 +225,9 @@ Outcome upload_planes(Device& device, Image& image, std::uint32_t granule,
     const std::uint32_t count = std::min(piece, extent.depth - first);
     fill(first, count, staging.bytes().data());
     CATENA_TRY(Commands commands, Commands::begin(device));
-    commands.use(image, kTransferWrite);
+    commands.transition(image, kTransferWrite);
     commands.copy(staging, 0, image, {0, 0, std::int32_t(first)}, {extent.width, extent.height, count});
-    if (first + count == extent.depth) commands.use(image, kFragmentRead);
+    if (first + count == extent.depth) commands.transition(image, kFragmentRead);
     CATENA_CHECK(commands.finish());
   }
   return Done{};

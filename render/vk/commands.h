@@ -10,36 +10,37 @@
 
 #include "render/vk/pipeline.h"
 #include "render/vk/resources.h"
-#include "render/vk/stopwatch.h"
+#include "render/vk/timestamp_query.h"
 
 namespace catena::render::vk {
 
 /// A use of an image or a buffer, for barriers.
-struct Use {
+struct ResourceUse {
   VkImageLayout layout;  ///< images
   VkPipelineStageFlags2 stage;
   VkAccessFlags2 access;
 };
-inline constexpr Use kTransferWrite{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                    VK_ACCESS_2_TRANSFER_WRITE_BIT};
-inline constexpr Use kTransferRead{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                   VK_ACCESS_2_TRANSFER_READ_BIT};
-inline constexpr Use kFragmentRead{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                   VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                                   VK_ACCESS_2_SHADER_READ_BIT};
-inline constexpr Use kShaderRead{
+inline constexpr ResourceUse kTransferWrite{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                            VK_ACCESS_2_TRANSFER_WRITE_BIT};
+inline constexpr ResourceUse kTransferRead{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                           VK_ACCESS_2_TRANSFER_READ_BIT};
+inline constexpr ResourceUse kFragmentRead{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                           VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                           VK_ACCESS_2_SHADER_READ_BIT};
+inline constexpr ResourceUse kShaderRead{
     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
     VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
     VK_ACCESS_2_SHADER_READ_BIT};
-inline constexpr Use kVertexRead{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
-                                 VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT};
-inline constexpr Use kComputeWrite{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
-inline constexpr Use kHostRead{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
-inline constexpr Use kColorTarget{VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                  VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
-inline constexpr Use kDepthTarget{VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                  VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+inline constexpr ResourceUse kVertexRead{VK_IMAGE_LAYOUT_UNDEFINED,
+                                         VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
+                                         VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT};
+inline constexpr ResourceUse kComputeWrite{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
+inline constexpr ResourceUse kHostRead{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+inline constexpr ResourceUse kColorTarget{VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                          VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+inline constexpr ResourceUse kDepthTarget{VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                          VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
 
 struct ColorTarget {
   Image* image = nullptr;
@@ -53,7 +54,7 @@ struct DepthTarget {
 /// What a shader sees at one binding; which members count is the kind's business.
 struct Binding {
   std::uint32_t binding = 0;
-  Resource resource = Resource::buffer;
+  DescriptorKind kind = DescriptorKind::buffer;
   const Buffer* buffer = nullptr;
   const Image* image = nullptr;
   const Sampler* sampler = nullptr;
@@ -63,18 +64,18 @@ class Commands {
  public:
   static Result<Commands> begin(Device& device);
   ~Commands();
-  Commands(Commands&& other) noexcept : device_(other.device_), buffer_(other.buffer_), lap_(other.lap_) {
+  Commands(Commands&& other) noexcept : device_(other.device_), buffer_(other.buffer_), timestamp_(other.timestamp_) {
     other.buffer_ = VK_NULL_HANDLE;
-    other.lap_.reset();
+    other.timestamp_.reset();
   }
   Commands& operator=(Commands&&) = delete;
 
   VkCommandBuffer handle() const { return buffer_; }
 
   // barriers
-  void use(Image& image, const Use& next);
-  void barrier(const Buffer& buffer, const Use& from, const Use& to);
-  void barrier(VkImage image, VkImageAspectFlags aspect, const Use& from, const Use& to);  ///< of an image that others own
+  void transition(Image& image, const ResourceUse& next);
+  void barrier(const Buffer& buffer, const ResourceUse& from, const ResourceUse& to);
+  void barrier(VkImage image, VkImageAspectFlags aspect, const ResourceUse& from, const ResourceUse& to);  ///< of an image that others own
 
   // copies
   void copy(const Buffer& from, VkDeviceSize offset, Image& to, VkOffset3D at, VkExtent3D extent);  ///< an upload; counted
@@ -88,7 +89,7 @@ class Commands {
   /// Moves the targets to their layouts. Draws and clears within `area`, which is not empty; none: everywhere.
   void begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth, const std::optional<VkRect2D>& area = {});
   void end_pass();
-  void scissor(const VkRect2D& area);
+  void set_scissor(const VkRect2D& area);
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings);
   void draw_triangle();                                        ///< one that covers the picture
   void draw(std::uint32_t vertices, std::uint32_t instances);  ///< without buffers
@@ -108,7 +109,7 @@ class Commands {
   Commands(Device& device, VkCommandBuffer buffer) : device_(&device), buffer_(buffer) {}
   Device* device_;
   VkCommandBuffer buffer_;
-  Stopwatch::Lap lap_;
+  TimestampQueries::TimestampPair timestamp_;
 };
 
 // ---- bytes to the device: through staging memory what changes seldom (these wait for their own end), mapped what changes each frame ----

@@ -13,7 +13,7 @@
 
 #include "engine/base/threads.h"
 #include "render/vk/instance.h"
-#include "render/vk/stopwatch.h"
+#include "render/vk/timestamp_query.h"
 
 namespace catena::render::vk {
 
@@ -96,7 +96,7 @@ DeviceFeatures::DeviceFeatures() {
   v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
 }
 
-void require(DeviceFeatures& features) {
+void enable_required(DeviceFeatures& features) {
   features.core.features.shaderClipDistance = VK_TRUE;
   features.core.features.independentBlend = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
@@ -112,7 +112,7 @@ std::vector<const char*> required_extensions(bool presents) {
   return names;
 }
 
-std::string lacks(VkPhysicalDevice physical, VkSurfaceKHR surface) {
+std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface) {
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
   if (properties.apiVersion < kApiVersion) return "Vulkan 1.3";
@@ -172,19 +172,19 @@ Outcome driver_threads(const std::string& name) {
 
 Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   std::unique_ptr<Device> self(new Device);
-  self->maker_ = options.maker;
-  CATENA_TRY(self->instance_, Instance::create(options.validation, options.surface, options.maker));
+  self->provider_ = options.provider;
+  CATENA_TRY(self->instance_, Instance::create(options.validation, options.surface, options.provider));
   const char* environment = std::getenv("CATENA_DEVICE");
-  if (options.maker.physical) {
-    CATENA_CHECK(self->take_physical());
+  if (options.provider.physical_device) {
+    CATENA_CHECK(self->adopt_physical_device());
   } else {
-    CATENA_CHECK(self->choose_physical(!options.choose.empty() ? options.choose : environment ? environment : ""));
+    CATENA_CHECK(self->select_physical_device(!options.device_filter.empty() ? options.device_filter : environment ? environment : ""));
   }
-  self->describe_physical();
+  self->query_device_info();
   if (self->info_.type == VK_PHYSICAL_DEVICE_TYPE_CPU) CATENA_CHECK(driver_threads(self->info_.name));
   CATENA_CHECK(self->create_device());
   self->info_.memory_budget = options.memory_budget_bytes > 0 ? options.memory_budget_bytes : self->default_budget();
-  self->fail_ = options.fail;
+  self->inject_failure_ = options.inject_failure;
   return self;
 }
 
@@ -204,18 +204,18 @@ std::uint64_t Device::default_budget() const {
 }
 
 Error Device::failed(VkResult result, const std::string& what) {
-  if (result == VK_ERROR_DEVICE_LOST) lost_ = true;
+  if (result == VK_ERROR_DEVICE_LOST) is_lost_ = true;
   return vulkan_error(result, what);
 }
 
-Outcome Device::choose_physical(const std::string& choice) {
+Outcome Device::select_physical_device(const std::string& choice) {
   CATENA_TRY(const auto devices, physical_devices(instance_->handle()));
   int best = -1;
   std::string seen;
   for (VkPhysicalDevice candidate : devices) {
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(candidate, &properties);
-    const std::string missing = lacks(candidate, instance_->surface());
+    const std::string missing = missing_requirement(candidate, instance_->surface());
     seen += fmt::format("{}{}{}", seen.empty() ? "" : ", ", properties.deviceName, missing.empty() ? "" : " (without " + missing + ")");
     if (!missing.empty() || !matches(properties, choice)) continue;
     if (preference(properties.deviceType) > best) {
@@ -231,17 +231,17 @@ Outcome Device::choose_physical(const std::string& choice) {
 }
 
 /// The one that the maker chose.
-Outcome Device::take_physical() {
-  CATENA_VK(maker_.physical(instance_->handle(), &physical_), "choose the device that was asked for");
+Outcome Device::adopt_physical_device() {
+  CATENA_VK(provider_.physical_device(instance_->handle(), &physical_), "choose the device that was asked for");
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical_, &properties);
-  const std::string missing = lacks(physical_, instance_->surface());
+  const std::string missing = missing_requirement(physical_, instance_->surface());
   if (!missing.empty()) return Error{fmt::format("the device {} that was chosen lacks {}", properties.deviceName, missing)};
   return Done{};
 }
 
-void Device::describe_physical() {
-  queue_family_ = maker_.queue_family ? *maker_.queue_family : *find_queue(physical_, instance_->surface());
+void Device::query_device_info() {
+  queue_family_ = provider_.queue_family ? *provider_.queue_family : *find_queue(physical_, instance_->surface());
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
   VkPhysicalDeviceProperties2 properties{};
@@ -268,7 +268,7 @@ Outcome Device::create_device() {
   queue.pQueuePriorities = &priority;
 
   DeviceFeatures features;
-  require(features);
+  enable_required(features);
   const std::vector<const char*> extensions = required_extensions(instance_->surface() != VK_NULL_HANDLE);
 
   VkDeviceCreateInfo info{};
@@ -278,7 +278,7 @@ Outcome Device::create_device() {
   info.pQueueCreateInfos = &queue;
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
-  CATENA_VK(maker_.device ? maker_.device(physical_, info, &device_) : vkCreateDevice(physical_, &info, nullptr, &device_),
+  CATENA_VK(provider_.device ? provider_.device(physical_, info, &device_) : vkCreateDevice(physical_, &info, nullptr, &device_),
             "create the device " + info_.name);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   push_descriptors_ = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
@@ -289,7 +289,7 @@ Outcome Device::create_device() {
   pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT | VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool.queueFamilyIndex = queue_family_;
   CATENA_VK(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "create a command pool");
-  stopwatch_ = std::make_unique<Stopwatch>(physical_, device_, queue_family_);
+  timestamps_ = std::make_unique<TimestampQueries>(physical_, device_, queue_family_);
 
   VkSemaphoreTypeCreateInfo type{};
   type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
@@ -305,24 +305,24 @@ Device::~Device() {
   if (device_) {
     // wait for everything; whatever the answer is, nothing runs after it
     {
-      const auto turn = queue_turn();
+      const auto turn = lock_queue();
       (void)vkDeviceWaitIdle(device_);
     }
-    passed_ = std::numeric_limits<std::uint64_t>::max();
-    collect();
-    stopwatch_.reset();
+    completed_value_ = std::numeric_limits<std::uint64_t>::max();
+    destroy_retired();
+    timestamps_.reset();
     if (timeline_) vkDestroySemaphore(device_, timeline_, nullptr);
     if (pool_) vkDestroyCommandPool(device_, pool_, nullptr);
-    if (!maker_.keeps_them) vkDestroyDevice(device_, nullptr);
+    if (!provider_.keeps_ownership) vkDestroyDevice(device_, nullptr);
   }
 }
 
-void Device::leave_behind() {
-  maker_.keeps_them = true;
-  instance_->leave_behind();
+void Device::abandon() {
+  provider_.keeps_ownership = true;
+  instance_->abandon();
 }
 
-Result<VkCommandBuffer> Device::lend_commands() {
+Result<VkCommandBuffer> Device::acquire_command_buffer() {
   VkCommandBuffer buffer = VK_NULL_HANDLE;
   if (!idle_commands_.empty()) {
     buffer = idle_commands_.back();
@@ -338,7 +338,7 @@ Result<VkCommandBuffer> Device::lend_commands() {
   return buffer;
 }
 
-void Device::take_back_commands(VkCommandBuffer buffer) {
+void Device::release_command_buffer(VkCommandBuffer buffer) {
   if (vkResetCommandBuffer(buffer, VK_COMMAND_BUFFER_RESET_RELEASE_RESOURCES_BIT) == VK_SUCCESS) {
     idle_commands_.push_back(buffer);
   } else {
@@ -360,7 +360,7 @@ Result<std::uint64_t> Device::submit(VkCommandBuffer commands, VkSemaphore wait_
     s.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   }
   signals[0].semaphore = timeline_;
-  signals[0].value = submitted_ + 1;
+  signals[0].value = submitted_value_ + 1;
   signals[1].semaphore = signal;
   VkSubmitInfo2 info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
@@ -370,40 +370,40 @@ Result<std::uint64_t> Device::submit(VkCommandBuffer commands, VkSemaphore wait_
   info.pCommandBufferInfos = &buffer;
   info.signalSemaphoreInfoCount = signal ? 2 : 1;
   info.pSignalSemaphoreInfos = signals;
-  VkResult result = lost_ ? VK_ERROR_DEVICE_LOST : pretended(DriverCall::submit);
+  VkResult result = is_lost_ ? VK_ERROR_DEVICE_LOST : injected_failure(DriverCall::submit);
   if (result == VK_SUCCESS) {
-    const auto turn = queue_turn();
+    const auto turn = lock_queue();
     result = vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE);
   }
   if (result != VK_SUCCESS) return failed(result, "submit work to " + info_.name);
   ++counters_.submissions;
-  return ++submitted_;
+  return ++submitted_value_;
 }
 
 Outcome Device::wait(std::uint64_t value) {
-  if (value > passed_) {
+  if (value > completed_value_) {
     VkSemaphoreWaitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
     info.semaphoreCount = 1;
     info.pSemaphores = &timeline_;
     info.pValues = &value;
     // of a lost device nothing is waited for: the value may never come
-    VkResult result = lost_ ? VK_ERROR_DEVICE_LOST : pretended(DriverCall::wait);
+    VkResult result = is_lost_ ? VK_ERROR_DEVICE_LOST : injected_failure(DriverCall::wait);
     if (result == VK_SUCCESS) result = vkWaitSemaphores(device_, &info, std::numeric_limits<std::uint64_t>::max());
     if (result != VK_SUCCESS) return failed(result, "wait for " + info_.name);
-    passed_ = value;
+    completed_value_ = value;
   }
-  collect();
+  destroy_retired();
   return Done{};
 }
 
 void Device::retire(std::function<void()> destroy) {
-  retired_.push_back({submitted_, std::move(destroy)});
-  collect();
+  retired_.push_back({submitted_value_, std::move(destroy)});
+  destroy_retired();
 }
 
-void Device::collect() {
-  while (!retired_.empty() && retired_.front().value <= passed_) {
+void Device::destroy_retired() {
+  while (!retired_.empty() && retired_.front().value <= completed_value_) {
     auto destroy = std::move(retired_.front().destroy);
     retired_.pop_front();
     destroy();
@@ -417,7 +417,7 @@ Result<std::vector<std::string>> list_devices() {
   for (VkPhysicalDevice device : devices) {
     VkPhysicalDeviceProperties p{};
     vkGetPhysicalDeviceProperties(device, &p);
-    const std::string missing = lacks(device);
+    const std::string missing = missing_requirement(device);
     lines.push_back(fmt::format("{} ({}), Vulkan {}.{}{}", p.deviceName, type_name(p.deviceType), VK_API_VERSION_MAJOR(p.apiVersion),
                                 VK_API_VERSION_MINOR(p.apiVersion), missing.empty() ? "" : ", unusable: no " + missing));
   }
@@ -425,12 +425,12 @@ Result<std::vector<std::string>> list_devices() {
 }
 
 void ShaderReplacements::replace(Spirv embedded, std::vector<std::uint32_t> words) {
-  std::erase_if(all_, [&](const auto& one) { return std::ranges::equal(one.first, embedded); });
-  if (!std::ranges::equal(embedded, words)) all_.emplace_back(embedded, std::move(words));
+  std::erase_if(replacements_, [&](const auto& one) { return std::ranges::equal(one.first, embedded); });
+  if (!std::ranges::equal(embedded, words)) replacements_.emplace_back(embedded, std::move(words));
 }
 
-Spirv ShaderReplacements::of(Spirv embedded) const {
-  for (const auto& [from, to] : all_)
+Spirv ShaderReplacements::resolve(Spirv embedded) const {
+  for (const auto& [from, to] : replacements_)
     if (std::ranges::equal(from, embedded)) return to;
   return embedded;
 }

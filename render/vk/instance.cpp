@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena::render::vk {
 
@@ -61,7 +61,7 @@ Error vulkan_error(VkResult result, const std::string& what) {
   // drivers and their libraries that get no memory are not told apart
   const bool may_lack_memory =
       result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_INITIALIZATION_FAILED;
-  if (may_lack_memory && limit_in_force(RLIMIT_AS)) error.message += " (" + cause_of(ENOMEM) + ")";
+  if (may_lack_memory && resource_limit(RLIMIT_AS)) error.message += " (" + describe_errno(ENOMEM) + ")";
   return error;
 }
 
@@ -134,7 +134,7 @@ std::vector<std::string> Messages::texts() const {
   return texts_;
 }
 
-Result<std::unique_ptr<Instance>> Instance::create(bool validation, const SurfaceFactory& surface, const VulkanMaker& maker) {
+Result<std::unique_ptr<Instance>> Instance::create(bool validation, const SurfaceFactory& surface, const VulkanProvider& maker) {
   std::unique_ptr<Instance> self(new Instance);
 
   // version
@@ -174,7 +174,7 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
   info.ppEnabledLayerNames = layers.data();
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
-  self->owned_ = !maker.keeps_them;
+  self->owned_ = !maker.keeps_ownership;
   const VkResult made = maker.instance ? maker.instance(info, &self->instance_) : vkCreateInstance(&info, nullptr, &self->instance_);
   if (made == VK_ERROR_INCOMPATIBLE_DRIVER)  // there is none
     return Error{vulkan_error(made, "create an instance").message +

@@ -37,11 +37,11 @@ struct SurfaceFactory {
 /// Makes Vulkan objects in Catena's place, and says which queue is used: for a headset's runtime, or for a program that draws with a device
 /// of its own. Catena makes what no function is set for. The extensions, layers and features that a function is asked for are needed; it
 /// may add others. What it returns instead of VK_SUCCESS becomes the error. Frame thread.
-struct VulkanMaker {
+struct VulkanProvider {
   /// As vkCreateInstance.
   std::function<VkResult(const VkInstanceCreateInfo& wanted, VkInstance* made)> instance;
   /// Of the instance; it still has to have what Catena needs.
-  std::function<VkResult(VkInstance instance, VkPhysicalDevice* chosen)> physical;
+  std::function<VkResult(VkInstance instance, VkPhysicalDevice* chosen)> physical_device;
   /// As vkCreateDevice: one queue that draws and computes.
   std::function<VkResult(VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made)> device;
   /// Of the queue, its first one is used; none: the first family that draws and computes.
@@ -49,7 +49,7 @@ struct VulkanMaker {
   /// Held around every use of the queue, where others use it too; it outlives the device.
   std::mutex* queue_lock = nullptr;
   /// Whether instance and device stay theirs: Catena does not destroy them.
-  bool keeps_them = false;
+  bool keeps_ownership = false;
 };
 
 /// Warnings and errors so far; the driver may report from any thread.
@@ -72,7 +72,7 @@ class Messages {
 class Instance {
  public:
   /// Makes or borrows it. An error is one sentence.
-  static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanMaker& maker = {});
+  static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanProvider& maker = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
@@ -84,7 +84,7 @@ class Instance {
   /// Warnings and errors so far.
   const Messages& messages() const { return messages_; }
   /// It is not destroyed.
-  void leave_behind() { owned_ = false; }
+  void abandon() { owned_ = false; }
 
  private:
   Instance() = default;

@@ -19,7 +19,7 @@ class ShaderModule {
   Outcome load(Spirv words) {
     VkShaderModuleCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    words = device_.shaders().of(words);
+    words = device_.shaders().resolve(words);
     info.codeSize = words.size_bytes();
     info.pCode = words.data();
     CATENA_VK(vkCreateShaderModule(device_.handle(), &info, nullptr, &module_), "load a shader");
@@ -73,31 +73,31 @@ VkPipelineColorBlendAttachmentState blend_state(Blend blend) {
     state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
   }
-  if (blend == Blend::least) state.colorBlendOp = state.alphaBlendOp = VK_BLEND_OP_MIN;
+  if (blend == Blend::min) state.colorBlendOp = state.alphaBlendOp = VK_BLEND_OP_MIN;
   return state;
 }
 
 }  // namespace
 
-VkDescriptorType descriptor_type(Resource resource) {
+VkDescriptorType descriptor_type(DescriptorKind resource) {
   switch (resource) {
-    case Resource::uniform:
+    case DescriptorKind::uniform:
       return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case Resource::buffer:
+    case DescriptorKind::buffer:
       return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case Resource::sampled:
+    case DescriptorKind::sampled:
       return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case Resource::texture:
+    case DescriptorKind::texture:
       return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    case Resource::storage_image:
+    case DescriptorKind::storage_image:
       return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   }
   return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }
 
-Outcome Pipeline::create_layout(std::span<const Slot> slots, VkShaderStageFlags stages) {
+Outcome Pipeline::create_layout(std::span<const LayoutBinding> slots, VkShaderStageFlags stages) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (const Slot& slot : slots) bindings.push_back({slot.binding, descriptor_type(slot.resource), 1, stages, nullptr});
+  for (const LayoutBinding& slot : slots) bindings.push_back({slot.binding, descriptor_type(slot.kind), 1, stages, nullptr});
   VkDescriptorSetLayoutCreateInfo set{};
   set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
@@ -115,7 +115,7 @@ Outcome Pipeline::create_layout(std::span<const Slot> slots, VkShaderStageFlags 
 Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   Pipeline self;
   self.device_ = &device;
-  CATENA_CHECK(self.create_layout(info.slots, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT));
+  CATENA_CHECK(self.create_layout(info.layout_bindings, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT));
   ShaderModule vertex(device), fragment(device);
   CATENA_CHECK(vertex.load(info.vertex));
   CATENA_CHECK(fragment.load(info.fragment));
@@ -156,7 +156,7 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   VkPipelineDepthStencilStateCreateInfo depth{};
   depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = depth.depthWriteEnable = info.depth;
+  depth.depthTestEnable = depth.depthWriteEnable = info.has_depth;
   depth.depthCompareOp = VK_COMPARE_OP_GREATER;
   std::vector<VkPipelineColorBlendAttachmentState> blends(info.colors.size(), blend_state(Blend::replace));
   for (std::size_t i = 0; i < info.blends.size(); ++i) blends[i] = blend_state(info.blends[i]);
@@ -169,7 +169,7 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
   rendering.colorAttachmentCount = std::uint32_t(info.colors.size());
   rendering.pColorAttachmentFormats = info.colors.data();
-  rendering.depthAttachmentFormat = info.depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
+  rendering.depthAttachmentFormat = info.has_depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
   VkGraphicsPipelineCreateInfo create{};
   create.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
   create.pNext = &rendering;
@@ -193,7 +193,7 @@ Result<Pipeline> Pipeline::create(Device& device, const ComputeInfo& info) {
   Pipeline self;
   self.device_ = &device;
   self.bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
-  CATENA_CHECK(self.create_layout(info.slots, VK_SHADER_STAGE_COMPUTE_BIT));
+  CATENA_CHECK(self.create_layout(info.layout_bindings, VK_SHADER_STAGE_COMPUTE_BIT));
   ShaderModule shader(device);
   CATENA_CHECK(shader.load(info.shader));
   const Specialization constants(info.constants);

@@ -11,11 +11,11 @@
 namespace catena::render::vk {
 
 /// One binding of a shader: what kind it is.
-enum class Resource { uniform, buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only
-VkDescriptorType descriptor_type(Resource resource);
-struct Slot {
+enum class DescriptorKind { uniform, buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only
+VkDescriptorType descriptor_type(DescriptorKind resource);
+struct LayoutBinding {
   std::uint32_t binding = 0;
-  Resource resource = Resource::buffer;
+  DescriptorKind kind = DescriptorKind::buffer;
 };
 
 struct VertexAttribute {
@@ -30,24 +30,24 @@ enum class Blend {
   over,           ///< premultiplied colours over what is there
   over_straight,  ///< the same for straight alpha
   keep,           ///< nothing is written
-  collect,        ///< rgb <- rgb + source; alpha <- alpha (1 - source)
-  least,          ///< the lesser of both
+  accumulate,     ///< rgb <- rgb + source; alpha <- alpha (1 - source)
+  min,            ///< the lesser of both
 };
 
 struct GraphicsInfo {
   Spirv vertex, fragment;
-  std::vector<Slot> slots;
+  std::vector<LayoutBinding> layout_bindings;
   std::vector<std::uint32_t> constants;  ///< specialisation constants 0, 1, 2, .. of the fragment shader
   std::vector<VkFormat> colors;
   std::vector<Blend> blends{};      ///< by colour; empty: replace
-  bool depth = false;               ///< D32F, reversed: greater is nearer
+  bool has_depth = false;           ///< D32F, reversed: greater is nearer
   std::uint32_t vertex_stride = 0;  ///< 0: no vertex buffer
   std::vector<VertexAttribute> attributes;
 };
 
 struct ComputeInfo {
   Spirv shader;
-  std::vector<Slot> slots;
+  std::vector<LayoutBinding> layout_bindings;
   std::vector<std::uint32_t> constants;
 };
 
@@ -70,7 +70,7 @@ class Pipeline {
 
  private:
   void swap(Pipeline& other) noexcept;
-  Outcome create_layout(std::span<const Slot> slots, VkShaderStageFlags stages);
+  Outcome create_layout(std::span<const LayoutBinding> slots, VkShaderStageFlags stages);
   Device* device_ = nullptr;
   VkDescriptorSetLayout set_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;

@@ -1,5 +1,5 @@
-/// What Catena needs of a Vulkan device, for a program that makes its device itself and lends it (VulkanMaker, instance.h): ask before the
-/// device is made, and make it with these extensions and features besides one's own. Any thread.
+/// What Catena needs of a Vulkan device, for a program that makes its device itself and lends it (VulkanProvider, instance.h): ask before
+/// the device is made, and make it with these extensions and features besides one's own. Any thread.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -22,11 +22,11 @@ struct DeviceFeatures {
 };
 
 /// Switches on what Catena needs; what is on already stays on.
-void require(DeviceFeatures& features);
+void enable_required(DeviceFeatures& features);
 /// Of the device. `presents`: Catena shows its pictures in a window of its own.
 std::vector<const char*> required_extensions(bool presents = false);
 /// What the device has not got of all this: its first word, such as "independentBlend"; empty: it will do. `surface`: where pictures are
 /// shown, none for pictures in memory.
-std::string lacks(VkPhysicalDevice physical, VkSurfaceKHR surface = VK_NULL_HANDLE);
+std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 }  // namespace catena::render::vk

@@ -31,26 +31,26 @@ Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& need
                                               : memory_type(device, needs.memoryTypeBits, host, VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   if (!type) return Error{"the device " + device.info().name + " has no memory for " + what};
   DeviceCounters& counters = device.counters();
-  if (needs.size > device.memory_left()) {
-    ++counters.refused;
+  if (needs.size > device.memory_available()) {
+    ++counters.refused_allocations;
     return Error{fmt::format("{} needs {} of GPU memory, {} of the budget of {} are left", what, megabytes(needs.size),
-                             megabytes(device.memory_left()), megabytes(device.info().memory_budget))};
+                             megabytes(device.memory_available()), megabytes(device.info().memory_budget))};
   }
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needs.size;
   info.memoryTypeIndex = *type;
   VkDeviceMemory memory = VK_NULL_HANDLE;
-  VkResult result = device.pretended(DriverCall::allocate);
+  VkResult result = device.injected_failure(DriverCall::allocate);
   if (result == VK_SUCCESS) result = vkAllocateMemory(device.handle(), &info, nullptr, &memory);
   if (result != VK_SUCCESS)
-    return vulkan_error(result, fmt::format("allocate {} for {} ({} of {} held)", megabytes(needs.size), what, megabytes(counters.bytes),
-                                            megabytes(device.info().memory_bytes)));
-  counters.bytes += needs.size;
-  counters.peak = std::max(counters.peak, counters.bytes);
+    return vulkan_error(result, fmt::format("allocate {} for {} ({} of {} held)", megabytes(needs.size), what,
+                                            megabytes(counters.allocated_bytes), megabytes(device.info().memory_bytes)));
+  counters.allocated_bytes += needs.size;
+  counters.peak_bytes = std::max(counters.peak_bytes, counters.allocated_bytes);
   ++counters.allocations;
   // the memory of a processor's driver is this process's own
-  if (void* start = nullptr; device.info().is_cpu() && needs.size >= kLeastForHugePages &&
+  if (void* start = nullptr; device.info().is_cpu() && needs.size >= kMinHugePageBytes &&
                              vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &start) == VK_SUCCESS) {
     prefer_huge_pages(start, needs.size);
     vkUnmapMemory(device.handle(), memory);
@@ -93,7 +93,7 @@ void Buffer::release() {
   device_->retire([device = device_, buffer = buffer_, memory = memory_, bytes = memory_ ? allocated_ : 0] {
     vkDestroyBuffer(device->handle(), buffer, nullptr);
     vkFreeMemory(device->handle(), memory, nullptr);
-    device->counters().bytes -= bytes;
+    device->counters().allocated_bytes -= bytes;
   });
   buffer_ = VK_NULL_HANDLE;
   memory_ = VK_NULL_HANDLE;
@@ -146,7 +146,7 @@ VkImageCreateInfo create_info(const ImageInfo& info) {
 
 }  // namespace
 
-std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& info) {
+std::optional<VkDeviceSize> image_memory_bytes(const Device& device, const ImageInfo& info) {
   VkImageFormatProperties limits{};
   const auto& e = info.extent;
   if (vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.type, VK_IMAGE_TILING_OPTIMAL, info.usage, 0,
@@ -163,7 +163,7 @@ std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& i
   return needs.memoryRequirements.size;
 }
 
-ImageInfo volume_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z) {
+ImageInfo volume_image_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z) {
   ImageInfo info;
   info.type = VK_IMAGE_TYPE_3D;
   info.format = format;
@@ -172,7 +172,7 @@ ImageInfo volume_info(VkFormat format, std::size_t x, std::size_t y, std::size_t
   return info;
 }
 
-Outcome fit_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
+Outcome ensure_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
   const VkExtent3D& have = image.info().extent;
   if (image && image.info().format == format && have.width == width && have.height == height) return Done{};
   ImageInfo info;
@@ -233,7 +233,7 @@ void Image::release() {
     vkDestroyImageView(device->handle(), view, nullptr);
     vkDestroyImage(device->handle(), image, nullptr);
     vkFreeMemory(device->handle(), memory, nullptr);
-    device->counters().bytes -= bytes;
+    device->counters().allocated_bytes -= bytes;
   });
   image_ = VK_NULL_HANDLE;
   view_ = VK_NULL_HANDLE;

@@ -55,13 +55,13 @@ struct ImageInfo {
 };
 
 /// Of three dimensions, uploaded once and read by shaders.
-ImageInfo volume_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z);
+ImageInfo volume_image_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z);
 
 /// Bytes of one texel of the formats that Catena uses.
 VkDeviceSize texel_bytes(VkFormat format);
 
 /// What an image takes on this device, with the driver's padding; none where no such image can be made.
-std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& info);
+std::optional<VkDeviceSize> image_memory_bytes(const Device& device, const ImageInfo& info);
 
 /// One mip level, one layer, one view. Remembers its layout and last use, so that a barrier needs only the next one.
 class Image {
@@ -108,8 +108,8 @@ class Image {
 };
 
 /// Makes `image` anew unless it has this format and size already; by default a colour target that shaders read.
-Outcome fit_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
-                  VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+Outcome ensure_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
+                     VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
 
 /// Between texels: the nearest, or a mix.
 enum class Filter { nearest, linear };

@@ -41,26 +41,26 @@ Swapchain::~Swapchain() { destroy(); }
 
 void Swapchain::destroy() {
   {
-    const auto turn = device_->queue_turn();
+    const auto turn = device_->lock_queue();
     (void)vkDeviceWaitIdle(device_->handle());
   }
-  for (VkSemaphore s : finished_) vkDestroySemaphore(device_->handle(), s, nullptr);
-  finished_.clear();
+  for (VkSemaphore s : render_finished_) vkDestroySemaphore(device_->handle(), s, nullptr);
+  render_finished_.clear();
   images_.clear();
-  if (acquired_) vkDestroySemaphore(device_->handle(), acquired_, nullptr);
-  acquired_ = VK_NULL_HANDLE;
+  if (image_acquired_) vkDestroySemaphore(device_->handle(), image_acquired_, nullptr);
+  image_acquired_ = VK_NULL_HANDLE;
   if (swapchain_) vkDestroySwapchainKHR(device_->handle(), swapchain_, nullptr);
   swapchain_ = VK_NULL_HANDLE;
 }
 
 Outcome Swapchain::resize(std::uint32_t width, std::uint32_t height) {
   destroy();
-  Outcome made = make(width, height);
+  Outcome made = create_swapchain(width, height);
   if (!made) destroy();
   return made;
 }
 
-Outcome Swapchain::make(std::uint32_t width, std::uint32_t height) {
+Outcome Swapchain::create_swapchain(std::uint32_t width, std::uint32_t height) {
   VkSurfaceCapabilitiesKHR caps{};
   CATENA_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps), "ask the window's capabilities");
   extent_ = caps.currentExtent;
@@ -89,9 +89,9 @@ Outcome Swapchain::make(std::uint32_t width, std::uint32_t height) {
   images_.resize(count);
   CATENA_VK(vkGetSwapchainImagesKHR(device_->handle(), swapchain_, &count, images_.data()), "list the window's images");
   const VkSemaphoreCreateInfo semaphore = binary_semaphore();
-  CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &acquired_), "create a semaphore");
-  finished_.resize(count);
-  for (VkSemaphore& s : finished_) CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &s), "create a semaphore");
+  CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &image_acquired_), "create a semaphore");
+  render_finished_.resize(count);
+  for (VkSemaphore& s : render_finished_) CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &s), "create a semaphore");
   return Done{};
 }
 
@@ -106,35 +106,35 @@ bool Swapchain::has_window_size() const {
 Result<bool> Swapchain::present(const Image& source) {
   if (!swapchain_) return false;
   std::uint32_t index = 0;
-  const VkResult acquired =
-      vkAcquireNextImageKHR(device_->handle(), swapchain_, std::numeric_limits<std::uint64_t>::max(), acquired_, VK_NULL_HANDLE, &index);
+  const VkResult acquired = vkAcquireNextImageKHR(device_->handle(), swapchain_, std::numeric_limits<std::uint64_t>::max(), image_acquired_,
+                                                  VK_NULL_HANDLE, &index);
   if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return false;
   if (acquired != VK_SUCCESS && acquired != VK_SUBOPTIMAL_KHR) return vulkan_error(acquired, "take an image of the window");
-  Result<bool> shown = show(source, index, acquired == VK_SUCCESS);
+  Result<bool> shown = copy_and_present(source, index, acquired == VK_SUCCESS);
   if (!shown) destroy();  // an image is taken and its semaphore waited for by nobody
   return shown;
 }
 
-Result<bool> Swapchain::show(const Image& source, std::uint32_t index, bool optimal) {
+Result<bool> Swapchain::copy_and_present(const Image& source, std::uint32_t index, bool optimal) {
   // copy, scaled to the window
   CATENA_TRY(Commands commands, Commands::begin(*device_));
   const VkImage target = images_[index];
-  const Use taken{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE};
-  const Use presented{VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
+  const ResourceUse taken{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE};
+  const ResourceUse presented{VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
   commands.barrier(target, VK_IMAGE_ASPECT_COLOR_BIT, taken, kTransferWrite);
   commands.blit(source, target, extent_);
   commands.barrier(target, VK_IMAGE_ASPECT_COLOR_BIT, kTransferWrite, presented);
-  CATENA_TRY(const std::uint64_t value, commands.submit(acquired_, finished_[index]));
+  CATENA_TRY(const std::uint64_t value, commands.submit(image_acquired_, render_finished_[index]));
 
   VkPresentInfoKHR info{};
   info.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
   info.waitSemaphoreCount = 1;
-  info.pWaitSemaphores = &finished_[index];
+  info.pWaitSemaphores = &render_finished_[index];
   info.swapchainCount = 1;
   info.pSwapchains = &swapchain_;
   info.pImageIndices = &index;
   const VkResult shown = [&] {
-    const auto turn = device_->queue_turn();
+    const auto turn = device_->lock_queue();
     return vkQueuePresentKHR(device_->queue(), &info);
   }();
   CATENA_CHECK(device_->wait(value));

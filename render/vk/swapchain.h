@@ -30,8 +30,8 @@ class Swapchain {
  private:
   explicit Swapchain(Device& device) : device_(&device) {}
   void destroy();
-  Outcome make(std::uint32_t width, std::uint32_t height);
-  Result<bool> show(const Image& source, std::uint32_t index, bool optimal);
+  Outcome create_swapchain(std::uint32_t width, std::uint32_t height);
+  Result<bool> copy_and_present(const Image& source, std::uint32_t index, bool optimal);
   bool has_window_size() const;
 
   Device* device_;
@@ -39,8 +39,8 @@ class Swapchain {
   VkSurfaceFormatKHR format_{};
   VkExtent2D extent_{};
   std::vector<VkImage> images_;
-  std::vector<VkSemaphore> finished_;  ///< one an image
-  VkSemaphore acquired_ = VK_NULL_HANDLE;
+  std::vector<VkSemaphore> render_finished_;  ///< one an image
+  VkSemaphore image_acquired_ = VK_NULL_HANDLE;
 };
 
 }  // namespace catena::render::vk

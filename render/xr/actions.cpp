@@ -20,104 +20,104 @@ constexpr Profile kProfiles[] = {
     {"htc/vive_controller", "trigger/value", "squeeze/click", "trackpad", "menu/click", "menu/click"},
     {"microsoft/motion_controller", "trigger/value", "squeeze/click", "thumbstick", "menu/click", "menu/click"},
 };
-constexpr const char* kHandPaths[kHands] = {"/user/hand/left", "/user/hand/right"};
+constexpr const char* kHandPaths[kControllers] = {"/user/hand/left", "/user/hand/right"};
 
 double clamped(float value, double least) { return std::isfinite(value) ? std::clamp(double(value), least, 1.0) : 0.0; }
 
 }  // namespace
 
-Result<XrPath> Actions::path(const char* text) {
+Result<XrPath> Actions::make_path(const char* text) {
   XrPath made = XR_NULL_PATH;
-  CATENA_XR_CHECK(*session_, session_->xr().StringToPath(session_->instance().handle(), text, &made), "name a control");
+  CATENA_XR_CHECK(*session_, session_->dispatch().StringToPath(session_->instance().handle(), text, &made), "name a control");
   return made;
 }
 
-Result<XrAction> Actions::action(XrActionType type, const char* name, const char* words, bool of_hands) {
+Result<XrAction> Actions::make_action(XrActionType type, const char* name, const char* words, bool of_hands) {
   XrActionCreateInfo info{};
   info.type = XR_TYPE_ACTION_CREATE_INFO;
   info.actionType = type;
   std::strcpy(info.actionName, name);
   std::strcpy(info.localizedActionName, words);
-  info.countSubactionPaths = of_hands ? std::uint32_t(hands_.size()) : 0;
-  info.subactionPaths = hands_.data();
+  info.countSubactionPaths = of_hands ? std::uint32_t(hand_paths_.size()) : 0;
+  info.subactionPaths = hand_paths_.data();
   XrAction made = XR_NULL_HANDLE;
-  CATENA_XR_CHECK(*session_, session_->xr().CreateAction(set_, &info, &made), "make a control");
+  CATENA_XR_CHECK(*session_, session_->dispatch().CreateAction(set_, &info, &made), "make a control");
   return made;
 }
 
-Result<XrSpace> Actions::pose_space(XrAction pose, XrPath hand) {
+Result<XrSpace> Actions::make_pose_space(XrAction pose, XrPath hand) {
   XrActionSpaceCreateInfo info{};
   info.type = XR_TYPE_ACTION_SPACE_CREATE_INFO;
   info.action = pose;
   info.subactionPath = hand;
   info.poseInActionSpace.orientation.w = 1;
   XrSpace made = XR_NULL_HANDLE;
-  CATENA_XR_CHECK(*session_, session_->xr().CreateActionSpace(session_->handle(), &info, &made), "follow a pose");
+  CATENA_XR_CHECK(*session_, session_->dispatch().CreateActionSpace(session_->handle(), &info, &made), "follow a pose");
   return made;
 }
 
 Result<std::unique_ptr<Actions>> Actions::create(Session& session) {
   std::unique_ptr<Actions> self(new Actions(session));
-  CATENA_CHECK(self->make());
+  CATENA_CHECK(self->create_actions());
   return self;
 }
 
 Actions::~Actions() {
   for (const auto& spaces : {aim_spaces_, grip_spaces_})
     for (XrSpace space : spaces)
-      if (space) (void)session_->xr().DestroySpace(space);
-  if (gaze_space_) (void)session_->xr().DestroySpace(gaze_space_);
-  if (set_) (void)session_->xr().DestroyActionSet(set_);
+      if (space) (void)session_->dispatch().DestroySpace(space);
+  if (gaze_space_) (void)session_->dispatch().DestroySpace(gaze_space_);
+  if (set_) (void)session_->dispatch().DestroyActionSet(set_);
 }
 
-Outcome Actions::make() {
-  const Functions& xr = session_->xr();
+Outcome Actions::create_actions() {
+  const DispatchTable& xr = session_->dispatch();
   XrActionSetCreateInfo info{};
   info.type = XR_TYPE_ACTION_SET_CREATE_INFO;
   std::strcpy(info.actionSetName, "hands");
   std::strcpy(info.localizedActionSetName, "Hands");
   CATENA_XR_CHECK(*session_, xr.CreateActionSet(session_->instance().handle(), &info, &set_), "make controls");
-  for (std::size_t k = 0; k < kHands; ++k) {
-    CATENA_TRY(hands_[k], path(kHandPaths[k]));
+  for (std::size_t k = 0; k < kControllers; ++k) {
+    CATENA_TRY(hand_paths_[k], make_path(kHandPaths[k]));
   }
-  CATENA_TRY(aim_, action(XR_ACTION_TYPE_POSE_INPUT, "aim", "Where the hand points"));
-  CATENA_TRY(grip_, action(XR_ACTION_TYPE_POSE_INPUT, "grip", "Where the hand is"));
-  CATENA_TRY(select_, action(XR_ACTION_TYPE_FLOAT_INPUT, "select", "Select"));
-  CATENA_TRY(grab_, action(XR_ACTION_TYPE_FLOAT_INPUT, "grab", "Grab"));
-  CATENA_TRY(stick_, action(XR_ACTION_TYPE_VECTOR2F_INPUT, "stick", "Turn"));
-  CATENA_TRY(menu_, action(XR_ACTION_TYPE_BOOLEAN_INPUT, "menu", "Panel"));
-  CATENA_TRY(vibration_, action(XR_ACTION_TYPE_VIBRATION_OUTPUT, "vibration", "What is felt"));
-  const bool sees_eyes = session_->instance().has().gaze;
+  CATENA_TRY(aim_, make_action(XR_ACTION_TYPE_POSE_INPUT, "aim", "Where the hand points"));
+  CATENA_TRY(grip_, make_action(XR_ACTION_TYPE_POSE_INPUT, "grip", "Where the hand is"));
+  CATENA_TRY(select_, make_action(XR_ACTION_TYPE_FLOAT_INPUT, "select", "Select"));
+  CATENA_TRY(grab_, make_action(XR_ACTION_TYPE_FLOAT_INPUT, "grab", "Grab"));
+  CATENA_TRY(stick_, make_action(XR_ACTION_TYPE_VECTOR2F_INPUT, "stick", "Turn"));
+  CATENA_TRY(menu_, make_action(XR_ACTION_TYPE_BOOLEAN_INPUT, "menu", "Panel"));
+  CATENA_TRY(vibration_, make_action(XR_ACTION_TYPE_VIBRATION_OUTPUT, "vibration", "What is felt"));
+  const bool sees_eyes = session_->instance().capabilities().gaze;
   if (sees_eyes) {
-    CATENA_TRY(gaze_, action(XR_ACTION_TYPE_POSE_INPUT, "gaze", "Where the eyes look", false));
-    CATENA_CHECK(suggest_gaze());
+    CATENA_TRY(gaze_, make_action(XR_ACTION_TYPE_POSE_INPUT, "gaze", "Where the eyes look", false));
+    CATENA_CHECK(suggest_gaze_binding());
   }
-  CATENA_CHECK(suggest());
+  CATENA_CHECK(suggest_bindings());
   XrSessionActionSetsAttachInfo attach{};
   attach.type = XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO;
   attach.countActionSets = 1;
   attach.actionSets = &set_;
   CATENA_XR_CHECK(*session_, xr.AttachSessionActionSets(session_->handle(), &attach), "take controls");
-  for (std::size_t k = 0; k < kHands; ++k) {
-    CATENA_TRY(aim_spaces_[k], pose_space(aim_, hands_[k]));
-    CATENA_TRY(grip_spaces_[k], pose_space(grip_, hands_[k]));
+  for (std::size_t k = 0; k < kControllers; ++k) {
+    CATENA_TRY(aim_spaces_[k], make_pose_space(aim_, hand_paths_[k]));
+    CATENA_TRY(grip_spaces_[k], make_pose_space(grip_, hand_paths_[k]));
   }
   if (sees_eyes) {
-    CATENA_TRY(gaze_space_, pose_space(gaze_, XR_NULL_PATH));
+    CATENA_TRY(gaze_space_, make_pose_space(gaze_, XR_NULL_PATH));
   }
   return Done{};
 }
 
 /// A runtime need not know every controller: one that it knows is enough.
-Outcome Actions::suggest() {
+Outcome Actions::suggest_bindings() {
   XrResult last = XR_SUCCESS;
   bool taken = false;
   for (const Profile& profile : kProfiles) {
     std::vector<XrActionSuggestedBinding> bindings;
-    for (std::size_t k = 0; k < kHands; ++k) {
+    for (std::size_t k = 0; k < kControllers; ++k) {
       const auto bind = [&](XrAction of, const std::string& where) -> Outcome {
         if (where.ends_with('/')) return Done{};
-        CATENA_TRY(const XrPath to, path((std::string(kHandPaths[k]) + where).c_str()));
+        CATENA_TRY(const XrPath to, make_path((std::string(kHandPaths[k]) + where).c_str()));
         bindings.push_back({of, to});
         return Done{};
       };
@@ -131,25 +131,25 @@ Outcome Actions::suggest() {
     }
     XrInteractionProfileSuggestedBinding info{};
     info.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
-    CATENA_TRY(info.interactionProfile, path((std::string("/interaction_profiles/") + profile.name).c_str()));
+    CATENA_TRY(info.interactionProfile, make_path((std::string("/interaction_profiles/") + profile.name).c_str()));
     info.countSuggestedBindings = std::uint32_t(bindings.size());
     info.suggestedBindings = bindings.data();
-    const XrResult said = session_->xr().SuggestInteractionProfileBindings(session_->instance().handle(), &info);
+    const XrResult said = session_->dispatch().SuggestInteractionProfileBindings(session_->instance().handle(), &info);
     taken = taken || XR_SUCCEEDED(said);
     if (XR_FAILED(said)) last = said;
   }
   return taken ? Outcome(Done{}) : Outcome(session_->failed(last, "take controls"));
 }
 
-Outcome Actions::suggest_gaze() {
+Outcome Actions::suggest_gaze_binding() {
   XrActionSuggestedBinding binding{gaze_, XR_NULL_PATH};
-  CATENA_TRY(binding.binding, path("/user/eyes_ext/input/gaze_ext/pose"));
+  CATENA_TRY(binding.binding, make_path("/user/eyes_ext/input/gaze_ext/pose"));
   XrInteractionProfileSuggestedBinding info{};
   info.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
-  CATENA_TRY(info.interactionProfile, path("/interaction_profiles/ext/eye_gaze_interaction"));
+  CATENA_TRY(info.interactionProfile, make_path("/interaction_profiles/ext/eye_gaze_interaction"));
   info.countSuggestedBindings = 1;
   info.suggestedBindings = &binding;
-  CATENA_XR_CHECK(*session_, session_->xr().SuggestInteractionProfileBindings(session_->instance().handle(), &info), "take the gaze");
+  CATENA_XR_CHECK(*session_, session_->dispatch().SuggestInteractionProfileBindings(session_->instance().handle(), &info), "take the gaze");
   return Done{};
 }
 
@@ -159,31 +159,31 @@ Outcome Actions::sync() {
   info.type = XR_TYPE_ACTIONS_SYNC_INFO;
   info.countActiveActionSets = 1;
   info.activeActionSets = &active;
-  CATENA_XR_CHECK(*session_, session_->xr().SyncActions(session_->handle(), &info), "look at the controls");
+  CATENA_XR_CHECK(*session_, session_->dispatch().SyncActions(session_->handle(), &info), "look at the controls");
   return Done{};
 }
 
-Result<bool> Actions::locate(XrSpace space, XrTime at, RoomPose& pose) {
-  CATENA_TRY(const std::optional<RoomPose> found, session_->locate(space, at, "locate a hand"));
+Result<bool> Actions::locate(XrSpace space, XrTime at, XrPose& pose) {
+  CATENA_TRY(const std::optional<XrPose> found, session_->locate(space, at, "locate a hand"));
   if (found) pose = *found;
   return found.has_value();
 }
 
-Result<HandState> Actions::hand(std::size_t which, XrTime at) {
-  const Functions& xr = session_->xr();
-  HandState state;
-  state.focused = session_->focused();
+Result<ControllerState> Actions::controller(std::size_t which, XrTime at) {
+  const DispatchTable& xr = session_->dispatch();
+  ControllerState state;
+  state.is_focused = session_->is_focused();
   XrActionStateGetInfo info{};
   info.type = XR_TYPE_ACTION_STATE_GET_INFO;
-  info.subactionPath = hands_[which];
+  info.subactionPath = hand_paths_[which];
   info.action = grip_;
   XrActionStatePose pose{};
   pose.type = XR_TYPE_ACTION_STATE_POSE;
   CATENA_XR_CHECK(*session_, xr.GetActionStatePose(session_->handle(), &info, &pose), "look at the controls");
   if (!pose.isActive) return state;
-  CATENA_TRY(state.there, locate(grip_spaces_[which], at, state.grip));
-  CATENA_TRY(state.points, locate(aim_spaces_[which], at, state.aim));
-  if (!state.focused) return state;
+  CATENA_TRY(state.is_tracked, locate(grip_spaces_[which], at, state.grip));
+  CATENA_TRY(state.has_aim, locate(aim_spaces_[which], at, state.aim));
+  if (!state.is_focused) return state;
 
   const auto amount = [&](XrAction of, double& value) -> Outcome {
     XrActionStateFloat found{};
@@ -211,35 +211,36 @@ Result<HandState> Actions::hand(std::size_t which, XrTime at) {
   return state;
 }
 
-Result<std::optional<RoomPose>> Actions::gaze(XrTime at) {
-  const std::optional<RoomPose> none;
-  if (!gaze_space_ || !session_->focused()) return none;
+Result<std::optional<XrPose>> Actions::gaze(XrTime at) {
+  const std::optional<XrPose> none;
+  if (!gaze_space_ || !session_->is_focused()) return none;
   XrActionStateGetInfo info{};
   info.type = XR_TYPE_ACTION_STATE_GET_INFO;
   info.action = gaze_;
   XrActionStatePose state{};
   state.type = XR_TYPE_ACTION_STATE_POSE;
-  CATENA_XR_CHECK(*session_, session_->xr().GetActionStatePose(session_->handle(), &info, &state), "look at the eyes");
+  CATENA_XR_CHECK(*session_, session_->dispatch().GetActionStatePose(session_->handle(), &info, &state), "look at the eyes");
   if (!state.isActive) return none;
-  RoomPose pose;
+  XrPose pose;
   CATENA_TRY(const bool known, locate(gaze_space_, at, pose));
   return known ? std::optional(pose) : none;
 }
 
 Outcome Actions::vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns) {
-  if (!session_->focused()) return Done{};
+  if (!session_->is_focused()) return Done{};
   XrHapticActionInfo info{};
   info.type = XR_TYPE_HAPTIC_ACTION_INFO;
   info.action = vibration_;
-  info.subactionPath = hands_[which];
+  info.subactionPath = hand_paths_[which];
   XrHapticVibration vibration{};
   vibration.type = XR_TYPE_HAPTIC_VIBRATION;
   vibration.amplitude = float(std::isfinite(amplitude) ? std::clamp(amplitude, 0.0, 1.0) : 0);
   vibration.frequency = float(frequency_hz > 0 && std::isfinite(frequency_hz) ? frequency_hz : 0);  // 0: XR_FREQUENCY_UNSPECIFIED
   vibration.duration = duration_ns > 0 ? duration_ns : XR_MIN_HAPTIC_DURATION;
-  CATENA_XR_CHECK(*session_,
-                  session_->xr().ApplyHapticFeedback(session_->handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)),
-                  "vibrate");
+  CATENA_XR_CHECK(
+      *session_,
+      session_->dispatch().ApplyHapticFeedback(session_->handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)),
+      "vibrate");
   return Done{};
 }
 
@@ -247,22 +248,23 @@ Outcome Actions::stop_vibration(std::size_t which) {
   XrHapticActionInfo info{};
   info.type = XR_TYPE_HAPTIC_ACTION_INFO;
   info.action = vibration_;
-  info.subactionPath = hands_[which];
-  CATENA_XR_CHECK(*session_, session_->xr().StopHapticFeedback(session_->handle(), &info), "stop vibrating");
+  info.subactionPath = hand_paths_[which];
+  CATENA_XR_CHECK(*session_, session_->dispatch().StopHapticFeedback(session_->handle(), &info), "stop vibrating");
   return Done{};
 }
 
-Result<std::string> Actions::profile(std::size_t which) {
+Result<std::string> Actions::interaction_profile(std::size_t which) {
   XrInteractionProfileState state{};
   state.type = XR_TYPE_INTERACTION_PROFILE_STATE;
-  CATENA_XR_CHECK(*session_, session_->xr().GetCurrentInteractionProfile(session_->handle(), hands_[which], &state), "name a controller");
+  CATENA_XR_CHECK(*session_, session_->dispatch().GetCurrentInteractionProfile(session_->handle(), hand_paths_[which], &state),
+                  "name a controller");
   if (state.interactionProfile == XR_NULL_PATH) return std::string();
   std::array<char, XR_MAX_PATH_LENGTH> text{};
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(
-      *session_,
-      session_->xr().PathToString(session_->instance().handle(), state.interactionProfile, std::uint32_t(text.size()), &count, text.data()),
-      "name a controller");
+  CATENA_XR_CHECK(*session_,
+                  session_->dispatch().PathToString(session_->instance().handle(), state.interactionProfile, std::uint32_t(text.size()),
+                                                    &count, text.data()),
+                  "name a controller");
   return std::string(text.data());
 }
 

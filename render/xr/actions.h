@@ -1,6 +1,6 @@
 /// The hands in OpenXR's words: what a person does with controllers, whichever they are, and the vibration that they feel. The runtime maps
-/// what is suggested here for the common controllers (KHR simple, Oculus Touch, Valve Index, HTC Vive, Windows motion controllers), and
-/// for others what it thinks best.
+/// what is suggested here for the common controllers (KHR simple, Oculus LinkContact, Valve Index, HTC Vive, Windows motion controllers),
+/// and for others what it thinks best.
 ///   aim    where the hand points: along -z        grip   where the controller is held; the probe is its origin
 ///   select trigger, 0..1                          grab   squeeze, 0..1
 ///   stick  thumbstick or trackpad, right and up   menu   the panel
@@ -17,16 +17,16 @@
 
 namespace catena::render::xr {
 
-struct HandState {
-  bool there = false;    ///< position and direction of the grip are known
-  bool points = false;   ///< those of the aim are
-  bool focused = false;  ///< buttons count
-  RoomPose grip, aim;
+struct ControllerState {
+  bool is_tracked = false;  ///< position and direction of the grip are known
+  bool has_aim = false;     ///< those of the aim are
+  bool is_focused = false;  ///< buttons count
+  XrPose grip, aim;
   double select = 0, grab = 0, stick_x = 0, stick_y = 0;
   bool menu = false;
 };
 
-inline constexpr std::size_t kHands = 2;  ///< 0 left, 1 right
+inline constexpr std::size_t kControllers = 2;  ///< 0 left, 1 right
 
 class Actions {
  public:
@@ -38,10 +38,10 @@ class Actions {
   /// Buttons and poses from now on are the newest; once a frame.
   Outcome sync();
   /// A hand at a time of the runtime's clock: `now` for what it does, the frame's time for what is drawn of it.
-  Result<HandState> hand(std::size_t which, XrTime at);
+  Result<ControllerState> controller(std::size_t which, XrTime at);
 
   /// Where the person looks then; nothing where the headset does not know. Nothing without focus.
-  Result<std::optional<RoomPose>> gaze(XrTime at);
+  Result<std::optional<XrPose>> gaze(XrTime at);
 
   /// Replaces what the hand feels. amplitude 0..1; frequency in Hz, 0: the runtime's choice; what it cannot make it clamps.
   /// Nothing without focus.
@@ -49,24 +49,24 @@ class Actions {
   Outcome stop_vibration(std::size_t which);
 
   /// "/interaction_profiles/valve/index_controller"; empty: no controller.
-  Result<std::string> profile(std::size_t which);
+  Result<std::string> interaction_profile(std::size_t which);
 
  private:
   explicit Actions(Session& session) : session_(&session) {}
-  Outcome make();
-  Outcome suggest();
-  Outcome suggest_gaze();
-  Result<XrPath> path(const char* text);
-  Result<XrAction> action(XrActionType type, const char* name, const char* words, bool of_hands = true);
-  Result<XrSpace> pose_space(XrAction pose, XrPath hand);
-  Result<bool> locate(XrSpace space, XrTime at, RoomPose& pose);
+  Outcome create_actions();
+  Outcome suggest_bindings();
+  Outcome suggest_gaze_binding();
+  Result<XrPath> make_path(const char* text);
+  Result<XrAction> make_action(XrActionType type, const char* name, const char* words, bool of_hands = true);
+  Result<XrSpace> make_pose_space(XrAction pose, XrPath hand);
+  Result<bool> locate(XrSpace space, XrTime at, XrPose& pose);
 
   Session* session_;
   XrActionSet set_ = XR_NULL_HANDLE;
   XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, select_ = XR_NULL_HANDLE, grab_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
            menu_ = XR_NULL_HANDLE, vibration_ = XR_NULL_HANDLE, gaze_ = XR_NULL_HANDLE;
-  std::array<XrPath, kHands> hands_{};
-  std::array<XrSpace, kHands> aim_spaces_{}, grip_spaces_{};
+  std::array<XrPath, kControllers> hand_paths_{};
+  std::array<XrSpace, kControllers> aim_spaces_{}, grip_spaces_{};
   XrSpace gaze_space_ = XR_NULL_HANDLE;
 };
 

@@ -2,9 +2,9 @@
 
 namespace catena::render::xr {
 
-std::optional<XrTime> time_of(const Instance& instance, std::int64_t monotonic_ns) {
-  const auto convert = instance.xr().ConvertTimespecTimeToTimeKHR;
-  if (!instance.has().clock || !convert) return std::nullopt;
+std::optional<XrTime> to_xr_time(const Instance& instance, std::int64_t monotonic_ns) {
+  const auto convert = instance.dispatch().ConvertTimespecTimeToTimeKHR;
+  if (!instance.capabilities().clock || !convert) return std::nullopt;
   constexpr std::int64_t kSecond = 1'000'000'000;
   const timespec at{monotonic_ns / kSecond, monotonic_ns % kSecond};
   XrTime time = 0;

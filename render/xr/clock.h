@@ -8,6 +8,6 @@
 namespace catena::render::xr {
 
 /// Of a time of engine/base/clock.h; nothing where the runtime does not offer it.
-std::optional<XrTime> time_of(const Instance& instance, std::int64_t monotonic_ns);
+std::optional<XrTime> to_xr_time(const Instance& instance, std::int64_t monotonic_ns);
 
 }  // namespace catena::render::xr

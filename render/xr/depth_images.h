@@ -9,7 +9,7 @@
 
 #include "render/passes/renderer.h"
 #include "render/vk/pipeline.h"
-#include "render/xr/eye_images.h"
+#include "render/xr/swapchain_images.h"
 
 namespace catena::render::xr {
 
@@ -20,15 +20,15 @@ class DepthImages {
 
   /// Nothing where the runtime takes no depths of 32 bits.
   static std::unique_ptr<DepthImages> create(Session& session, ViewSize size);
-  const EyeImages& images() const { return *images_; }
+  const SwapchainImages& images() const { return *images_; }
   /// Of the renderer's last picture, drawn with ray_depth_spacing. False: it has no depth.
-  Result<bool> take(Renderer& renderer, double metres_per_unit);
+  Result<bool> submit_depth(Renderer& renderer, double metres_per_unit);
 
  private:
   explicit DepthImages(Session& session) : session_(&session) {}
   Session* session_;
-  std::unique_ptr<EyeImages> images_;
-  vk::Image drawn_;
+  std::unique_ptr<SwapchainImages> images_;
+  vk::Image depth_image_;
   std::array<vk::Pipeline, 4> pipelines_;  // by what there is: 1 something opaque, 2 rays
   vk::Buffer uniform_;
 };

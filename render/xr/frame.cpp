@@ -16,64 +16,67 @@ Outcome locate(Session& session, Frame& frame) {
   XrViewLocateInfo info{};
   info.type = XR_TYPE_VIEW_LOCATE_INFO;
   info.viewConfigurationType = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-  info.displayTime = frame.time;
+  info.displayTime = frame.display_time;
   info.space = session.space(SpaceKind::local);
   XrViewState state{};
   state.type = XR_TYPE_VIEW_STATE;
   XrView view{};
   view.type = XR_TYPE_VIEW;
-  frame.views.assign(session.instance().views().size(), view);
+  frame.views.assign(session.instance().view_sizes().size(), view);
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(session,
-                  session.xr().LocateViews(session.handle(), &info, &state, std::uint32_t(frame.views.size()), &count, frame.views.data()),
-                  "locate the eyes");
+  CATENA_XR_CHECK(
+      session,
+      session.dispatch().LocateViews(session.handle(), &info, &state, std::uint32_t(frame.views.size()), &count, frame.views.data()),
+      "locate the eyes");
   // an eye that no picture can be made for, whatever the flags say, is not tracked
-  frame.sound = std::ranges::all_of(frame.views, [](const XrView& one) { return static_cast<bool>(eye_view({}, room_eye(one))); });
-  frame.wants_picture = frame.wants_picture && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked && frame.sound;
+  frame.is_valid =
+      std::ranges::all_of(frame.views, [](const XrView& one) { return static_cast<bool>(make_xr_eye_view({}, make_xr_eye(one))); });
+  frame.should_render =
+      frame.should_render && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked && frame.is_valid;
   return Done{};
 }
 
 }  // namespace
 
-RoomEye room_eye(const XrView& view) {
+XrEye make_xr_eye(const XrView& view) {
   const auto& [x, y, z, w] = view.pose.orientation;
-  RoomEye eye;
+  XrEye eye;
   eye.position = Vec3(view.pose.position.x, view.pose.position.y, view.pose.position.z);
-  eye.room_from_eye = glm::mat3_cast(normalised(Quat(w, x, y, z)));
+  eye.local_from_eye = glm::mat3_cast(normalized(Quat(w, x, y, z)));
   eye.tangents = {std::tan(double(view.fov.angleLeft)), std::tan(double(view.fov.angleRight)), std::tan(double(view.fov.angleUp)),
                   std::tan(double(view.fov.angleDown))};
   return eye;
 }
 
-RoomHead head_of(const Frame& frame) {
-  RoomHead head;
+XrHeadPose head_pose(const Frame& frame) {
+  XrHeadPose head;
   Quat sum(0.0, 0.0, 0.0, 0.0);
   for (const XrView& view : frame.views) {
     const auto& [x, y, z, w] = view.pose.orientation;
-    const Quat turn = normalised(Quat(w, x, y, z));
+    const Quat turn = normalized(Quat(w, x, y, z));
     sum += dot(sum, turn) < 0 ? -turn : turn;  // q and -q are one rotation
-    head.position += room_eye(view).position / double(frame.views.size());
+    head.position += make_xr_eye(view).position / double(frame.views.size());
   }
-  head.turn = normalised(sum);
+  head.orientation = normalized(sum);
   return head;
 }
 
 Result<std::optional<Frame>> begin_frame(Session& session, std::optional<std::chrono::nanoseconds> patience) {
-  const Functions& xr = session.xr();
-  const std::optional<FrameWait::Answer> answer = session.frame_wait().take(patience);
+  const DispatchTable& xr = session.dispatch();
+  const std::optional<FrameWaiter::WaitResult> answer = session.frame_waiter().wait_for(patience);
   if (!answer) return std::optional<Frame>();
   CATENA_XR_CHECK(session, answer->result, "say when the next picture is due");
   const XrFrameState& state = answer->state;
   Frame frame;
-  frame.time = state.predictedDisplayTime;
+  frame.display_time = state.predictedDisplayTime;
   constexpr std::int64_t kLeast_ns = 1'000'000, kMost_ns = 1'000'000'000, kUnknown_ns = 11'111'111;  // of a period that is one
   const std::int64_t period_ns = state.predictedDisplayPeriod;
-  frame.period_ns = period_ns > 0 ? std::clamp(period_ns, kLeast_ns, kMost_ns) : kUnknown_ns;
-  frame.wants_picture = state.shouldRender && is_seen(session.state());
+  frame.display_period_ns = period_ns > 0 ? std::clamp(period_ns, kLeast_ns, kMost_ns) : kUnknown_ns;
+  frame.should_render = state.shouldRender && is_visible(session.state());
   XrFrameBeginInfo begin{};
   begin.type = XR_TYPE_FRAME_BEGIN_INFO;
   {
-    const auto turn = session.device().queue_turn();
+    const auto turn = session.device().lock_queue();
     CATENA_XR_CHECK(session, xr.BeginFrame(session.handle(), &begin), "begin a picture");
   }
   if (const Outcome located = locate(session, frame); !located) {
@@ -83,7 +86,7 @@ Result<std::optional<Frame>> begin_frame(Session& session, std::optional<std::ch
   return std::optional<Frame>(std::move(frame));
 }
 
-Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>& shown,
+Outcome end_frame(Session& session, const Frame& frame, const std::vector<SubmittedView>& shown,
                   const std::vector<const XrCompositionLayerBaseHeader*>& extra) {
   std::vector<XrCompositionLayerProjectionView> views(shown.size());
   std::vector<XrCompositionLayerDepthInfoKHR> depths(shown.size());
@@ -112,12 +115,12 @@ Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>
   layers.insert(layers.end(), extra.begin(), extra.end());
   XrFrameEndInfo end{};
   end.type = XR_TYPE_FRAME_END_INFO;
-  end.displayTime = frame.time;
+  end.displayTime = frame.display_time;
   end.environmentBlendMode = session.instance().blend_mode();
   end.layerCount = std::uint32_t(layers.size());
   end.layers = layers.data();
-  const auto turn = session.device().queue_turn();
-  CATENA_XR_CHECK(session, session.xr().EndFrame(session.handle(), &end), "show a picture");
+  const auto turn = session.device().lock_queue();
+  CATENA_XR_CHECK(session, session.dispatch().EndFrame(session.handle(), &end), "show a picture");
   return Done{};
 }
 

@@ -8,12 +8,12 @@ namespace catena::render::xr {
 namespace {
 
 /// The fovea goes where the person looks; straight ahead of the view where that is not known, or behind it.
-void look_at(const std::optional<Vec3>& gaze, const RoomEye& eye, RenderSettings& settings) {
-  if (!gaze || !settings.fast || !(settings.fast->fovea > 0)) return;
-  const Vec3 seen = *gaze * eye.room_from_eye;  // v * R = R^T v
+void look_at(const std::optional<Vec3>& gaze, const XrEye& eye, RenderSettings& settings) {
+  if (!gaze || !settings.fast || !(settings.fast->fovea_tangent > 0)) return;
+  const Vec3 seen = *gaze * eye.local_from_eye;  // v * R = R^T v
   if (!(seen.z < 0)) return;
-  settings.fast->gaze_right = std::clamp(-seen.x / seen.z, -kWidestGaze, kWidestGaze);
-  settings.fast->gaze_up = std::clamp(-seen.y / seen.z, -kWidestGaze, kWidestGaze);
+  settings.fast->gaze_right = std::clamp(-seen.x / seen.z, -kMaxGazeTangent, kMaxGazeTangent);
+  settings.fast->gaze_up = std::clamp(-seen.y / seen.z, -kMaxGazeTangent, kMaxGazeTangent);
 }
 
 bool has_projection(const FramePacket& packet) {
@@ -32,34 +32,34 @@ Outcome Headset::start(vk::Device& device) {
   const auto made = [&]() -> Outcome {
     CATENA_TRY(session_, Session::create(*instance_, device));
     CATENA_TRY(actions_, Actions::create(*session_));
-    return make_views();
+    return create_views();
   }();
   if (!made) stop();
   return made;
 }
 
-Outcome Headset::make_views() {
-  for (const ViewSize& size : instance_->views()) {
+Outcome Headset::create_views() {
+  for (const ViewSize& size : instance_->view_sizes()) {
     ViewImages view;
-    CATENA_TRY(view.color, EyeImages::create(*session_, size));
+    CATENA_TRY(view.color, SwapchainImages::create(*session_, size));
     view.depth = DepthImages::create(*session_, size);
     views_.push_back(std::move(view));
   }
   // depths that could not be made are done without, but not what was lost on the way
   if (loss() != Loss::none) return session_->failed(XR_ERROR_SESSION_LOST, "make images");
-  return take_masks();
+  return update_masks();
 }
 
-Outcome Headset::take_masks() {
-  mask_changes_ = session_->mask_changes();
+Outcome Headset::update_masks() {
+  mask_change_count_ = session_->mask_change_count();
   for (std::size_t k = 0; k < views_.size(); ++k) {
-    CATENA_TRY(views_[k].hidden, hidden_mesh(*session_, k));
+    CATENA_TRY(views_[k].hidden, load_hidden_mesh(*session_, k));
   }
   return Done{};
 }
 
 void Headset::stop() {
-  if (session_) session_->end_wait();  // before anything that it uses goes
+  if (session_) session_->stop_wait();  // before anything that it uses goes
   panel_ = nullptr;
   views_.clear();
   actions_.reset();
@@ -79,48 +79,49 @@ Result<std::optional<Frame>> Headset::begin_within(std::chrono::nanoseconds pati
 }
 
 Outcome Headset::show(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                      const Placement& placement, double share, const Aim& aim, const std::optional<Vec3>& gaze) {
-  std::vector<Shown> shown;
-  if (frame.wants_picture) {
-    auto drawn = draw_views(frame, renderer, packet, settings, placement, share, aim, gaze);
+                      const Placement& placement, double share, const ViewCallback& aim, const std::optional<Vec3>& gaze) {
+  std::vector<SubmittedView> shown;
+  if (frame.should_render) {
+    auto drawn = render_views(frame, renderer, packet, settings, placement, share, aim, gaze);
     if (!drawn) {
       (void)skip(frame);
       return drawn.error();
     }
     shown = std::move(*drawn);
-    ++counts_.pictures;
+    ++counts_.rendered;
   }
   std::vector<const XrCompositionLayerBaseHeader*> panels;
-  if (const auto* panel = panel_ && !shown.empty() ? panel_->layer() : nullptr) panels.push_back(panel);
+  if (const auto* panel = panel_ && !shown.empty() ? panel_->composition_layer() : nullptr) panels.push_back(panel);
   return end_frame(*session_, frame, shown, panels);
 }
 
-Result<std::vector<Shown>> Headset::draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                                               const Placement& placement, double share, const Aim& aim, const std::optional<Vec3>& gaze) {
+Result<std::vector<SubmittedView>> Headset::render_views(const Frame& frame, Renderer& renderer, FramePacket& packet,
+                                                         const RenderSettings& settings, const Placement& placement, double share,
+                                                         const ViewCallback& aim, const std::optional<Vec3>& gaze) {
   const auto scaled = [&](std::uint32_t pixels) { return std::max(1u, std::uint32_t(std::lround(share * pixels))); };
-  if (session_->mask_changes() != mask_changes_) CATENA_CHECK(take_masks());
-  std::vector<Shown> shown(frame.views.size());
+  if (session_->mask_change_count() != mask_change_count_) CATENA_CHECK(update_masks());
+  std::vector<SubmittedView> shown(frame.views.size());
   for (std::size_t k = frame.views.size(); k-- > 0;) {
     ViewImages& view = views_[k];
-    const RoomEye eye = room_eye(frame.views[k]);
+    const XrEye eye = make_xr_eye(frame.views[k]);
     packet.width = scaled(view.color->size().width);
     packet.height = scaled(view.color->size().height);
-    CATENA_TRY(const View seen, eye_view(placement, eye));
+    CATENA_TRY(const View seen, make_xr_eye_view(placement, eye));
     if (aim) aim(seen, packet);
     packet.view = seen;
     packet.eyes.clear();
     packet.packing = Packing::single;
-    if (!view.hidden.empty()) packet.meshes.push_back(mask_item(view.hidden, placement, eye));
+    if (!view.hidden.empty()) packet.meshes.push_back(make_mask_item(view.hidden, placement, eye));
     RenderSettings own = settings;
     look_at(gaze, eye, own);
     if (view.depth) own.ray_depth_spacing = DepthImages::kRaySpacing;
     const Outcome drawn = renderer.draw(packet, own);
     if (!view.hidden.empty()) packet.meshes.pop_back();
     if (!drawn) return drawn.error();
-    CATENA_CHECK(view.color->take(renderer.picture()));
+    CATENA_CHECK(view.color->submit_image(renderer.output_image()));
     shown[k] = {view.color.get(), {packet.width, packet.height}};
     if (!view.depth || has_projection(packet)) continue;
-    CATENA_TRY(const bool has_depth, view.depth->take(renderer, placement.metres_per_unit));
+    CATENA_TRY(const bool has_depth, view.depth->submit_depth(renderer, placement.meters_per_unit));
     if (has_depth) shown[k].depth = &view.depth->images();
   }
   return shown;

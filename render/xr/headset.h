@@ -14,7 +14,7 @@
 #include "render/xr/clock.h"
 #include "render/xr/depth_images.h"
 #include "render/xr/frame.h"
-#include "render/xr/quad.h"
+#include "render/xr/quad_layer.h"
 #include "render/xr/visibility_mask.h"
 
 namespace catena::render::xr {
@@ -22,10 +22,10 @@ namespace catena::render::xr {
 /// What the frames have been so far.
 struct FrameCounts {
   std::uint64_t frames = 0;    ///< begun and ended
-  std::uint64_t pictures = 0;  ///< of these, with a picture
+  std::uint64_t rendered = 0;  ///< of these, with a picture
 };
 
-inline constexpr double kWidestGaze = 10;  ///< tangent off a view's axis; beyond, no display shows anything
+inline constexpr double kMaxGazeTangent = 10;  ///< tangent off a view's axis; beyond, no display shows anything
 
 class Headset {
  public:
@@ -33,12 +33,12 @@ class Headset {
   ~Headset() { stop(); }
 
   const Instance& instance() const { return *instance_; }
-  vk::VulkanMaker maker(std::mutex& queue_lock) { return instance_->maker(queue_lock); }
+  vk::VulkanProvider vulkan_provider(std::mutex& queue_lock) { return instance_->vulkan_provider(queue_lock); }
 
   /// The device is one that was made by maker().
   Outcome start(vk::Device& device);
   void stop();
-  bool started() const { return session_ != nullptr; }
+  bool is_started() const { return session_ != nullptr; }
   Session& session() { return *session_; }
   /// The hands; while started.
   Actions& actions() { return *actions_; }
@@ -47,7 +47,7 @@ class Headset {
 
   /// The runtime's events.
   Outcome poll() { return session_->poll(); }
-  bool running() const { return session_ && session_->running(); }
+  bool is_running() const { return session_ && session_->is_running(); }
   Loss loss() const { return instance_->loss(); }
 
   /// A frame begins: waits for its time. It is ended by show() or skip().
@@ -57,31 +57,32 @@ class Headset {
   /// Draws every view of the packet's scene, where the frame wants a picture, and hands them over. The first view is drawn last, so that it
   /// is the renderer's last picture: for the window. `share`: of the recommended pixels, each way. `aim` changes what of the packet follows
   /// from the view. `gaze`: where the person looks, a direction in the room, for the fovea of the settings; nothing: straight ahead.
-  using Aim = std::function<void(const View& view, FramePacket& packet)>;
+  using ViewCallback = std::function<void(const View& view, FramePacket& packet)>;
   Outcome show(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement,
-               double share = 1, const Aim& aim = {}, const std::optional<Vec3>& gaze = {});
+               double share = 1, const ViewCallback& aim = {}, const std::optional<Vec3>& gaze = {});
   /// Nothing to show.
   Outcome skip(const Frame& frame) { return end_frame(*session_, frame, {}); }
   const FrameCounts& counts() const { return counts_; }
 
  private:
   explicit Headset(std::unique_ptr<Instance> instance) : instance_(std::move(instance)) {}
-  Result<std::vector<Shown>> draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                                        const Placement& placement, double share, const Aim& aim, const std::optional<Vec3>& gaze);
+  Result<std::vector<SubmittedView>> render_views(const Frame& frame, Renderer& renderer, FramePacket& packet,
+                                                  const RenderSettings& settings, const Placement& placement, double share,
+                                                  const ViewCallback& aim, const std::optional<Vec3>& gaze);
 
   std::unique_ptr<Instance> instance_;  // first in, last out
   std::unique_ptr<Session> session_;
   std::unique_ptr<Actions> actions_;
   /// Of a view; depth: null without.
   struct ViewImages {
-    std::unique_ptr<EyeImages> color;
+    std::unique_ptr<SwapchainImages> color;
     std::unique_ptr<DepthImages> depth;
     HiddenMesh hidden;
   };
-  Outcome make_views();
-  Outcome take_masks();
+  Outcome create_views();
+  Outcome update_masks();
   std::vector<ViewImages> views_;
-  std::uint64_t mask_changes_ = 0;  ///< as the masks are
+  std::uint64_t mask_change_count_ = 0;  ///< as the masks are
   QuadLayer* panel_ = nullptr;
   FrameCounts counts_;
 };

@@ -24,31 +24,31 @@ Error Instance::failed(XrResult result, const std::string& what) {
   return xr_error(result, what);
 }
 
-void Instance::leave_behind() {
+void Instance::abandon() {
   loss_ = Loss::instance;
-  functions_.destroy_nothing();
-  loader_->leave_open();
+  dispatch_.disable_destruction();
+  loader_->keep_loaded();
 }
 
 Result<std::unique_ptr<Instance>> Instance::open(const char* library) {
   std::unique_ptr<Instance> self(new Instance);
   CATENA_TRY(self->loader_, Loader::open(library));
-  self->functions_ = self->loader_->functions();
+  self->dispatch_ = self->loader_->dispatch();
   CATENA_CHECK(self->create());
-  CATENA_CHECK(self->functions_.load(self->instance_));
-  CATENA_CHECK(self->look_at_system());
+  CATENA_CHECK(self->dispatch_.load(self->instance_));
+  CATENA_CHECK(self->query_system());
   return self;
 }
 
 Instance::~Instance() {
-  if (instance_ && functions_.DestroyInstance) (void)functions_.DestroyInstance(instance_);
+  if (instance_ && dispatch_.DestroyInstance) (void)dispatch_.DestroyInstance(instance_);
 }
 
 Outcome Instance::create() {
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(*this, functions_.EnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr), "say what it can do");
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr), "say what it can do");
   std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 0});
-  CATENA_XR_CHECK(*this, functions_.EnumerateInstanceExtensionProperties(nullptr, count, &count, offered.data()), "say what it can do");
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateInstanceExtensionProperties(nullptr, count, &count, offered.data()), "say what it can do");
   if (!is_among(offered, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME))
     return Error{"the headset's runtime takes no pictures from Vulkan, expected one with " XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
 
@@ -58,10 +58,10 @@ Outcome Instance::create() {
     if (there) wanted.push_back(name);
     return there;
   };
-  has_.depth = take(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
-  has_.visibility_mask = take(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
-  has_.clock = take(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
-  has_.gaze = take(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+  capabilities_.depth = take(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
+  capabilities_.visibility_mask = take(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
+  capabilities_.clock = take(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
+  capabilities_.gaze = take(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
 
   XrInstanceCreateInfo info{};
   info.type = XR_TYPE_INSTANCE_CREATE_INFO;
@@ -71,46 +71,46 @@ Outcome Instance::create() {
   info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
   info.enabledExtensionCount = std::uint32_t(wanted.size());
   info.enabledExtensionNames = wanted.data();
-  CATENA_XR_CHECK(*this, functions_.CreateInstance(&info, &instance_), "be connected to");
+  CATENA_XR_CHECK(*this, dispatch_.CreateInstance(&info, &instance_), "be connected to");
   return Done{};
 }
 
-Outcome Instance::look_at_system() {
+Outcome Instance::query_system() {
   XrInstanceProperties runtime{};
   runtime.type = XR_TYPE_INSTANCE_PROPERTIES;
-  CATENA_XR_CHECK(*this, functions_.GetInstanceProperties(instance_, &runtime), "name its runtime");
+  CATENA_XR_CHECK(*this, dispatch_.GetInstanceProperties(instance_, &runtime), "name its runtime");
   XrSystemGetInfo wanted{};
   wanted.type = XR_TYPE_SYSTEM_GET_INFO;
   wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-  CATENA_XR_CHECK(*this, functions_.GetSystem(instance_, &wanted, &system_), "be found");
+  CATENA_XR_CHECK(*this, dispatch_.GetSystem(instance_, &wanted, &system_), "be found");
   XrSystemProperties system{};
   system.type = XR_TYPE_SYSTEM_PROPERTIES;
   XrSystemEyeGazeInteractionPropertiesEXT eyes{};
   eyes.type = XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT;
-  if (has_.gaze) system.next = &eyes;
-  CATENA_XR_CHECK(*this, functions_.GetSystemProperties(instance_, system_, &system), "describe itself");
-  has_.gaze = has_.gaze && eyes.supportsEyeGazeInteraction;
+  if (capabilities_.gaze) system.next = &eyes;
+  CATENA_XR_CHECK(*this, dispatch_.GetSystemProperties(instance_, system_, &system), "describe itself");
+  capabilities_.gaze = capabilities_.gaze && eyes.supportsEyeGazeInteraction;
   name_ = std::string(runtime.runtimeName) + ", " + system.systemName;
 
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(*this, functions_.EnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr), "say its size");
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr), "say its size");
   constexpr std::uint32_t kMostViews = 64;
   if (count > kMostViews) return Error{fmt::format("the headset {} has {} views, expected at most {}", name_, count, kMostViews)};
   XrViewConfigurationView view{};
   view.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
   std::vector<XrViewConfigurationView> views(count, view);
-  CATENA_XR_CHECK(*this, functions_.EnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()),
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()),
                   "say its size");
   views.resize(std::min<std::size_t>(views.size(), count));
   for (const XrViewConfigurationView& one : views)
-    views_.push_back({std::clamp(one.recommendedImageRectWidth, 1u, std::max(1u, one.maxImageRectWidth)),
-                      std::clamp(one.recommendedImageRectHeight, 1u, std::max(1u, one.maxImageRectHeight))});
-  if (views_.empty()) return Error{"the headset " + name_ + " has no views, expected two"};
+    view_sizes_.push_back({std::clamp(one.recommendedImageRectWidth, 1u, std::max(1u, one.maxImageRectWidth)),
+                           std::clamp(one.recommendedImageRectHeight, 1u, std::max(1u, one.maxImageRectHeight))});
+  if (view_sizes_.empty()) return Error{"the headset " + name_ + " has no views, expected two"};
 
   // opaque where it can be: a see-through display shows black as nothing
-  CATENA_XR_CHECK(*this, functions_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr), "say how it blends");
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr), "say how it blends");
   std::vector<XrEnvironmentBlendMode> modes(count);
-  CATENA_XR_CHECK(*this, functions_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()),
+  CATENA_XR_CHECK(*this, dispatch_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()),
                   "say how it blends");
   if (modes.empty()) return Error{"the headset " + name_ + " has no blend mode, expected one"};
   blend_mode_ = std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes[0];

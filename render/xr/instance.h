@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/vk/instance.h"
-#include "render/xr/functions.h"
+#include "render/xr/xr_loader.h"
 
 namespace catena::render::xr {
 
@@ -20,7 +20,7 @@ struct ViewSize {
   std::uint32_t width = 0, height = 0;
 };
 
-struct Offers {
+struct Capabilities {
   bool depth = false;            ///< XR_KHR_composition_layer_depth
   bool visibility_mask = false;  ///< XR_KHR_visibility_mask
   bool clock = false;            ///< XR_KHR_convert_timespec_time
@@ -36,36 +36,36 @@ class Instance {
 
   XrInstance handle() const { return instance_; }
   XrSystemId system() const { return system_; }
-  const Functions& xr() const { return functions_; }
-  const Offers& has() const { return has_; }
-  const std::vector<ViewSize>& views() const { return views_; }  ///< at least one
+  const DispatchTable& dispatch() const { return dispatch_; }
+  const Capabilities& capabilities() const { return capabilities_; }
+  const std::vector<ViewSize>& view_sizes() const { return view_sizes_; }  ///< at least one
   XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
   /// "RUNTIME, HEADSET".
   const std::string& name() const { return name_; }
 
   /// For vk::DeviceOptions: the runtime makes instance and device, Catena owns them. The lock is held around every use of the queue and
   /// outlives the device; the functions are called while this lives.
-  vk::VulkanMaker maker(std::mutex& queue_lock);
+  vk::VulkanProvider vulkan_provider(std::mutex& queue_lock);
 
   /// The error of a call, which is remembered where it means a loss.
   Error failed(XrResult result, const std::string& what);
   Loss loss() const { return loss_; }
   /// The runtime does not come back from a call: it is lost, and nothing of it is ever destroyed.
-  void leave_behind();
+  void abandon();
   /// The session has been made again.
-  void session_is_new() { loss_ = loss_ == Loss::session ? Loss::none : loss_; }
+  void clear_session_loss() { loss_ = loss_ == Loss::session ? Loss::none : loss_; }
 
  private:
   Instance() = default;
   Outcome create();
-  Outcome look_at_system();
+  Outcome query_system();
 
   std::unique_ptr<Loader> loader_;
-  Functions functions_;
+  DispatchTable dispatch_;
   XrInstance instance_ = XR_NULL_HANDLE;
   XrSystemId system_ = XR_NULL_SYSTEM_ID;
-  Offers has_;
-  std::vector<ViewSize> views_;
+  Capabilities capabilities_;
+  std::vector<ViewSize> view_sizes_;
   XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
   std::string name_;
   Loss loss_ = Loss::none;

@@ -26,41 +26,41 @@ Result<std::unique_ptr<Session>> Session::create(Instance& instance, vk::Device&
   info.next = &binding;
   info.systemId = instance.system();
   {
-    const auto turn = device.queue_turn();
-    CATENA_XR_CHECK(instance, self->xr().CreateSession(instance.handle(), &info, &self->session_), "begin a session");
+    const auto turn = device.lock_queue();
+    CATENA_XR_CHECK(instance, self->dispatch().CreateSession(instance.handle(), &info, &self->session_), "begin a session");
   }
-  CATENA_CHECK(self->make_spaces());
-  instance.session_is_new();
+  CATENA_CHECK(self->create_spaces());
+  instance.clear_session_loss();
   return self;
 }
 
-FrameWait& Session::frame_wait() {
-  if (!frame_wait_) frame_wait_ = std::make_unique<FrameWait>(xr().WaitFrame, session_);
-  return *frame_wait_;
+FrameWaiter& Session::frame_waiter() {
+  if (!frame_waiter_) frame_waiter_ = std::make_unique<FrameWaiter>(dispatch().WaitFrame, session_);
+  return *frame_waiter_;
 }
 
-void Session::end_wait() {
-  if (frame_wait_ && !frame_wait_->end(kLastPatience)) {
-    instance_->leave_behind();
-    device_->leave_behind();
+void Session::stop_wait() {
+  if (frame_waiter_ && !frame_waiter_->stop(kLastPatience)) {
+    instance_->abandon();
+    device_->abandon();
   }
-  frame_wait_.reset();
+  frame_waiter_.reset();
 }
 
 Session::~Session() {
   if (!session_) return;
-  end_wait();
+  stop_wait();
   for (XrSpace space : spaces_)
-    if (space) (void)xr().DestroySpace(space);
-  const auto turn = device_->queue_turn();
-  (void)xr().DestroySession(session_);
+    if (space) (void)dispatch().DestroySpace(space);
+  const auto turn = device_->lock_queue();
+  (void)dispatch().DestroySession(session_);
 }
 
-Outcome Session::make_spaces() {
+Outcome Session::create_spaces() {
   std::uint32_t count = 0;
-  CATENA_XR_CHECK(*instance_, xr().EnumerateReferenceSpaces(session_, 0, &count, nullptr), "list its spaces");
+  CATENA_XR_CHECK(*instance_, dispatch().EnumerateReferenceSpaces(session_, 0, &count, nullptr), "list its spaces");
   std::vector<XrReferenceSpaceType> offered(count);
-  CATENA_XR_CHECK(*instance_, xr().EnumerateReferenceSpaces(session_, count, &count, offered.data()), "list its spaces");
+  CATENA_XR_CHECK(*instance_, dispatch().EnumerateReferenceSpaces(session_, count, &count, offered.data()), "list its spaces");
   constexpr XrReferenceSpaceType kTypes[] = {XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE, XR_REFERENCE_SPACE_TYPE_VIEW};
   for (std::size_t k = 0; k < spaces_.size(); ++k) {
     if (std::ranges::find(offered, kTypes[k]) == offered.end()) continue;
@@ -68,39 +68,39 @@ Outcome Session::make_spaces() {
     info.type = XR_TYPE_REFERENCE_SPACE_CREATE_INFO;
     info.referenceSpaceType = kTypes[k];
     info.poseInReferenceSpace.orientation.w = 1;
-    CATENA_XR_CHECK(*instance_, xr().CreateReferenceSpace(session_, &info, &spaces_[k]), "make a space");
+    CATENA_XR_CHECK(*instance_, dispatch().CreateReferenceSpace(session_, &info, &spaces_[k]), "make a space");
   }
   if (!space(SpaceKind::local)) return Error{"the headset " + instance_->name() + " has no local space, expected one"};
   return Done{};
 }
 
-Outcome Session::enter(XrSessionState state) {
-  if (!is_edge(state_, state)) ++odd_edges_;
+Outcome Session::enter_state(XrSessionState state) {
+  if (!is_valid_transition(state_, state)) ++invalid_transitions_;
   state_ = state;
-  if (history_.size() == kHistory) history_.erase(history_.begin());
-  history_.push_back(state);
-  switch (act_on(state)) {
-    case Act::begin: {
+  if (state_history_.size() == kHistory) state_history_.erase(state_history_.begin());
+  state_history_.push_back(state);
+  switch (session_action(state)) {
+    case SessionAction::begin: {
       XrSessionBeginInfo info{};
       info.type = XR_TYPE_SESSION_BEGIN_INFO;
       info.primaryViewConfigurationType = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-      CATENA_XR_CHECK(*instance_, xr().BeginSession(session_, &info), "begin to show");
-      running_ = true;
+      CATENA_XR_CHECK(*instance_, dispatch().BeginSession(session_, &info), "begin to show");
+      is_running_ = true;
       return Done{};
     }
-    case Act::end:
-      if (!std::exchange(running_, false)) return Done{};  // a runtime that says twice that it stops
-      CATENA_XR_CHECK(*instance_, xr().EndSession(session_), "end the session");
-      end_wait();  // what it says is of a session that is over
+    case SessionAction::end:
+      if (!std::exchange(is_running_, false)) return Done{};  // a runtime that says twice that it stops
+      CATENA_XR_CHECK(*instance_, dispatch().EndSession(session_), "end the session");
+      stop_wait();  // what it says is of a session that is over
       return Done{};
-    case Act::leave:
-      running_ = false;
-      has_left_ = true;
+    case SessionAction::exit:
+      is_running_ = false;
+      has_exited_ = true;
       return Done{};
-    case Act::lost:
-      running_ = false;
+    case SessionAction::lost:
+      is_running_ = false;
       return failed(XR_ERROR_SESSION_LOST, "keep its session");
-    case Act::none:
+    case SessionAction::none:
       break;
   }
   return Done{};
@@ -110,26 +110,26 @@ Outcome Session::poll() {
   for (;;) {
     XrEventDataBuffer event{};
     event.type = XR_TYPE_EVENT_DATA_BUFFER;
-    const XrResult polled = xr().PollEvent(instance_->handle(), &event);
+    const XrResult polled = dispatch().PollEvent(instance_->handle(), &event);
     if (XR_FAILED(polled)) return failed(polled, "say what happened");
     if (polled == XR_EVENT_UNAVAILABLE) return Done{};
     switch (event.type) {
       case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED: {
         const auto& changed = reinterpret_cast<const XrEventDataSessionStateChanged&>(event);
-        if (changed.session == session_) CATENA_CHECK(enter(changed.state));
+        if (changed.session == session_) CATENA_CHECK(enter_state(changed.state));
         break;
       }
       case XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING:
-        running_ = false;
+        is_running_ = false;
         return failed(XR_ERROR_INSTANCE_LOST, "keep its runtime");
       case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
-        ++recentrings_;
+        ++recenter_count_;
         break;
       case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
-        ++mask_changes_;
+        ++mask_change_count_;
         break;
       case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
-        ++profile_changes_;
+        ++profile_change_count_;
         break;
       default:
         break;
@@ -137,21 +137,21 @@ Outcome Session::poll() {
   }
 }
 
-Result<std::optional<RoomPose>> Session::locate(XrSpace space, XrTime at, const char* what) {
+Result<std::optional<XrPose>> Session::locate(XrSpace space, XrTime at, const char* what) {
   constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
   XrSpaceLocation found{};
   found.type = XR_TYPE_SPACE_LOCATION;
-  CATENA_XR_CHECK(*instance_, xr().LocateSpace(space, this->space(SpaceKind::local), at, &found), what);
+  CATENA_XR_CHECK(*instance_, dispatch().LocateSpace(space, this->space(SpaceKind::local), at, &found), what);
   const auto& [x, y, z, w] = found.pose.orientation;
   const Vec3 position(found.pose.position.x, found.pose.position.y, found.pose.position.z);
-  const Quat turn = normalised(Quat(w, x, y, z));
-  if ((found.locationFlags & kKnown) != kKnown || !is_finite(position)) return std::optional<RoomPose>();
-  return std::optional<RoomPose>({position, turn});
+  const Quat turn = normalized(Quat(w, x, y, z));
+  if ((found.locationFlags & kKnown) != kKnown || !is_finite(position)) return std::optional<XrPose>();
+  return std::optional<XrPose>({position, turn});
 }
 
-Outcome Session::ask_to_leave() {
-  if (!running_) return Done{};
-  CATENA_XR_CHECK(*instance_, xr().RequestExitSession(session_), "end the session");
+Outcome Session::request_exit() {
+  if (!is_running_) return Done{};
+  CATENA_XR_CHECK(*instance_, dispatch().RequestExitSession(session_), "end the session");
   return Done{};
 }
 

@@ -13,7 +13,7 @@
 
 #include "engine/base/vec.h"
 #include "render/vk/device.h"
-#include "render/xr/frame_wait.h"
+#include "render/xr/frame_waiter.h"
 #include "render/xr/instance.h"
 #include "render/xr/session_state.h"
 
@@ -22,9 +22,9 @@ namespace catena::render::xr {
 enum class SpaceKind { local, stage, head };
 
 /// In the local space, metres.
-struct RoomPose {
+struct XrPose {
   Vec3 position{0.0};
-  Quat turn = kNoRotation;
+  Quat orientation = kIdentityRotation;
 };
 
 class Session {
@@ -37,52 +37,52 @@ class Session {
   XrSession handle() const { return session_; }
   Instance& instance() const { return *instance_; }
   vk::Device& device() const { return *device_; }
-  const Functions& xr() const { return instance_->xr(); }
+  const DispatchTable& dispatch() const { return instance_->dispatch(); }
 
   /// Takes all events: begins and ends the session with them. Where the session or the instance is lost, instance().loss() says so.
   Outcome poll();
   /// The person wants to leave: the runtime ends the session by its events.
-  Outcome ask_to_leave();
+  Outcome request_exit();
 
   /// Of a session that runs; made when it is first asked for.
-  FrameWait& frame_wait();
+  FrameWaiter& frame_waiter();
   /// The wait that is under way is given some seconds; a runtime that does not come back from it is left behind, with all that is its own.
-  void end_wait();
+  void stop_wait();
 
   XrSessionState state() const { return state_; }
-  bool running() const { return running_; }  ///< frames are made
-  bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
-  bool has_left() const { return has_left_; }
-  const std::vector<XrSessionState>& history() const { return history_; }  ///< of states, the latest 256
-  std::uint64_t odd_edges() const { return odd_edges_; }                   ///< state changes that OpenXR does not have
+  bool is_running() const { return is_running_; }  ///< frames are made
+  bool is_focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
+  bool has_exited() const { return has_exited_; }
+  const std::vector<XrSessionState>& state_history() const { return state_history_; }  ///< of states, the latest 256
+  std::uint64_t invalid_transitions() const { return invalid_transitions_; }           ///< state changes that OpenXR does not have
 
   /// The null handle where the runtime does not have it.
   XrSpace space(SpaceKind kind) const { return spaces_[static_cast<std::size_t>(kind)]; }
   /// Where a space is in the local one at that time; nothing where it is not known. `what`: for the error.
-  Result<std::optional<RoomPose>> locate(XrSpace space, XrTime at, const char* what);
+  Result<std::optional<XrPose>> locate(XrSpace space, XrTime at, const char* what);
   /// The origin of the local or stage space has moved: how often so far. What is placed in it may be placed anew.
-  std::uint64_t recentrings() const { return recentrings_; }
+  std::uint64_t recenter_count() const { return recenter_count_; }
   /// The parts of the lenses that are seen have changed: how often so far.
-  std::uint64_t mask_changes() const { return mask_changes_; }
+  std::uint64_t mask_change_count() const { return mask_change_count_; }
   /// The interaction profile has changed: how often so far.
-  std::uint64_t profile_changes() const { return profile_changes_; }
+  std::uint64_t profile_change_count() const { return profile_change_count_; }
 
   Error failed(XrResult result, const std::string& what) { return instance_->failed(result, what); }
 
  private:
   Session(Instance& instance, vk::Device& device) : instance_(&instance), device_(&device) {}
-  Outcome make_spaces();
-  Outcome enter(XrSessionState state);
+  Outcome create_spaces();
+  Outcome enter_state(XrSessionState state);
 
   Instance* instance_;
   vk::Device* device_;
   XrSession session_ = XR_NULL_HANDLE;
   std::array<XrSpace, 3> spaces_{};
-  std::unique_ptr<FrameWait> frame_wait_;
+  std::unique_ptr<FrameWaiter> frame_waiter_;
   XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
-  bool running_ = false, has_left_ = false;
-  std::vector<XrSessionState> history_;
-  std::uint64_t odd_edges_ = 0, recentrings_ = 0, mask_changes_ = 0, profile_changes_ = 0;
+  bool is_running_ = false, has_exited_ = false;
+  std::vector<XrSessionState> state_history_;
+  std::uint64_t invalid_transitions_ = 0, recenter_count_ = 0, mask_change_count_ = 0, profile_change_count_ = 0;
 };
 
 }  // namespace catena::render::xr

@@ -2,22 +2,22 @@
 
 namespace catena::render::xr {
 
-Act act_on(XrSessionState entered) {
+SessionAction session_action(XrSessionState entered) {
   switch (entered) {
     case XR_SESSION_STATE_READY:
-      return Act::begin;
+      return SessionAction::begin;
     case XR_SESSION_STATE_STOPPING:
-      return Act::end;
+      return SessionAction::end;
     case XR_SESSION_STATE_EXITING:
-      return Act::leave;
+      return SessionAction::exit;
     case XR_SESSION_STATE_LOSS_PENDING:
-      return Act::lost;
+      return SessionAction::lost;
     default:
-      return Act::none;
+      return SessionAction::none;
   }
 }
 
-bool is_edge(XrSessionState from, XrSessionState to) {
+bool is_valid_transition(XrSessionState from, XrSessionState to) {
   if (from == XR_SESSION_STATE_EXITING || from == XR_SESSION_STATE_LOSS_PENDING) return false;
   if (to == XR_SESSION_STATE_LOSS_PENDING) return from != XR_SESSION_STATE_UNKNOWN;
   switch (from) {
@@ -40,7 +40,7 @@ bool is_edge(XrSessionState from, XrSessionState to) {
   }
 }
 
-const char* state_word(XrSessionState state) {
+const char* state_name(XrSessionState state) {
   switch (state) {
     case XR_SESSION_STATE_IDLE:
       return "idle";

@@ -11,10 +11,10 @@ constexpr double kNearM = 0.02;  // nearer to the eye than anybody looks
 
 }  // namespace
 
-Result<HiddenMesh> hidden_mesh(Session& session, std::size_t view) {
+Result<HiddenMesh> load_hidden_mesh(Session& session, std::size_t view) {
   HiddenMesh mesh;
-  const auto get = session.xr().GetVisibilityMaskKHR;
-  if (!session.instance().has().visibility_mask || !get) return mesh;
+  const auto get = session.dispatch().GetVisibilityMaskKHR;
+  if (!session.instance().capabilities().visibility_mask || !get) return mesh;
   XrVisibilityMaskKHR mask{};
   mask.type = XR_TYPE_VISIBILITY_MASK_KHR;
   const auto ask = [&] {
@@ -40,15 +40,15 @@ Result<HiddenMesh> hidden_mesh(Session& session, std::size_t view) {
   return mesh;
 }
 
-MeshItem mask_item(const HiddenMesh& mesh, const Placement& placement, const RoomEye& eye) {
+MeshItem make_mask_item(const HiddenMesh& mesh, const Placement& placement, const XrEye& eye) {
   auto geometry = std::make_shared<MeshGeometry>();
   for (const auto& [x, y] : mesh.vertices)
-    geometry->vertices.push_back(placement.to_world(eye.position + eye.room_from_eye * (kNearM * Vec3(x, y, -1.0))));
+    geometry->vertices.push_back(placement.to_world(eye.position + eye.local_from_eye * (kNearM * Vec3(x, y, -1.0))));
   geometry->triangles = mesh.triangles;
   MeshItem item;
   item.geometry = std::move(geometry);
   item.color = {0, 0, 0};
-  item.clipped = false;
+  item.is_clipped = false;
   return item;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/frame/frame_packet.h"
-#include "render/stereo/room_eye.h"
+#include "render/stereo/xr_views.h"
 #include "render/xr/session.h"
 
 namespace catena::render::xr {
@@ -18,9 +18,9 @@ struct HiddenMesh {
 };
 
 /// Empty where the runtime does not offer it, or hides nothing.
-Result<HiddenMesh> hidden_mesh(Session& session, std::size_t view);
+Result<HiddenMesh> load_hidden_mesh(Session& session, std::size_t view);
 
 /// The mesh as a part of the scene, so near that nothing stands before it.
-MeshItem mask_item(const HiddenMesh& mesh, const Placement& placement, const RoomEye& eye);
+MeshItem make_mask_item(const HiddenMesh& mesh, const Placement& placement, const XrEye& eye);
 
 }  // namespace catena::render::xr

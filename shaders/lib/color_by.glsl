@@ -4,8 +4,8 @@
 vec4 table_color(int j, float value) {
   uint at;
   float way;
-  find_place(frame.grids[j].look, value, at, way);
-  return entry_between(at, way);
+  find_entry(frame.grids[j].value_table, value, at, way);
+  return interpolate_entry(at, way);
 }
 
 // The colour of the nearest corner of the cell that has one.
@@ -35,6 +35,6 @@ vec3 color_at(int j, vec3 p, vec3 otherwise) {
   if (!valid) return otherwise;
   const vec4 color = table_color(j, sample_value(j, p));
   vec3 result = color.a > 0.5 ? color.rgb : otherwise;
-  if (color.a < frame.grids[j].spread) result = nearest_label_color(j, p, otherwise);
+  if (color.a < frame.grids[j].spread_labels) result = nearest_label_color(j, p, otherwise);
   return result;
 }

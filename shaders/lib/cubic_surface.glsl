@@ -2,7 +2,7 @@
 // taken at ten places, a cubic laid through each four of them, and what that cubic says of a root is asked of the polynomial itself.
 // Missed is what rises above the level and sinks again between two of ten places by less than the cubic errs there.
 // Watertight: the value with which the ray leaves a cell is the one with which it enters the next.
-#define CUBIC_PARTS 3
+#define CUBIC_SUBDIVISIONS 3
 
 // Fetches the cell, its values counted from the level.
 void fetch_level_cubic(int i, ivec3 cell) {
@@ -11,34 +11,34 @@ void fetch_level_cubic(int i, ivec3 cell) {
   for (int row = 0; row < 16; ++row) cubic_rows[row] = base + scale * cubic_rows[row];
 }
 
-float along_cubic(Piece piece, float u) { return cubic_value(mix(piece.a, piece.b, u)); }
+float value_along(RaySegment segment, float u) { return cubic_value(mix(segment.a, segment.b, u)); }
 
 // The coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
 vec4 cubic_through(vec4 v) {
   return vec4(v.x, (-5.0 * v.x + 18.0 * v.y - 9.0 * v.z + 2.0 * v.w) / 6.0, (2.0 * v.x - 9.0 * v.y + 18.0 * v.z - 5.0 * v.w) / 6.0, v.w);
 }
 
-bool differ(float a, float b) { return (a >= 0.0) != (b >= 0.0); }
+bool signs_differ(float a, float b) { return (a >= 0.0) != (b >= 0.0); }
 
 // The first change of sign of the fetched cell along a piece whose first value is `value`, which becomes its last one.
-bool first_change(Piece piece, inout float value, out Bracket change) {
+bool find_sign_change(RaySegment segment, inout float value, out Bracket change) {
   bool found = false;
   change = Bracket(0.0, 0.0, 0.0, 1.0);
-  for (int part = 0; part < CUBIC_PARTS && !found; ++part) {
-    const float begin = float(part) / float(CUBIC_PARTS), extent = 1.0 / float(CUBIC_PARTS), third = extent / 3.0;
-    const vec4 v = vec4(value, along_cubic(piece, begin + third), along_cubic(piece, begin + 2.0 * third), along_cubic(piece, begin + extent));
+  for (int part = 0; part < CUBIC_SUBDIVISIONS && !found; ++part) {
+    const float begin = float(part) / float(CUBIC_SUBDIVISIONS), extent = 1.0 / float(CUBIC_SUBDIVISIONS), third = extent / 3.0;
+    const vec4 v = vec4(value, value_along(segment, begin + third), value_along(segment, begin + 2.0 * third), value_along(segment, begin + extent));
     Bracket near;
     if (first_bracket(cubic_through(v), near)) {
       change = Bracket(begin + extent * near.a, begin + extent * near.b, v.x, v.w);
-      if (near.a > 0.0) change.fa = along_cubic(piece, change.a);
-      if (near.b < 1.0) change.fb = along_cubic(piece, change.b);
-      found = differ(change.fa, change.fb);
+      if (near.a > 0.0) change.fa = value_along(segment, change.a);
+      if (near.b < 1.0) change.fb = value_along(segment, change.b);
+      found = signs_differ(change.fa, change.fb);
     }
-    if (!found && (differ(v.x, v.y) || differ(v.y, v.z) || differ(v.z, v.w))) {
+    if (!found && (signs_differ(v.x, v.y) || signs_differ(v.y, v.z) || signs_differ(v.z, v.w))) {
       found = true;
       change = Bracket(begin + 2.0 * third, begin + extent, v.z, v.w);
-      if (differ(v.y, v.z)) change = Bracket(begin + third, begin + 2.0 * third, v.y, v.z);
-      if (differ(v.x, v.y)) change = Bracket(begin, begin + third, v.x, v.y);
+      if (signs_differ(v.y, v.z)) change = Bracket(begin + third, begin + 2.0 * third, v.y, v.z);
+      if (signs_differ(v.x, v.y)) change = Bracket(begin, begin + third, v.x, v.y);
     }
     value = v.w;
   }
@@ -46,14 +46,14 @@ bool first_change(Piece piece, inout float value, out Bracket change) {
 }
 
 // Where the fetched cell is zero, by false position with halved ends (the Illinois rule).
-float cubic_root(Piece piece, Bracket change) {
+float cubic_root(RaySegment segment, Bracket change) {
   float a = change.a, b = change.b, fa = change.fa, fb = change.fb, u = a, moved = 1.0;
   for (int k = 0; k < 24 && moved > 1e-7; ++k) {
     const float next = fb == fa ? 0.5 * (a + b) : clamp(a - fa * (b - a) / (fb - fa), min(a, b), max(a, b));
-    const float f = along_cubic(piece, next);
+    const float f = value_along(segment, next);
     moved = abs(next - u);
     u = next;
-    if (differ(f, fb)) {
+    if (signs_differ(f, fb)) {
       a = b;
       fa = fb;
     } else {
@@ -65,20 +65,20 @@ float cubic_root(Piece piece, Bracket change) {
   return u;
 }
 
-float first_cubic_crossing(int i, Walk walk, Way way, float to) {
+float first_cubic_crossing(int i, CellTraversal traversal, FlippedRay flipped, float to) {
   bool found = false;
-  Piece piece = Piece(vec3(0.0), vec3(0.0), -NO_DEPTH, -NO_DEPTH);
+  RaySegment segment = RaySegment(vec3(0.0), vec3(0.0), -NO_DEPTH, -NO_DEPTH);
   Bracket change = Bracket(0.0, 0.0, 0.0, 1.0);
   float value = 0.0;  // where the ray left the cell before
-  while (!found && walk.t < to) {
-    if (next_in_map(i, walk, way, to)) {
-      fetch_level_cubic(i, walk.cell ^ way.turned);
-      const bool goes_on = walk.t == piece.to;
-      piece = piece_of(walk, way, to);
-      if (!goes_on) value = along_cubic(piece, 0.0);
-      found = first_change(piece, value, change);
-      leave_box(walk, way, walk.cell + 1);
+  while (!found && traversal.t < to) {
+    if (next_cell_in_map(i, traversal, flipped, to)) {
+      fetch_level_cubic(i, traversal.cell ^ flipped.turned);
+      const bool is_contiguous = traversal.t == segment.to;
+      segment = segment_in_cell(traversal, flipped, to);
+      if (!is_contiguous) value = value_along(segment, 0.0);
+      found = find_sign_change(segment, value, change);
+      advance_past(traversal, flipped, traversal.cell + 1);
     }
   }
-  return found ? mix(piece.from, piece.to, cubic_root(piece, change)) : NO_DEPTH;
+  return found ? mix(segment.from, segment.to, cubic_root(segment, change)) : NO_DEPTH;
 }

@@ -1,8 +1,8 @@
-// Grids as textures: dense or brick atlas (render/mirror), with their masks and brick maps. GRID_COUNT of them are bound.
+// Grids as textures: dense or brick atlas (render/residency), with their masks and brick maps. GRID_COUNT of them are bound.
 // An includer that defines NO_CUBIC leaves cubic grids to another shader: what is never run takes drivers their time all the same.
 // Lavapipe cannot index an array of textures, hence the switches; they fold away where the index is a constant.
-#define BRICK 8
-#define APRON 9
+#define BRICK_SIZE 8
+#define PADDED_BRICK_SIZE 9
 
 layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 3) uniform sampler3D values_0;
@@ -90,11 +90,11 @@ uint mask_texel(int i, ivec3 at) {
   SWITCH_GRID(i, MASK)
 }
 
-ivec3 slot_of(uint word) { return ivec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
+ivec3 unpack_slot(uint word) { return ivec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
 int empty_distance(uint word) { return int(word >> 24); }
-// maps of volumes (render/mirror/brick_map.h)
-int leap_distance(uint word) { return int(word >> 24 & 127u); }
-bool is_plain(uint word) { return word >> 31 != 0u; }
+// maps of volumes (render/residency/brick_map.h)
+int skip_distance(uint word) { return int(word >> 24 & 127u); }
+bool is_homogeneous(uint word) { return word >> 31 != 0u; }
 
 // The cell that holds a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
@@ -103,7 +103,7 @@ ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, f
 #include "shaders/lib/cubic.glsl"
 #endif
 
-// The texel value at a local position of the domain: trilinear, cubic, or of the nearest voxel centre.
+// The texel value at a local position of the domain: trilinear, cubic, or of the nearest voxel center.
 float sample_texel(int i, vec3 p) {
 #ifndef NO_CUBIC
   if (grid_is_cubic(i)) return cubic_value(fetch_cubic_at(i, p));
@@ -112,8 +112,8 @@ float sample_texel(int i, vec3 p) {
   p = mix(p, floor(p + 0.5), frame.grids[i].nearest);
   if (grid_is_atlas(i)) {
     const ivec3 brick = cell_of(i, p) >> 3;
-    const ivec3 slot = slot_of(brick_word(i, brick));
-    t = filtered_texel(i, (vec3(slot * APRON) + (p - vec3(brick * BRICK)) + 0.5) * frame.grids[i].texel);
+    const ivec3 slot = unpack_slot(brick_word(i, brick));
+    t = filtered_texel(i, (vec3(slot * PADDED_BRICK_SIZE) + (p - vec3(brick * BRICK_SIZE)) + 0.5) * frame.grids[i].texel);
   } else {
     t = filtered_texel(i, (p + 0.5) * frame.grids[i].texel);
   }
@@ -124,14 +124,14 @@ float sample_value(int i, vec3 p) { return frame.grids[i].value_offset + frame.g
 
 bool cell_is_valid(int i, ivec3 cell) {
   if (!grid_is_masked(i)) return true;
-  if (grid_is_atlas(i)) return mask_texel(i, slot_of(brick_word(i, cell >> 3)) * BRICK + (cell & 7)) != 0u;
+  if (grid_is_atlas(i)) return mask_texel(i, unpack_slot(brick_word(i, cell >> 3)) * BRICK_SIZE + (cell & 7)) != 0u;
   return mask_texel(i, cell) != 0u;
 }
 
 // Corner i + 2 j + 4 k of a cell in c[k][...]: lo = (000, 100, 010, 110), hi the same one plane up.
 void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
   ivec3 at = cell;
-  if (grid_is_atlas(i)) at = slot_of(brick_word(i, cell >> 3)) * APRON + (cell & 7);
+  if (grid_is_atlas(i)) at = unpack_slot(brick_word(i, cell >> 3)) * PADDED_BRICK_SIZE + (cell & 7);
   lo = vec4(texel(i, at), texel(i, at + ivec3(1, 0, 0)), texel(i, at + ivec3(0, 1, 0)), texel(i, at + ivec3(1, 1, 0)));
   hi = vec4(texel(i, at + ivec3(0, 0, 1)), texel(i, at + ivec3(1, 0, 1)), texel(i, at + ivec3(0, 1, 1)), texel(i, at + ivec3(1, 1, 1)));
   lo = frame.grids[i].value_offset + frame.grids[i].value_scale * lo;
@@ -141,7 +141,7 @@ void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
 // The weights of a cell's corners along its axes at a place in it.
 vec3 corner_weights(int i, vec3 f) { return mix(f, step(0.5, f), frame.grids[i].nearest); }
 
-// Central difference of texels along one axis: both ends clamped to the domain; an end in an invalid cell gives the centre instead.
+// Central difference of texels along one axis: both ends clamped to the domain; an end in an invalid cell gives the center instead.
 // What rounding alone can make is zero, or constant regions would be lit at random.
 float central_difference(int i, vec3 p, vec3 step) {
   vec3 a = clamp(p - step, frame.grids[i].lo, frame.grids[i].hi), b = clamp(p + step, frame.grids[i].lo, frame.grids[i].hi);

@@ -1,4 +1,4 @@
-// Translucent layers of triangles, the nearest first: premultiplied colours and depths. The includer defines LAYERS.
+// Translucent layers of triangles, the nearest first: premultiplied colours and depths. The includer defines LAYER_COUNT.
 layout(binding = 27) uniform texture2D layer_color_0;
 layout(binding = 28) uniform texture2D layer_color_1;
 layout(binding = 29) uniform texture2D layer_color_2;
@@ -28,7 +28,7 @@ float layer_texel(int k, ivec2 at) {
 
 // Of layer k, in front of `end`; NO_DEPTH: neither it nor those behind it count.
 float layer_depth(int k, ivec2 at, float end) {
-  if (k >= LAYERS) return NO_DEPTH;
+  if (k >= LAYER_COUNT) return NO_DEPTH;
   const float t = layer_texel(k, at);
   return t < end ? t : NO_DEPTH;
 }

@@ -9,7 +9,7 @@ layout(location = 5) in vec3 in_edges;
 #define EDGE_HALF_WIDTH 0.5   // pixels
 #define EDGE_DARKNESS 0.25    // of the triangles' colour
 
-vec3 towards_eye() {
+vec3 to_camera() {
   return mix(-in_view / max(length(in_view), 1e-30), vec3(0.0, 0.0, -1.0), float(frame.orthographic));
 }
 
@@ -18,5 +18,5 @@ vec3 mesh_color() {
                             length(vec2(dFdx(in_edges.z), dFdy(in_edges.z))));
   const vec3 pixels = in_edges / max(a_pixel, vec3(1e-30));
   const float line = clamp(EDGE_HALF_WIDTH + 0.5 - min(min(pixels.x, pixels.y), pixels.z), 0.0, 1.0);
-  return fogged(mix(lit(in_color, in_normal, towards_eye()), EDGE_DARKNESS * in_color, line), in_depth);
+  return fogged(mix(lit(in_color, in_normal, to_camera()), EDGE_DARKNESS * in_color, line), in_depth);
 }

@@ -5,11 +5,11 @@ layout(location = 2) out vec3 out_view;     // position in the view
 layout(location = 3) out float out_depth;
 layout(location = 4) flat out uint out_id;
 layout(location = 5) out vec3 out_edges;    // distances from the triangle's edges, 1 at the opposite corner; 1 where they are not drawn
-#include "shaders/lib/place.glsl"
+#include "shaders/lib/vertex_transform.glsl"
 
-void place_vertex(vec3 position, vec3 normal, vec3 color, uint id) {
+void emit_vertex(vec3 position, vec3 normal, vec3 color, uint id) {
   float inside;
-  const vec3 turned = place(position, position, vec3(0.0), id, inside);
+  const vec3 turned = transform_vertex(position, position, vec3(0.0), id, inside);
   out_normal = frame.view_from_world * normal;
   out_color = color;
   out_view = turned + frame.offset;

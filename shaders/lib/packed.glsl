@@ -1,16 +1,16 @@
 // The cell of a packed volume around a position: value in codes, trilinear, and its gradient.
-//   whole (render/mirror/packed_volume.h): two words of four codes
-//   BRICKS (render/mirror/packed_atlas.h): four words of two codes in the slot that the map names, or the one code of the brick
-layout(constant_id = 5) const uint BRICKS = 0;
+//   whole (render/residency/packed_volume.h): two words of four codes
+//   IS_BRICKED (render/residency/packed_atlas.h): four words of two codes in the slot that the map names, or the one code of the brick
+layout(constant_id = 5) const uint IS_BRICKED = 0;
 layout(constant_id = 6) const uint MASKED = 0;  // a cell is valid where none of its codes is 0
 
 layout(binding = 3) uniform utexture3D packed_words;
-layout(binding = 5) uniform utexture3D plain_map;
+layout(binding = 5) uniform utexture3D homogeneous_map;
 
 struct PackedSample {
   float code;
   vec3 gradient;  // codes a voxel, of the cell
-  uint brick;     // BRICKS: the map's word
+  uint brick;     // IS_BRICKED: the map's word
   bool valid;
 };
 
@@ -18,8 +18,8 @@ vec4 four_codes(uint word) { return vec4(word & 255u, word >> 8 & 255u, word >> 
 
 uint slot_word(ivec3 at) { return texelFetch(packed_words, at, 0).r; }
 
-bool is_kept(uint word) { return word >> 31 == 0u; }
-vec3 slot_of(uint word) { return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
+bool is_stored(uint word) { return word >> 31 == 0u; }
+vec3 unpack_slot(uint word) { return vec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
 
 PackedSample sample_packed(vec3 p) {
   const vec3 base = clamp(floor(p), frame.grids[0].lo, frame.grids[0].hi - 1.0);
@@ -29,10 +29,10 @@ PackedSample sample_packed(vec3 p) {
   s.brick = 0u;
   s.valid = true;
   vec4 near, far;  // (0,0) (1,0) (0,1) (1,1) in x and y, at z = 0 and 1
-  if (BRICKS != 0u) {
-    s.brick = texelFetch(plain_map, cell >> 3, 0).r;
-    const bool kept = is_kept(s.brick);
-    const ivec3 at = kept ? ivec3(slot_of(s.brick)) * ivec3(8, 9, 9) + (cell & 7) : ivec3(0);
+  if (IS_BRICKED != 0u) {
+    s.brick = texelFetch(homogeneous_map, cell >> 3, 0).r;
+    const bool kept = is_stored(s.brick);
+    const ivec3 at = kept ? ivec3(unpack_slot(s.brick)) * ivec3(8, 9, 9) + (cell & 7) : ivec3(0);
     near = four_codes(slot_word(at) | slot_word(at + ivec3(0, 1, 0)) << 16);
     far = four_codes(slot_word(at + ivec3(0, 0, 1)) | slot_word(at + ivec3(0, 1, 1)) << 16);
     if (!kept) near = far = vec4(s.brick & 255u);

@@ -4,8 +4,8 @@ layout(constant_id = 1) const uint MODE = MODE_OPAQUE;
 layout(constant_id = 2) const uint HAS_OPAQUE = 0;
 layout(scalar, binding = 5) uniform Layers { LayerData layer; };
 layout(binding = 6) uniform texture2D opaque_depth;
-layout(binding = 7) uniform texture2D passed_depth;  // of the layer before
-layout(binding = 8) uniform utexture2D passed_id;
+layout(binding = 7) uniform texture2D previous_depth;  // of the layer before
+layout(binding = 8) uniform utexture2D previous_id;
 layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_id;
@@ -20,8 +20,8 @@ bool in_layer(float t, uint id) {
   const ivec2 at = ivec2(gl_FragCoord.xy);
   if (HAS_OPAQUE != 0u && t >= texelFetch(opaque_depth, at, 0).r) return false;
   if (MODE == MODE_FIRST) return true;
-  const float here = layer_depth(t), passed = layer_depth(texelFetch(passed_depth, at, 0).r);
-  return here < passed || (here == passed && id > texelFetch(passed_id, at, 0).r);
+  const float here = layer_depth(t), passed = layer_depth(texelFetch(previous_depth, at, 0).r);
+  return here < passed || (here == passed && id > texelFetch(previous_id, at, 0).r);
 }
 
 // Writes a fragment, or nothing: a depth of 0 never passes the depth test (cheaper and safer than discard).
@@ -32,7 +32,7 @@ void write_fragment(bool seen, vec3 color, float alpha, float t, uint id) {
   out_depth = t;
   out_id = id;
   gl_FragDepth = seen ? layer_depth(t) : 0.0;
-  if (MODE == MODE_REST) {
+  if (MODE == MODE_TAIL) {
     // weighted by optical depth: rgb sums, alpha becomes the product of (1 - alpha)
     const float a = seen ? min(alpha, 0.999) : 0.0;
     out_color = vec4(a > 0.0 ? color / alpha * -log(1.0 - a) : vec3(0.0), a);

@@ -3,9 +3,9 @@
 // In a cubic cell it is of ninth degree: a cubic through each four of ten places says where to look, and the cell itself is asked there.
 // Bricks of which no value can be better than the best so far are passed over: bits 24..31 of a brick's word are 0 where it has no
 // valid cell, else 1 + n, and no value in it is better than bound_lo + n bound_per_code. A minimum is the maximum of -value.
-float signed_value(float v) { return KIND == 2u ? -v : v; }
+float signed_value(float v) { return PROJECTION_KIND == 2u ? -v : v; }
 
-float in_cell(vec4 lo, vec4 hi, vec3 place) {
+float interpolate_cell(vec4 lo, vec4 hi, vec3 place) {
   if (grid_is_cubic(0)) return cubic_value(place);
   const vec3 f = corner_weights(0, place);
   const vec4 z = mix(lo, hi, f.z);
@@ -14,9 +14,9 @@ float in_cell(vec4 lo, vec4 hi, vec3 place) {
 }
 
 // The greatest value of a cell with corners lo, hi between a and b.
-float greatest_between(vec4 lo, vec4 hi, vec3 a, vec3 b) {
-  const float f0 = in_cell(lo, hi, a), f1 = in_cell(lo, hi, mix(a, b, 1.0 / 3.0)), f2 = in_cell(lo, hi, mix(a, b, 2.0 / 3.0)),
-              f3 = in_cell(lo, hi, b);
+float max_between(vec4 lo, vec4 hi, vec3 a, vec3 b) {
+  const float f0 = interpolate_cell(lo, hi, a), f1 = interpolate_cell(lo, hi, mix(a, b, 1.0 / 3.0)), f2 = interpolate_cell(lo, hi, mix(a, b, 2.0 / 3.0)),
+              f3 = interpolate_cell(lo, hi, b);
   float best = max(max(f0, f1), max(f2, f3));
   // derivative: c1 + 2 c2 u + 3 c3 u^2
   const float c1 = 0.5 * (-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3);
@@ -25,13 +25,13 @@ float greatest_between(vec4 lo, vec4 hi, vec3 a, vec3 b) {
   if (discriminant >= 0.0) {
     const float w = -(c2 + (c2 >= 0.0 ? 1.0 : -1.0) * sqrt(discriminant));
     const float r0 = abs(c3) > 0.0 ? w / (3.0 * c3) : 0.0, r1 = abs(w) > 0.0 ? c1 / w : 0.0;
-    best = max(best, max(in_cell(lo, hi, mix(a, b, clamp(r0, 0.0, 1.0))), in_cell(lo, hi, mix(a, b, clamp(r1, 0.0, 1.0)))));
+    best = max(best, max(interpolate_cell(lo, hi, mix(a, b, clamp(r0, 0.0, 1.0))), interpolate_cell(lo, hi, mix(a, b, clamp(r1, 0.0, 1.0)))));
   }
   return best;
 }
 
 // The same of a cubic cell; `best` where it cannot hold more.
-float greatest_of_cubic(ivec3 cell, vec3 a, vec3 b, float best) {
+float max_of_cubic(ivec3 cell, vec3 a, vec3 b, float best) {
   fetch_cubic(0, cell);
   const float offset = signed_value(frame.grids[0].value_offset), scale = signed_value(frame.grids[0].value_scale);
   vec4 low = vec4(NO_DEPTH), high = vec4(-NO_DEPTH);
@@ -43,14 +43,14 @@ float greatest_of_cubic(ivec3 cell, vec3 a, vec3 b, float best) {
   const float least = min(min(low.x, low.y), min(low.z, low.w)), greatest = max(max(high.x, high.y), max(high.z, high.w));
   if (greatest + CUBIC_OVERSHOOT * (greatest - least) > best) {
     for (int part = 0; part < 3; ++part)
-      best = max(best, greatest_between(vec4(0.0), vec4(0.0), mix(a, b, float(part) / 3.0), mix(a, b, float(part + 1) / 3.0)));
+      best = max(best, max_between(vec4(0.0), vec4(0.0), mix(a, b, float(part) / 3.0), mix(a, b, float(part + 1) / 3.0)));
   }
   return best;
 }
 
-float extreme(LocalRay ray, vec2 interval) {
+float find_extremum(LocalRay ray, vec2 interval) {
   const vec3 inverse = safe_inverse(ray.direction);
-  const bvec3 forward = forward_of(ray.direction);
+  const bvec3 forward = is_forward(ray.direction);
   const ivec3 first = ivec3(frame.grids[0].lo), last = ivec3(frame.grids[0].hi) - 1;
   float best = -NO_DEPTH;
   ivec3 cell = cell_of(0, ray.origin + interval.x * ray.direction);
@@ -60,21 +60,21 @@ float extreme(LocalRay ray, vec2 interval) {
     const ivec3 brick = cell >> 3;
     const uint code = brick_word(0, brick) >> 24;
     const bool pass = code == 0u || frame.grids[0].bound_lo + float(code - 1u) * frame.grids[0].bound_per_code <= best;
-    const ivec3 lo = pass ? brick * BRICK : cell, hi = lo + (pass ? BRICK : 1);
+    const ivec3 lo = pass ? brick * BRICK_SIZE : cell, hi = lo + (pass ? BRICK_SIZE : 1);
     const vec3 leave = (mix(vec3(lo), vec3(hi), forward) - ray.origin) * inverse;
     const float out_at = min(min(leave.x, leave.y), leave.z);
     if (!pass && cell_is_valid(0, cell)) {
       const vec3 a = clamp(ray.origin + t * ray.direction - vec3(cell), 0.0, 1.0);
       const vec3 b = clamp(ray.origin + clamp(out_at, t, interval.y) * ray.direction - vec3(cell), 0.0, 1.0);
       if (grid_is_cubic(0)) {
-        best = greatest_of_cubic(cell, a, b, best);
+        best = max_of_cubic(cell, a, b, best);
       } else {
         vec4 low, high;
         cell_corners(0, cell, low, high);
-        low = KIND == 2u ? -low : low;
-        high = KIND == 2u ? -high : high;
+        low = PROJECTION_KIND == 2u ? -low : low;
+        high = PROJECTION_KIND == 2u ? -high : high;
         const vec4 most = max(low, high);
-        if (max(max(most.x, most.y), max(most.z, most.w)) > best) best = max(best, greatest_between(low, high, a, b));
+        if (max(max(most.x, most.y), max(most.z, most.w)) > best) best = max(best, max_between(low, high, a, b));
       }
     }
     // the cell behind the face through which the ray leaves
@@ -89,7 +89,7 @@ float extreme(LocalRay ray, vec2 interval) {
   return best > -NO_DEPTH ? signed_value(best) : NO_DEPTH;
 }
 
-float average(LocalRay ray, vec2 interval, float h) {
+float find_average(LocalRay ray, vec2 interval, float h) {
   const int count = max(1, int(ceil((interval.y - interval.x) / h - 1e-3)));
   float sum = 0.0, measured = 0.0;
   for (int k = 0; k < count; ++k) {

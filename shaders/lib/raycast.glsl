@@ -2,14 +2,14 @@
 //   T(t) = S exp(-tau),  tau += sigma h per segment,  C += c (T_before - T_after),  S *= 1 - opacity at a surface
 // Optical depth is summed and the exponential taken of the sum, so that rounding does not pile up over many segments. The value
 // of a segment is the one at its middle; the last segment of a piece is its exact rest, and with jitter the first one is a part of
-// a segment too. What is plain (empty, or of one colour and sigma) is one segment. The includer defines VOLUMES (grids
-// 0 .. VOLUMES - 1) and GRID_COUNT.
-layout(constant_id = 1) const uint OPAQUE = 0;       // there is an opaque depth
+// a segment too. What is plain (empty, or of one colour and sigma) is one segment. The includer defines VOLUME_COUNT (grids
+// 0 .. VOLUME_COUNT - 1) and GRID_COUNT.
+layout(constant_id = 1) const uint HAS_OPAQUE = 0;       // there is an opaque depth
 layout(constant_id = 5) const uint GRID_MODES = 0;   // two bits a grid: 1 a factor by the gradient, 2 colours by another grid,
 layout(constant_id = 6) const uint COLOR_GRIDS = 0;  // which one: four bits a grid
-layout(constant_id = 7) const uint JITTER = 0;
-layout(constant_id = 9) const uint FOG = 0;  // there is a depth cue
-layout(constant_id = 10) const uint HALF_DEPTH = 0;  // instead of a colour: the depth at which half of the light is gone
+layout(constant_id = 7) const uint HAS_JITTER = 0;
+layout(constant_id = 9) const uint HAS_FOG = 0;  // there is a depth cue
+layout(constant_id = 10) const uint HALF_OPACITY_DEPTH = 0;  // instead of a colour: the depth at which half of the light is gone
 
 #include "shaders/lib/tables.glsl"
 layout(binding = 2) uniform texture2D opaque_depth;
@@ -17,12 +17,12 @@ layout(location = 0) out vec4 out_color;  // premultiplied
 
 LocalRay rays[GRID_COUNT];
 vec2 intervals[GRID_COUNT];
-vec3 eye_direction;
+vec3 view_direction;
 float world_per_depth;
-float early = 0.0;  // what the first segment lacks, in segments
-float optical_depth = 0.0, surfaces_through = 1.0, through = 1.0;
+float jitter_offset = 0.0;  // what the first segment lacks, in segments
+float optical_depth = 0.0, surface_transmittance = 1.0, transmittance = 1.0;
 vec3 color_sum = vec3(0.0);
-float half_depth = NO_DEPTH;
+float half_opacity_depth = NO_DEPTH;
 
 bool has_factor(int i) { return (GRID_MODES >> (2 * i) & 1u) != 0u; }
 bool has_other_color(int i) { return (GRID_MODES >> (2 * i) & 2u) != 0u; }
@@ -30,7 +30,7 @@ bool has_other_color(int i) { return (GRID_MODES >> (2 * i) & 2u) != 0u; }
 vec4 transfer(int i, float value) {
   uint at;
   float way;
-  find_place(frame.grids[i].look, value, at, way);
+  find_entry(frame.grids[i].value_table, value, at, way);
   const float sigma = mix(entry_sigma(at), entry_sigma(at + 1u), way);
   if (sigma == 0.0) return vec4(0.0);
   return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), sigma);
@@ -40,37 +40,37 @@ vec4 transfer(int i, float value) {
 float gradient_factor(int i, float gradient) {
   uint at;
   float way;
-  find_place(frame.grids[i].factors, gradient, at, way);
+  find_entry(frame.grids[i].gradient_table, gradient, at, way);
   return mix(table[at].r, table[at + 1u].r, way);
 }
 
 #if GRID_COUNT > 1
 #include "shaders/lib/color_by.glsl"
 // The colour of grid i at depth t by the other grid, if it has one.
-vec3 own_or_other(int i, float t, vec3 own) {
+vec3 resolve_color(int i, float t, vec3 own) {
   if (!has_other_color(i)) return own;
   const int j = int(COLOR_GRIDS >> (4 * i) & 15u);
   return color_at(j, rays[j].origin + t * rays[j].direction, own);
 }
 #else
-vec3 own_or_other(int i, float t, vec3 own) { return own; }
+vec3 resolve_color(int i, float t, vec3 own) { return own; }
 #endif
 
-// What volume i adds at depth t of its ray: sigma and sigma-weighted colour. Lowers `leap` to the segments (of depth h) over which it
+// What volume i adds at depth t of its ray: sigma and sigma-weighted colour. Lowers `skip_count` to the segments (of depth h) over which it
 // stays the same. Called with constants only: loops over textures are not unrolled once they branch.
-void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_sum, inout int leap) {
-  if (i < VOLUMES && (VOLUMES == 1 || (t >= intervals[i].x && t <= intervals[i].y))) {
+void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_sum, inout int skip_count) {
+  if (i < VOLUME_COUNT && (VOLUME_COUNT == 1 || (t >= intervals[i].x && t <= intervals[i].y))) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     int distance = 0;
     bool seen = true;
     if (volume_skips(i)) {
       const ivec3 brick = cell_of(i, p) >> 3;
       const uint word = brick_word(i, brick);
-      distance = FOG != 0u && is_plain(word) ? 0 : leap_distance(word);  // fog colours what is plain
-      seen = distance == 0 || is_plain(word);
-      if (distance > 0) leap = min(leap, max(1, int(ceil(min(leave_empty(rays[i], p, brick, distance) / h, 1e6)))));
+      distance = HAS_FOG != 0u && is_homogeneous(word) ? 0 : skip_distance(word);  // fog colours what is plain
+      seen = distance == 0 || is_homogeneous(word);
+      if (distance > 0) skip_count = min(skip_count, max(1, int(ceil(min(exit_empty_region(rays[i], p, brick, distance) / h, 1e6)))));
     }
-    if (distance == 0) leap = 1;
+    if (distance == 0) skip_count = 1;
     if (seen) {
       bool valid = true;
       if (grid_is_masked(i)) valid = cell_is_valid(i, cell_of(i, p));
@@ -80,9 +80,9 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
           vec3 gradient = vec3(0.0);
           if (volume_is_shaded(i) || has_factor(i)) gradient = world_gradient(i, p);
           if (has_factor(i)) c.a *= gradient_factor(i, length(gradient) * frame.grids[i].value_scale);
-          c.rgb = own_or_other(i, t, c.rgb);
-          if (volume_is_shaded(i)) c.rgb = lit(c.rgb, gradient, eye_direction);
-          if (FOG != 0u) c.rgb = fogged(c.rgb, t);
+          c.rgb = resolve_color(i, t, c.rgb);
+          if (volume_is_shaded(i)) c.rgb = lit(c.rgb, gradient, view_direction);
+          if (HAS_FOG != 0u) c.rgb = fogged(c.rgb, t);
           emitted += c.a * c.rgb;
           sigma_sum += c.a;
         }
@@ -92,55 +92,55 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
 }
 
 // Where in a segment of one sigma half of the light is gone, as a share of its length; before > 0.5 >= after.
-float half_way(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
+float half_transmittance_position(float before, float after) { return clamp(log(2.0 * before) / log(before / max(after, 1e-30)), 0.0, 1.0); }
 
-vec4 found_depth() { return vec4(half_depth, 0.0, 0.0, half_depth < NO_DEPTH ? 1.0 : 0.0); }
+vec4 half_opacity_output() { return vec4(half_opacity_depth, 0.0, 0.0, half_opacity_depth < NO_DEPTH ? 1.0 : 0.0); }
 
 // Segments of one length over [from, to], in which the same volumes are met throughout.
 void march(float from, float to) {
   const float h = frame.step_world / world_per_depth;
-  const int count = max(1, int(ceil((to - from) / h + early - 1e-3)));
-  for (int k = 0; k < count && through > frame.termination;) {
+  const int count = max(1, int(ceil((to - from) / h + jitter_offset - 1e-3)));
+  for (int k = 0; k < count && transmittance > frame.termination;) {
     float begin = from + float(k) * h, extent = h;
-    if (JITTER != 0u) {
-      begin = k == 0 ? from : begin - early * h;
-      extent = k == 0 ? (1.0 - early) * h : h;
+    if (HAS_JITTER != 0u) {
+      begin = k == 0 ? from : begin - jitter_offset * h;
+      extent = k == 0 ? (1.0 - jitter_offset) * h : h;
     }
     const float t = begin + 0.5 * (k == count - 1 ? to - begin : extent);
-    int leap = count;
+    int skip_count = count;
     vec3 emitted = vec3(0.0);
     float sigma_sum = 0.0;
-    add_volume(0, t, h, emitted, sigma_sum, leap);
+    add_volume(0, t, h, emitted, sigma_sum, skip_count);
 #if GRID_COUNT > 1
-    add_volume(1, t, h, emitted, sigma_sum, leap);
-    add_volume(2, t, h, emitted, sigma_sum, leap);
-    add_volume(3, t, h, emitted, sigma_sum, leap);
+    add_volume(1, t, h, emitted, sigma_sum, skip_count);
+    add_volume(2, t, h, emitted, sigma_sum, skip_count);
+    add_volume(3, t, h, emitted, sigma_sum, skip_count);
 #endif
-    extent = k + leap >= count ? to - begin : extent + float(leap - 1) * h;
-    k += leap;
+    extent = k + skip_count >= count ? to - begin : extent + float(skip_count - 1) * h;
+    k += skip_count;
     if (sigma_sum > 0.0) {
       optical_depth += sigma_sum * extent * world_per_depth;
-      const float after = surfaces_through * exp(-optical_depth);
-      if (HALF_DEPTH != 0u && through > 0.5 && after <= 0.5) half_depth = begin + extent * half_way(through, after);
-      color_sum += emitted / sigma_sum * (through - after);
-      through = after;
+      const float after = surface_transmittance * exp(-optical_depth);
+      if (HALF_OPACITY_DEPTH != 0u && transmittance > 0.5 && after <= 0.5) half_opacity_depth = begin + extent * half_transmittance_position(transmittance, after);
+      color_sum += emitted / sigma_sum * (transmittance - after);
+      transmittance = after;
     }
   }
 }
 
 // The part of a grid's domain that the ray sees; NO_DEPTH twice where there is none.
-vec2 seen_interval(int i, vec2 q, float end) {
+vec2 visible_ray_interval(int i, vec2 q, float end) {
   vec2 interval = visible_interval(i, rays[i], q);
   interval.y = min(interval.y, end);
   return interval.x < interval.y ? interval : vec2(NO_DEPTH);
 }
 
 // Sets up the pixel; the depth where rays end.
-float begin_pixel(vec2 q) {
+float setup_pixel(vec2 q) {
   const vec3 direction = world_direction(q);
   world_per_depth = length(direction);
-  eye_direction = -direction / world_per_depth;
+  view_direction = -direction / world_per_depth;
   // interleaved gradient noise (J. Jimenez, 2014): neighbours differ much, so that the eye averages over them
-  if (JITTER != 0u) early = fract(52.9829189 * fract(dot(floor(q + frame.axis), vec2(0.06711056, 0.00583715))));
-  return OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;
+  if (HAS_JITTER != 0u) jitter_offset = fract(52.9829189 * fract(dot(floor(q + frame.axis), vec2(0.06711056, 0.00583715))));
+  return HAS_OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;
 }

@@ -3,7 +3,7 @@ struct LocalRay {
   vec3 origin, direction;  // local position at depth t: origin + t direction
 };
 
-vec2 pixel_place() { return frame.spacing * gl_FragCoord.xy + frame.first - frame.axis; }
+vec2 pixel_position() { return frame.spacing * gl_FragCoord.xy + frame.first - frame.axis; }
 
 LocalRay local_ray(int i, vec2 q) {
   LocalRay ray;
@@ -15,11 +15,11 @@ LocalRay local_ray(int i, vec2 q) {
 // World vector of one unit of depth along the ray of pixel place q (y down).
 vec3 world_direction(vec2 q) { return frame.forward + frame.right * (q.x * frame.slope.x) - frame.up * (q.y * frame.slope.y); }
 
-#define LEAST_DIRECTION 1e-30
+#define MIN_DIRECTION 1e-30
 
-// 1 / d; a component of zero counts as a tiny positive one, as in forward_of.
-vec3 safe_inverse(vec3 d) { return 1.0 / mix(d, vec3(LEAST_DIRECTION), lessThan(abs(d), vec3(LEAST_DIRECTION))); }
-bvec3 forward_of(vec3 d) { return greaterThan(d, vec3(-LEAST_DIRECTION)); }
+// 1 / d; a component of zero counts as a tiny positive one, as in is_forward.
+vec3 safe_inverse(vec3 d) { return 1.0 / mix(d, vec3(MIN_DIRECTION), lessThan(abs(d), vec3(MIN_DIRECTION))); }
+bvec3 is_forward(vec3 d) { return greaterThan(d, vec3(-MIN_DIRECTION)); }
 
 // Exact entry and exit of the domain; entry >= exit where the ray misses it.
 vec2 domain_interval(int i, LocalRay ray) {
@@ -28,7 +28,7 @@ vec2 domain_interval(int i, LocalRay ray) {
   const vec3 a = (lo - ray.origin) * inverse, b = (hi - ray.origin) * inverse;
   vec3 near = min(a, b), far = max(a, b);
   for (int axis = 0; axis < 3; ++axis)
-    if (abs(ray.direction[axis]) < LEAST_DIRECTION) {
+    if (abs(ray.direction[axis]) < MIN_DIRECTION) {
       const bool inside = ray.origin[axis] >= lo[axis] && ray.origin[axis] <= hi[axis];
       near[axis] = inside ? -NO_DEPTH : NO_DEPTH;
       far[axis] = -near[axis];
@@ -38,18 +38,18 @@ vec2 domain_interval(int i, LocalRay ray) {
 
 // A number of the uniform buffer for the bound of a loop. The CPU driver makes a shader that branches on nothing but uniforms anew at
 // every draw (milliseconds; 0.1 s without its disk cache); this looks like something of the pixel.
-uint of_pixel(uint number, vec2 q) { return number + uint(q.x < -1e30); }
+uint as_nonuniform(uint number, vec2 q) { return number + uint(q.x < -1e30); }
 
 // The part of a grid's domain that can be seen: from the eye on, within the clip planes. Entry >= exit where it is nothing.
 vec2 visible_interval(int i, LocalRay ray, vec2 q) {
   vec2 interval = domain_interval(i, ray);
-  interval.x = max(interval.x, frame.front);
-  const uint planes = of_pixel(frame.grids[i].clipped * frame.clip_count, q);
+  interval.x = max(interval.x, frame.front_depth);
+  const uint planes = as_nonuniform(frame.grids[i].is_clipped * frame.clip_count, q);
   for (uint k = 0u; k < planes; ++k) {
     const float at = frame.clips[k].at + frame.clips[k].at_x * q.x + frame.clips[k].at_y * q.y;
     const float along = frame.clips[k].along + frame.clips[k].along_x * q.x + frame.clips[k].along_y * q.y;
-    const float t = abs(along) < LEAST_DIRECTION ? (at >= 0.0 ? -NO_DEPTH : NO_DEPTH) : -at / along;
-    if (along >= -LEAST_DIRECTION) interval.x = max(interval.x, t);
+    const float t = abs(along) < MIN_DIRECTION ? (at >= 0.0 ? -NO_DEPTH : NO_DEPTH) : -at / along;
+    if (along >= -MIN_DIRECTION) interval.x = max(interval.x, t);
     else interval.y = min(interval.y, t);
   }
   return interval;
@@ -62,9 +62,9 @@ float buffer_depth(float t) {
 }
 
 // Depth at which the ray leaves the cube of empty bricks around the brick of `p` (at distance `d` the next active one), from p.
-float leave_empty(LocalRay ray, vec3 p, ivec3 brick, int d) {
+float exit_empty_region(LocalRay ray, vec3 p, ivec3 brick, int d) {
   const vec3 inverse = safe_inverse(ray.direction);
-  const vec3 lo = vec3((brick - (d - 1)) * BRICK), hi = vec3((brick + d) * BRICK);
-  const vec3 t = (mix(lo, hi, forward_of(ray.direction)) - p) * inverse;
+  const vec3 lo = vec3((brick - (d - 1)) * BRICK_SIZE), hi = vec3((brick + d) * BRICK_SIZE);
+  const vec3 t = (mix(lo, hi, is_forward(ray.direction)) - p) * inverse;
   return min(min(t.x, t.y), t.z);
 }

@@ -5,27 +5,27 @@
 // Watertight: the value at a face is one number for both cells (the coordinate across the face is exactly 0 or 1, and nothing is
 // contracted), so that no change of sign falls between them. A cell whose corners lie on one side is passed without a look.
 
-float blend_exactly(float a, float b, float w) {
+float lerp_exact(float a, float b, float w) {
   precise float r = a * (1.0 - w) + b * w;
   return r;
 }
-vec2 blend_exactly(vec2 a, vec2 b, float w) {
+vec2 lerp_exact(vec2 a, vec2 b, float w) {
   precise vec2 r = a * (1.0 - w) + b * w;
   return r;
 }
-vec4 blend_exactly(vec4 a, vec4 b, float w) {
+vec4 lerp_exact(vec4 a, vec4 b, float w) {
   precise vec4 r = a * (1.0 - w) + b * w;
   return r;
 }
 
 vec4 cell_cubic(vec4 lo, vec4 hi, vec3 a, vec3 b) {
-  const vec4 za = blend_exactly(lo, hi, a.z), zb = blend_exactly(lo, hi, b.z);
-  const vec2 ya_za = blend_exactly(za.xy, za.zw, a.y), yb_zb = blend_exactly(zb.xy, zb.zw, b.y);
+  const vec4 za = lerp_exact(lo, hi, a.z), zb = lerp_exact(lo, hi, b.z);
+  const vec2 ya_za = lerp_exact(za.xy, za.zw, a.y), yb_zb = lerp_exact(zb.xy, zb.zw, b.y);
   const vec2 yb_za = mix(za.xy, za.zw, b.y), ya_zb = mix(zb.xy, zb.zw, a.y);
-  const float aaa = blend_exactly(ya_za.x, ya_za.y, a.x), baa = mix(ya_za.x, ya_za.y, b.x);
+  const float aaa = lerp_exact(ya_za.x, ya_za.y, a.x), baa = mix(ya_za.x, ya_za.y, b.x);
   const float aba = mix(yb_za.x, yb_za.y, a.x), bba = mix(yb_za.x, yb_za.y, b.x);
   const float aab = mix(ya_zb.x, ya_zb.y, a.x), bab = mix(ya_zb.x, ya_zb.y, b.x);
-  const float abb = mix(yb_zb.x, yb_zb.y, a.x), bbb = blend_exactly(yb_zb.x, yb_zb.y, b.x);
+  const float abb = mix(yb_zb.x, yb_zb.y, a.x), bbb = lerp_exact(yb_zb.x, yb_zb.y, b.x);
   return vec4(aaa, (baa + aba + aab) / 3.0, (abb + bab + bba) / 3.0, bbb);
 }
 
@@ -62,7 +62,7 @@ bool first_bracket(vec4 c, out Bracket bracket) {
 }
 
 // Its root: Newton's steps from the chord's root, halves of the bracket where they would leave it.
-float root_in(vec4 c, Bracket bracket) {
+float find_root(vec4 c, Bracket bracket) {
   const vec3 d = 3.0 * (c.yzw - c.xyz);
   float a = bracket.a, b = bracket.b;
   float u = clamp(a - bracket.fa * (b - a) / (bracket.fb - bracket.fa), a, b);
@@ -82,47 +82,47 @@ float root_in(vec4 c, Bracket bracket) {
 
 // A ray with its axes turned so that it moves towards greater coordinates: p' = -p on a turned axis, and cell c lies at c' = ~c.
 // Blocks of whole powers of two stay blocks. An axis along which it does not move is never left.
-struct Way {
+struct FlippedRay {
   vec3 origin, direction, inverse, still;
   ivec3 turned;  // -1 on a turned axis
   ivec3 end;     // one beyond the last cell
 };
 
-Way make_way(int i, LocalRay ray) {
-  const bvec3 stands = lessThan(abs(ray.direction), vec3(LEAST_DIRECTION)), backward = lessThan(ray.direction, vec3(0.0));
-  Way way;
-  way.turned = mix(ivec3(0), ivec3(-1), backward);
-  way.origin = mix(ray.origin, -ray.origin, backward);
-  way.direction = abs(ray.direction);
-  way.inverse = mix(1.0 / way.direction, vec3(0.0), stands);
-  way.still = mix(vec3(0.0), vec3(NO_DEPTH), stands);
-  way.end = mix(ivec3(frame.grids[i].hi), -ivec3(frame.grids[i].lo), backward);
-  return way;
+FlippedRay make_flipped_ray(int i, LocalRay ray) {
+  const bvec3 stands = lessThan(abs(ray.direction), vec3(MIN_DIRECTION)), backward = lessThan(ray.direction, vec3(0.0));
+  FlippedRay flipped;
+  flipped.turned = mix(ivec3(0), ivec3(-1), backward);
+  flipped.origin = mix(ray.origin, -ray.origin, backward);
+  flipped.direction = abs(ray.direction);
+  flipped.inverse = mix(1.0 / flipped.direction, vec3(0.0), stands);
+  flipped.still = mix(vec3(0.0), vec3(NO_DEPTH), stands);
+  flipped.end = mix(ivec3(frame.grids[i].hi), -ivec3(frame.grids[i].lo), backward);
+  return flipped;
 }
 
 // Where the ray enters a cell; on the axis of the face that it came through, if it came through one, `entered` is true.
-struct Walk {
+struct CellTraversal {
   ivec3 cell;  // turned
   float t;
   bvec3 entered;
 };
 
-vec3 exits(Way way, ivec3 end) { return (vec3(end) - way.origin) * way.inverse + way.still; }
-float least_of(vec3 v) { return min(min(v.x, v.y), v.z); }
-bvec3 axis_of(vec3 v, float least) {
+vec3 exits(FlippedRay flipped, ivec3 end) { return (vec3(end) - flipped.origin) * flipped.inverse + flipped.still; }
+float min_component(vec3 v) { return min(min(v.x, v.y), v.z); }
+bvec3 min_axis(vec3 v, float least) {
   const bool x = v.x == least, y = !x && v.y == least;
   return bvec3(x, y, !(x || y));
 }
 
 // Goes on to where the ray leaves the box of cells around the walk's cell that ends before `end`. (Beyond the domain's last cell the
 // walk is beyond the ray's end.)
-void leave_box(inout Walk walk, Way way, ivec3 end) {
-  end = min(end, way.end);
-  const vec3 leave = exits(way, end);
-  const float out_at = least_of(leave);
-  walk.entered = axis_of(leave, out_at);
-  walk.cell = mix(clamp(ivec3(floor(way.origin + out_at * way.direction)), walk.cell, end - 1), end, walk.entered);
-  walk.t = max(walk.t, out_at);
+void advance_past(inout CellTraversal traversal, FlippedRay flipped, ivec3 end) {
+  end = min(end, flipped.end);
+  const vec3 leave = exits(flipped, end);
+  const float out_at = min_component(leave);
+  traversal.entered = min_axis(leave, out_at);
+  traversal.cell = mix(clamp(ivec3(floor(flipped.origin + out_at * flipped.direction)), traversal.cell, end - 1), end, traversal.entered);
+  traversal.t = max(traversal.t, out_at);
 }
 
 bool holds_level(vec4 lo, vec4 hi) {
@@ -138,63 +138,63 @@ void level_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
 
 #ifdef SURFACE_CELLS
 layout(binding = 1) uniform utexture3D cell_map;
-uint block_of(int i, ivec3 cell) {
+uint block_word(int i, ivec3 cell) {
   if (grid_is_cubic(i)) return brick_word(i, cell >> 1);  // its map is that of its cells
   return texelFetch(cell_map, cell >> 1, 0).r;
 }
 #else
 const uint HAS_CELLS = 0;
-uint block_of(int i, ivec3 cell) { return brick_word(i, cell >> 1); }
+uint block_word(int i, ivec3 cell) { return brick_word(i, cell >> 1); }
 #endif
 
-// Walks to the next cell that holds the level, by render/mirror/cell_map.h.
-bool next_in_map(int i, inout Walk walk, Way way, float to) {
+// Walks to the next cell that holds the level, by render/residency/cell_map.h.
+bool next_cell_in_map(int i, inout CellTraversal traversal, FlippedRay flipped, float to) {
   bool found = false;
-  while (!found && walk.t < to) {
-    const ivec3 cell = walk.cell ^ way.turned, odd = cell & 1;
-    const uint block = block_of(i, cell);
+  while (!found && traversal.t < to) {
+    const ivec3 cell = traversal.cell ^ flipped.turned, odd = cell & 1;
+    const uint block = block_word(i, cell);
     found = (block >> (odd.x + 2 * odd.y + 4 * odd.z) & 1u) != 0u;
     if (!found) {
       // out of the bricks without, the block without, or the cell
       const int distance = int(block >> 8);
       const int within = distance > 0 ? 3 : (block & 255u) == 0u ? 1 : 0;
-      leave_box(walk, way, (walk.cell | within) + (distance > 0 ? 4 * distance - 3 : 1));
+      advance_past(traversal, flipped, (traversal.cell | within) + (distance > 0 ? 4 * distance - 3 : 1));
     }
   }
   return found;
 }
 
 // The same by the bricks' ranges and the corners themselves.
-bool next_by_corners(int i, inout Walk walk, Way way, float to) {
+bool next_cell_by_corners(int i, inout CellTraversal traversal, FlippedRay flipped, float to) {
   bool found = false;
-  while (!found && walk.t < to) {
-    const ivec3 cell = walk.cell ^ way.turned;
+  while (!found && traversal.t < to) {
+    const ivec3 cell = traversal.cell ^ flipped.turned;
     const int distance = empty_distance(brick_word(i, cell >> 3));
     if (distance == 0) {
       vec4 lo, hi;
       level_corners(i, cell, lo, hi);
       found = holds_level(lo, hi) && cell_is_valid(i, cell);
     }
-    if (!found) leave_box(walk, way, distance > 0 ? (walk.cell | 7) + (8 * distance - 7) : walk.cell + 1);
+    if (!found) advance_past(traversal, flipped, distance > 0 ? (traversal.cell | 7) + (8 * distance - 7) : traversal.cell + 1);
   }
   return found;
 }
 
 // The ray's piece in the walk's cell: where it begins and ends, within the cell and in depth.
-struct Piece {
+struct RaySegment {
   vec3 a, b;
   float from, to;
 };
 
-Piece piece_of(Walk walk, Way way, float to) {
-  const vec3 leave = exits(way, walk.cell + 1);
-  const float out_at = least_of(leave), end = clamp(out_at, walk.t, to);
-  const bool leaves = end == max(out_at, walk.t);  // else it ends within the cell
-  const bvec3 left = leaves ? axis_of(leave, out_at) : bvec3(false);
-  const vec3 a = mix(clamp(way.origin + walk.t * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(0.0), walk.entered);
-  const vec3 b = mix(clamp(way.origin + end * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(1.0), left);
-  const bvec3 turned = lessThan(way.turned, ivec3(0));
-  return Piece(mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned), walk.t, end);
+RaySegment segment_in_cell(CellTraversal traversal, FlippedRay flipped, float to) {
+  const vec3 leave = exits(flipped, traversal.cell + 1);
+  const float out_at = min_component(leave), end = clamp(out_at, traversal.t, to);
+  const bool leaves = end == max(out_at, traversal.t);  // else it ends within the cell
+  const bvec3 left = leaves ? min_axis(leave, out_at) : bvec3(false);
+  const vec3 a = mix(clamp(flipped.origin + traversal.t * flipped.direction - vec3(traversal.cell), 0.0, 1.0), vec3(0.0), traversal.entered);
+  const vec3 b = mix(clamp(flipped.origin + end * flipped.direction - vec3(traversal.cell), 0.0, 1.0), vec3(1.0), left);
+  const bvec3 turned = lessThan(flipped.turned, ivec3(0));
+  return RaySegment(mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned), traversal.t, end);
 }
 
 #ifndef NO_CUBIC
@@ -205,25 +205,25 @@ Piece piece_of(Walk walk, Way way, float to) {
 // next cell whose corners lie on both sides, the outer one asks its cubic for a root, which is solved for when all is found: on a
 // driver that executes both sides of every branch this keeps each stage out of the one within.
 float first_crossing(int i, LocalRay ray, float from, float to) {
-  const Way way = make_way(i, ray);
-  Walk walk = Walk(cell_of(i, ray.origin + from * ray.direction) ^ way.turned, from, bvec3(false));
+  const FlippedRay flipped = make_flipped_ray(i, ray);
+  CellTraversal traversal = CellTraversal(cell_of(i, ray.origin + from * ray.direction) ^ flipped.turned, from, bvec3(false));
 #ifndef NO_CUBIC
-  if (grid_is_cubic(i)) return first_cubic_crossing(i, walk, way, to);
+  if (grid_is_cubic(i)) return first_cubic_crossing(i, traversal, flipped, to);
 #endif
   bool found = false;
   vec4 cubic = vec4(0.0);
   Bracket bracket = Bracket(0.0, 0.0, 0.0, 1.0);
   vec2 depths = vec2(from);
-  while (!found && walk.t < to) {
-    if (HAS_CELLS != 0u ? next_in_map(i, walk, way, to) : next_by_corners(i, walk, way, to)) {
+  while (!found && traversal.t < to) {
+    if (HAS_CELLS != 0u ? next_cell_in_map(i, traversal, flipped, to) : next_cell_by_corners(i, traversal, flipped, to)) {
       vec4 lo, hi;
-      level_corners(i, walk.cell ^ way.turned, lo, hi);
-      const Piece piece = piece_of(walk, way, to);
-      cubic = cell_cubic(lo, hi, piece.a, piece.b);
+      level_corners(i, traversal.cell ^ flipped.turned, lo, hi);
+      const RaySegment segment = segment_in_cell(traversal, flipped, to);
+      cubic = cell_cubic(lo, hi, segment.a, segment.b);
       found = first_bracket(cubic, bracket);
-      depths = vec2(piece.from, piece.to);
-      leave_box(walk, way, walk.cell + 1);
+      depths = vec2(segment.from, segment.to);
+      advance_past(traversal, flipped, traversal.cell + 1);
     }
   }
-  return found ? mix(depths.x, depths.y, root_in(cubic, bracket)) : NO_DEPTH;
+  return found ? mix(depths.x, depths.y, find_root(cubic, bracket)) : NO_DEPTH;
 }

@@ -3,31 +3,31 @@
 // between two samples would err the first one's sigma has a minus, and the points count.
 layout(scalar, binding = 1) readonly buffer Tables { vec4 table[]; };
 
-layout(constant_id = 11) const uint TABLES = 0;  // 1: there are points, 2: there are scales that are not linear
+layout(constant_id = 11) const uint TABLE_FLAGS = 0;  // 1: there are points, 2: there are scales that are not linear
 
-float point_value(TableData of, uint point) { return table[of.start + of.last + 1u + of.points + point / 4u][point % 4u]; }
+float control_point_value(TableData of, uint point) { return table[of.start + of.last + 1u + of.control_points + point / 4u][point % 4u]; }
 
 // The place on the table's scale.
-float scaled(TableData of, float value) {
+float to_table_scale(TableData of, float value) {
   const float ratio = abs(value) * of.per_linear;
   const float place = sign(value) * (min(ratio, 1.0) + log(max(ratio, 1.0)));
   return of.per_linear > 0.0 ? place : value;
 }
 
 // The entry before the value, and the way to the next one.
-void find_place(TableData of, float value, out uint at, out float way) {
-  const float place = (TABLES & 2u) != 0u ? scaled(of, value) : value;
-  const float x = clamp((place - of.lo) * of.per_unit, 0.0, float(of.last));
+void find_entry(TableData of, float value, out uint at, out float way) {
+  const float place = (TABLE_FLAGS & 2u) != 0u ? to_table_scale(of, value) : value;
+  const float x = clamp((place - of.lo) * of.entries_per_unit, 0.0, float(of.last));
   const uint cell = min(uint(x), of.last - 1u);
   at = of.start + cell;
   way = x - float(cell);
-  if ((TABLES & 1u) != 0u) {
+  if ((TABLE_FLAGS & 1u) != 0u) {
     const bool marked = floatBitsToUint(table[at].a) >> 31 != 0u;
-    uint before = 0u, after = marked ? of.points - 1u : 1u;
+    uint before = 0u, after = marked ? of.control_points - 1u : 1u;
     float a = of.first_value, b = of.last_value;
     while (after - before > 1u) {
       const uint middle = (before + after) / 2u;
-      const float at_middle = point_value(of, middle);
+      const float at_middle = control_point_value(of, middle);
       const bool above = at_middle <= value;
       before = above ? middle : before;
       after = above ? after : middle;
@@ -40,5 +40,5 @@ void find_place(TableData of, float value, out uint at, out float way) {
 }
 
 // Without the mark.
-float entry_sigma(uint at) { return (TABLES & 1u) != 0u ? abs(table[at].a) : table[at].a; }
-vec4 entry_between(uint at, float way) { return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), mix(entry_sigma(at), entry_sigma(at + 1u), way)); }
+float entry_sigma(uint at) { return (TABLE_FLAGS & 1u) != 0u ? abs(table[at].a) : table[at].a; }
+vec4 interpolate_entry(uint at, float way) { return vec4(mix(table[at].rgb, table[at + 1u].rgb, way), mix(entry_sigma(at), entry_sigma(at + 1u), way)); }

@@ -4,7 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // Two eyes into one picture for coloured glasses: sRGB to linear light, a matrix for each eye, clamped, back to sRGB. Light is weighted
 // with alpha; the alpha of a pixel is the greater of the two (what one eye alone covers is over black for the other).
-#include "shaders/shared/pack.h"
+#include "shaders/shared/stereo_compose.h"
 
 layout(scalar, binding = 0) uniform Anaglyph { AnaglyphData anaglyph; };
 layout(binding = 1) uniform texture2D left_eye;

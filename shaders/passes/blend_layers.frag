@@ -6,7 +6,7 @@
 #include "shaders/shared/frame.h"
 #define NO_CUBIC
 #define GRID_COUNT MAX_GRIDS_WITH_LAYERS
-layout(constant_id = 4) const int LAYERS = 1;
+layout(constant_id = 4) const int LAYER_COUNT = 1;
 #include "shaders/lib/layers.glsl"
 #define HAS_LAYERS
 #include "shaders/lib/blend.glsl"

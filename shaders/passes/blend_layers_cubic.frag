@@ -5,7 +5,7 @@
 // As blend_layers.frag, where some grid is cubic.
 #include "shaders/shared/frame.h"
 #define GRID_COUNT MAX_GRIDS_WITH_LAYERS
-layout(constant_id = 4) const int LAYERS = 1;
+layout(constant_id = 4) const int LAYER_COUNT = 1;
 #include "shaders/lib/layers.glsl"
 #define HAS_LAYERS
 #include "shaders/lib/blend.glsl"

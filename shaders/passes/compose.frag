@@ -2,16 +2,16 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// ghost over volume over opaque over background, premultiplied floats; written as straight alpha. Display values are not converted.
+// occluded_overlay over volume over opaque over background, premultiplied floats; written as straight alpha. Display values are not converted.
 #include "shaders/shared/frame.h"
 
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
 layout(constant_id = 1) const uint HAS_VOLUME = 0;
-layout(constant_id = 2) const uint HAS_GHOST = 0;
+layout(constant_id = 2) const uint HAS_OCCLUDED_OVERLAY = 0;
 layout(scalar, binding = 0) uniform Compose { ComposeData compose; };
 layout(binding = 1) uniform texture2D opaque_color;
 layout(binding = 2) uniform texture2D volume_color;
-layout(binding = 3) uniform texture2D ghost_color;
+layout(binding = 3) uniform texture2D occluded_overlay_color;
 layout(location = 0) out vec4 out_color;
 
 void main() {
@@ -27,11 +27,11 @@ void main() {
     sum = c + (1.0 - c.a) * sum;
     volume_alpha = c.a;
   }
-  if (HAS_GHOST != 0u) {
+  if (HAS_OCCLUDED_OVERLAY != 0u) {
     // as much as is hidden: all behind something opaque, else (alpha below 0) the volume's share
-    const vec4 c = texelFetch(ghost_color, at, 0);
-    const vec4 ghost = (c.a < 0.0 ? volume_alpha : 1.0) * vec4(c.rgb, abs(c.a));
-    sum = ghost + (1.0 - ghost.a) * sum;
+    const vec4 c = texelFetch(occluded_overlay_color, at, 0);
+    const vec4 occluded_overlay = (c.a < 0.0 ? volume_alpha : 1.0) * vec4(c.rgb, abs(c.a));
+    sum = occluded_overlay + (1.0 - occluded_overlay.a) * sum;
   }
   out_color = sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0);
 }

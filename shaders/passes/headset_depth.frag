@@ -20,7 +20,7 @@ void main() {
     const ivec2 nearest = min((at + RAY_SPACING / 2) / max(RAY_SPACING, 1), textureSize(ray_depth, 0) - 1);
     units = min(units, texelFetch(ray_depth, nearest, 0).r);
   }
-  const float z = max(depth.reference_m + depth.metres_per_unit * units, depth.near_m);
+  const float z = max(depth.reference_m + depth.meters_per_unit * units, depth.near_m);
   const float d = depth.far_m / (depth.far_m - depth.near_m) * (1.0 - depth.near_m / z);
   gl_FragDepth = units >= NO_DEPTH ? 1.0 : clamp(d, 0.0, 1.0);
 }

@@ -7,20 +7,20 @@
 
 layout(local_size_x = 16, local_size_y = 4) in;
 layout(scalar, binding = 0) uniform Upsample { UpsampleData upsample; };
-layout(binding = 1) uniform texture2D half_lattice;
+layout(binding = 1) uniform texture2D half_resolution;
 layout(binding = 2, rgba32f) uniform writeonly image2D volume;
-layout(constant_id = 0) const uint KEEPS = 0;  // what has not changed stays
-layout(binding = 3) uniform utexture2D changed;
+layout(constant_id = 0) const uint REUSES = 0;  // what has not changed stays
+layout(binding = 3) uniform utexture2D dirty_tiles;
 #include "shaders/lib/four_point.glsl"
 
 void put(ivec2 at, vec4 c) {
-  if (at.x < int(upsample.width) && at.y < int(upsample.height)) imageStore(volume, at, bounded(c));
+  if (at.x < int(upsample.width) && at.y < int(upsample.height)) imageStore(volume, at, clamp_premultiplied(c));
 }
 
 void main() {
   const ivec2 point = ivec2(gl_GlobalInvocationID.xy) + ivec2(upsample.first_x, upsample.first_y);
-  if (KEEPS != 0u && texelFetch(changed, min(point >> 3, textureSize(changed, 0) - 1), 0).r == 0u) return;
-  const FourPixels p = four_pixels(half_lattice, point);
+  if (REUSES != 0u && texelFetch(dirty_tiles, min(point >> 3, textureSize(dirty_tiles, 0) - 1), 0).r == 0u) return;
+  const FourPixels p = four_pixels(half_resolution, point);
   put(2 * point, p.here);
   put(2 * point + ivec2(1, 0), p.right);
   put(2 * point + ivec2(0, 1), p.below);

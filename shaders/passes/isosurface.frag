@@ -18,7 +18,7 @@ layout(location = 2) out uint out_id;
 
 // The loops are taken once or not at all: this driver leaves out a loop that no pixel of a group enters, but not a branch.
 void main() {
-  const vec2 q = pixel_place();
+  const vec2 q = pixel_position();
   const LocalRay ray = local_ray(0, q);
   const vec2 interval = visible_interval(0, ray, q);
   float t = NO_DEPTH;

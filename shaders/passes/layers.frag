@@ -4,8 +4,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // Layers alone, where there is neither a volume nor a translucent isosurface.
 #include "shaders/shared/frame.h"
-layout(constant_id = 0) const uint OPAQUE = 0;
-layout(constant_id = 1) const int LAYERS = 1;
+layout(constant_id = 0) const uint HAS_OPAQUE = 0;
+layout(constant_id = 1) const int LAYER_COUNT = 1;
 layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 2) uniform texture2D opaque_depth;
 layout(location = 0) out vec4 out_color;  // premultiplied
@@ -13,8 +13,8 @@ layout(location = 0) out vec4 out_color;  // premultiplied
 
 void main() {
   const ivec2 at = ivec2(frame.spacing * gl_FragCoord.xy + frame.first);
-  const float end = OPAQUE != 0u ? texelFetch(opaque_depth, at, 0).r : NO_DEPTH;
+  const float end = HAS_OPAQUE != 0u ? texelFetch(opaque_depth, at, 0).r : NO_DEPTH;
   vec4 sum = vec4(0.0);
-  for (int k = 0; k < LAYERS && layer_depth(k, at, end) < NO_DEPTH; ++k) sum += (1.0 - sum.a) * layer_color(k, at);
+  for (int k = 0; k < LAYER_COUNT && layer_depth(k, at, end) < NO_DEPTH; ++k) sum += (1.0 - sum.a) * layer_color(k, at);
   out_color = sum;
 }

@@ -10,4 +10,4 @@ layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec3 in_color;
 layout(location = 3) in uint in_id;
 
-void main() { place_vertex(in_position, in_normal, in_color, in_id); }
+void main() { emit_vertex(in_position, in_normal, in_color, in_id); }

@@ -3,10 +3,10 @@
 // Tiles of 4 x 4 pixels: 1 where something opaque is seen; and a sign of their depths, by which those are known that have changed.
 layout(binding = 0) uniform texture2D opaque_depth;
 layout(location = 0) out uint out_mark;
-layout(location = 1) out uvec2 out_sign;
+layout(location = 1) out uvec2 out_hash;
 
 // Two of the mixing steps of MurmurHash3 (A. Appleby), with other constants for the second half.
-uint mixed(uint h, uint word, uint by) {
+uint mix_hash(uint h, uint word, uint by) {
   h ^= word;
   h *= by;
   return h ^ (h >> 15);
@@ -21,8 +21,8 @@ void main() {
       const float depth = texelFetch(opaque_depth, min(first + ivec2(x, y), last), 0).r;
       nearest = min(nearest, depth);
       const uint word = floatBitsToUint(depth);
-      hash = uvec2(mixed(hash.x, word, 0x85ebca6bu), mixed(hash.y, word, 0xc2b2ae35u));
+      hash = uvec2(mix_hash(hash.x, word, 0x85ebca6bu), mix_hash(hash.y, word, 0xc2b2ae35u));
     }
   out_mark = nearest < 3.0e38 ? 1u : 0u;
-  out_sign = hash;
+  out_hash = hash;
 }

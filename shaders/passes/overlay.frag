@@ -29,9 +29,9 @@ float ellipse_distance(vec2 p, vec2 size) {
 
 vec3 ramp(uint first, uint last, float place) {
   uint i = first;
-  while (i < last && stops[i + 1].place < place) ++i;
-  if (i == last || place <= stops[i].place) return stops[i].color;
-  return mix(stops[i].color, stops[i + 1].color, (place - stops[i].place) / (stops[i + 1].place - stops[i].place));
+  while (i < last && stops[i + 1].position < place) ++i;
+  if (i == last || place <= stops[i].position) return stops[i].color;
+  return mix(stops[i].color, stops[i + 1].color, (place - stops[i].position) / (stops[i + 1].position - stops[i].position));
 }
 
 // light from above left; the normal's part in the picture is `across`, y down

@@ -21,12 +21,12 @@ void main() {
   out_local = mix(lo - soft, hi + soft, side);
   const vec2 place = shapes[out_shape].origin + out_local.x * shapes[out_shape].axis_x + out_local.y * shapes[out_shape].axis_y;
   gl_Position = vec4(place / data.half_size - 1.0, 0.0, 1.0);
-  const uint has_depth = data.has_depth + uint(out_local.x < -1e30);  // as of_pixel (rays.glsl)
-  if (has_depth != 0u && shapes[out_shape].hide_depth < NO_DEPTH) {
+  const uint has_depth = data.has_depth + uint(out_local.x < -1e30);  // as as_nonuniform (rays.glsl)
+  if (has_depth != 0u && shapes[out_shape].occlusion_depth < NO_DEPTH) {
     const ivec2 at = ivec2(floor(shapes[out_shape].anchor));
     const ivec2 size = textureSize(opaque_depth, 0);
     if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size)) &&
-        texelFetch(opaque_depth, at, 0).r < shapes[out_shape].hide_depth - data.depth_slack)
+        texelFetch(opaque_depth, at, 0).r < shapes[out_shape].occlusion_depth - data.depth_slack)
       gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
   }
 }

@@ -55,11 +55,11 @@ bool value_at(vec3 p, out float value, out vec3 gradient) {
     value = mix(y.x, y.y, f.x);
     gradient = (1.0 - frame.grids[0].nearest) * vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
   }
-  return !(abs(value - slice.hidden) < 0.5);
+  return !(abs(value - slice.hidden_label) < 0.5);
 }
 
 bool is_clipped(vec2 q, float t) {
-  const uint planes = of_pixel(frame.clip_count, gl_FragCoord.xy);
+  const uint planes = as_nonuniform(frame.clip_count, gl_FragCoord.xy);
   for (uint i = 0u; i < planes; ++i) {
     const float at = frame.clips[i].at + frame.clips[i].at_x * q.x + frame.clips[i].at_y * q.y;
     const float along = frame.clips[i].along + frame.clips[i].along_x * q.x + frame.clips[i].along_y * q.y;
@@ -68,19 +68,19 @@ bool is_clipped(vec2 q, float t) {
   return false;
 }
 
-#define BESIDE 0.0078125  // pixels
+#define SLOPE_BIAS 0.0078125  // pixels
 #define FACE_SLACK 1e-3  // voxels: a plane in a face of the domain is drawn
 
-Hit meet(vec2 q) {
+Hit intersect_plane(vec2 q) {
   Hit hit;
   hit.value = 0.0;
   hit.gradient = hit.slope = vec2(0.0);
   const LocalRay ray = local_ray(0, q);
   const float at = slice.plane.at + slice.plane.at_x * q.x + slice.plane.at_y * q.y;
   const float along = slice.plane.along + slice.plane.along_x * q.x + slice.plane.along_y * q.y;
-  hit.seen = abs(along) > LEAST_DIRECTION;
+  hit.seen = abs(along) > MIN_DIRECTION;
   hit.t = hit.seen ? -at / along : NO_DEPTH;
-  hit.seen = hit.seen && hit.t >= frame.front && abs(hit.t) < NO_DEPTH;
+  hit.seen = hit.seen && hit.t >= frame.front_depth && abs(hit.t) < NO_DEPTH;
   hit.p = ray.origin + (hit.seen ? hit.t : 0.0) * ray.direction;
   const vec3 lo = frame.grids[0].domain_lo, hi = frame.grids[0].domain_hi;
   hit.seen = hit.seen && all(greaterThanEqual(hit.p, lo - FACE_SLACK)) && all(lessThanEqual(hit.p, hi + FACE_SLACK));
@@ -107,11 +107,11 @@ vec2 step_to(Hit hit, float level) {
 
 // How much of the pixel a line of the level covers. Its distance is that of the foot on the value's tangent, measured again at
 // that foot (the value bends, and its gradient jumps from cell to cell).
-float line_cover(Hit hit, vec2 q, float level) {
+float line_coverage(Hit hit, vec2 q, float level) {
   if (!is_steep(hit)) return 0.0;
   vec2 foot = step_to(hit, level);
   if (length(foot) > slice.half_width + 2.0) return 0.0;
-  const Hit there = meet(q + foot);
+  const Hit there = intersect_plane(q + foot);
   if (there.seen && is_steep(there)) {
     const vec2 more = step_to(there, level);
     if (length(more) < 1.0) foot += more;
@@ -119,7 +119,7 @@ float line_cover(Hit hit, vec2 q, float level) {
   return clamp(slice.half_width + 0.5 - length(foot), 0.0, 1.0) * min(1.0, 2.0 * slice.half_width);
 }
 
-float lines(Hit hit, vec2 q) {
+float contour_coverage(Hit hit, vec2 q) {
   if (slice.level_count == 0u) return 0.0;
   uint a = 0u, b = slice.level_count;  // levels before a are below the value, from b on above
   while (a < b) {
@@ -128,26 +128,26 @@ float lines(Hit hit, vec2 q) {
     else b = middle;
   }
   float cover = 0.0;
-  if (a > 0u) cover = line_cover(hit, q, levels[a - 1u]);
-  if (a < slice.level_count) cover = max(cover, line_cover(hit, q, levels[a]));
+  if (a > 0u) cover = line_coverage(hit, q, levels[a - 1u]);
+  if (a < slice.level_count) cover = max(cover, line_coverage(hit, q, levels[a]));
   return cover;
 }
 
 void main() {
-  const vec2 q = pixel_place();
-  Hit hit = meet(q);
-  if (hit.seen && frame.grids[0].clipped != 0u) hit.seen = !is_clipped(q, hit.t);
+  const vec2 q = pixel_position();
+  Hit hit = intersect_plane(q);
+  if (hit.seen && frame.grids[0].is_clipped != 0u) hit.seen = !is_clipped(q, hit.t);
   vec3 color = vec3(0.0);
   float alpha = 0.0;
   if (hit.seen) {
-    const float line = lines(hit, q);
+    const float line = contour_coverage(hit, q);
     vec3 surface = table_color(hit.value);
-    if (slice.lit != 0u) surface = lit(surface, slice.normal, -normalize(world_direction(q)));
+    if (slice.is_lit != 0u) surface = lit(surface, slice.normal, -normalize(world_direction(q)));
     color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);
   }
   // both parts of the depth are rounded, also where their sum is small; a GPU moves the corners of triangles to 256ths of a pixel, and so
   // those in this plane in depth
-  const float t = hit.t - slice.nearer * (abs(hit.t) + layer.reference_depth) - BESIDE * (abs(hit.slope.x) + abs(hit.slope.y));
+  const float t = hit.t - slice.depth_bias * (abs(hit.t) + layer.reference_depth) - SLOPE_BIAS * (abs(hit.slope.x) + abs(hit.slope.y));
   write_fragment(hit.seen && alpha > 0.0, color, alpha, t, frame.grids[0].id);
 }

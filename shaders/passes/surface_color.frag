@@ -18,7 +18,7 @@ layout(location = 0) out vec4 out_color;
 void main() {
   const ivec2 at = ivec2(gl_FragCoord.xy);
   if (texelFetch(opaque_id, at, 0).r != frame.grids[0].id) discard;
-  const vec2 q = pixel_place();
+  const vec2 q = pixel_position();
   const float t = texelFetch(opaque_depth, at, 0).r;
   const LocalRay ray = local_ray(0, q), other = local_ray(1, q);
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);

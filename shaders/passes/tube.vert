@@ -12,11 +12,11 @@ layout(scalar, binding = 1) readonly buffer Rings { TubeRingData rings[]; };
 void main() {
   const TubeRingData ring = rings[gl_VertexIndex >> RING_SHIFT];
   const uint side = uint(gl_VertexIndex) & ((1u << RING_SHIFT) - 1u);
-  const vec3 tangent = direction_of(ring.tangent);
-  const vec3 given = direction_of(ring.normal), first = normalize(given - dot(given, tangent) * tangent);
+  const vec3 tangent = unpack_direction(ring.tangent);
+  const vec3 given = unpack_direction(ring.normal), first = normalize(given - dot(given, tangent) * tangent);
   const float angle = 6.28318530717958647692 * float(side) / float(gl_InstanceIndex);  // the instance: how many sides
   const vec3 outward = cos(angle) * first + sin(angle) * cross(tangent, first);
-  place_vertex(ring.centre + ring.radius * outward, sqrt(max(0.0, 1.0 - ring.lean * ring.lean)) * outward + ring.lean * tangent,
+  emit_vertex(ring.center + ring.radius * outward, sqrt(max(0.0, 1.0 - ring.normal_tilt * ring.normal_tilt)) * outward + ring.normal_tilt * tangent,
                ring_color(ring.color), ring.id);
   // the clip cuts what leads to a gap off where it begins
   if ((ring.color & RING_GAP) != 0u) gl_ClipDistance[0] = -1.0e30;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The finished picture from a volume on every 2nd pixel: interpolated by the four-point cubic (-1, 9, 9, -1) / 16, over opaque over
+// The finished image from a volume on every 2nd pixel: interpolated by the four-point cubic (-1, 9, 9, -1) / 16, over opaque over
 // background (as compose.frag). One invocation a lattice point: its pixel, the ones to the right, below and diagonally below.
 #include "shaders/shared/frame.h"
 #include "shaders/shared/fast_volume.h"
@@ -11,13 +11,13 @@ layout(local_size_x = 16, local_size_y = 4) in;
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
 layout(scalar, binding = 0) uniform Upsample { UpsampleData upsample; };
 layout(binding = 1) uniform texture2D opaque_color;
-layout(binding = 2) uniform texture2D half_lattice;
-layout(binding = 3, rgba8) uniform writeonly image2D picture;
+layout(binding = 2) uniform texture2D half_resolution;
+layout(binding = 3, rgba8) uniform writeonly image2D image;
 
 #include "shaders/lib/four_point.glsl"
 
 void finish(ivec2 at, vec4 volume) {
-  const vec4 c = bounded(volume);
+  const vec4 c = clamp_premultiplied(volume);
   vec4 sum = vec4(upsample.background.rgb * upsample.background.a, upsample.background.a);
   if (HAS_OPAQUE != 0u) {
     const vec4 o = texelFetch(opaque_color, at, 0);
@@ -25,12 +25,12 @@ void finish(ivec2 at, vec4 volume) {
   }
   sum = c + (1.0 - c.a) * sum;
   if (at.x < int(upsample.width) && at.y < int(upsample.height))
-    imageStore(picture, at, sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0));
+    imageStore(image, at, sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0));
 }
 
 void main() {
   const ivec2 point = ivec2(gl_GlobalInvocationID.xy) + ivec2(upsample.first_x, upsample.first_y);
-  const FourPixels p = four_pixels(half_lattice, point);
+  const FourPixels p = four_pixels(half_resolution, point);
   finish(2 * point, p.here);
   finish(2 * point + ivec2(1, 0), p.right);
   finish(2 * point + ivec2(0, 1), p.below);

@@ -9,30 +9,30 @@
 // depths: every such block is marked.
 #include "shaders/shared/fast_volume.h"
 
-layout(scalar, binding = 0) uniform Lattice { LatticeData lattice; };
+layout(scalar, binding = 0) uniform RayGrid { RayGridData ray_grid; };
 layout(binding = 1) uniform texture2D coarser;
-layout(constant_id = 0) const uint OPAQUE = 0;
+layout(constant_id = 0) const uint HAS_OPAQUE = 0;
 layout(binding = 2) uniform utexture2D opaque_tiles;
 layout(location = 0) out uint out_mark;
 
-vec4 texel(ivec2 at) { return texelFetch(coarser, clamp(at, ivec2(0), ivec2(lattice.width, lattice.height) - 1), 0); }
+vec4 texel(ivec2 at) { return texelFetch(coarser, clamp(at, ivec2(0), ivec2(ray_grid.width, ray_grid.height) - 1), 0); }
 
 // In 3 / 128 of what is returned.
-vec4 expected(vec4 a, vec4 b, vec4 c, vec4 d, vec4 e) {
+vec4 expected_error(vec4 a, vec4 b, vec4 c, vec4 d, vec4 e) {
   const vec4 second = abs(b + d - 2.0 * c), fourth = abs(a + e - 4.0 * (b + d) + 6.0 * c);
   return fourth * (1.0 + 2.0 * min(vec4(1.0), fourth / max(4.0 * second, vec4(1e-6))));
 }
 
-vec4 worst_along(ivec2 at, ivec2 step) {
+vec4 max_error_along(ivec2 at, ivec2 step) {
   const vec4 a = texel(at), b = texel(at + step), c = texel(at + 2 * step), d = texel(at + 3 * step);
   const vec4 e = texel(at + 4 * step), f = texel(at + 5 * step), g = texel(at + 6 * step);
-  return max(expected(a, b, c, d, e), max(expected(b, c, d, e, f), expected(c, d, e, f, g)));
+  return max(expected_error(a, b, c, d, e), max(expected_error(b, c, d, e, f), expected_error(c, d, e, f, g)));
 }
 
 // Within reach of the block's interpolation, two coarser rays further.
 bool opaque_near() {
-  const int spacing = int(lattice.spacing);
-  const ivec2 begin = spacing * (4 * ivec2(gl_FragCoord.xy) - int(lattice.apron)) - 4 * spacing, size = textureSize(opaque_tiles, 0);
+  const int spacing = int(ray_grid.spacing);
+  const ivec2 begin = spacing * (4 * ivec2(gl_FragCoord.xy) - int(ray_grid.apron)) - 4 * spacing, size = textureSize(opaque_tiles, 0);
   const ivec2 from = clamp(begin >> 2, ivec2(0), size - 1), to = clamp((begin + 12 * spacing) >> 2, ivec2(0), size - 1);
   uint any = 0u;
   for (int y = from.y; y <= to.y; ++y)
@@ -41,17 +41,17 @@ bool opaque_near() {
 }
 
 void main() {
-  const ivec2 first = 2 * ivec2(gl_FragCoord.xy) - int(lattice.apron) / 2 + COARSE_APRON;  // the block's first coarser ray
+  const ivec2 first = 2 * ivec2(gl_FragCoord.xy) - int(ray_grid.apron) / 2 + COARSE_APRON;  // the block's first coarser ray
   vec4 worst = vec4(0.0);
-  worst = max(worst, worst_along(first + ivec2(-2, 0), ivec2(1, 0)));
-  worst = max(worst, worst_along(first + ivec2(-2, 1), ivec2(1, 0)));
-  worst = max(worst, worst_along(first + ivec2(-2, 2), ivec2(1, 0)));
-  worst = max(worst, worst_along(first + ivec2(0, -2), ivec2(0, 1)));
-  worst = max(worst, worst_along(first + ivec2(1, -2), ivec2(0, 1)));
-  worst = max(worst, worst_along(first + ivec2(2, -2), ivec2(0, 1)));
-  const vec2 pixel = lattice.spacing * (4.0 * floor(gl_FragCoord.xy) + 2.0 - lattice.apron);
-  const vec2 off = (pixel - lattice.gaze) * lattice.per_fovea;
-  const float threshold = lattice.threshold * max(1.0, dot(off, off));
+  worst = max(worst, max_error_along(first + ivec2(-2, 0), ivec2(1, 0)));
+  worst = max(worst, max_error_along(first + ivec2(-2, 1), ivec2(1, 0)));
+  worst = max(worst, max_error_along(first + ivec2(-2, 2), ivec2(1, 0)));
+  worst = max(worst, max_error_along(first + ivec2(0, -2), ivec2(0, 1)));
+  worst = max(worst, max_error_along(first + ivec2(1, -2), ivec2(0, 1)));
+  worst = max(worst, max_error_along(first + ivec2(2, -2), ivec2(0, 1)));
+  const vec2 pixel = ray_grid.spacing * (4.0 * floor(gl_FragCoord.xy) + 2.0 - ray_grid.apron);
+  const vec2 off = (pixel - ray_grid.gaze) * ray_grid.per_fovea;
+  const float threshold = ray_grid.threshold * max(1.0, dot(off, off));
   out_mark = (3.0 / 128.0) * max(max(worst.r, worst.g), max(worst.b, worst.a)) > threshold ? 1u : 0u;
-  if (OPAQUE != 0u && opaque_near()) out_mark = 1u;
+  if (HAS_OPAQUE != 0u && opaque_near()) out_mark = 1u;
 }

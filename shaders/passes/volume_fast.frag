@@ -11,39 +11,39 @@ layout(constant_id = 3) const uint REFINES = 0;  // there is a coarser level
 layout(constant_id = 4) const uint MARCHES = 1;  // blocks may be marked
 
 layout(scalar, binding = 0) uniform Frame { FrameData frame; };
-layout(scalar, binding = 1) uniform Lattice { LatticeData lattice; };
+layout(scalar, binding = 1) uniform RayGrid { RayGridData ray_grid; };
 layout(binding = 2) uniform texture2D opaque_depth;
 layout(binding = 6) uniform texture2D coarser;
 layout(binding = 7) uniform utexture2D blocks;
 layout(location = 0) out vec4 out_color;  // premultiplied
 
-#define BRICK 8
+#define BRICK_SIZE 8
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/fast_march.glsl"
 
 vec4 coarser_texel(ivec2 at) { return texelFetch(coarser, at, 0); }
-vec4 weights_of(int point) { return (point & 1) == 0 ? vec4(0.0, 1.0, 0.0, 0.0) : vec4(-0.0625, 0.5625, 0.5625, -0.0625); }
+vec4 cubic_weights_at(int point) { return (point & 1) == 0 ? vec4(0.0, 1.0, 0.0, 0.0) : vec4(-0.0625, 0.5625, 0.5625, -0.0625); }
 
-vec4 row_of(ivec2 first, vec4 w) {
+vec4 interpolate_row(ivec2 first, vec4 w) {
   return w.x * coarser_texel(first) + w.y * coarser_texel(first + ivec2(1, 0)) + w.z * coarser_texel(first + ivec2(2, 0)) +
          w.w * coarser_texel(first + ivec2(3, 0));
 }
 
 vec4 interpolated(ivec2 point) {
   const ivec2 first = (point >> 1) + (COARSE_APRON - 1);
-  const vec4 wx = weights_of(point.x), wy = weights_of(point.y);
-  vec4 c = wy.x * row_of(first, wx) + wy.y * row_of(first + ivec2(0, 1), wx) + wy.z * row_of(first + ivec2(0, 2), wx) +
-           wy.w * row_of(first + ivec2(0, 3), wx);
+  const vec4 wx = cubic_weights_at(point.x), wy = cubic_weights_at(point.y);
+  vec4 c = wy.x * interpolate_row(first, wx) + wy.y * interpolate_row(first + ivec2(0, 1), wx) + wy.z * interpolate_row(first + ivec2(0, 2), wx) +
+           wy.w * interpolate_row(first + ivec2(0, 3), wx);
   c.a = clamp(c.a, 0.0, 1.0);
   return max(c, vec4(0.0));
 }
 
 void main() {
   const ivec2 at = ivec2(gl_FragCoord.xy);
-  const ivec2 point = at - int(lattice.apron);
-  const vec2 pixel = vec2(point) * lattice.spacing + 0.5;
+  const ivec2 point = at - int(ray_grid.apron);
+  const vec2 pixel = vec2(point) * ray_grid.spacing + 0.5;
   float end = NO_DEPTH;
-  if (OPAQUE != 0u) end = texelFetch(opaque_depth, clamp(ivec2(pixel), ivec2(0), ivec2(2.0 * frame.half_size) - 1), 0).r;
+  if (HAS_OPAQUE != 0u) end = texelFetch(opaque_depth, clamp(ivec2(pixel), ivec2(0), ivec2(2.0 * frame.half_size) - 1), 0).r;
   if (REFINES == 0u) {
     out_color = march_packed(pixel - frame.axis, end);
   } else {

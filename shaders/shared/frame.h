@@ -10,18 +10,18 @@
 #define MAX_GRIDS 8
 #define MAX_LAYERS 4
 #define MAX_GRIDS_WITH_LAYERS 6
-#define MAX_CLIPS 8
+#define MAX_CLIP_PLANES 8
 #define MAX_LIGHTS 4
 #define NO_DEPTH 3.0e38f
 
 CATENA_SHARED_BEGIN
 
 // A table of shaders/lib/tables.glsl: its first entry, its last index, how many points follow the entries, the scale on which entries are
-// even (1 / linear_below of engine/base/value_scale.h, 0: linear), the first entry's place on it, entries a unit, and the values of the
+// even (1 / linear_below of engine/base/symlog_scale.h, 0: linear), the first entry's place on it, entries a unit, and the values of the
 // first and last point.
 struct TableData {
-  uint start, last, points;
-  float per_linear, lo, per_unit, first_value, last_value;
+  uint start, last, control_points;
+  float per_linear, lo, entries_per_unit, first_value, last_value;
 };
 
 // One grid as a ray meets it. Local position on the ray of pixel q at depth t:
@@ -32,19 +32,19 @@ struct GridData {
   vec3 lo, hi;                // the box of voxel centres, local
   vec3 domain_lo, domain_hi;  // what is drawn of it: all, but for grids mirrored at less than their resolution
   vec3 texel;                 // 1 / size of the value image
-  mat3 world_gradient;        // world = world_gradient * local gradient
+  mat3 world_gradient;        // world = world_from_index_gradient * local gradient
   float value_offset, value_scale;
-  TableData look;     // of volumes and colours: by the value
-  TableData factors;  // of volumes: by the length of the gradient
+  TableData value_table;     // of volumes and colours: by the value
+  TableData gradient_table;  // of volumes: by the length of the gradient
   // projections: what the words of the brick map count (shaders/lib/projection.glsl)
   float bound_lo, bound_per_code;
   // isosurfaces; projections: opacity, the length that it is of
   float level, opacity;
   vec3 color;
-  uint clipped;   // the clip planes count for it
-  uint id;        // of the object
-  float nearest;  // 1: the value of the nearest voxel centre; 0: trilinear
-  float spread;   // colours by labels, 0.5: what lies nearest to a voxel without a label takes the nearest label of its cell; else 0
+  uint is_clipped;      // the clip planes count for it
+  uint id;              // of the object
+  float nearest;        // 1: the value of the nearest voxel centre; 0: trilinear
+  float spread_labels;  // colours by labels, 0.5: what lies nearest to a voxel without a label takes the nearest label of its cell; else 0
 };
 
 // A light from far away; the direction points to it, and is unit: in world axes, in the view's for triangles.
@@ -55,11 +55,11 @@ struct LightData {
 // Depth cue: a colour at depth t takes min(most, (t - start) per_depth most) of the fog's.
 struct FogData {
   vec3 color;
-  float start, per_depth, most;  // most 0: none
+  float near, per_depth, max_opacity;  // most 0: none
 };
 
 // One clip plane as a ray meets it; kept where this is >= 0:
-//   (at + at_x q.x + at_y q.y) + t (along + along_x q.x + along_y q.y)
+//   (at + handle_x q.x + handle_y q.y) + t (along + view_along_plus_x q.x + view_along_plus_y q.y)
 struct ClipData {
   float at, at_x, at_y;
   float along, along_x, along_y;
@@ -71,7 +71,7 @@ struct FrameData {
   vec2 slope;      // world units a pixel at depth 1 from the eye; 0 if orthographic
   vec3 right, up, forward;
   float reference_depth;
-  float front;                  // the first depth that is seen: the eye's plane
+  float front_depth;            // the first depth that is seen: the eye's plane
   float depth_near, depth_far;  // buffer depth: perspective near / z, orthographic (far - z) / (far - near)
   uint orthographic;
   float spacing;  // pixel place of a fragment: spacing * fragment + first
@@ -79,7 +79,7 @@ struct FrameData {
   float step_world;   // length of a ray's segments
   float termination;  // a ray ends when less gets through
   uint clip_count;
-  ClipData clips[MAX_CLIPS];
+  ClipData clips[MAX_CLIP_PLANES];
   uint light_count;  // 0: a headlight
   LightData lights[MAX_LIGHTS];
   FogData fog;
@@ -103,7 +103,7 @@ struct MeshFrameData {
   uint light_count;
   LightData lights[MAX_LIGHTS];
   FogData fog;
-  vec4 clips[MAX_CLIPS];  // kept where dot(xyz, position) + w >= 0
+  vec4 clips[MAX_CLIP_PLANES];  // kept where dot(xyz, position) + w >= 0
 };
 
 struct ComposeData {

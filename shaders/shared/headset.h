@@ -6,7 +6,7 @@
 CATENA_SHARED_BEGIN
 
 struct HeadsetDepthData {
-  float metres_per_unit;  // > 0
+  float meters_per_unit;  // > 0
   float reference_m;      // metres from the eye where the opaque depth is 0
   float near_m;           // depth 0
   float far_m;            // depth 1

@@ -7,7 +7,7 @@
 #define MODE_OPAQUE 0  // into the opaque targets
 #define MODE_FIRST 1   // the nearest layer
 #define MODE_LAYER 2   // the nearest that lies behind the layer before
-#define MODE_REST 3    // all that lies behind the layer before, collected
+#define MODE_TAIL 3    // all that lies behind the layer before, collected
 
 CATENA_SHARED_BEGIN
 
@@ -22,13 +22,13 @@ struct SliceData {
   ClipData plane;    // the distance from it, along the pixel's ray
   vec3 normal;       // unit, world
   float clip_slack;  // a slice that lies in a clip plane is kept: world units
-  uint lit;
+  uint is_lit;
   uint color_last;  // the table's last row
   uint level_count;
   vec3 line_color;
-  float half_width;  // of the lines, pixels
-  float nearer;      // this share of its distance nearer to the eye: over surfaces in its plane, and over earlier slices in it
-  float hidden;      // within a half of this value nothing is drawn; NaN: everywhere
+  float half_width;    // of the lines, pixels
+  float depth_bias;    // this share of its distance nearer to the eye: over surfaces in its plane, and over earlier slices in it
+  float hidden_label;  // within a half of this value nothing is drawn; NaN: everywhere
 };
 
 CATENA_SHARED_END

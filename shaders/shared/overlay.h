@@ -23,12 +23,12 @@ struct OverlayShape {
   uint kind;
   // hidden where an opaque surface lies before this depth (from the reference depth) in this pixel; NO_DEPTH: never
   vec2 anchor;
-  float hide_depth;
+  float occlusion_depth;
 };
 
 // Place 0 .. 1 along a ramp and the colour there.
 struct OverlayStop {
-  float place;
+  float position;
   vec3 color;
 };
 

@@ -3,17 +3,17 @@
 #define CATENA_SHARED_TUBE_H
 #include "shaders/shared/language.h"
 
-#define RING_SHIFT 4          // a vertex index is ring << RING_SHIFT | side
-#define RING_GAP (1u << 30)   // in the colour: nothing is drawn up to this ring, nor from it on
-#define RING_COLOR_MOST 1023  // each of the colour's parts has ten bits
-#define RIBBON_WALLS 2        // across a ribbon, between its three vertices
+#define RING_SHIFT 4         // a vertex index is ring << RING_SHIFT | side
+#define RING_GAP (1u << 30)  // in the colour: nothing is drawn up to this ring, nor from it on
+#define RING_COLOR_MAX 1023  // each of the colour's parts has ten bits
+#define RIBBON_WALLS 2       // across a ribbon, between its three vertices
 
 CATENA_SHARED_BEGIN
 
 struct TubeRingData {
-  vec3 centre;  // relative to the origin of all
+  vec3 center;  // relative to the origin of all
   float radius;
-  float lean;            // of the surface's normals along the tangent: 0 on the wall, -1 and 1 at the tips of the caps
+  float normal_tilt;     // of the surface's normals along the tangent: 0 on the wall, -1 and 1 at the tips of the caps
   uint tangent, normal;  // unit, in octahedral coordinates, two signed 16-bit shares
   uint color;
   uint id;  // as a mesh vertex's

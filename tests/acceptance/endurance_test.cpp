@@ -1,8 +1,8 @@
 // Endurance: no allocation in a million ticks of a chain, and nothing that is not finite in ten million hostile ticks over every
 // constraint type of the conformance table, on good fields, fields ridden with NaN, and fields scaled to the ends of the doubles.
 #include "engine/base/memory_limit.h"
-#include "tests/acceptance/hostile.h"
-#include "tests/acceptance/reference.h"
+#include "tests/acceptance/adversarial_probe.h"
+#include "tests/acceptance/reference_numerics.h"
 #include "tests/haptics/constraints/examples.h"
 
 namespace catena::acceptance {
@@ -30,7 +30,7 @@ const Fields& ridden_fields() {
     Random random(404);
     const auto mapping = field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0));
     const auto spoil = [&] {
-      const double v = random.in(0, 1);
+      const double v = random.uniform(0, 1);
       return v < 0.05   ? std::numeric_limits<float>::quiet_NaN()
              : v < 0.06 ? std::numeric_limits<float>::infinity()
              : v < 0.07 ? -std::numeric_limits<float>::infinity()
@@ -90,47 +90,47 @@ const std::vector<ConstraintPtr>& constraints() {
     for (const char* name : {"sphere", "torus", "gaussian", "tanh"})
       for (const double scale : {1e-300, 1e-30, 1e30, 1e300})
         for (const char* more : {"", R"(, "free": "above")", R"(, "free": "below", "release": 0.2)"})
-          made.push_back(haptics::tests::isosurface(haptics::tests::analytic(name, scale), 0.4 * scale, more));
+          made.push_back(haptics::tests::isosurface(haptics::tests::analytic_field(name, scale), 0.4 * scale, more));
     return made;
   }();
   return all;
 }
 
 /// A chain of one to three constraints with switches, cues, ramps and, at times, modes.
-std::shared_ptr<const Program> random_program(Random& random, std::size_t first) {
-  const auto pick = [&] { return static_cast<std::size_t>(random.in(0, static_cast<double>(constraints().size()))); };
-  auto program = std::make_shared<Program>();
-  const int links = 1 + static_cast<int>(random.in(0, 2.2));
+std::shared_ptr<const HapticProgram> random_program(Random& random, std::size_t first) {
+  const auto pick = [&] { return static_cast<std::size_t>(random.uniform(0, static_cast<double>(constraints().size()))); };
+  auto program = std::make_shared<HapticProgram>();
+  const int links = 1 + static_cast<int>(random.uniform(0, 2.2));
   for (int i = 0; i < links; ++i) {
     haptics::Link link;
     link.name = std::string(1, static_cast<char>('a' + i));
     link.constraint = constraints()[i == 0 ? first : pick()];
-    link.stiffness_n_per_m = random.in(0, 1) < 0.1 ? 1e9 : 300;
-    if (random.in(0, 1) < 0.5) link.on.button = 1 + static_cast<int>(random.in(0, 4));
-    link.on.toggle = link.on.button > 0 && random.in(0, 1) < 0.5;
-    link.indication.cue = static_cast<haptics::Indication::Cue>(static_cast<int>(random.in(0, 3)));
+    link.stiffness_n_per_m = random.uniform(0, 1) < 0.1 ? 1e9 : 300;
+    if (random.uniform(0, 1) < 0.5) link.active_when.button = 1 + static_cast<int>(random.uniform(0, 4));
+    link.active_when.toggle = link.active_when.button > 0 && random.uniform(0, 1) < 0.5;
+    link.release_cue.type = static_cast<haptics::ReleaseCue::Type>(static_cast<int>(random.uniform(0, 3)));
     program->links.push_back(std::move(link));
   }
-  if (random.in(0, 1) < 0.3) {
+  if (random.uniform(0, 1) < 0.3) {
     haptics::Mode mode;
     mode.name = "back";
     for (int i = links - 1; i >= 0; --i) mode.links.push_back(i);
-    mode.on.button = 5;
+    mode.active_when.button = 5;
     program->modes.push_back(std::move(mode));
   }
-  program->coupling.ramp_s = random.in(0, 1) < 0.5 ? 0 : 0.02;
-  program->coupling.damping_ns_per_m = random.in(0, 1) < 0.5 ? 0 : 2;
-  program->metres_per_unit = random.in(0, 1) < 0.1 ? 1e-3 : 0.05;
+  program->coupling.ramp_s = random.uniform(0, 1) < 0.5 ? 0 : 0.02;
+  program->coupling.damping_ns_per_m = random.uniform(0, 1) < 0.5 ? 0 : 2;
+  program->meters_per_unit = random.uniform(0, 1) < 0.1 ? 1e-3 : 0.05;
   return program;
 }
 
-std::string state_of(const Program& program, const exchange::HapticState& out) {
+std::string state_of(const HapticProgram& program, const HapticState& out) {
   std::string text;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
-    const exchange::LinkReport& link = out.links[i];
+    const LinkReport& link = out.links[i];
     char line[300];
-    std::snprintf(line, sizeof line, "[%s at %g %g %g, gap %g, weight %g, share %g %g %g]", exchange::status_word(link.status),
-                  link.proxy.x, link.proxy.y, link.proxy.z, link.gap, link.weight, link.force_n.x, link.force_n.y, link.force_n.z);
+    std::snprintf(line, sizeof line, "[%s at %g %g %g, gap %g, weight %g, share %g %g %g]", to_string(link.status), link.proxy.x,
+                  link.proxy.y, link.proxy.z, link.gap, link.weight, link.force_n.x, link.force_n.y, link.force_n.z);
     text += line;
   }
   return text;
@@ -141,42 +141,42 @@ class Endurance : public testing::TestWithParam<int> {};
 TEST_P(Endurance, NothingBreaksInHostileTicks) {
   const int part = GetParam(), total = kHostileTicks / kParts;
   Random random(1000 + static_cast<std::uint64_t>(part));
-  HostileHand hand(2000 + static_cast<std::uint64_t>(part));
+  AdversarialProbe hand(2000 + static_cast<std::uint64_t>(part));
   // every constraint in turn, the same number of ticks each
   const int each = std::max(50, total / static_cast<int>(constraints().size()));
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
-  std::shared_ptr<const Program> last;
+  HapticState out;
+  std::shared_ptr<const HapticProgram> last;
   int done = 0, programs = 0;
   for (std::size_t k = static_cast<std::size_t>(part); done < total; ++k) {
     const auto program = random_program(random, k % constraints().size());
     ++programs;
-    if (last && random.in(0, 1) < 0.7)
-      haptics::rebind(*last, *program, state, scratch);
+    if (last && random.uniform(0, 1) < 0.7)
+      haptics::rebind_program(*last, *program, state, scratch);
     else
       state = ChainState{}, scratch = ChainScratch{};
     last = program;
-    const AllocationGuard guard;
+    const AllocationCounter guard;
     for (int i = 0; i < each; ++i, ++done) {
       const haptics::ProbeSample probe = hand.next();
       haptics::tick(*program, probe, state, scratch, out);
-      const char* what = broken(*program, probe, out);
+      const char* what = find_violation(*program, probe, out);
       ASSERT_EQ(what, nullptr) << what << ": constraint " << k % constraints().size() << ", tick " << i << " of program " << programs
                                << ", probe " << probe.position.x << " " << probe.position.y << " " << probe.position.z << ", "
                                << state_of(*program, out);
     }
     ASSERT_EQ(guard.count(), 0u);
   }
-  attained("hostile ticks", done);
-  attained("chains", programs);
-  attained("constraints", static_cast<double>(constraints().size()));
+  record_result("hostile ticks", done);
+  record_result("chains", programs);
+  record_result("constraints", static_cast<double>(constraints().size()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Hostile, Endurance, testing::Range(0, kParts));
 
-TEST(EnduranceQuiet, NoAllocationInAMillionTicksOfAChain) {
-  ChainRig chain(program_of(R"({"fields": {"v": {"analytic": "hill"}, "g": {"analytic": "hill", "resolution": 48, "box": [-1.2, 1.2]},
+TEST(EnduranceNoAllocation, NoAllocationInAMillionTicksOfAChain) {
+  ChainRig chain(make_program(R"({"fields": {"v": {"analytic": "hill"}, "g": {"analytic": "hill", "resolution": 48, "box": [-1.2, 1.2]},
       "s": {"analytic": "sphere"}, "t": {"analytic": "torus", "resolution": 48, "box": [-2, 2]}}, "chain": [
       {"name": "line", "type": "streamline", "field": "g", "seed": [0.5, 0, 0]},
       {"name": "online", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online", "on": {"button": 1}},
@@ -186,18 +186,18 @@ TEST(EnduranceQuiet, NoAllocationInAMillionTicksOfAChain) {
       "coupling": {"stiffness": 500, "damping": 1, "ramp_s": 0.02}})"));
   Random random(31);
   Vec3 probe(0.5, 0, 0), velocity(0.0);
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   int budget = 0;
   for (int i = 0; i < kQuietTicks; ++i) {
     velocity = velocity * 0.99 + random.box(3e-5);
     probe += velocity;
     if (norm(probe - Vec3(0.6, 0, 0)) > 0.5) velocity -= 1e-3 * (probe - Vec3(0.6, 0, 0));
-    chain.to(probe, i / 5000 % 4);
-    for (std::size_t link = 0; link < 5; ++link) budget += chain.status(link) == Status::budget;
+    chain.step_to(probe, i / 5000 % 4);
+    for (std::size_t link = 0; link < 5; ++link) budget += chain.status(link) == LinkStatus::budget;
   }
   EXPECT_EQ(guard.count(), 0u);
-  attained("ticks", kQuietTicks);
-  attained("BUDGET among them", budget);
+  record_result("ticks", kQuietTicks);
+  record_result("BUDGET among them", budget);
 }
 
 }  // namespace endurance_test

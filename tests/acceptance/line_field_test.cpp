@@ -2,14 +2,14 @@
 #include <numbers>
 #include <random>
 
-#include "engine/flow/batch.h"
-#include "tests/acceptance/reference.h"
-#include "tests/haptics/constraints/rig.h"
+#include "engine/geometry/flow/batch_tracer.h"
+#include "tests/acceptance/reference_numerics.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::acceptance {
 namespace line_field_test {
 
-using haptics::Status;
+using catena::LinkStatus;
 using haptics::tests::Fields;
 using haptics::tests::Random;
 using haptics::tests::Rig;
@@ -56,11 +56,11 @@ Heart make_heart(const Damage& damage, int nodes = 72, unsigned seed = 1) {
           if (damage.seams && sector % 2 == 1) v = cross(outward, v);
           // turned by a normally distributed angle about a random axis across it
           double angle = 0;
-          for (int k = 0; k < 12; ++k) angle += random.in(-0.5, 0.5);
+          for (int k = 0; k < 12; ++k) angle += random.uniform(-0.5, 0.5);
           angle *= damage.noise_deg * std::numbers::pi / 180;
           const Vec3 across = direction(cross(v, random.unit()));
           v = direction(std::cos(angle) * v + std::sin(angle) * across);
-          if (damage.flips && random.in(-1, 1) < 0) v = -v;
+          if (damage.flips && random.uniform(-1, 1) < 0) v = -v;
         }
         for (int a = 0; a < 3; ++a) heart.xyz.push_back(static_cast<float>(v[a]));
         heart.valid.push_back(s.inside);
@@ -123,7 +123,7 @@ struct Lines {
 Lines trace_all(const Heart& heart, const std::vector<Vec3>& seeds) {
   Lines out;
   std::vector<double> lengths;
-  for (const auto& line : flow::trace_each({heart.grid.get(), true, 0}, seeds)) {
+  for (const auto& line : flow::trace_all({heart.grid.get(), true, 0}, seeds)) {
     if (!line) {
       ++out.ends["none"];
       lengths.push_back(0);
@@ -131,8 +131,8 @@ Lines trace_all(const Heart& heart, const std::vector<Vec3>& seeds) {
     }
     const auto& knots = (*line)->knots();
     lengths.push_back(knots.back().s - knots.front().s);
-    ++out.ends[flow::end_word((*line)->first_end().end)];
-    ++out.ends[flow::end_word((*line)->last_end().end)];
+    ++out.ends[flow::to_string((*line)->first_end().termination)];
+    ++out.ends[flow::to_string((*line)->last_end().termination)];
     bool crossed = false;
     for (const flow::Knot& k : knots) {
       const Truth truth(heart, k.p);
@@ -154,7 +154,7 @@ std::string ends_of(const Lines& lines) {
   return text;
 }
 
-TEST(LineFields, NoLineCrossesToOtherFibres) {
+TEST(LineFieldSignInvariance, NoLineCrossesToOtherFibres) {
   const Heart ideal = make_heart({}), seamed = make_heart({0, false, true});
   const std::vector<Vec3> seeds = seeds_in(ideal, kLines);
   const std::vector<Vec3> some(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(kLines / 5));
@@ -176,9 +176,9 @@ TEST(LineFields, NoLineCrossesToOtherFibres) {
 }
 
 /// A hand that goes along a selected line; the online link follows from the same seed.
-TEST(LineFields, OnlineAndSelectedAgree) {
+TEST(LineFieldSignInvariance, OnlineAndSelectedAgree) {
   const Heart heart = make_heart({10, true, true});
-  const double length = heart.grid->length();
+  const double length = heart.grid->domain_length();
   double worst = 0;
   int ticks = 0, critical = 0, compared = 0, held = 0;
   for (const Vec3& seed : seeds_in(heart, 40)) {
@@ -196,22 +196,22 @@ TEST(LineFields, OnlineAndSelectedAgree) {
         const Vec3 probe = (*curve)->position(way * s);
         selected.tick(probe);
         online.tick(probe);
-        critical += online.state.status == Status::critical;
+        critical += online.state.status == LinkStatus::critical;
         worst = std::max(worst, norm(selected.state.proxy - online.state.proxy));
         ++compared;
       }
       // beyond the end both hold and say why
       const flow::LineEnd& how = way > 0 ? (*curve)->last_end() : (*curve)->first_end();
-      if (std::fabs(end) < 2 * length && how.end != flow::End::length && how.end != flow::End::lap) {
+      if (std::fabs(end) < 2 * length && how.termination != flow::Termination::length && how.termination != flow::Termination::lap) {
         const flow::Knot& last = way > 0 ? (*curve)->knots().back() : (*curve)->knots().front();
         for (int k = 0; k < 60; ++k)
           selected.tick(last.p + 0.03 * way * length * last.t), online.tick(last.p + 0.03 * way * length * last.t);
-        const Status expected = how.end == flow::End::boundary ? Status::boundary : Status::critical;
+        const LinkStatus expected = how.termination == flow::Termination::boundary ? LinkStatus::boundary : LinkStatus::critical;
         EXPECT_EQ(selected.state.status, expected);
-        EXPECT_EQ(selected.state.reason, how.reason);
-        EXPECT_EQ(online.state.status, expected) << flow::end_word(how.end);
-        EXPECT_EQ(online.state.reason, how.reason) << reason_word(how.reason) << " " << reason_word(online.state.reason);
-        EXPECT_NE(how.reason, Reason::zero) << "|v| = 1 everywhere";
+        EXPECT_EQ(selected.state.reason, how.status);
+        EXPECT_EQ(online.state.status, expected) << flow::to_string(how.termination);
+        EXPECT_EQ(online.state.reason, how.status) << to_string(how.status) << " " << to_string(online.state.reason);
+        EXPECT_NE(how.status, SampleStatus::zero) << "|v| = 1 everywhere";
         EXPECT_LE(norm(online.state.proxy - selected.state.proxy), 1e-6 * length);
         ++held;
       }
@@ -220,10 +220,10 @@ TEST(LineFields, OnlineAndSelectedAgree) {
         const Vec3 probe = (*curve)->position(way * (std::fabs(end) * i / 20));
         for (int k = 0; k < 40; ++k) selected.tick(probe), online.tick(probe);
       }
-      EXPECT_EQ(online.state.status, Status::ok);
+      EXPECT_EQ(online.state.status, LinkStatus::ok);
     }
   }
-  attained("online against selected, of L", worst / length);
+  record_result("online against selected, of L", worst / length);
   std::printf("%d ticks, %d critical\n", ticks, critical);
   EXPECT_GT(compared, 10000);
   EXPECT_GT(held, 40);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
-#include "haptics/extract/extract.h"
+#include "haptics/build/build_program.h"
 #include "tests/support/closed_loop.h"
 
 namespace loop_energy_test {
@@ -21,17 +21,17 @@ double gain_of_a_lap(const std::string& method, double loops_a_second, double wa
                                       method + "\"}}",
                                   "loop.json");
   EXPECT_TRUE(scene);
-  Limits limits;
-  limits.passivity = controlled;
-  const HandParameters hand = [] {
-    HandParameters p = simulated_device();
+  DeviceLimits limits;
+  limits.passivity_control = controlled;
+  const SimulatedDeviceParameters hand = [] {
+    SimulatedDeviceParameters p = desktop_device_parameters();
     p.encoder_step_m = p.friction_n = 0;
     p.max_force_n = 100;
     return p;
   }();
   limits.damping_ns_per_m = hand.device_damping_ns_per_m;
   limits.max_added_damping_ns_per_m = 0.25 * hand.mass_kg / hand.period_s;
-  auto program = extract_program(*scene, limits);
+  auto program = build_program(*scene, limits);
   EXPECT_TRUE(program);
   const int ticks = static_cast<int>(1 / (loops_a_second * hand.period_s));
   const auto wish = [&](int k) {
@@ -42,11 +42,11 @@ double gain_of_a_lap(const std::string& method, double loops_a_second, double wa
   double before = 0;
   constexpr int kLaps = 12, kFirst = 2;
   for (int k = 0; k < kLaps * ticks; ++k) {
-    if (k == kFirst * ticks) before = loop.given_j - loop.damped_j;
-    loop.hand.want(wish(k));
+    if (k == kFirst * ticks) before = loop.energy_to_device_j - loop.energy_damped_j;
+    loop.device.set_target(wish(k));
     loop.step();
   }
-  return (loop.given_j - loop.damped_j - before) / (kLaps - kFirst);
+  return (loop.energy_to_device_j - loop.energy_damped_j - before) / (kLaps - kFirst);
 }
 
 TEST(LoopEnergy, TheControllerHoldsWhatLoopsGain) {

@@ -1,6 +1,6 @@
 // A slow hand on noisy data: a proxy keeps to its sheet and to its travel, so that the force never jumps; friction keeps its proxy.
-#include "tests/acceptance/chain_rig.h"
-#include "tests/acceptance/reference.h"
+#include "tests/acceptance/chain_fixture.h"
+#include "tests/acceptance/reference_numerics.h"
 
 namespace catena::acceptance {
 namespace noisy_surface_test {
@@ -20,8 +20,8 @@ constexpr int kTicks = 60000;
 std::shared_ptr<const field::ScalarGrid> noisy_ball() {
   Random random(7);
   const double h = 2.0 / (kNodes - 1);
-  return haptics::tests::grid_of(field::Mapping::from_linear(Mat3(h), Vec3(-1.0)), {kNodes, kNodes, kNodes},
-                                 [&](const Vec3& p) { return norm(p) + random.in(-0.05, 0.05); });
+  return haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(h), Vec3(-1.0)), {kNodes, kNodes, kNodes},
+                                            [&](const Vec3& p) { return norm(p) + random.uniform(-0.05, 0.05); });
 }
 
 /// 0.2 L/s about the shell, into it and out of it.
@@ -37,10 +37,10 @@ struct Hand {
   }
 };
 
-std::shared_ptr<const Program> program_on(const std::vector<haptics::tests::ConstraintPtr>& constraints) {
-  auto program = std::make_shared<Program>(*program_of(constraints));
+std::shared_ptr<const HapticProgram> program_on(const std::vector<haptics::tests::ConstraintPtr>& constraints) {
+  auto program = std::make_shared<HapticProgram>(*make_program(constraints));
   for (haptics::Link& link : program->links) link.stiffness_n_per_m = kStiffness;
-  program->metres_per_unit = kMetres;
+  program->meters_per_unit = kMetres;
   program->coupling.max_force_n = kMaxForce;
   return program;
 }
@@ -50,14 +50,14 @@ void follow(const std::string& side) {
   const auto constraint = haptics::tests::isosurface(grid, kLevel, side);
   ChainRig chain(program_on({constraint}));
   Rig unlimited(constraint);
-  Hand hand(grid->length());
-  const double newtons_per_unit = kStiffness * kMetres, voxel = grid->longest_edge();
+  Hand hand(grid->domain_length());
+  const double newtons_per_unit = kStiffness * kMetres, voxel = grid->max_voxel_edge();
   Vec3 last_probe(0.0), last_proxy(0.0), last_force(0.0), last_unlimited(0.0);
   double worst_move = 0, worst_step = 0, worst_unlimited = 0, worst_rise = 0;
   int held = 0, waits = 0;
   for (int i = 0; i < kTicks; ++i) {
     const Vec3 probe = hand.next();
-    const Vec3 force = chain.to(probe).coupling_force_n;
+    const Vec3 force = chain.step_to(probe).coupling_force_n;
     unlimited.tick(probe);
     const double gap = norm(probe - last_proxy), dx = norm(probe - last_probe);
     if (i > 0) {
@@ -66,19 +66,19 @@ void follow(const std::string& side) {
       worst_move = std::max(worst_move, (norm(chain.proxy() - last_proxy) - dx) / slip);
       worst_step = std::max(worst_step, norm(force - last_force) / (0.05 * kMaxForce));
       worst_unlimited = std::max(worst_unlimited, norm(unlimited.state.proxy - last_unlimited) / voxel);
-      if (chain.status() == Status::ok) worst_rise = std::max(worst_rise, norm(probe - chain.proxy()) - gap);
+      if (chain.status() == LinkStatus::ok) worst_rise = std::max(worst_rise, norm(probe - chain.proxy()) - gap);
     }
-    held += chain.status() == Status::ok;
-    waits += chain.status() == Status::budget;
+    held += chain.status() == LinkStatus::ok;
+    waits += chain.status() == LinkStatus::budget;
     last_probe = probe;
     last_proxy = chain.proxy();
     last_force = force;
     last_unlimited = unlimited.state.proxy;
   }
-  attained("noisy ball" + side + ": move beyond |dx|, of 0.05 max_force / (K S)", worst_move);
-  attained("noisy ball" + side + ": step of the force, of 0.05 max_force", worst_step);
-  attained("noisy ball" + side + ": ticks on the way", waits);
-  attained("noisy ball" + side + ": largest move without the limit, voxels", worst_unlimited);
+  record_result("noisy ball" + side + ": move beyond |dx|, of 0.05 max_force / (K S)", worst_move);
+  record_result("noisy ball" + side + ": step of the force, of 0.05 max_force", worst_step);
+  record_result("noisy ball" + side + ": ticks on the way", waits);
+  record_result("noisy ball" + side + ": largest move without the limit, voxels", worst_unlimited);
   EXPECT_GT(held, kTicks / 10);
   EXPECT_LE(worst_move, 1);
   EXPECT_LE(worst_step, 1);
@@ -95,28 +95,29 @@ TEST(NoisySurface, TheProxyKeepsToItsTravelFromBelow) { follow(R"(, "free": "bel
 // A hand between two sheets of a gyroid: what is held stops being the closest point of its own sheet, and the next one lies far along it.
 // A place that was nearer to the last probe already is no closest point that has moved, however short the hand's step: it is walked to.
 TEST(NoisySurface, OnlyTheClosestPointItselfMayOutrunTheTravel) {
-  const auto grid = haptics::tests::grid_of(field::Mapping::from_linear(Mat3(2.0 / 47), Vec3(-1.0)), {48, 48, 48}, [](const Vec3& p) {
-    const Vec3 q = p * 6.0;
-    return std::sin(q.x) * std::cos(q.y) + std::sin(q.y) * std::cos(q.z) + std::sin(q.z) * std::cos(q.x);
-  });
+  const auto grid =
+      haptics::tests::sample_scalar_grid(field::Mapping::from_linear(Mat3(2.0 / 47), Vec3(-1.0)), {48, 48, 48}, [](const Vec3& p) {
+        const Vec3 q = p * 6.0;
+        return std::sin(q.x) * std::cos(q.y) + std::sin(q.y) * std::cos(q.z) + std::sin(q.z) * std::cos(q.x);
+      });
   ChainRig chain(program_on({haptics::tests::isosurface(grid, 0)}));
-  Hand hand(grid->length());
+  Hand hand(grid->domain_length());
   Vec3 last_probe(0.0), last_proxy(0.0);
   int jumps = 0, moved = 0;
   for (int i = 0; i < kTicks; ++i) {
     const Vec3 probe = hand.next();
-    chain.to(probe);
+    chain.step_to(probe);
     if (i > 0) {
       const double gap = norm(probe - last_proxy), slip = std::max(0.05 * kMaxForce / (kStiffness * kMetres), 0.05 * gap);
       if (norm(chain.proxy() - last_proxy) > norm(probe - last_probe) + slip) {
-        const bool was_nearer = norm(last_probe - chain.proxy()) < norm(last_probe - last_proxy) - 1e-8 * grid->length();
+        const bool was_nearer = norm(last_probe - chain.proxy()) < norm(last_probe - last_proxy) - 1e-8 * grid->domain_length();
         ++(was_nearer ? jumps : moved);
       }
     }
     last_probe = probe;
     last_proxy = chain.proxy();
   }
-  attained("gyroid: moves of the closest point itself beyond the travel", moved);
+  record_result("gyroid: moves of the closest point itself beyond the travel", moved);
   EXPECT_EQ(jumps, 0);
   EXPECT_LT(moved, kTicks / 1000);
 }
@@ -128,19 +129,19 @@ TEST(NoisySurface, FrictionKeepsItsProxyThroughAFailedReprojection) {
   const auto surface = haptics::tests::isosurface(grid, kLevel);
   const auto drag = haptics::tests::build(R"({"name": "d", "type": "drag", "threshold": 0.03, "surface": "f", "level": 0.6})", fields);
   ChainRig chain(program_on({surface, drag}));
-  Hand hand(grid->length());
-  Status before = Status::ok;
+  Hand hand(grid->domain_length());
+  LinkStatus before = LinkStatus::ok;
   int lost = 0, at_once = 0, kept = 0;
   for (int i = 0; i < kTicks; ++i) {
-    chain.to(hand.next());
-    const Status now = chain.status(1);
-    lost += now == Status::no_surface;
-    at_once += now == Status::no_surface && before == Status::ok;
-    kept += now == Status::budget;
+    chain.step_to(hand.next());
+    const LinkStatus now = chain.status(1);
+    lost += now == LinkStatus::no_surface;
+    at_once += now == LinkStatus::no_surface && before == LinkStatus::ok;
+    kept += now == LinkStatus::budget;
     before = now;
   }
-  attained("noisy ball, drag: ticks with a proxy kept", kept);
-  attained("noisy ball, drag: ticks that lose it", lost);
+  record_result("noisy ball, drag: ticks with a proxy kept", kept);
+  record_result("noisy ball, drag: ticks that lose it", lost);
 #ifndef CATENA_SANITIZED
   EXPECT_GT(kept, 0) << "no reprojection fails on this path";
 #endif

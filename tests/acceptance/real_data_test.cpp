@@ -3,10 +3,10 @@
 // traced here, by Dormand-Prince 5(4) on a trilinear sampler of this file's own, is stated and bounded. At a tolerance of 1e-12 a
 // step that knows nothing of cells is itself 1e-10 to 2e-7 L off, for its error estimate does not see a face pass: both are stated,
 // and the bound is on the distance from the same method at 1e-17, in long double.
-#include "engine/field/load.h"
-#include "haptics/constraints/streamline/selected.h"
-#include "tests/acceptance/chain_rig.h"
-#include "tests/acceptance/reference.h"
+#include "engine/io/volume/load_field.h"
+#include "haptics/constraints/streamline/selected_streamline.h"
+#include "tests/acceptance/chain_fixture.h"
+#include "tests/acceptance/reference_numerics.h"
 #include "tests/support/support.h"
 
 namespace catena::acceptance {
@@ -28,12 +28,12 @@ class Trilinear {
              static_cast<int>(box.hi.z - box.lo.z) + 1};
     xyz_.resize(static_cast<std::size_t>(size_.x) * size_.y * size_.z * 3);
     grid.read_block({static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)}, size_, xyz_);
-    origin_ = R3(grid.mapping().world_from_index(box.lo));
+    origin_ = Real3(grid.mapping().world_from_index(box.lo));
     const Mat3& m = grid.mapping().world_from_index_linear;
     EXPECT_EQ(max_abs(m[0] - Vec3(m[0].x, 0, 0)) + max_abs(m[1] - Vec3(0, m[1].y, 0)) + max_abs(m[2] - Vec3(0, 0, m[2].z)), 0);
-    voxel_ = R3(m[0].x, m[1].y, m[2].z);
+    voxel_ = Real3(m[0].x, m[1].y, m[2].z);
   }
-  R3 direction(const R3& p, const R3& last) const {
+  Real3 direction(const Real3& p, const Real3& last) const {
     const Real at[3] = {(p.x - origin_.x) / voxel_.x, (p.y - origin_.y) / voxel_.y, (p.z - origin_.z) / voxel_.z};
     const int most[3] = {size_.x - 2, size_.y - 2, size_.z - 2};
     int b[3];
@@ -42,25 +42,25 @@ class Trilinear {
       b[a] = std::clamp(static_cast<int>(std::floor(at[a])), 0, most[a]);
       f[a] = at[a] - b[a];
     }
-    R3 sum;
+    Real3 sum;
     Real dyads[3][3] = {};
     for (int c = 0; c < 8; ++c) {
       const int x = b[0] + (c & 1), y = b[1] + (c >> 1 & 1), z = b[2] + (c >> 2);
       const float* v = &xyz_[((static_cast<std::size_t>(z) * size_.y + y) * size_.x + x) * 3];
       const Real w = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
-      sum = sum + w * R3(v[0], v[1], v[2]);
+      sum = sum + w * Real3(v[0], v[1], v[2]);
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) dyads[i][k] += w * v[i] * v[k];
     }
-    return line_ ? leading(dyads, last) : unit(sum);
+    return line_ ? leading(dyads, last) : unit_direction(sum);
   }
   /// Power iteration from the last direction until it stands still.
-  static R3 leading(const Real (&m)[3][3], const R3& last) {
-    R3 u = unit(last);
+  static Real3 leading(const Real (&m)[3][3], const Real3& last) {
+    Real3 u = unit_direction(last);
     for (int i = 0; i < 5000; ++i) {
-      const R3 next = unit(R3(m[0][0] * u.x + m[0][1] * u.y + m[0][2] * u.z, m[1][0] * u.x + m[1][1] * u.y + m[1][2] * u.z,
-                              m[2][0] * u.x + m[2][1] * u.y + m[2][2] * u.z));
-      const R3 change = next - u;
+      const Real3 next = unit_direction(Real3(m[0][0] * u.x + m[0][1] * u.y + m[0][2] * u.z, m[1][0] * u.x + m[1][1] * u.y + m[1][2] * u.z,
+                                              m[2][0] * u.x + m[2][1] * u.y + m[2][2] * u.z));
+      const Real3 change = next - u;
       u = next;
       if (dot(change, change) < 1e-38L) break;
     }
@@ -70,7 +70,7 @@ class Trilinear {
  private:
   std::vector<float> xyz_;
   field::Index3 size_{0, 0, 0};
-  R3 origin_, voxel_;
+  Real3 origin_, voxel_;
   bool line_;
 };
 
@@ -80,7 +80,7 @@ class Reference {
   Reference(const Trilinear& field, const Vec3& seed, const Vec3& u_seed, double back, double ahead, double length, Real tolerance)
       : field_(field), tolerance_(tolerance), spacing_(length / 1000) {
     for (const double sign : {1.0, -1.0}) {
-      Station s{R3(seed), R3(u_seed)};
+      Station s{Real3(seed), Real3(u_seed)};
       stations_.push_back(s);
       const Real far = sign > 0 ? ahead : -back;
       for (Real done = 0; done < far; done += spacing_) {
@@ -90,7 +90,7 @@ class Reference {
     }
   }
   double distance(const Vec3& at) const {
-    const R3 x(at);
+    const Real3 x(at);
     const Station* nearest = &stations_.front();
     for (const Station& s : stations_)
       if (dot(x - s.p, x - s.p) < dot(x - nearest->p, x - nearest->p)) nearest = &s;
@@ -101,12 +101,12 @@ class Reference {
 
  private:
   struct Station {
-    R3 p, u;
+    Real3 p, u;
   };
   Station go(Station s, Real way) const {
     if (way == 0) return s;
     Real h = 0;
-    const auto rate = [this](const R3& p, const R3& last) { return field_.direction(p, last); };
+    const auto rate = [this](const Real3& p, const Real3& last) { return field_.direction(p, last); };
     s.p = dormand_prince(rate, s.p, way, tolerance_, s.u, h);
     s.u = field_.direction(s.p, s.u);
     return s;
@@ -121,7 +121,7 @@ struct Quantiles {
   void report(const std::string& who) {
     std::sort(values.begin(), values.end());
     for (const auto& [word, part] : {std::pair{" p50", 0.5}, std::pair{" p99", 0.99}, std::pair{" max", 1.0}})
-      attained(who + word, at(part));
+      record_result(who + word, at(part));
   }
   double at(double part) const {
     return values.empty() ? 0 : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
@@ -155,15 +155,15 @@ void explore(const Data& data) {
   ASSERT_TRUE(vectors && scalars);
   flow::Flow flow = data.flow;
   flow.field = vectors.get();
-  const double domain = vectors->length();
+  const double domain = vectors->domain_length();
   const auto traced = flow::trace(flow, data.seed);
   ASSERT_TRUE(traced) << traced.error().message;
   const flow::Curve& curve = **traced;
   const double lo = std::max(curve.knots().front().s, -2 * domain), hi = std::min(curve.knots().back().s, 2 * domain);
   field::Cursor cursor;
   const double level = scalars->sample(data.seed, cursor).value;
-  attained("length of the line / L", curve.period() / domain);
-  attained("level of the isosurface", level);
+  record_result("length of the line / L", curve.period() / domain);
+  record_result("level of the isosurface", level);
 
   // the hand
   std::vector<Vec3> path;
@@ -177,12 +177,12 @@ void explore(const Data& data) {
     path.push_back(curve.position(s) +
                    0.02 * domain * std::sin(0.3 * t) * Vec3(std::sin(2.1 * t), std::sin(1.7 * t + 1), std::sin(2.9 * t + 2)));
   }
-  attained("part of the line that the hand visits / L", (last - first) / domain);
+  record_result("part of the line that the hand visits / L", (last - first) / domain);
 
   // the reference
-  const Trilinear sampler(*vectors->grid(), flow.line);
+  const Trilinear sampler(*vectors->grid(), flow.is_line_field);
   Vec3 at_seed, u_seed(0.0);
-  curve.evaluate_in(curve.interval_of(0), 0, at_seed, u_seed);
+  curve.evaluate_interval(curve.find_interval(0), 0, at_seed, u_seed);
   const Reference reference(sampler, data.seed, u_seed, std::max(first, lo), std::min(last, hi), domain, 1e-12L * domain);
   const Reference truth(sampler, data.seed, u_seed, std::max(first, lo), std::min(last, hi), domain, 1e-17L * domain);
 
@@ -195,23 +195,23 @@ void explore(const Data& data) {
                                Follow{"online, tolerance 1e-12", R"(, "follow": "online", "tolerance": 1e-12)", 5e-8}})
     for (const std::string& side :
          {std::string(), std::string(R"(, "free": "above")"), R"(, "free": "below", "release": )" + text(0.01 * domain)}) {
-      ChainRig chain(program_of(R"({"fields": {"v": {"file": ")" + data.file + R"(", "grid": ")" + data.vector_grid +
-                                R"("}, "s": {"file": ")" + data.file + R"(", "grid": ")" + data.scalar_grid +
-                                R"("}}, "chain": [{"name": "line", "type": "streamline",
+      ChainRig chain(make_program(R"({"fields": {"v": {"file": ")" + data.file + R"(", "grid": ")" + data.vector_grid +
+                                  R"("}, "s": {"file": ")" + data.file + R"(", "grid": ")" + data.scalar_grid +
+                                  R"("}}, "chain": [{"name": "line", "type": "streamline",
                                 "field": "v", "seed": [)" +
-                                text(data.seed.x) + "," + text(data.seed.y) + "," + text(data.seed.z) + "]" + follow.keys + data.more +
-                                R"(}, {"name": "wall", "type": "isosurface", "field": "s", "level": )" + text(level) + side + "}]}"));
+                                  text(data.seed.x) + "," + text(data.seed.y) + "," + text(data.seed.z) + "]" + follow.keys + data.more +
+                                  R"(}, {"name": "wall", "type": "isosurface", "field": "s", "level": )" + text(level) + side + "}]}"));
       int budget[2] = {0, 0}, count[8] = {};
       Quantiles evaluations[2], residual, from_reference, from_truth;
       for (int i = 0; i < kTicks; ++i) {
-        chain.to(path[static_cast<std::size_t>(i)]);
+        chain.step_to(path[static_cast<std::size_t>(i)]);
         for (std::size_t link = 0; link < 2; ++link) {
-          budget[link] += chain.status(link) == Status::budget;
+          budget[link] += chain.status(link) == LinkStatus::budget;
           evaluations[link].values.push_back(chain.evaluations(link));
           EXPECT_TRUE(is_finite(chain.proxy(link)));
         }
         ++count[static_cast<int>(chain.status(1))];
-        if (chain.status(1) == Status::ok) residual.values.push_back(chain.out.links[1].residual / domain);
+        if (chain.status(1) == LinkStatus::ok) residual.values.push_back(chain.out.links[1].residual / domain);
         if (side.empty() && i % kEvery == 0) {
           from_reference.values.push_back(reference.distance(chain.proxy(0)) / domain);
           from_truth.values.push_back(truth.distance(chain.proxy(0)) / domain);
@@ -222,8 +222,8 @@ void explore(const Data& data) {
                                : side.find("above") != std::string::npos ? ", free above"
                                                                          : ", free below") +
                               ": ";
-      attained(who + "BUDGET streamline", budget[0]);
-      attained(who + "BUDGET isosurface", budget[1]);
+      record_result(who + "BUDGET streamline", budget[0]);
+      record_result(who + "BUDGET isosurface", budget[1]);
       evaluations[0].report(who + "evaluations streamline");
       evaluations[1].report(who + "evaluations isosurface");
       residual.report(who + "isosurface residual / L");
@@ -245,7 +245,7 @@ Vec3 seed_of_longest(flow::Flow flow, const field::VectorGrid& grid) {
   flow.field = &grid;
   const field::Box& box = grid.index_box();
   flow::TraceOptions options;
-  options.length = 3 * grid.length();
+  options.length = 3 * grid.domain_length();
   Vec3 best(0.0);
   double most = -1;
   for (int z = 1; z < 6; ++z)
@@ -254,21 +254,21 @@ Vec3 seed_of_longest(flow::Flow flow, const field::VectorGrid& grid) {
         const Vec3 part(x / 6.0 + 0.01, y / 6.0 + 0.02, z / 6.0 + 0.015);
         const Vec3 seed = grid.mapping().world_from_index(box.lo + part * (box.hi - box.lo));
         const auto curve = flow::trace(flow, seed, options);
-        if (!curve || (*curve)->closed() || (*curve)->period() <= most) continue;
+        if (!curve || (*curve)->is_closed() || (*curve)->period() <= most) continue;
         most = (*curve)->period();
         best = seed;
       }
   return best;
 }
 
-TEST(RealDataMinute, Combustor) {
+TEST(RealDataEndurance, Combustor) {
   Data data{catena::test::shared_data("combustor_cfd.vdb"), "velocity", "density", "", {}, Vec3(0.0)};
   if (data.file.empty()) GTEST_SKIP() << "combustor_cfd.vdb of the shared data is not here";
   data.seed = seed_of_longest(data.flow, *load(data.file, "velocity").vector->grid());
   explore(data);
 }
 
-TEST(RealDataMinute, Carotid) {
+TEST(RealDataEndurance, Carotid) {
   Data data{catena::test::shared_data("carotid_flow.vdb"), "velocity", "density", R"(, "min_speed": 1)", {}, Vec3(0.0)};
   if (data.file.empty()) GTEST_SKIP() << "carotid_flow.vdb of the shared data is not here";
   data.flow.min_speed = 1;
@@ -276,10 +276,10 @@ TEST(RealDataMinute, Carotid) {
   explore(data);
 }
 
-TEST(RealDataMinute, VentricleFibres) {
+TEST(RealDataEndurance, VentricleFibres) {
   Data data{catena::test::shared_data("ideal_lv_fibres.vdb"), "fibre", "transmural", R"(, "kind": "line")", {}, Vec3(0.0)};
   if (data.file.empty()) GTEST_SKIP() << "ideal_lv_fibres.vdb of the shared data is not here";
-  data.flow.line = true;
+  data.flow.is_line_field = true;
   data.seed = seed_of_longest(data.flow, *load(data.file, "fibre").vector->grid());
   explore(data);
 }

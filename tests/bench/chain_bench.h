@@ -12,18 +12,18 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/numbers.h"
-#include "engine/field/analytic.h"
-#include "engine/field/grid.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/field/grid/grid.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/servo/replay.h"
-#include "tests/bench/chase.h"
+#include "tests/bench/pointer_chase.h"
 
 namespace catena::bench {
 
 using namespace catena::haptics;
 
 /// An analytic field on 256 nodes an axis of the box -half..half, made once.
-inline const field::AnyField& grid_256(const std::string& name, double half = 2) {
+inline const field::AnyField& sampled_grid_256(const std::string& name, double half = 2) {
   static std::map<std::pair<std::string, double>, field::AnyField> made;
   field::AnyField& grid = made[{name, half}];
   if (grid.get() != nullptr) return grid;
@@ -35,10 +35,10 @@ inline const field::AnyField& grid_256(const std::string& name, double half = 2)
 }
 
 /// `hill_half`: the box of Hill's vortex; all others fill -2..2.
-inline BuildContext context_256(double hill_half = 1.2) {
+inline BuildContext make_context_256(double hill_half = 1.2) {
   BuildContext context;
   context.field = [=](const json::Node&, const std::string& name) -> Result<field::AnyField> {
-    return grid_256(name, name == "hill" ? hill_half : 2);
+    return sampled_grid_256(name, name == "hill" ? hill_half : 2);
   };
   context.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };
   return context;
@@ -53,10 +53,10 @@ inline Link make_link(const json::Node& node, const BuildContext& context) {
   return link;
 }
 
-inline Link make_link(const std::string& text) { return make_link(*json::parse(text, "bench"), context_256()); }
+inline Link make_link(const std::string& text) { return make_link(*json::parse(text, "bench"), make_context_256()); }
 
 /// A hand at about 0.2 units/s with tremor, for 20 s at 1 kHz, around `centre`.
-inline std::vector<ProbeSample> hand_path(const Vec3& centre = Vec3(0.6, 0, 0), double radius = 0.2) {
+inline std::vector<ProbeSample> probe_path(const Vec3& centre = Vec3(0.6, 0, 0), double radius = 0.2) {
   std::vector<ProbeSample> path;
   for (int k = 0; k < 20000; ++k) {
     const double t = 1e-3 * k, a = 0.4 * t, r = radius * (0.6 + 0.4 * std::sin(0.37 * a));
@@ -70,8 +70,8 @@ inline std::vector<ProbeSample> hand_path(const Vec3& centre = Vec3(0.6, 0, 0), 
 
 /// Ticks of the program along the path. Counters, in nanoseconds and in loads of a chase (chase.h): quantiles of a tick's time, the worst
 /// of five replays, with what the machine does beside it; "alone_": of the least time of each tick in the five; evaluations a link.
-inline void run_chain(benchmark::State& state, const Program& program, const std::vector<ProbeSample>& path = hand_path()) {
-  const double load_ns = chase_ns();
+inline void run_chain(benchmark::State& state, const HapticProgram& program, const std::vector<ProbeSample>& path = probe_path()) {
+  const double load_ns = load_latency_ns();
   state.counters["T_ns"] = load_ns;
   constexpr int kReplays = 5;
   constexpr std::pair<const char*, double> kQuantiles[] = {{"p50", 0.5}, {"p99", 0.99}, {"p999", 0.999}, {"max", 1.0}};
@@ -81,7 +81,7 @@ inline void run_chain(benchmark::State& state, const Program& program, const std
     for (int k = 0; k < kReplays; ++k) {
       auto chain = std::make_unique<ChainState>();
       auto scratch = std::make_unique<ChainScratch>();
-      exchange::HapticState out;
+      HapticState out;
       for (std::size_t i = 0; i < path.size(); ++i) {
         const std::int64_t start = now_ns();
         tick(program, path[i], *chain, *scratch, out);
@@ -99,10 +99,10 @@ inline void run_chain(benchmark::State& state, const Program& program, const std
 
   std::vector<std::vector<int>> evaluations(program.links.size());
   int over_budget = 0;
-  replay(program, path, [&](const exchange::HapticState& tick) {
+  replay(program, path, [&](const HapticState& tick) {
     for (std::size_t i = 0; i < evaluations.size(); ++i) {
       evaluations[i].push_back(tick.links[i].evaluations);
-      over_budget += tick.links[i].status == exchange::Status::budget;
+      over_budget += tick.links[i].status == LinkStatus::budget;
     }
     return true;
   });

@@ -41,12 +41,12 @@ const Example kExamples[] = {
 [[maybe_unused]] const bool registered = [] {
   for (const Example& example : kExamples) {
     benchmark::RegisterBenchmark((std::string("Constraint/") + example.name).c_str(), [&example](benchmark::State& state) {
-      Program program;
+      HapticProgram program;
       program.links = {make_link(std::string(R"({"name": "link", )") + example.body + "}")};
       run_chain(state, program);
     })->Unit(benchmark::kMillisecond);
   }
-  for (const ConstraintType& type : registry()) {
+  for (const ConstraintType& type : constraint_types()) {
     const std::string word = "\"type\": \"" + std::string(type.type) + "\"";
     const bool there = std::any_of(std::begin(kExamples), std::end(kExamples),
                                    [&](const Example& e) { return std::string(e.body).find(word) != std::string::npos; });

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/field/analytic.h"
-#include "engine/field/grid.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/field/grid/grid.h"
 
 namespace field_bench {
 
@@ -24,12 +24,12 @@ const field::VectorGrid& vector_grid() {
 }
 
 const field::ScalarGrid& cubic_scalar_grid() {
-  static const auto grid = scalar_grid().cubic().value();
+  static const auto grid = scalar_grid().as_cubic().value();
   return *grid;
 }
 
 const field::VectorGrid& cubic_vector_grid() {
-  static const auto grid = vector_grid().cubic().value();
+  static const auto grid = vector_grid().as_cubic().value();
   return *grid;
 }
 

@@ -1,6 +1,6 @@
 /// The anisotropic friction mode (three links) on 256^3 grids, and each of its links alone: quantiles of a tick and of the
 /// evaluations a link as counters, beside the hand-written floor, one value + gradient fetch on the same walk.
-#include "haptics/constraints/presets/modes.h"
+#include "haptics/constraints/presets/mode_presets.h"
 #include "tests/bench/chain_bench.h"
 
 namespace friction_bench {
@@ -18,12 +18,12 @@ struct Data {
 const Data kSphere{"sphere", 1, "circle", {0.75, 0, 0.6}, 0.3}, kTorus{"torus", 0.4, "hill", {1, 0, 0.4}, 0.3};
 
 /// The mode's links, or one of them.
-Program program_of(const Data& data, int only = -1) {
-  const BuildContext context = context_256(2);
+HapticProgram program_of(const Data& data, int only = -1) {
+  const BuildContext context = make_context_256(2);
   char text[200];
   std::snprintf(text, sizeof text, R"({"name": "skin", "type": "anisotropic_friction", "surface": "%s", "level": %g, "field": "%s"})",
                 data.surface, data.level, data.field);
-  Program program;
+  HapticProgram program;
   const auto nodes = expand_link(*json::parse(text, "bench"));
   CATENA_ASSERT(static_cast<bool>(nodes));
   for (std::size_t i = 0; i < nodes->size(); ++i) {
@@ -61,7 +61,7 @@ BENCHMARK(IsosurfaceAndModulatedTorusHill256)->Unit(benchmark::kMillisecond)->It
 
 /// The floor: what one fetch of value and gradient costs on the same walk.
 void FetchOnTheWalkTorus256(benchmark::State& state) {
-  const field::ScalarField& grid = *grid_256(kTorus.surface).scalar;
+  const field::ScalarField& grid = *sampled_grid_256(kTorus.surface).scalar;
   const std::vector<ProbeSample> path = path_of(kTorus);
   field::Cursor cursor;
   for (auto _ : state)

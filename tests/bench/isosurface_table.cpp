@@ -13,8 +13,8 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/numbers.h"
-#include "engine/field/grid.h"
-#include "render/image/picture.h"
+#include "engine/field/grid/grid.h"
+#include "render/image/image.h"
 #include "render/passes/renderer.h"
 
 namespace {
@@ -53,7 +53,7 @@ std::vector<float> values_of(const std::string& raw, int n) {
 render::RenderSettings settings_of(const std::string& mode) {
   if (mode == "draft") return render::draft_settings();
   render::RenderSettings s;
-  if (mode == "r16f") s.texels = render::TexelFormat::r16f;
+  if (mode == "r16f") s.texel_format = render::TexelFormat::r16f;
   return s;
 }
 

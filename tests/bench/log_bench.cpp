@@ -17,7 +17,7 @@ using namespace catena::bench;
 constexpr const char* kCurve = R"({"name": "curve", "type": "streamline", "field": "hill", "seed": [0.5, 0, 0]})";
 constexpr const char* kSurface = R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})";
 
-std::unique_ptr<log::LogWriter> open_log(const Program& program) {
+std::unique_ptr<log::LogWriter> open_log(const HapticProgram& program) {
   auto writer = log::LogWriter::open("log_bench.catlog", {});
   CATENA_ASSERT(static_cast<bool>(writer));
   (*writer)->add_program(program);
@@ -25,17 +25,17 @@ std::unique_ptr<log::LogWriter> open_log(const Program& program) {
 }
 
 void LogPutBesideTheTick(benchmark::State& state) {
-  Program program;
+  HapticProgram program;
   program.epoch = 1;
   program.links = {make_link(kCurve), make_link(kSurface)};
-  const std::vector<ProbeSample> path = hand_path();
+  const std::vector<ProbeSample> path = probe_path();
   std::vector<double> tick_ns, put_ns;
   log::LogStatus status;
   for (auto unused : state) {
     const auto writer = open_log(program);
     ChainState chain;
     ChainScratch scratch;
-    exchange::HapticState out;
+    HapticState out;
     for (const ProbeSample& probe : path) {
       const std::int64_t start = now_ns();
       tick(program, probe, chain, scratch, out);
@@ -59,11 +59,11 @@ void LogPutBesideTheTick(benchmark::State& state) {
 BENCHMARK(LogPutBesideTheTick)->Unit(benchmark::kMillisecond);
 
 void LogOfAServoAt4kHz(benchmark::State& state) {
-  auto program = std::make_shared<Program>();
+  auto program = std::make_shared<HapticProgram>();
   program->epoch = 1;
   program->links = {make_link(kCurve), make_link(kSurface)};
   std::vector<RecordedPath::Sample> samples;
-  for (const ProbeSample& p : hand_path()) samples.push_back({p.t_s, p.position, p.buttons});
+  for (const ProbeSample& p : probe_path()) samples.push_back({p.t_s, p.position, p.buttons});
   log::LogStatus status;
   for (auto unused : state) {
     const auto writer = open_log(*program);

@@ -14,7 +14,7 @@ using namespace catena;
 using namespace catena::haptics;
 
 const mesh::MeshPtr& sphere() {
-  static const mesh::MeshPtr made = catena::test::mesh_of(catena::test::sphere_soup(71));
+  static const mesh::MeshPtr made = catena::test::make_mesh_from(catena::test::sphere_soup(71));
   return made;
 }
 

@@ -11,27 +11,27 @@ constexpr const char* kOnline = R"({"name": "curve", "type": "streamline", "fiel
 constexpr const char* kSurface = R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})";
 
 void run_with(benchmark::State& state, const char* curve) {
-  Program program;
+  HapticProgram program;
   program.links = {make_link(curve), make_link(kSurface)};
   run_chain(state, program);
 }
 
 /// With what a device adds: guard, ledger and controller at work.
 void with_limits(benchmark::State& state, const char* curve) {
-  Program program;
+  HapticProgram program;
   program.links = {make_link(curve), make_link(kSurface)};
   program.limits.max_stiffness_n_per_m = 400;
   program.limits.max_force_n = 6;
   program.limits.slew_n_per_s = 5000;
   program.limits.ramp_in_s = 0.5;
-  program.limits.passivity = true;
+  program.limits.passivity_control = true;
   program.limits.damping_ns_per_m = 0.1;
   program.limits.delay_s = 5e-4;
   program.limits.max_added_damping_ns_per_m = 40;
   run_chain(state, program);
 }
 
-void TickEmpty(benchmark::State& state) { run_chain(state, Program{}); }
+void TickEmpty(benchmark::State& state) { run_chain(state, HapticProgram{}); }
 void TickSelectedStreamlineAndIsosurface256(benchmark::State& state) { run_with(state, kSelected); }
 void TickOnlineStreamlineAndIsosurface256(benchmark::State& state) { run_with(state, kOnline); }
 void TickSelectedStreamlineAndIsosurface256OnADevice(benchmark::State& state) { with_limits(state, kSelected); }

@@ -7,8 +7,8 @@ namespace widget_bench {
 using namespace catena;
 using namespace catena::bench;
 
-Program program_with(int planes, const Vec3& centre) {
-  Program program;
+HapticProgram program_with(int planes, const Vec3& centre) {
+  HapticProgram program;
   program.links = {make_link(R"({"name": "curve", "type": "streamline", "field": "hill", "seed": [0.5, 0, 0]})"),
                    make_link(R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})")};
   for (int i = 0; i < planes; ++i) {
@@ -16,7 +16,7 @@ Program program_with(int planes, const Vec3& centre) {
     plane.radius = 0.2;
     plane.snap = 0.5;
     plane.release = 1;
-    plane.near = 0.05;
+    plane.grab_distance = 0.05;
     plane.step = 0.08;
     plane.pose.points[0] = centre + Vec3(0.0, 0.0, 5.0 * i);
     program.widgets.push_back(plane);

@@ -5,11 +5,11 @@
 #include <set>
 
 #include "engine/base/numbers.h"
+#include "haptics/build/build_program.h"
 #include "haptics/device/recorded_path.h"
-#include "haptics/extract/extract.h"
 #include "haptics/servo/replay.h"
 #include "haptics/servo/servo.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace replay_hash_test {
@@ -126,7 +126,7 @@ std::string fmt_hash(std::uint64_t hash) {
   return text;
 }
 
-std::shared_ptr<const Program> program_of(const Recorded& recorded, const test::TemporaryFolder& folder) {
+std::shared_ptr<const HapticProgram> program_of(const Recorded& recorded, const test::TemporaryFolder& folder) {
   for (const char* name : {"circle", "sphere"}) {
     const auto run =
         test::run_catena({"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
@@ -136,37 +136,37 @@ std::shared_ptr<const Program> program_of(const Recorded& recorded, const test::
                    "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   auto scene = scene::parse_scene(recorded.scene, folder / "scene.json");
   EXPECT_TRUE(scene) << scene.error().message;
-  auto program = extract_program(*scene);
+  auto program = build_program(*scene);
   EXPECT_TRUE(program) << program.error().message;
   return *program;
 }
 
 void PrintTo(const Recorded& recorded, std::ostream* out) { *out << recorded.name; }
 
-class Hash : public testing::TestWithParam<Recorded> {};
+class ReplayHash : public testing::TestWithParam<Recorded> {};
 
 // A hash of widgets that nobody took hold of would say little.
-TEST(WidgetPath, TakesHoldAndMoves) {
+TEST(WidgetReplay, TakesHoldAndMoves) {
   const test::TemporaryFolder folder;
   const auto program = program_of({"widgets", kWidgets, 0}, folder);
-  std::set<exchange::WidgetMode> plane, others;
-  replay(*program, probe_path(true), [&](const exchange::HapticState& state) {
+  std::set<WidgetMode> plane, others;
+  replay(*program, probe_path(true), [&](const HapticState& state) {
     plane.insert(state.widgets[0].mode);
     plane.insert(state.widgets[3].mode);
     others.insert(state.widgets[1].mode);
     others.insert(state.widgets[2].mode);
     return true;
   });
-  using Mode = exchange::WidgetMode;
-  EXPECT_EQ(plane, (std::set{Mode::away, Mode::explore, Mode::translate, Mode::rotate, Mode::turn}));
-  EXPECT_EQ(others, (std::set{Mode::away, Mode::hover, Mode::drag}));
+  using Mode = WidgetMode;
+  EXPECT_EQ(plane, (std::set{Mode::idle, Mode::explore, Mode::translate, Mode::rotate, Mode::turn}));
+  EXPECT_EQ(others, (std::set{Mode::idle, Mode::hover, Mode::drag}));
 }
 
-TEST_P(Hash, IsTheCommittedOneWithAndWithoutTheThread) {
+TEST_P(ReplayHash, IsTheCommittedOneWithAndWithoutTheThread) {
   const test::TemporaryFolder folder;
   const auto program = program_of(GetParam(), folder);
   const std::vector<ProbeSample> path = probe_path(GetParam().presses);
-  const ReplayStats stats = replay(*program, path, [](const exchange::HapticState&) { return true; });
+  const ReplayStats stats = replay(*program, path, [](const HapticState&) { return true; });
   EXPECT_EQ(stats.state_hash, GetParam().hash) << fmt_hash(stats.state_hash);
 
   std::vector<RecordedPath::Sample> samples;
@@ -179,7 +179,7 @@ TEST_P(Hash, IsTheCommittedOneWithAndWithoutTheThread) {
   EXPECT_EQ(servo.state_hash(), stats.state_hash);
 }
 
-TEST_P(Hash, IsTheProgramsToo) {
+TEST_P(ReplayHash, IsTheProgramsToo) {
   const test::TemporaryFolder folder;
   const auto program = program_of(GetParam(), folder);
   test::write_file(folder / "scene.json", GetParam().scene);
@@ -194,6 +194,7 @@ TEST_P(Hash, IsTheProgramsToo) {
   EXPECT_NE(test::read_file(folder / "s.json").find(fmt_hash(GetParam().hash)), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Hash, testing::ValuesIn(kRecorded), [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(Scenes, ReplayHash, testing::ValuesIn(kRecorded),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace replay_hash_test

@@ -1,5 +1,5 @@
-/// Every command on a tiny file, while one thing of the machine fails (tests/fault/inject.cpp): no signal ends it, exit code 0, 1 or 2;
-/// with another than 0 one line that begins "catena: ", no output and nothing half-written. A sample here; all of it:
+/// Every command on a tiny file, while one thing of the machine fails (tests/fault/fault_injection.cpp): no signal ends it, exit code 0, 1
+/// or 2; with another than 0 one line that begins "catena: ", no output and nothing half-written. A sample here; all of it:
 ///   CATENA_FAULT_FIRST=10000 CATENA_FAULT_EVERY=100 build/release/test_fault
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {
@@ -31,7 +31,7 @@ struct Command {
   bool draws = false;  ///< through a graphics driver, which has threads and memory of its own
 };
 
-class Faults : public testing::Test {
+class FaultInjection : public testing::Test {
  protected:
   void SetUp() override {
     const auto make = [&](std::vector<std::string> words) {
@@ -183,11 +183,11 @@ class Faults : public testing::Test {
   long survived_ = 0, refused_ = 0, broken_ = 0;
 };
 
-TEST_F(Faults, Allocations) { fail_each("alloc", setting("CATENA_FAULT_FIRST", 2), setting("CATENA_FAULT_EVERY", 1777)); }
-TEST_F(Faults, FullDisk) { fail_each("space", setting("CATENA_FAULT_FIRST", 5), setting("CATENA_FAULT_EVERY", 250)); }
-TEST_F(Faults, Threads) { fail_each("thread", setting("CATENA_FAULT_FIRST", 10), 1); }
+TEST_F(FaultInjection, Allocations) { fail_each("alloc", setting("CATENA_FAULT_FIRST", 2), setting("CATENA_FAULT_EVERY", 1777)); }
+TEST_F(FaultInjection, FullDisk) { fail_each("space", setting("CATENA_FAULT_FIRST", 5), setting("CATENA_FAULT_EVERY", 250)); }
+TEST_F(FaultInjection, Threads) { fail_each("thread", setting("CATENA_FAULT_FIRST", 10), 1); }
 
-TEST_F(Faults, InterruptedSystemCalls) {
+TEST_F(FaultInjection, InterruptedSystemCalls) {
   long interrupted = 0;
   for (const Command& command : commands()) {
     const Ended ended = run(command, "signal:400");

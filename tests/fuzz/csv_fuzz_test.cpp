@@ -39,7 +39,7 @@ TEST(CsvFuzz, EveryTruncationAndEveryByteTurned) {
 }
 
 TEST(CsvFuzz, Mutations) {
-  test::Inputs inputs(20000, 3);
+  test::FuzzInputs inputs(20000, 3);
   test::Random& random = inputs.random;
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) {

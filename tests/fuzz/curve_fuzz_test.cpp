@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/curves/load.h"
+#include "engine/io/curves/load_curves.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/fuzz/mutate_bytes.h"
 #include "tests/support/curve_files.h"
@@ -28,12 +28,12 @@ bool check(const Result<curves::CurveSet>& set) {
     EXPECT_LT(message.size(), 500u) << message;
     return false;
   }
-  EXPECT_GT(set->lines(), 0u);
-  EXPECT_EQ(set->first.front(), 0u);
-  EXPECT_EQ(set->first.back(), set->points.size());
-  for (std::size_t k = 0; k < set->lines(); ++k) {
-    EXPECT_GE(set->first[k + 1], set->first[k] + 2);
-    for (std::uint32_t i = set->first[k] + 1; i < set->first[k + 1]; ++i) EXPECT_NE(set->points[i - 1], set->points[i]);
+  EXPECT_GT(set->line_count(), 0u);
+  EXPECT_EQ(set->line_offsets.front(), 0u);
+  EXPECT_EQ(set->line_offsets.back(), set->points.size());
+  for (std::size_t k = 0; k < set->line_count(); ++k) {
+    EXPECT_GE(set->line_offsets[k + 1], set->line_offsets[k] + 2);
+    for (std::uint32_t i = set->line_offsets[k] + 1; i < set->line_offsets[k + 1]; ++i) EXPECT_NE(set->points[i - 1], set->points[i]);
   }
   for (const glm::vec3& p : set->points) EXPECT_TRUE(is_finite(Vec3(p)));
   for (const curves::PointValues& one : set->values) EXPECT_EQ(one.values.size(), set->points.size());
@@ -66,7 +66,7 @@ TEST(CurveFuzz, EveryTruncationAndEveryByteTurned) {
 
 TEST(CurveFuzz, Mutations) {
   const std::string files[] = {test::tck_bytes(kLines, "Float32LE"), test::tck_bytes(kLines, "Float64BE"), trk()};
-  test::Inputs inputs(6000, 5);
+  test::FuzzInputs inputs(6000, 5);
   test::Random& random = inputs.random;
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) {

@@ -73,7 +73,7 @@ std::vector<FalconFrame> by_hand(const Bytes& stream) {
 }
 
 TEST(FalconFuzz, TheFramerFindsWhatAReaderOfTheWholeStreamFinds) {
-  test::Inputs inputs(kInputs, 17);
+  test::FuzzInputs inputs(kInputs, 17);
   test::Random& random = inputs.random;
   std::uint64_t found = 0, dropped = 0;
   while (inputs.next() && !HasFailure()) {
@@ -108,7 +108,7 @@ TEST(FalconFuzz, TheFramerFindsWhatAReaderOfTheWholeStreamFinds) {
 }
 
 TEST(FalconFuzz, PacketsOfAnyBytesAreRefusedOrRoundTrip) {
-  test::Inputs inputs(kInputs, 23);
+  test::FuzzInputs inputs(kInputs, 23);
   test::Random& random = inputs.random;
   std::uint64_t frames = 0, commands = 0, places = 0;
   while (inputs.next() && !HasFailure()) {
@@ -127,7 +127,7 @@ TEST(FalconFuzz, PacketsOfAnyBytesAreRefusedOrRoundTrip) {
       // whatever the encoders say: a finite place within reach, or a refusal
       if (i % 64 == 0) {
         Vec3 p(0.0);
-        if (falcon_forward(falcon_angles(f.encoders), p)) {
+        if (falcon_forward_kinematics(falcon_angles(f.encoders), p)) {
           ++places;
           ASSERT_LT(max_abs(p), 0.3);
         }
@@ -161,7 +161,7 @@ Bytes good_image() {
 }
 
 TEST(FalconFuzz, ImagesAreTakenOrRefusedWithTheByteAndWhatWasExpected) {
-  test::Inputs inputs(kInputs, 29);
+  test::FuzzInputs inputs(kInputs, 29);
   test::Random& random = inputs.random;
   const Bytes good = good_image();
   ASSERT_TRUE(check_falcon_image(good, "a.bin"));

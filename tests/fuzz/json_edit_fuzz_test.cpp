@@ -28,7 +28,7 @@ void check(const Result<std::string>& edited, const std::string& text) {
 }
 
 TEST(JsonEditFuzz, AnyTextPointerAndValue) {
-  test::Inputs inputs(30000, 5);
+  test::FuzzInputs inputs(30000, 5);
   test::Random& random = inputs.random;
   std::uint64_t done = 0;
   while (inputs.next() && !HasFailure()) {

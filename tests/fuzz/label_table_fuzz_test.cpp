@@ -27,7 +27,7 @@ bool check(const std::string& text) {
   }
   EXPECT_FALSE(read->empty());
   for (std::size_t i = 0; i < read->size(); ++i) {
-    const scene::LabelName& label = (*read)[i];
+    const scene::LabelRow& label = (*read)[i];
     EXPECT_EQ(label.value, std::nearbyint(label.value)) << text;
     EXPECT_TRUE(i == 0 || (*read)[i - 1].value < label.value) << text;
     EXPECT_FALSE(label.name.empty()) << text;
@@ -54,7 +54,7 @@ TEST(LabelTableFuzz, EveryTruncationAndByteTurned) {
 }
 
 TEST(LabelTableFuzz, Mutations) {
-  test::Inputs inputs(1000 * std::size(kFormats), 11);
+  test::FuzzInputs inputs(1000 * std::size(kFormats), 11);
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) read += check(test::mutate(kFormats[inputs.count() % std::size(kFormats)], inputs.random)) ? 1 : 0;
   EXPECT_GT(read, 0u);

@@ -10,27 +10,27 @@
 
 namespace catena::test {
 
-inline std::uint64_t hash_of(const char* data, std::size_t size) {
+inline std::uint64_t block_hash(const char* data, std::size_t size) {
   Fnv1a hash;
-  hash.bytes(data, size);
+  hash.add_bytes(data, size);
   return hash.value;
 }
 
 /// Makes the hashes of the blocks good again, as far as their lengths lead: what is behind the hashes is reached.
-inline void seal(std::string& bytes) {
-  for (std::size_t at = haptics::log::kPreambleBytes; at + sizeof(haptics::log::BlockHead) <= bytes.size();) {
-    haptics::log::BlockHead head;
+inline void rewrite_hashes(std::string& bytes) {
+  for (std::size_t at = haptics::log::kPreambleBytes; at + sizeof(haptics::log::BlockHeader) <= bytes.size();) {
+    haptics::log::BlockHeader head;
     std::memcpy(&head, bytes.data() + at, sizeof head);
-    if (head.mark != haptics::log::BlockHead::kBlockMark || head.length > bytes.size() - at - sizeof head) return;
-    head.payload_hash = hash_of(bytes.data() + at + sizeof head, head.length);
-    head.head_hash = hash_of(reinterpret_cast<const char*>(&head), haptics::log::BlockHead::kHashed);
+    if (head.magic != haptics::log::BlockHeader::kBlockMagic || head.length > bytes.size() - at - sizeof head) return;
+    head.payload_hash = block_hash(bytes.data() + at + sizeof head, head.length);
+    head.header_hash = block_hash(reinterpret_cast<const char*>(&head), haptics::log::BlockHeader::kHashedBytes);
     std::memcpy(bytes.data() + at, &head, sizeof head);
     at += sizeof head + head.length;
   }
 }
 
 /// Bytes and numbers changed in place, so that the blocks stay where they are.
-inline std::string change_in_place(std::string bytes, Random& random, std::size_t from = haptics::log::kPreambleBytes,
+inline std::string mutate_in_place(std::string bytes, Random& random, std::size_t from = haptics::log::kPreambleBytes,
                                    std::size_t behind = std::string::npos) {
   constexpr std::uint64_t kNumbers[] = {
       0, 1, 2, 7, 8, 9, 255, 0x7fffffff, 0x80000000u, 0xffffffffu, ~std::uint64_t{0}, ~std::uint64_t{0} >> 1};

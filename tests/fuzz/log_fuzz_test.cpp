@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "tests/fuzz/log_bytes.h"
-#include "tests/support/log_rig.h"
+#include "tests/support/recording_fixture.h"
 
 namespace catena {
 namespace log_fuzz_test {
@@ -19,7 +19,7 @@ struct Counts {
 
 // Every tick that is told has a number of its own, in rising order, and lies in no gap.
 void read_through(std::string_view bytes, Counts& counts) {
-  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
+  auto reader = LogReader::open(make_memory_source(bytes), "x.catlog");
   if (!reader) {
     EXPECT_TRUE(reader.error().message.starts_with("x.catlog: "));
     EXPECT_EQ(reader.error().message.find('\n'), std::string::npos);
@@ -43,16 +43,15 @@ void read_through(std::string_view bytes, Counts& counts) {
     EXPECT_EQ(reader->tick().output.tick, ++last);
     EXPECT_EQ(static_cast<std::size_t>(reader->tick().output.link_count), reader->program().links.size());
     // what a table prints of it
-    EXPECT_NE(exchange::condition_word(reader->tick().input.condition), nullptr);
-    EXPECT_NE(exchange::force_state_word(reader->tick().output.force_state), nullptr);
-    for (std::size_t i = 0; i < reader->program().links.size(); ++i)
-      EXPECT_NE(exchange::status_word(reader->tick().output.links[i].status), nullptr);
+    EXPECT_NE(to_string(reader->tick().input.condition), nullptr);
+    EXPECT_NE(to_string(reader->tick().output.force_state), nullptr);
+    for (std::size_t i = 0; i < reader->program().links.size(); ++i) EXPECT_NE(to_string(reader->tick().output.links[i].status), nullptr);
     ++ticks;
   }
   EXPECT_EQ(reader->next(), LogEvent::done);
   EXPECT_EQ(reader->last_tick(), last);
   EXPECT_LE(ticks, bytes.size());
-  EXPECT_FALSE(reader->ending().empty());
+  EXPECT_FALSE(reader->end_summary().empty());
   counts.clean += reader->end().has_value() ? 1 : 0;
   counts.damaged += reader->damaged() ? 1 : 0;
   counts.ticks += ticks;
@@ -60,20 +59,20 @@ void read_through(std::string_view bytes, Counts& counts) {
 
 TEST(LogFuzz, TheSeedIsWhole) {
   Counts counts;
-  read_through(test::small_log(), counts);
+  read_through(test::make_small_log(), counts);
   EXPECT_EQ(counts.clean, 1);
   EXPECT_EQ(counts.damaged, 0);
   EXPECT_EQ(counts.ticks, 60u);
 }
 
 TEST(LogFuzz, Mutations) {
-  const std::string seed = test::small_log(52);
-  test::Inputs inputs(20000, 11);
+  const std::string seed = test::make_small_log(52);
+  test::FuzzInputs inputs(20000, 11);
   test::Random& random = inputs.random;
   Counts counts;
   while (inputs.next() && !HasFailure()) {
-    std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : test::change_in_place(seed, random);
-    if (random.below(2) == 0) test::seal(bytes);
+    std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : test::mutate_in_place(seed, random);
+    if (random.below(2) == 0) test::rewrite_hashes(bytes);
     // a copy of its own size: a read past the end is seen
     const std::vector<char> exact(bytes.begin(), bytes.end());
     read_through({exact.data(), exact.size()}, counts);
@@ -88,26 +87,26 @@ TEST(LogFuzz, Mutations) {
 }
 
 TEST(LogFuzz, EveryByteTurned) {
-  const std::string seed = test::small_log(45);
+  const std::string seed = test::make_small_log(45);
   Counts counts;
   for (std::size_t n = 0; n < seed.size() && !HasFailure(); ++n) {
     std::string bytes = seed;
     bytes[n] = static_cast<char>(bytes[n] ^ 0x41);
-    if (n % 2 == 0) test::seal(bytes);
+    if (n % 2 == 0) test::rewrite_hashes(bytes);
     read_through(bytes, counts);
   }
   EXPECT_GT(counts.damaged, 0);
 }
 
 TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
-  const std::string seed = test::small_log();
+  const std::string seed = test::make_small_log();
   Counts counts;
   // marks everywhere, each with good hashes and the longest payload
-  BlockHead head;
+  BlockHeader head;
   head.type = 3;
   head.sequence = 1;
   head.length = kMaxPayload;
-  head.head_hash = test::hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+  head.header_hash = test::block_hash(reinterpret_cast<const char*>(&head), BlockHeader::kHashedBytes);
   std::string bytes = seed.substr(0, 400);
   for (int i = 0; i < 50000; ++i) bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
   read_through(bytes, counts);
@@ -116,8 +115,8 @@ TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
   bytes = seed.substr(0, 400);
   for (std::uint64_t i = 0; i < 50000; ++i) {
     head.sequence = i;
-    head.payload_hash = test::hash_of(nullptr, 0);
-    head.head_hash = test::hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+    head.payload_hash = test::block_hash(nullptr, 0);
+    head.header_hash = test::block_hash(reinterpret_cast<const char*>(&head), BlockHeader::kHashedBytes);
     bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
   }
   read_through(bytes, counts);

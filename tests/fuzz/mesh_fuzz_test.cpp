@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/mesh/load.h"
+#include "engine/io/mesh/load_mesh.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/mesh_shapes.h"
 
@@ -11,7 +11,7 @@ const std::string kObj =
     "# a\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 \\\n 0\nvt 0 0\nvn 0 0 1\ng part\nf 1 2 3 4\nf 1/1 2/1/1 3//1\nf -1 -2 -3\n";
 const std::string kBinary = test::binary_stl(test::box_soup()), kText = test::text_stl(test::box_soup());
 
-bool check(const Result<mesh::Soup>& soup, const std::string& text) {
+bool check(const Result<mesh::TriangleSoup>& soup, const std::string& text) {
   std::string message;
   bool good = false;
   if (soup) {
@@ -21,7 +21,7 @@ bool check(const Result<mesh::Soup>& soup, const std::string& text) {
     if (good) {
       EXPECT_FALSE((*mesh)->triangles().empty());
       for (const Vec3& v : (*mesh)->vertices()) EXPECT_TRUE(is_finite(v)) << text;
-      EXPECT_TRUE((*mesh)->length() > 0) << text;
+      EXPECT_TRUE((*mesh)->domain_length() > 0) << text;
     }
   } else {
     message = soup.error().message;
@@ -54,7 +54,7 @@ TEST(MeshFuzz, EveryTruncationAndEveryByteTurned) {
 }
 
 TEST(MeshFuzz, Mutations) {
-  test::Inputs inputs(20000, 4);
+  test::FuzzInputs inputs(20000, 4);
   test::Random& random = inputs.random;
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) {

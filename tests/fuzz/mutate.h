@@ -22,24 +22,24 @@ struct Random {
 };
 
 /// The inputs of a fuzz test: so many; outside CI so many as CATENA_FUZZ_INPUTS says, or for CATENA_FUZZ_SECONDS. CATENA_FUZZ_SEED: others.
-class Inputs {
+class FuzzInputs {
  public:
-  Inputs(std::uint64_t most, std::uint64_t seed) : random{seed}, most_(number("CATENA_FUZZ_INPUTS", most)) {
+  FuzzInputs(std::uint64_t most, std::uint64_t seed) : random{seed}, max_count_(number("CATENA_FUZZ_INPUTS", most)) {
     random.state += 1000003 * number("CATENA_FUZZ_SEED", 0);
     if (const std::uint64_t seconds = number("CATENA_FUZZ_SECONDS", 0); seconds > 0) {
       timed_ = true;
-      until_ = Clock::now() + std::chrono::seconds(seconds);
+      deadline_ = Clock::now() + std::chrono::seconds(seconds);
     }
   }
   /// Whether there is another one.
   bool next() {
-    if (timed_ ? Clock::now() >= until_ : count_ >= most_) return false;
+    if (timed_ ? Clock::now() >= deadline_ : count_ >= max_count_) return false;
     ++count_;
     return true;
   }
   std::uint64_t count() const { return count_; }
   /// For a log of long runs.
-  bool is_long() const { return timed_ || std::getenv("CATENA_FUZZ_INPUTS") != nullptr; }
+  bool is_long_run() const { return timed_ || std::getenv("CATENA_FUZZ_INPUTS") != nullptr; }
   Random random;
 
  private:
@@ -48,22 +48,22 @@ class Inputs {
     const char* text = std::getenv(variable);
     return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
   }
-  std::uint64_t most_, count_ = 0;
+  std::uint64_t max_count_, count_ = 0;
   bool timed_ = false;
-  Clock::time_point until_;
+  Clock::time_point deadline_;
 };
 
-inline constexpr std::string_view kSpice[] = {"{",         "}",    "[",      "]",       ",",     ":",    "\"",
-                                              "\\",        "\n",   "\r",     "null",    "1e999", "-1",   "0",
-                                              "NaN",       "inf",  "1e-400", "//",      "/*",    "*/",   "\xEF\xBB\xBF",
-                                              "\xff",      "true", "[[[[",   "{\"a\":", "0.5",   "-0.0", "99999999999999999999",
-                                              "\"field\"", ",,",   "\t",     " "};
+inline constexpr std::string_view kTokens[] = {"{",         "}",    "[",      "]",       ",",     ":",    "\"",
+                                               "\\",        "\n",   "\r",     "null",    "1e999", "-1",   "0",
+                                               "NaN",       "inf",  "1e-400", "//",      "/*",    "*/",   "\xEF\xBB\xBF",
+                                               "\xff",      "true", "[[[[",   "{\"a\":", "0.5",   "-0.0", "99999999999999999999",
+                                               "\"field\"", ",,",   "\t",     " "};
 
 inline std::string mutate(std::string text, Random& random) {
   const std::size_t changes = 1 + random.below(4);
   for (std::size_t i = 0; i < changes; ++i) {
     const std::size_t at = random.below(text.size() + 1), length = random.below(24);
-    const std::string_view spice = kSpice[random.below(std::size(kSpice))];
+    const std::string_view spice = kTokens[random.below(std::size(kTokens))];
     switch (random.below(7)) {
       case 0:
         if (at < text.size()) text[at] = static_cast<char>(text[at] ^ static_cast<char>(1u << random.below(8)));

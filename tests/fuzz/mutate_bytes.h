@@ -9,22 +9,22 @@
 
 namespace catena::test {
 
-inline constexpr std::uint64_t kExtremes[] = {0,
-                                              1,
-                                              2,
-                                              0x7f,
-                                              0x80,
-                                              0xff,
-                                              0x7fff,
-                                              0xffff,
-                                              0x7fffffff,
-                                              0x80000000,
-                                              0xffffffff,
-                                              0x100000000,
-                                              0x7fffffffffffffff,
-                                              0x8000000000000000,
-                                              0xffffffffffffffff,
-                                              0x7ff8000000000000};
+inline constexpr std::uint64_t kExtremeNumbers[] = {0,
+                                                    1,
+                                                    2,
+                                                    0x7f,
+                                                    0x80,
+                                                    0xff,
+                                                    0x7fff,
+                                                    0xffff,
+                                                    0x7fffffff,
+                                                    0x80000000,
+                                                    0xffffffff,
+                                                    0x100000000,
+                                                    0x7fffffffffffffff,
+                                                    0x8000000000000000,
+                                                    0xffffffffffffffff,
+                                                    0x7ff8000000000000};
 
 /// One to `most` changes, all of them within [first, last) of the bytes.
 inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t most = 3, std::size_t first = 0,
@@ -47,7 +47,7 @@ inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t m
         const std::size_t width = std::min(std::size_t{1} << random.below(4), end - at);
         std::uint64_t number = 0;
         std::memcpy(&number, bytes.data() + at, width);
-        number = random.below(2) == 0 ? kExtremes[random.below(std::size(kExtremes))] : number + random.below(17) - 8;
+        number = random.below(2) == 0 ? kExtremeNumbers[random.below(std::size(kExtremeNumbers))] : number + random.below(17) - 8;
         std::memcpy(bytes.data() + at, &number, width);
         break;
       }

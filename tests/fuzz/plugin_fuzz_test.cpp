@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "haptics/plugin/file.h"
+#include "haptics/plugin/plugin_file.h"
 #include "tests/fuzz/mutate_bytes.h"
 #include "tests/support/support.h"
 
@@ -25,8 +25,8 @@ bool check(const std::string& bytes) {
     EXPECT_NE(file.error().message.find("was expected"), std::string::npos);
     return false;
   }
-  EXPECT_LT(std::strlen(file->statement.headers), sizeof file->statement.headers);
-  EXPECT_LT(std::strlen(file->statement.compiler), sizeof file->statement.compiler);
+  EXPECT_LT(std::strlen(file->abi_stamp.headers), sizeof file->abi_stamp.headers);
+  EXPECT_LT(std::strlen(file->abi_stamp.compiler), sizeof file->abi_stamp.compiler);
   return true;
 }
 
@@ -55,7 +55,7 @@ TEST(PluginFuzz, Mutations) {
   std::uint64_t sections = 0;
   ASSERT_GT(seed().size(), 64u);
   std::memcpy(&sections, seed().data() + 40, sizeof sections);
-  test::Inputs inputs(5000, 23);
+  test::FuzzInputs inputs(5000, 23);
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) {
     const bool head = inputs.count() % 3 == 0;

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/curves/points.h"
+#include "engine/geometry/curves/point_set.h"
 #include "tests/fuzz/mutate.h"
 
 namespace catena {
@@ -26,7 +26,7 @@ bool check(const std::string& text) {
 }
 
 TEST(PointsFuzz, Mutations) {
-  test::Inputs inputs(6000, 6);
+  test::FuzzInputs inputs(6000, 6);
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure())
     for (const std::string& table : kTables) read += check(test::mutate(table, inputs.random)) ? 1 : 0;

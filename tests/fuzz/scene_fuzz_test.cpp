@@ -3,7 +3,7 @@
 #include "engine/scene/prepare.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/scene.h"
-#include "haptics/extract/extract.h"
+#include "haptics/build/build_program.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"
 
@@ -73,7 +73,7 @@ bool check(const std::string& text, bool extract) {
   if (!scene) {
     message = scene.error().message;
   } else if (extract) {
-    const auto program = haptics::extract_program(*scene);
+    const auto program = haptics::build_program(*scene);
     if (!program) message = program.error().message;
   }
   if (message.empty()) return true;
@@ -87,7 +87,7 @@ TEST(SceneFuzz, TheSeedsAreValid) {
   for (const std::string& seed : {kScene, kHand, kWidgets}) {
     auto scene = scene::parse_scene(seed, "scene.json");
     ASSERT_TRUE(scene) << scene.error().message;
-    const auto program = haptics::extract_program(*scene);
+    const auto program = haptics::build_program(*scene);
     ASSERT_TRUE(program) << program.error().message;
   }
 }
@@ -105,7 +105,7 @@ TEST(SceneFuzz, EveryByteTurned) {
 }
 
 TEST(SceneFuzz, Mutations) {
-  test::Inputs inputs(20000, 1);
+  test::FuzzInputs inputs(20000, 1);
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) read += check(test::mutate(kScene, inputs.random), false) ? 1 : 0;
   EXPECT_GT(read, 0u);
@@ -113,7 +113,7 @@ TEST(SceneFuzz, Mutations) {
 }
 
 TEST(SceneFuzz, MutatedChainsAreExtracted) {
-  test::Inputs inputs(2000, 2);
+  test::FuzzInputs inputs(2000, 2);
   while (inputs.next() && !HasFailure()) check(test::mutate(inputs.count() % 2 == 0 ? kHand : kScene, inputs.random), true);
 }
 
@@ -122,14 +122,14 @@ bool drive(const std::string& text) {
   auto scene = scene::parse_scene(text, "scene.json");
   if (!scene) return check(text, false);
   std::string message;
-  if (const auto changes = scene::drive_widgets(*scene); !changes) message = changes.error().message;
+  if (const auto changes = scene::propagate_widgets(*scene); !changes) message = changes.error().message;
   std::vector<scene::Entity> rulers;
-  scene->world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& w) {
+  scene->entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& w) {
     if (w.spec.kind == widget::Kind::ruler) rulers.push_back(e);
   });
   if (message.empty())
     for (const scene::Entity e : rulers)
-      if (const auto measured = scene::use_ruler(*scene, e); !measured) message = measured.error().message;
+      if (const auto measured = scene::resolve_ruler(*scene, e); !measured) message = measured.error().message;
   if (message.empty()) return true;
   EXPECT_TRUE(message.starts_with("scene.json:")) << message << "\nfor\n" << text;
   EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message;
@@ -143,7 +143,7 @@ TEST(SceneFuzz, EveryTruncationOfWidgets) {
 
 TEST(SceneFuzz, MutatedWidgetsAreDriven) {
   ASSERT_TRUE(drive(kWidgets));
-  test::Inputs inputs(2000, 3);
+  test::FuzzInputs inputs(2000, 3);
   std::uint64_t driven = 0;
   while (inputs.next() && !HasFailure()) driven += drive(test::mutate(kWidgets, inputs.random)) ? 1 : 0;
   EXPECT_GT(driven, 0u);

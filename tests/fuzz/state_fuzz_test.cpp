@@ -4,12 +4,12 @@
 
 #include <cstdlib>
 
-#include "haptics/chain/check_state.h"
+#include "haptics/chain/validate_state.h"
 #include "haptics/constraints/widget_link.h"
 #include "haptics/servo/log/log_replay.h"
 #include "tests/fuzz/log_bytes.h"
 #include "tests/haptics/constraints/examples.h"
-#include "tests/support/log_rig.h"
+#include "tests/support/recording_fixture.h"
 
 namespace catena {
 namespace state_fuzz_test {
@@ -60,7 +60,7 @@ TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
         haptics::tests::build(R"({"name": "a", "type": ")" + example.type + "\", " + example.body + "}", haptics::tests::fields());
     ASSERT_NE(constraint, nullptr);
     haptics::tests::Rig rig(constraint);
-    test::Inputs inputs(1 + 20000 / table.size(), 5);  // of each constraint
+    test::FuzzInputs inputs(1 + 20000 / table.size(), 5);  // of each constraint
     test::Random& random = inputs.random;
     while (inputs.next()) {
       if (inputs.count() % 8 == 1) {
@@ -70,7 +70,7 @@ TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
       haptics::tests::Rig forged(constraint);
       forged.state = rig.state;
       forge(forged.state.memory, used(rig.state.memory), random);
-      if (random.below(4) == 0) forge(forged.state.outer, 32, random);
+      if (random.below(4) == 0) forge(forged.state.wrapper_memory, 32, random);
       if (random.below(8) == 0) forged.state.proxy = Vec3(std::numeric_limits<double>::quiet_NaN());
       if (!constraint->is_sane(forged.state)) {
         ++refused;
@@ -96,8 +96,8 @@ TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
 }
 
 /// Links that index with what they remember, widgets, a mode, a link that aligns.
-std::shared_ptr<Program> program_of_indices(std::uint64_t epoch) {
-  auto program = std::make_shared<Program>();
+std::shared_ptr<HapticProgram> program_of_indices(std::uint64_t epoch) {
+  auto program = std::make_shared<HapticProgram>();
   program->epoch = epoch;
   const char* const kLinks[] = {R"({"name": "a", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.5]]})",
                                 R"({"name": "b", "type": "mesh", "mesh": "box", "free": "above"})",
@@ -107,12 +107,12 @@ std::shared_ptr<Program> program_of_indices(std::uint64_t epoch) {
     Link link;
     link.constraint = haptics::tests::build(text, haptics::tests::fields());
     link.name = std::string(1, static_cast<char>('a' + program->links.size()));
-    link.recipe = program->links.size() + 1;
-    link.align.on = program->links.empty();
+    link.spec_hash = program->links.size() + 1;
+    link.align.enabled = program->links.empty();
     program->links.push_back(std::move(link));
   }
   program->modes.push_back({"turned", {3, 0}, {}});
-  program->modes.back().on.button = 2;
+  program->modes.back().active_when.button = 2;
   for (const auto& [kind, name] : {std::pair{widget::Kind::box, "crop"}, std::pair{widget::Kind::cutting_plane, "cut"}}) {
     widget::Spec spec;
     spec.kind = kind;
@@ -126,23 +126,23 @@ std::shared_ptr<Program> program_of_indices(std::uint64_t epoch) {
 }
 
 /// A recording of ticks 301 to 340 with the state before them, and another program from tick 321 on.
-std::string log_from_the_middle(const std::vector<test::Change>& changes) {
+std::string log_from_the_middle(const std::vector<test::ProgramChange>& changes) {
   const test::TemporaryFolder folder;
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
-  exchange::HapticState out;
-  const auto path = test::hostile_path(340);
+  HapticState out;
+  const auto path = test::adversarial_path(340);
   for (std::size_t k = 0; k < 300; ++k) tick(*changes[0].program, path[k], *state, *scratch, out);
 
   log::LogHeader header{"scene.json", "/somewhere", "{\"chain\": []}", {}, "null", "0.1.0", 1000, 1};
   auto writer = log::LogWriter::open(folder / "middle.catlog", header, {}, {});
   (*writer)->begin(*state);
-  for (const test::Change& change : changes) (*writer)->add_program(*change.program, change.scene_text);
+  for (const test::ProgramChange& change : changes) (*writer)->add_program(*change.program, change.scene_text);
   *scratch = ChainScratch{};
-  const Program* program = changes[0].program.get();
+  const HapticProgram* program = changes[0].program.get();
   for (std::size_t k = 300; k < path.size(); ++k) {
     if (k == 320) {
-      rebind(*program, *changes[1].program, *state, *scratch);
+      rebind_program(*program, *changes[1].program, *state, *scratch);
       program = changes[1].program.get();
     }
     tick(*program, path[k], *state, *scratch, out);
@@ -156,7 +156,7 @@ std::string log_from_the_middle(const std::vector<test::Change>& changes) {
 /// Where the payload of a block of this type lies: from, behind.
 std::pair<std::size_t, std::size_t> block_of(const std::string& bytes, log::BlockType type) {
   for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
-    log::BlockHead head;
+    log::BlockHeader head;
     std::memcpy(&head, bytes.data() + at, sizeof head);
     at += sizeof head;
     if (head.type == static_cast<std::uint32_t>(type)) return {at, at + head.length};
@@ -166,21 +166,21 @@ std::pair<std::size_t, std::size_t> block_of(const std::string& bytes, log::Bloc
   return {};
 }
 
-Result<log::LogReplay> replay(const std::string& bytes, const std::vector<test::Change>& changes) {
-  auto reader = log::LogReader::open(log::from_memory(bytes), "x.catlog");
+Result<log::LogReplay> replay(const std::string& bytes, const std::vector<test::ProgramChange>& changes) {
+  auto reader = log::LogReader::open(log::make_memory_source(bytes), "x.catlog");
   if (!reader) return reader.error();
-  return log::replay_log(*reader, test::hooks_for(changes));
+  return log::replay_log(*reader, test::make_replay_hooks(changes));
 }
 
 struct MiddleLog {
-  std::vector<test::Change> changes{{1, program_of_indices(1), {}}, {321, program_of_indices(2), "{}"}};
+  std::vector<test::ProgramChange> changes{{1, program_of_indices(1), {}}, {321, program_of_indices(2), "{}"}};
   std::string bytes = log_from_the_middle(changes);
   std::size_t state = block_of(bytes, log::BlockType::state).first + 16;  // behind tick and layout
 
   std::string forged(std::size_t at, std::int64_t value, std::size_t size) const {
     std::string out = bytes;
     std::memcpy(out.data() + state + at, &value, size);
-    test::seal(out);
+    test::rewrite_hashes(out);
     return out;
   }
 };
@@ -189,7 +189,7 @@ TEST(StateFuzz, AsRecordedItIsReplayedToTheBit) {
   const MiddleLog log;
   const auto result = replay(log.bytes, log.changes);
   ASSERT_TRUE(result) << result.error().message;
-  EXPECT_TRUE(result->exact()) << result->difference << result->stopped;
+  EXPECT_TRUE(result->exact()) << result->difference << result->stop_reason;
   EXPECT_EQ(result->stats.ticks, 40u);
 }
 
@@ -204,7 +204,7 @@ TEST(StateFuzz, AForgedIndexIsOneSentence) {
   } kForged[] = {
       {"link \"d\"", memory(3) + 8, 1ll << 40, 8},  // the interval of a curve
       {"link \"a\"", memory(0) + offsetof(LinkState, started) - offsetof(LinkState, memory), 2, 1},
-      {"chain", offsetof(ChainState, passivity) + offsetof(PassivityState, next), 1 << 30, 4},
+      {"chain", offsetof(ChainState, passivity) + offsetof(PassivityState, next_index), 1 << 30, 4},
       {"chain", offsetof(ChainState, order), 100, 1},
       {"chain", offsetof(ChainState, has_probe), 77, 1},
       {"widgets", offsetof(ChainState, widgets) + offsetof(WidgetsState, engaged), 5, 1},
@@ -222,9 +222,9 @@ TEST(StateFuzz, AForgedIndexIsOneSentence) {
 // which links keep their state says the file: one that goes to another constraint is looked at by that one
 TEST(StateFuzz, AStateHandedToAnotherConstraintIsLookedAt) {
   const MiddleLog log;
-  auto other = std::make_shared<Program>(*log.changes[1].program);
+  auto other = std::make_shared<HapticProgram>(*log.changes[1].program);
   std::swap(other->links[0].constraint, other->links[3].constraint);
-  const std::vector<test::Change> changes{log.changes[0], {321, other, "{}"}};
+  const std::vector<test::ProgramChange> changes{log.changes[0], {321, other, "{}"}};
   // an arc length becomes a search's stack and depth
   const std::string bytes = log.forged(3 * sizeof(LinkState) + offsetof(LinkState, memory) + 200, -1, 8);
   const auto result = replay(bytes, changes);
@@ -234,7 +234,7 @@ TEST(StateFuzz, AStateHandedToAnotherConstraintIsLookedAt) {
 
 TEST(StateFuzz, ForgedStatesAndProgramsWithGoodHashes) {
   const MiddleLog log;
-  test::Inputs inputs(4000, 9);
+  test::FuzzInputs inputs(4000, 9);
   test::Random& random = inputs.random;
   const auto state = block_of(log.bytes, log::BlockType::state), program = block_of(log.bytes, log::BlockType::program);
   std::uint64_t refused = 0, ran = 0;
@@ -248,8 +248,8 @@ TEST(StateFuzz, ForgedStatesAndProgramsWithGoodHashes) {
       const std::size_t behind = part < static_cast<std::size_t>(kMaxLinks) ? from + link : state.second;
       forge(std::as_writable_bytes(std::span(bytes.data() + from, behind - from)), behind - from, random);
     }
-    if (random.below(3) == 0) bytes = test::change_in_place(bytes, random, program.first, program.second);
-    test::seal(bytes);
+    if (random.below(3) == 0) bytes = test::mutate_in_place(bytes, random, program.first, program.second);
+    test::rewrite_hashes(bytes);
     const auto result = replay(bytes, log.changes);
     ++(result ? ran : refused);
     if (!result) {

@@ -1,10 +1,10 @@
-/// Transfer files out of hostile hands: a transfer function that can be drawn, or one line with the file's name.
+/// TransferEditor files out of hostile hands: a transfer function that can be drawn, or one line with the file's name.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/scene/color_maps.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/readers.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"
 
@@ -39,7 +39,7 @@ bool check(const std::string& text) {
     EXPECT_LT(message.size(), 1000u) << message;
     return false;
   }
-  const auto colors = scene::color_table(read->colors, read->named, -1, 1);
+  const auto colors = scene::make_color_table(read->colors, read->named, -1, 1);
   expect_rising(colors, text);
   for (const auto& point : colors)
     for (const float c : {point.color.r, point.color.g, point.color.b}) EXPECT_TRUE(c >= 0 && c <= 1) << c << " for\n" << text;
@@ -66,7 +66,7 @@ TEST(TransferFuzz, EveryTruncationAndByteTurned) {
 }
 
 TEST(TransferFuzz, Mutations) {
-  test::Inputs inputs(20000, 4);
+  test::FuzzInputs inputs(20000, 4);
   test::Random& random = inputs.random;
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure())

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/study/inquiry.h"
+#include "engine/study/analysis_plan.h"
 #include "engine/study/trial_table.h"
 #include "tests/fuzz/mutate.h"
 
@@ -39,9 +39,9 @@ bool check(const std::string& text) {
     return false;
   }
   std::string again = study::table_header();
-  for (const study::Row& row : *rows) {
+  for (const study::TrialRow& row : *rows) {
     EXPECT_TRUE(std::isfinite(row.time_s) && std::isfinite(row.error_mm) && row.subject >= 0 && !row.task.empty()) << text;
-    again += study::row_text(row);
+    again += study::format_row(row);
   }
   const auto back = study::parse_rows(again, "t.csv");
   EXPECT_TRUE(back && *back == *rows) << text;
@@ -54,7 +54,7 @@ bool check_inquiry(const std::string& text) {
     check_message(study.error().message, "s.json:", text);
     return false;
   }
-  const auto inquiry = study::read_inquiry(*study);
+  const auto inquiry = study::read_analysis_plan(*study);
   for (const study::Finding& f : inquiry->findings)
     for (const int task : f.tasks) EXPECT_TRUE(task >= 0 && task < 2) << text;
   return true;
@@ -76,7 +76,7 @@ TEST(TrialTableFuzz, EveryTruncationAndEveryByteTurned) {
 }
 
 TEST(TrialTableFuzz, Mutations) {
-  test::Inputs inputs(10000, 29);
+  test::FuzzInputs inputs(10000, 29);
   std::uint64_t read = 0;
   const std::string header = study::table_header(), rows = kRows.substr(header.size());
   while (inputs.next() && !HasFailure()) {
@@ -89,7 +89,7 @@ TEST(TrialTableFuzz, Mutations) {
 }
 
 TEST(TrialTableFuzz, MutationsOfWhatIsAsked) {
-  test::Inputs inputs(2000, 30);
+  test::FuzzInputs inputs(2000, 30);
   std::uint64_t read = 0;
   while (inputs.next() && !HasFailure()) read += check_inquiry(kStudy + test::mutate(kAsked, inputs.random)) ? 1 : 0;
   EXPECT_GT(read, 0u);

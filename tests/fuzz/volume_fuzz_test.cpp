@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "engine/base/memory_limit.h"
-#include "engine/field/load.h"
+#include "engine/io/volume/load_field.h"
 #include "tests/fuzz/mutate_bytes.h"
 #include "tests/support/support.h"
 
@@ -31,7 +31,7 @@ class VolumeFuzz : public testing::Test {
       return false;
     }
     const Field& loaded = *field->get();
-    EXPECT_TRUE(std::isfinite(loaded.length()) && loaded.length() >= 0);
+    EXPECT_TRUE(std::isfinite(loaded.domain_length()) && loaded.domain_length() >= 0);
     const Box& box = loaded.index_box();
     Cursor cursor;
     for (const Vec3& at : {box.lo, box.hi, 0.5 * (box.lo + box.hi)}) {
@@ -80,7 +80,7 @@ class VolumeFuzz : public testing::Test {
 TEST_F(VolumeFuzz, NiftiMutations) {
   const std::string whole = nifti();
   ASSERT_TRUE(check("sound.nii", whole));
-  test::Inputs inputs(3000, 31);
+  test::FuzzInputs inputs(3000, 31);
   std::uint64_t loaded = 0;
   while (inputs.next() && !HasFailure()) {
     // most changes into the header
@@ -106,7 +106,7 @@ TEST_F(VolumeFuzz, CompressedMutations) {
   ASSERT_EQ(std::system(("gzip -n -k '" + (folder_ / "seed.nii") + "'").c_str()), 0);
   const std::string whole = test::read_file(folder_ / "seed.nii.gz");
   ASSERT_TRUE(check("sound.nii.gz", whole));
-  test::Inputs inputs(1500, 37);
+  test::FuzzInputs inputs(1500, 37);
   std::uint64_t loaded = 0;
   while (inputs.next() && !HasFailure())
     loaded += check("mutated.nii.gz", test::mutate_bytes(whole, inputs.random, 3, 0, whole.size())) ? 1 : 0;
@@ -117,7 +117,7 @@ TEST_F(VolumeFuzz, RawFilesOfAnyStatedShape) {
   const std::string path = folder_ / "a.raw";
   test::write_file(path, std::string(4000, '\x3f'));
   constexpr const char* kTypes[] = {"float32", "float64", "uint8", "int16", "uint32", "float32x3", "uint8x3", "text"};
-  test::Inputs inputs(1500, 41);
+  test::FuzzInputs inputs(1500, 41);
   test::Random& random = inputs.random;
   std::uint64_t loaded = 0;
   const auto length = [&] {

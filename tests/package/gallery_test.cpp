@@ -5,9 +5,9 @@
 #include <regex>
 #include <string>
 
-#include "render/image/picture.h"
+#include "render/image/image.h"
 #include "tests/package/installed.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace gallery_test {
@@ -26,7 +26,7 @@ TEST(Gallery, TheCommandsDrawThePictures) {
   int compared = 0;
   for (auto it = std::sregex_iterator(text.begin(), text.end(), entry); it != std::sregex_iterator(); ++it) {
     const std::string kept = test::source_dir() + "/" + (*it)[1].str(), drawn = folder / "out/" + (*it)[2].str();
-    const test::ProgramResult result = test::shell(folder.path(), (*it)[3]);
+    const test::ProgramResult result = test::run_shell(folder.path(), (*it)[3]);
     ASSERT_EQ(result.exit_code, 0) << (*it)[3] << result.out;
     const auto a = catena::render::read_png(kept), b = catena::render::read_png(drawn);
     ASSERT_TRUE(a && b) << kept << ", " << drawn;

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena::test {
 
 /// The prefix: bin, lib, include, share.
-inline const std::string& installed() {
+inline const std::string& install_prefix() {
   static const std::string prefix = [] {
     const std::string at = binary_dir() + "/installed";
     std::filesystem::remove_all(at);  // of an earlier build
@@ -25,8 +25,8 @@ inline const std::string& installed() {
 
 /// What bash says to these lines, errors too, in a folder, where docs/tutorials.md has been obeyed. The first line that fails ends it.
 /// `before`: a program with its options that starts bash.
-inline ProgramResult shell(const std::string& folder, const std::string& lines, std::vector<std::string> before = {}) {
-  const std::string& at = installed();
+inline ProgramResult run_shell(const std::string& folder, const std::string& lines, std::vector<std::string> before = {}) {
+  const std::string& at = install_prefix();
   before.insert(before.end(), {"/bin/bash", "-c",
                                "set -euo pipefail; exec 2>&1; cd '" + folder + "'; export CATENA=" + at + " PATH=" + at +
                                    "/bin:$PATH PYTHONPATH=" + at + "/" CATENA_PYTHON_FOLDER " PYTHONDONTWRITEBYTECODE=1" +

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/package/installed.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace package_test {
@@ -18,7 +18,7 @@ namespace package_test {
 namespace fs = std::filesystem;
 namespace test = catena::test;
 
-const std::string& prefix() { return test::installed(); }
+const std::string& prefix() { return test::install_prefix(); }
 
 std::string words_of(const std::vector<std::string>& words) {
   std::string all;
@@ -44,7 +44,7 @@ void build_outside(const std::string& source, const std::string& name) {
 
 std::vector<std::string> public_headers() {
   std::vector<std::string> headers;
-  std::ifstream in(test::source_dir() + "/engine/base/public_headers.txt");
+  std::ifstream in(test::source_dir() + "/engine/cmake/public_headers.txt");
   for (std::string line; std::getline(in, line);)
     if (!line.empty() && line[0] != '#') headers.push_back(line);
   return headers;

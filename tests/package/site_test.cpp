@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace site_test {

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "render/image/picture.h"
+#include "render/image/image.h"
 #include "tests/package/installed.h"
-#include "tests/support/program.h"
+#include "tests/support/drive_window.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace tutorials_test {
 
@@ -129,7 +129,7 @@ void follow(const std::string& name, const std::string& in = "tutorials/", bool 
   fs::create_directories(work);
   const std::vector<std::string> before = has_window ? user_at_a_display(work) : std::vector<std::string>();
   int ran = 0;
-  test::installed();
+  test::install_prefix();
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   double first = 0;
@@ -140,7 +140,7 @@ void follow(const std::string& name, const std::string& in = "tutorials/", bool 
       EXPECT_TRUE(i > 0 && page.blocks[i - 1].language == "sh") << path << ":" << block.line << ": nothing prints this";
     }
     if (block.language != "sh") continue;
-    const test::ProgramResult result = test::shell(work, block.text, before);
+    const test::ProgramResult result = test::run_shell(work, block.text, before);
     ASSERT_EQ(result.exit_code, 0) << path << ":" << block.line << "\n" << result.out;
     if (i + 1 < page.blocks.size() && page.blocks[i + 1].language == "text") {
       const std::string& said = page.blocks[i + 1].text;

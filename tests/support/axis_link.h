@@ -8,24 +8,24 @@
 namespace catena::test {
 
 /// Holds the proxy where the probe is, with an axis; each question for it costs `cost` fetches.
-class Axis final : public haptics::Constraint {
+class AxisConstraint final : public haptics::Constraint {
  public:
-  Axis(const Vec3& axis, haptics::Primitive::Kind kind, int cost = 0) : axis_(direction(axis)), kind_(kind), cost_(cost) {}
+  AxisConstraint(const Vec3& axis, haptics::Primitive::Kind kind, int cost = 0) : axis_(direction(axis)), kind_(kind), cost_(cost) {}
   void start(const Vec3&, haptics::LinkState&, haptics::LinkScratch&) const noexcept override {}
   void advance(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override {
     state.proxy = probe;
-    state.status = now;
-    state.evaluations += spent;
+    state.status = reported_status;
+    state.evaluations += evaluations_per_tick;
   }
   bool primitive(const Vec3& at, haptics::LinkState& state, haptics::LinkScratch&, haptics::Primitive& out) const noexcept override {
     state.evaluations += cost_;
-    state.status = haptics::Status::critical;  // must not reach the link
+    state.status = catena::LinkStatus::critical;  // must not reach the link
     out = {kind_, at, axis_};
     return true;
   }
   bool has_primitive() const noexcept override { return true; }
-  mutable haptics::Status now = haptics::Status::ok;
-  mutable int spent = 0;
+  mutable catena::LinkStatus reported_status = catena::LinkStatus::ok;
+  mutable int evaluations_per_tick = 0;
 
  private:
   Vec3 axis_;
@@ -38,7 +38,7 @@ inline haptics::Link axis_link(const std::string& name, const Vec3& axis, double
                                haptics::Primitive::Kind kind = haptics::Primitive::Kind::plane, int cost = 0) {
   haptics::Link link;
   link.name = name;
-  link.constraint = std::make_shared<Axis>(axis, kind, cost);
+  link.constraint = std::make_shared<AxisConstraint>(axis, kind, cost);
   link.align = {true, direction(tool), kappa, sign};
   return link;
 }

@@ -1,4 +1,4 @@
-// The counting operators new and delete behind AllocationGuard: linked into every test program.
+// The counting operators new and delete behind AllocationCounter: linked into every test program.
 #include <cstdlib>
 #include <new>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
-#include "engine/curves/load.h"
+#include "engine/io/curves/load_curves.h"
 
 namespace catena::test {
 
@@ -39,7 +39,7 @@ inline std::string tck_bytes(const Polylines& lines, const std::string& type) {
 }
 
 /// As a file of floats gives them.
-inline curves::CurveSetPtr curves_of(const Polylines& lines) {
+inline curves::CurveSetPtr make_curve_set(const Polylines& lines) {
   auto set = curves::parse_tck(tck_bytes(lines, "Float32LE"), "made.tck");
   return set ? std::make_shared<const curves::CurveSet>(std::move(*set)) : nullptr;
 }

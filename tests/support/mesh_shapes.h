@@ -4,11 +4,11 @@
 #include <cstring>
 #include <string>
 
-#include "engine/mesh/mesh.h"
+#include "engine/geometry/mesh/mesh.h"
 
 namespace catena::test {
 
-inline void add_quad(mesh::Soup& soup, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+inline void add_quad(mesh::TriangleSoup& soup, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const auto first = static_cast<std::uint32_t>(soup.vertices.size());
   soup.vertices.insert(soup.vertices.end(), {a, b, c, d});
   soup.triangles.push_back({first, first + 1, first + 2});
@@ -16,7 +16,7 @@ inline void add_quad(mesh::Soup& soup, const Vec3& a, const Vec3& b, const Vec3&
 }
 
 /// Normals outwards.
-inline void add_box(mesh::Soup& soup, const Vec3& lo, const Vec3& hi) {
+inline void add_box(mesh::TriangleSoup& soup, const Vec3& lo, const Vec3& hi) {
   const auto at = [&](int x, int y, int z) { return Vec3(x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z); };
   add_quad(soup, at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0));
   add_quad(soup, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
@@ -26,16 +26,16 @@ inline void add_box(mesh::Soup& soup, const Vec3& lo, const Vec3& hi) {
   add_quad(soup, at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1));
 }
 
-inline mesh::Soup box_soup(const Vec3& lo = Vec3(-0.5), const Vec3& hi = Vec3(0.5)) {
-  mesh::Soup soup;
+inline mesh::TriangleSoup box_soup(const Vec3& lo = Vec3(-0.5), const Vec3& hi = Vec3(0.5)) {
+  mesh::TriangleSoup soup;
   add_box(soup, lo, hi);
   return soup;
 }
 
 /// z = height(x, y) on n x n squares of [-half, half]^2, normals up.
 template <class F>
-mesh::Soup sheet_soup(int n, double half, const F& height) {
-  mesh::Soup soup;
+mesh::TriangleSoup sheet_soup(int n, double half, const F& height) {
+  mesh::TriangleSoup soup;
   const auto at = [&](int i, int j) {
     const double x = half * (2.0 * i / n - 1), y = half * (2.0 * j / n - 1);
     return Vec3(x, y, height(x, y));
@@ -46,14 +46,14 @@ mesh::Soup sheet_soup(int n, double half, const F& height) {
 }
 
 /// An icosahedron with every face cut into n x n triangles, on the sphere: 20 n^2 faces.
-inline mesh::Soup sphere_soup(int n, double radius = 1, const Vec3& centre = Vec3(0.0)) {
+inline mesh::TriangleSoup sphere_soup(int n, double radius = 1, const Vec3& centre = Vec3(0.0)) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   const Vec3 v[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   const int f[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
                         {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
                         {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-  mesh::Soup soup;
+  mesh::TriangleSoup soup;
   for (const auto& t : f) {
     // the weights are summed in one order of the corners, so that neighbours agree to the bit
     const auto at = [&](int i, int j) {
@@ -80,13 +80,13 @@ inline mesh::Soup sphere_soup(int n, double radius = 1, const Vec3& centre = Vec
   return soup;
 }
 
-inline mesh::MeshPtr mesh_of(mesh::Soup soup, const std::string& name = "made") {
+inline mesh::MeshPtr make_mesh_from(mesh::TriangleSoup soup, const std::string& name = "made") {
   auto made = mesh::make_mesh(std::move(soup), name);
   CATENA_ASSERT(static_cast<bool>(made));
   return *made;
 }
 
-inline std::string binary_stl(const mesh::Soup& soup) {
+inline std::string binary_stl(const mesh::TriangleSoup& soup) {
   std::string out(80, ' ');
   const auto add = [&](const auto& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); };
   add(static_cast<std::uint32_t>(soup.triangles.size()));
@@ -99,7 +99,7 @@ inline std::string binary_stl(const mesh::Soup& soup) {
   return out;
 }
 
-inline std::string text_stl(const mesh::Soup& soup) {
+inline std::string text_stl(const mesh::TriangleSoup& soup) {
   std::string out = "solid made\n";
   const auto number = [](double v) {
     char text[40];

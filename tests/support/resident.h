@@ -11,7 +11,7 @@ namespace catena::test {
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool kResidentCounts = false;
 #else
-inline constexpr bool kResidentCounts = true;
+inline constexpr bool kResidentIsReliable = true;
 #endif
 
 /// Resident bytes (Linux).

@@ -17,7 +17,7 @@ class HoldHeight final : public haptics::Constraint {
   void advance(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override {
     state.proxy = {probe.x, probe.y, height_};
     state.evaluations += 1;
-    state.status = haptics::Status::ok;
+    state.status = catena::LinkStatus::ok;
   }
 
  private:

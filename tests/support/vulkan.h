@@ -16,7 +16,7 @@ inline std::string test_device() {
 }
 
 /// Whether tests draw on lavapipe.
-inline bool on_lavapipe() { return test_device() == "cpu"; }
+inline bool uses_lavapipe() { return test_device() == "cpu"; }
 
 /// Points the Vulkan loader at lavapipe, unless the environment already says which driver or which device to take.
 inline void use_lavapipe() {

@@ -97,7 +97,7 @@ XRAPI_ATTR XrResult XRAPI_CALL sync(XrSession handle, const XrActionsSyncInfo* i
 /// The hand, where the action is bound in the scripted profile and the session has the focus.
 const ScriptedHand* active_hand(const SessionObject& session, std::uint64_t action, XrPath hand_path) {
   auto* instance = world().find<InstanceObject>(session.parent, Kind::instance);
-  const Script& script = world().stage.script;
+  const Script& script = world().shared.script;
   const auto profile = instance->suggested.find(script.profile);
   if (session.state != XR_SESSION_STATE_FOCUSED || profile == instance->suggested.end() || !session.synced) return nullptr;
   const auto bound = profile->second.find(action);
@@ -110,9 +110,9 @@ const ScriptedHand* active_hand(const SessionObject& session, std::uint64_t acti
 /// The eyes are seen, and the action is bound to their gaze.
 bool sees_gaze(const SessionObject& session, std::uint64_t action) {
   auto* instance = world().find<InstanceObject>(session.parent, Kind::instance);
-  const Script& script = world().stage.script;
+  const Script& script = world().shared.script;
   const auto profile = instance->suggested.find(kEyes);
-  return script.sees_eyes && script.gaze && session.state == XR_SESSION_STATE_FOCUSED && session.synced &&
+  return script.supports_gaze && script.gaze && session.state == XR_SESSION_STATE_FOCUSED && session.synced &&
          profile != instance->suggested.end() && profile->second.contains(action);
 }
 
@@ -171,7 +171,7 @@ XRAPI_ATTR XrResult XRAPI_CALL current_profile(XrSession handle, XrPath, XrInter
   FIND(SessionObject, session, handle, session);
   if (session->action_sets.empty()) return illegal(self, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no set is attached");
   auto* instance = world().find<InstanceObject>(session->parent, Kind::instance);
-  const auto it = std::ranges::find(instance->paths, world().stage.script.profile);
+  const auto it = std::ranges::find(instance->paths, world().shared.script.profile);
   out->interactionProfile = it == instance->paths.end() ? XR_NULL_PATH : XrPath(it - instance->paths.begin());
   return XR_SUCCESS;
 }
@@ -186,8 +186,8 @@ XRAPI_ATTR XrResult XRAPI_CALL apply_haptic(XrSession handle, const XrHapticActi
   if (!(vibration.amplitude >= 0 && vibration.amplitude <= 1))
     return illegal(self, XR_ERROR_VALIDATION_FAILURE, "an amplitude beyond 0..1");
   if (session->state != XR_SESSION_STATE_FOCUSED) return XR_SESSION_NOT_FOCUSED;
-  world().stage.record.vibrations.push_back({hand_of(path_text(session->parent, info->subactionPath)), false, vibration.amplitude,
-                                             vibration.frequency, vibration.duration, session->frame});
+  world().shared.record.vibrations.push_back({hand_of(path_text(session->parent, info->subactionPath)), false, vibration.amplitude,
+                                              vibration.frequency, vibration.duration, session->frame});
   return XR_SUCCESS;
 }
 
@@ -195,7 +195,7 @@ XRAPI_ATTR XrResult XRAPI_CALL stop_haptic(XrSession handle, const XrHapticActio
   ENTER(xrStopHapticFeedback);
   FIND(SessionObject, session, handle, session);
   FIND(ActionObject, action, info->action, action);
-  world().stage.record.vibrations.push_back({hand_of(path_text(session->parent, info->subactionPath)), true, 0, 0, 0, session->frame});
+  world().shared.record.vibrations.push_back({hand_of(path_text(session->parent, info->subactionPath)), true, 0, 0, 0, session->frame});
   return session->state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 

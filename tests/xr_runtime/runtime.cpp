@@ -30,7 +30,7 @@ XrView scripted_view(float x, float turn, float left, float right) {
 Script first_script() {
   Script script;
   script.views = {scripted_view(-0.032f, 0.087f, -0.9f, 0.75f), scripted_view(0.032f, -0.087f, -0.75f, 0.9f)};
-  script.without = {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
+  script.unsupported = {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
   return script;
 }
 
@@ -40,12 +40,12 @@ std::string& record_path() {
 }
 
 void write_record() {
-  const Record& r = world().stage.record;
+  const Record& r = world().shared.record;
   std::FILE* file = std::fopen(record_path().c_str(), "w");
   if (!file) return;
   std::fprintf(file, "frames %llu\nquads %llu\npictures %llu\nmoved %llu\nillegal %zu\nobjects %llu\nvibrations %zu\n",
-               (unsigned long long)r.frames, (unsigned long long)r.quads, (unsigned long long)r.pictures, (unsigned long long)r.moved_poses,
-               r.illegal.size(), (unsigned long long)r.objects, r.vibrations.size());
+               (unsigned long long)r.frames, (unsigned long long)r.quads, (unsigned long long)r.projection_frames,
+               (unsigned long long)r.moved_poses, r.illegal.size(), (unsigned long long)r.objects, r.vibrations.size());
   for (const std::string& line : r.illegal) std::fprintf(file, "# %s\n", line.c_str());
   std::fclose(file);
 }
@@ -65,10 +65,10 @@ XrSessionState state_named(const std::string& word) {
 
 }  // namespace
 
-World& world() {
-  static World* one = [] {
-    auto* made = new World;  // outlives what runs at exit
-    made->stage.script = first_script();
+RuntimeState& world() {
+  static RuntimeState* one = [] {
+    auto* made = new RuntimeState;  // outlives what runs at exit
+    made->shared.script = first_script();
     return made;
   }();
   return *one;
@@ -78,7 +78,7 @@ void read_environment() {
   static bool done = false;
   const char* words = std::getenv("CATENA_XR_SCRIPT");
   if (std::exchange(done, true) || !words) return;
-  Script& script = world().stage.script;
+  Script& script = world().shared.script;
   std::istringstream in(words);
   for (std::string word; in >> word;) {
     const auto equals = word.find('=');
@@ -91,8 +91,8 @@ void read_environment() {
     if (key == "size") std::sscanf(value.c_str(), "%ux%u", &script.width, &script.height);
     if (key == "period_ms") script.period_ns = std::int64_t(1e6 * std::atof(value.c_str()));
     if (key == "state") script.states.emplace(std::strtoull(value.c_str(), nullptr, 10), state_named(value.substr(colon + 1)));
-    if (key == "without") script.without.insert(value);
-    if (key == "with") script.without.erase(value);
+    if (key == "without") script.unsupported.insert(value);
+    if (key == "with") script.unsupported.erase(value);
     if (key == "menu") {
       script.menu_from = std::strtoull(value.c_str(), nullptr, 10);
       script.menu_to = std::strtoull(value.c_str() + colon + 1, nullptr, 10);
@@ -115,11 +115,12 @@ void read_environment() {
     }
     if (XrVector3f& at = script.stage.position; key == "stage") std::sscanf(value.c_str(), "%f:%f:%f", &at.x, &at.y, &at.z);
     if (XrVector3f at{}; key == "grip" && std::sscanf(value.c_str() + colon + 1, "%f:%f:%f", &at.x, &at.y, &at.z) == 3)
-      script.grips[std::strtoull(value.c_str(), nullptr, 10)] = at;
+      script.grip_path[std::strtoull(value.c_str(), nullptr, 10)] = at;
     if (key == "select")
-      script.selects.emplace_back(std::strtoull(value.c_str(), nullptr, 10), std::strtoull(value.c_str() + colon + 1, nullptr, 10));
-    if (key == "paced") script.paced = true;
-    if (key == "hang") script.hang = {std::strtoull(value.c_str(), nullptr, 10), std::int64_t(1e6 * std::atof(value.c_str() + colon + 1))};
+      script.select_frames.emplace_back(std::strtoull(value.c_str(), nullptr, 10), std::strtoull(value.c_str() + colon + 1, nullptr, 10));
+    if (key == "paced") script.sleeps_in_wait = true;
+    if (key == "hang")
+      script.slow_wait = {std::strtoull(value.c_str(), nullptr, 10), std::int64_t(1e6 * std::atof(value.c_str() + colon + 1))};
     if (key == "record") {
       record_path() = value;
       std::atexit(write_record);
@@ -127,23 +128,23 @@ void read_environment() {
   }
 }
 
-std::uint64_t World::add(std::unique_ptr<Object> object) {
+std::uint64_t RuntimeState::add(std::unique_ptr<Object> object) {
   objects.emplace(++last_handle, std::move(object));
-  stage.record.objects = objects.size();
+  shared.record.objects = objects.size();
   return last_handle;
 }
 
-void World::remove(std::uint64_t handle) {
+void RuntimeState::remove(std::uint64_t handle) {
   std::vector<std::uint64_t> children;
   for (const auto& [one, object] : objects)
     if (object->parent == handle) children.push_back(one);
   for (const std::uint64_t child : children) remove(child);
   objects.erase(handle);
-  stage.record.objects = objects.size();
+  shared.record.objects = objects.size();
 }
 
 std::optional<XrResult> enter(const char* function) {
-  Stage& stage = world().stage;
+  SharedState& stage = world().shared;
   const std::uint64_t call = ++stage.record.calls[function];
   const auto it = stage.script.failures.find(function);
   if (it == stage.script.failures.end() || call != std::uint64_t(it->second.at)) return std::nullopt;
@@ -151,7 +152,7 @@ std::optional<XrResult> enter(const char* function) {
 }
 
 XrResult illegal(const char* function, XrResult result, const std::string& why) {
-  world().stage.record.illegal.push_back(std::string(function) + ": " + why);
+  world().shared.record.illegal.push_back(std::string(function) + ": " + why);
   return result;
 }
 
@@ -163,7 +164,7 @@ XrTime clock_now() {
 
 void post_state(std::uint64_t handle, SessionObject& session, XrSessionState state) {
   session.state = state;
-  world().stage.record.states.push_back(state);
+  world().shared.record.states.push_back(state);
   auto* instance = world().find<InstanceObject>(session.parent, Kind::instance);
   XrEventDataBuffer buffer{};
   auto& event = reinterpret_cast<XrEventDataSessionStateChanged&>(buffer);
@@ -183,7 +184,7 @@ XRAPI_ATTR XrResult XRAPI_CALL enumerate_extensions(const char* layer, std::uint
   read_environment();
   std::vector<XrExtensionProperties> all;
   for (const char* name : kExtensions) {
-    if (world().stage.script.without.contains(name)) continue;
+    if (world().shared.script.unsupported.contains(name)) continue;
     XrExtensionProperties one{};
     one.type = XR_TYPE_EXTENSION_PROPERTIES;
     std::strncpy(one.extensionName, name, sizeof one.extensionName - 1);
@@ -197,7 +198,7 @@ XRAPI_ATTR XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info,
   ENTER(xrCreateInstance);
   auto instance = std::make_unique<InstanceObject>();
   for (std::uint32_t i = 0; i < info->enabledExtensionCount; ++i) {
-    if (world().stage.script.without.contains(info->enabledExtensionNames[i])) return XR_ERROR_EXTENSION_NOT_PRESENT;
+    if (world().shared.script.unsupported.contains(info->enabledExtensionNames[i])) return XR_ERROR_EXTENSION_NOT_PRESENT;
     instance->extensions.insert(info->enabledExtensionNames[i]);
   }
   *made = as_handle<XrInstance>(world().add(std::move(instance)));
@@ -247,7 +248,7 @@ XRAPI_ATTR XrResult XRAPI_CALL system_properties(XrInstance handle, XrSystemId s
   out->trackingProperties = {XR_TRUE, XR_TRUE};
   for (auto* next = static_cast<XrBaseOutStructure*>(out->next); next; next = next->next)
     if (next->type == XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT)
-      reinterpret_cast<XrSystemEyeGazeInteractionPropertiesEXT*>(next)->supportsEyeGazeInteraction = world().stage.script.sees_eyes;
+      reinterpret_cast<XrSystemEyeGazeInteractionPropertiesEXT*>(next)->supportsEyeGazeInteraction = world().shared.script.supports_gaze;
   return XR_SUCCESS;
 }
 
@@ -272,7 +273,7 @@ XRAPI_ATTR XrResult XRAPI_CALL views(XrInstance handle, XrSystemId, XrViewConfig
   ENTER(xrEnumerateViewConfigurationViews);
   FIND(InstanceObject, instance, handle, instance);
   if (type != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO) return XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED;
-  const Script& script = world().stage.script;
+  const Script& script = world().shared.script;
   XrViewConfigurationView one{};
   one.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
   one.recommendedImageRectWidth = script.width;
@@ -326,7 +327,7 @@ XRAPI_ATTR XrResult XRAPI_CALL timespec_to_time(XrInstance handle, const timespe
 XRAPI_ATTR XrResult XRAPI_CALL vulkan_requirements(XrInstance handle, XrSystemId, XrGraphicsRequirementsVulkan2KHR* out) {
   ENTER(xrGetVulkanGraphicsRequirements2KHR);
   FIND(InstanceObject, instance, handle, instance);
-  instance->asked_requirements = true;
+  instance->requirements_queried = true;
   out->minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
   out->maxApiVersionSupported = XR_MAKE_VERSION(1, 3, 0);
   return XR_SUCCESS;
@@ -432,14 +433,14 @@ __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterfac
   return XR_SUCCESS;
 }
 
-__attribute__((visibility("default"))) catena::test::xr_runtime::Stage* catena_xr_stage() {
-  return &catena::test::xr_runtime::world().stage;
+__attribute__((visibility("default"))) catena::test::xr_runtime::SharedState* catena_xr_stage() {
+  return &catena::test::xr_runtime::world().shared;
 }
 
 __attribute__((visibility("default"))) void catena_xr_reset() {
   auto& world = catena::test::xr_runtime::world();
-  world.stage = {};
-  world.stage.script = catena::test::xr_runtime::first_script();
-  world.stage.record.objects = world.objects.size();
+  world.shared = {};
+  world.shared.script = catena::test::xr_runtime::first_script();
+  world.shared.record.objects = world.objects.size();
 }
 }

@@ -25,7 +25,7 @@ struct InstanceObject : Object {
   std::deque<XrEventDataBuffer> events;
   std::vector<std::string> paths{""};                                                  ///< by XrPath
   std::map<std::string, std::map<std::uint64_t, std::vector<std::string>>> suggested;  ///< by profile: action -> paths
-  bool asked_requirements = false;
+  bool requirements_queried = false;
 };
 
 struct SessionObject : Object {
@@ -36,7 +36,7 @@ struct SessionObject : Object {
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t family = 0;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
-  bool running = false, waited = false, begun = false, leaves = false, shown = false, synced = false;
+  bool running = false, waited = false, begun = false, exit_requested = false, has_shown_frame = false, synced = false;
   std::uint64_t frame = 0;  ///< waits so far
   XrTime time = 0, last_ended = 0;
   std::vector<XrView> located;  ///< for `time`
@@ -76,9 +76,9 @@ struct ActionObject : Object {
   XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
 };
 
-struct World {
+struct RuntimeState {
   std::mutex lock;
-  Stage stage;
+  SharedState shared;
   std::unordered_map<std::uint64_t, std::unique_ptr<Object>> objects;
   std::uint64_t last_handle = 0x1000;
 
@@ -91,7 +91,7 @@ struct World {
   /// With all that hangs on it.
   void remove(std::uint64_t handle);
 };
-World& world();
+RuntimeState& world();
 
 template <class Handle>
 std::uint64_t number(Handle handle) {
@@ -122,7 +122,7 @@ XrResult fill(const std::vector<T>& all, std::uint32_t capacity, std::uint32_t* 
 }
 
 /// What a swapchain shows, brought back to the host: bytes of RGBA, or floats of depth.
-void bring_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, KeptPicture& kept);
+void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, CapturedImage& kept);
 
 // by name: the functions of each file
 PFN_xrVoidFunction find_session_function(const std::string& name);

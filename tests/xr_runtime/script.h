@@ -43,31 +43,31 @@ struct Script {
   std::vector<XrView> views;  ///< in the local space; reset() has two, canted and asymmetric
   std::uint32_t width = 96, height = 80;
   std::int64_t period_ns = 11'111'111;
-  std::optional<std::int64_t> stated_period_ns;  ///< what it says of the period, where that is not so
-  XrPosef stage{{0, 0, 0, 1}, {0, 0, 0}};        ///< in the local space
-  bool paced = false;
+  std::optional<std::int64_t> reported_period_ns;  ///< what it says of the period, where that is not so
+  XrPosef stage{{0, 0, 0, 1}, {0, 0, 0}};          ///< in the local space
+  bool sleeps_in_wait = false;
   bool focus = true;  ///< after the first frame the session becomes visible and focused by itself
   bool tracked = true;
   std::vector<std::int64_t> formats{VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D32_SFLOAT};
-  std::set<std::string> without;                               ///< extensions and spaces ("stage") that are not offered; at first: masks
+  std::set<std::string> unsupported;                           ///< extensions and spaces ("stage") that are not offered; at first: masks
   std::vector<XrSessionState> after_end;                       ///< posted after the next xrEndSession
   std::map<std::string, ScriptedFailure> failures;             ///< by function, "xrEndFrame"
   std::multimap<std::uint64_t, XrSessionState> states;         ///< posted before that frame's wait, whatever the graph says
   std::multimap<std::uint64_t, XrEventDataBuffer> events;      ///< the same of other events
-  std::function<void(std::uint64_t frame, Script&)> at_frame;  ///< before the wait of each frame
+  std::function<void(std::uint64_t frame, Script&)> on_frame;  ///< before the wait of each frame
   ScriptedHand hands[2];
   std::optional<XrPosef> gaze;  ///< of the eyes; none: they are not seen now
-  bool sees_eyes = true;        ///< the headset can
+  bool supports_gaze = true;    ///< the headset can
   std::string profile = "/interaction_profiles/khr/simple_controller";
-  std::map<std::uint64_t, XrVector3f> grips;                     ///< where the right hand is from that frame on
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> selects;  ///< frames in which its trigger is down: from, to
-  std::uint64_t menu_from = 0, menu_to = 0;                      ///< frames in which the right hand's button is down
-  std::optional<std::pair<std::uint64_t, std::int64_t>> hang;    ///< xrWaitFrame of that frame takes so long, ns
-  bool keep_pictures = false;
+  std::map<std::uint64_t, XrVector3f> grip_path;                       ///< where the right hand is from that frame on
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> select_frames;  ///< frames in which its trigger is down: from, to
+  std::uint64_t menu_from = 0, menu_to = 0;                            ///< frames in which the right hand's button is down
+  std::optional<std::pair<std::uint64_t, std::int64_t>> slow_wait;     ///< xrWaitFrame of that frame takes so long, ns
+  bool capture_images = false;
   std::uint32_t images = 3;  ///< of a swapchain
 };
 
-struct KeptPicture {
+struct CapturedImage {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
   std::vector<float> depth;  ///< of the depth image, where one was submitted
@@ -86,19 +86,19 @@ struct Vibration {
 
 struct Record {
   std::map<std::string, std::uint64_t> calls;
-  std::vector<std::string> illegal;  ///< what was refused because its order or its arguments were wrong
-  std::uint64_t frames = 0;          ///< ended
-  std::uint64_t pictures = 0;        ///< with a projection layer
+  std::vector<std::string> illegal;     ///< what was refused because its order or its arguments were wrong
+  std::uint64_t frames = 0;             ///< ended
+  std::uint64_t projection_frames = 0;  ///< with a projection layer
   std::uint64_t quads = 0, depths = 0;
-  std::uint64_t moved_poses = 0;        ///< submitted views that are not those located for that frame
-  std::vector<KeptPicture> last;        ///< by view, of the last picture; with keep_pictures
-  std::vector<KeptPicture> last_quads;  ///< the same of quad layers
+  std::uint64_t moved_poses = 0;                ///< submitted views that are not those located for that frame
+  std::vector<CapturedImage> last_images;       ///< by view, of the last picture; with capture_images
+  std::vector<CapturedImage> last_quad_images;  ///< the same of quad layers
   std::vector<Vibration> vibrations;
   std::vector<XrSessionState> states;  ///< posted
   std::uint64_t objects = 0;           ///< alive now
 };
 
-struct Stage {
+struct SharedState {
   Script script;
   Record record;
 };
@@ -107,7 +107,7 @@ struct Stage {
 
 extern "C" {
 /// Of the library that the loader has loaded; the path is CATENA_XR_RUNTIME_LIBRARY of the build.
-catena::test::xr_runtime::Stage* catena_xr_stage();
+catena::test::xr_runtime::SharedState* catena_xr_stage();
 /// Script and record as at first; objects must be gone.
 void catena_xr_reset();
 }

@@ -14,7 +14,7 @@ namespace {
 XRAPI_ATTR XrResult XRAPI_CALL create_session(XrInstance handle, const XrSessionCreateInfo* info, XrSession* made) {
   ENTER(xrCreateSession);
   FIND(InstanceObject, instance, handle, instance);
-  if (!instance->asked_requirements)
+  if (!instance->requirements_queried)
     return illegal(self, XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING, "the requirements were not asked for");
   const auto* binding = static_cast<const XrGraphicsBindingVulkan2KHR*>(info->next);
   if (!binding || binding->type != XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR)
@@ -54,7 +54,7 @@ XRAPI_ATTR XrResult XRAPI_CALL begin_session(XrSession handle, const XrSessionBe
   if (session->running) return illegal(self, XR_ERROR_SESSION_RUNNING, "it runs");
   if (session->state != XR_SESSION_STATE_READY) return illegal(self, XR_ERROR_SESSION_NOT_READY, "it is not ready");
   session->running = true;
-  session->waited = session->begun = session->shown = session->leaves = false;
+  session->waited = session->begun = session->has_shown_frame = session->exit_requested = false;
   return XR_SUCCESS;
 }
 
@@ -65,8 +65,8 @@ XRAPI_ATTR XrResult XRAPI_CALL end_session(XrSession handle) {
   if (session->state != XR_SESSION_STATE_STOPPING) return illegal(self, XR_ERROR_SESSION_NOT_STOPPING, "it is not stopping");
   session->running = false;
   post_state(number(handle), *session, XR_SESSION_STATE_IDLE);
-  if (session->leaves) post_state(number(handle), *session, XR_SESSION_STATE_EXITING);
-  for (const XrSessionState state : std::exchange(world().stage.script.after_end, {})) post_state(number(handle), *session, state);
+  if (session->exit_requested) post_state(number(handle), *session, XR_SESSION_STATE_EXITING);
+  for (const XrSessionState state : std::exchange(world().shared.script.after_end, {})) post_state(number(handle), *session, state);
   return XR_SUCCESS;
 }
 
@@ -74,7 +74,7 @@ XRAPI_ATTR XrResult XRAPI_CALL request_exit(XrSession handle) {
   ENTER(xrRequestExitSession);
   FIND(SessionObject, session, handle, session);
   if (!session->running) return illegal(self, XR_ERROR_SESSION_NOT_RUNNING, "it does not run");
-  session->leaves = true;
+  session->exit_requested = true;
   if (session->state == XR_SESSION_STATE_STOPPING) return XR_SUCCESS;
   if (session->state == XR_SESSION_STATE_FOCUSED) post_state(number(handle), *session, XR_SESSION_STATE_VISIBLE);
   if (session->state == XR_SESSION_STATE_VISIBLE) post_state(number(handle), *session, XR_SESSION_STATE_SYNCHRONIZED);
@@ -86,7 +86,7 @@ XRAPI_ATTR XrResult XRAPI_CALL reference_spaces(XrSession handle, std::uint32_t 
   ENTER(xrEnumerateReferenceSpaces);
   FIND(SessionObject, session, handle, session);
   std::vector all{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL};
-  if (!world().stage.script.without.contains("stage")) all.push_back(XR_REFERENCE_SPACE_TYPE_STAGE);
+  if (!world().shared.script.unsupported.contains("stage")) all.push_back(XR_REFERENCE_SPACE_TYPE_STAGE);
   return fill(all, capacity, count, out);
 }
 
@@ -113,7 +113,7 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_space(XrSpace handle, XrSpace base, XrTime
   FIND(SpaceObject, space, handle, space);
   FIND(SpaceObject, in, base, space);
   if (time <= 0) return illegal(self, XR_ERROR_TIME_INVALID, "no such time");
-  const Script& script = world().stage.script;
+  const Script& script = world().shared.script;
   constexpr XrSpaceLocationFlags kAll = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
                                         XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
   out->locationFlags = script.tracked ? kAll : 0;
@@ -147,14 +147,15 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     FIND(SessionObject, session, handle, session);
     if (!session->running) return illegal(self, XR_ERROR_SESSION_NOT_RUNNING, "it does not run");
     if (session->waited) return illegal(self, XR_ERROR_CALL_ORDER_INVALID, "the last frame was not begun");
-    Script& script = world().stage.script;
+    Script& script = world().shared.script;
     const std::uint64_t frame = session->frame++;
-    if (script.at_frame) script.at_frame(frame, script);
-    if (script.hang && script.hang->first == frame) sleep_ns = script.hang->second;
+    if (script.on_frame) script.on_frame(frame, script);
+    if (script.slow_wait && script.slow_wait->first == frame) sleep_ns = script.slow_wait->second;
     if (script.menu_to > 0) script.hands[1].menu = frame >= script.menu_from && frame < script.menu_to;
-    if (const auto grip = script.grips.find(frame); grip != script.grips.end()) script.hands[1].grip.position = grip->second;
-    if (!script.selects.empty())
-      script.hands[1].select = std::ranges::any_of(script.selects, [&](const auto& of) { return frame >= of.first && frame < of.second; });
+    if (const auto grip = script.grip_path.find(frame); grip != script.grip_path.end()) script.hands[1].grip.position = grip->second;
+    if (!script.select_frames.empty())
+      script.hands[1].select =
+          std::ranges::any_of(script.select_frames, [&](const auto& of) { return frame >= of.first && frame < of.second; });
     for (auto [it, end] = script.states.equal_range(frame); it != end; ++it) post_state(number(handle), *session, it->second);
     auto* instance = world().find<InstanceObject>(session->parent, Kind::instance);
     for (auto [it, end] = script.events.equal_range(frame); it != end; ++it) instance->events.push_back(it->second);
@@ -162,12 +163,12 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     session->located.clear();
     const XrTime now = clock_now();
     session->time += std::max<std::int64_t>(script.period_ns, 1);  // whatever the period, the next frame is later
-    if (script.paced) {
+    if (script.sleeps_in_wait) {
       if (session->time > now) sleep_ns = std::max(sleep_ns, session->time - now);
       if (session->time < now - script.period_ns) session->time = now;  // late: the next refresh
     }
     out->predictedDisplayTime = session->time + script.period_ns;
-    out->predictedDisplayPeriod = script.stated_period_ns.value_or(script.period_ns);
+    out->predictedDisplayPeriod = script.reported_period_ns.value_or(script.period_ns);
     out->shouldRender = session->state == XR_SESSION_STATE_VISIBLE || session->state == XR_SESSION_STATE_FOCUSED;
   }
   if (sleep_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(sleep_ns));
@@ -189,7 +190,7 @@ XRAPI_ATTR XrResult XRAPI_CALL locate_views(XrSession handle, const XrViewLocate
   FIND(SessionObject, session, handle, session);
   FIND(SpaceObject, space, info->space, space);
   if (info->displayTime <= 0) return illegal(self, XR_ERROR_TIME_INVALID, "no such time");
-  const Script& script = world().stage.script;
+  const Script& script = world().shared.script;
   state->viewStateFlags = script.tracked ? XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT : 0;
   session->located = script.views;
   return fill(script.views, capacity, count, out);
@@ -211,13 +212,13 @@ const char* fault_of(const XrSwapchainSubImage& sub) {
 }
 
 void keep(SessionObject& session, const XrCompositionLayerProjectionView& view, const XrCompositionLayerDepthInfoKHR* depth,
-          KeptPicture& kept) {
+          CapturedImage& kept) {
   auto* swapchain = world().find<SwapchainObject>(number(view.subImage.swapchain), Kind::swapchain);
-  bring_back(session, *swapchain, view.subImage.imageRect, kept);
+  read_back(session, *swapchain, view.subImage.imageRect, kept);
   kept.pose = view.pose;
   kept.fov = view.fov;
   if (!depth) return;
-  bring_back(session, *world().find<SwapchainObject>(number(depth->subImage.swapchain), Kind::swapchain), depth->subImage.imageRect, kept);
+  read_back(session, *world().find<SwapchainObject>(number(depth->subImage.swapchain), Kind::swapchain), depth->subImage.imageRect, kept);
   kept.near_z = depth->nearZ;
   kept.far_z = depth->farZ;
   kept.min_depth = depth->minDepth;
@@ -230,7 +231,7 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession handle, const XrFrameEndInfo*
   if (!session->running) return illegal(self, XR_ERROR_SESSION_NOT_RUNNING, "it does not run");
   if (!session->begun) return illegal(self, XR_ERROR_CALL_ORDER_INVALID, "it was not begun");
   if (info->displayTime <= session->last_ended) return illegal(self, XR_ERROR_TIME_INVALID, "not after the last frame's time");
-  Stage& stage = world().stage;
+  SharedState& stage = world().shared;
   for (std::uint32_t l = 0; l < info->layerCount; ++l) {
     const XrCompositionLayerBaseHeader* layer = info->layers[l];
     if (!world().find<SpaceObject>(number(layer->space), Kind::space)) return illegal(self, XR_ERROR_HANDLE_INVALID, "no such space");
@@ -238,17 +239,17 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession handle, const XrFrameEndInfo*
       const auto& quad = reinterpret_cast<const XrCompositionLayerQuad&>(*layer);
       if (const char* fault = fault_of(quad.subImage)) return illegal(self, XR_ERROR_LAYER_INVALID, fault);
       ++stage.record.quads;
-      if (!stage.script.keep_pictures) continue;
-      stage.record.last_quads.assign(1, {});
-      bring_back(*session, *world().find<SwapchainObject>(number(quad.subImage.swapchain), Kind::swapchain), quad.subImage.imageRect,
-                 stage.record.last_quads[0]);
-      stage.record.last_quads[0].pose = quad.pose;
+      if (!stage.script.capture_images) continue;
+      stage.record.last_quad_images.assign(1, {});
+      read_back(*session, *world().find<SwapchainObject>(number(quad.subImage.swapchain), Kind::swapchain), quad.subImage.imageRect,
+                stage.record.last_quad_images[0]);
+      stage.record.last_quad_images[0].pose = quad.pose;
       continue;
     }
     if (layer->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) return illegal(self, XR_ERROR_LAYER_INVALID, "no such layer");
     const auto& projection = reinterpret_cast<const XrCompositionLayerProjection&>(*layer);
     if (projection.viewCount != stage.script.views.size()) return illegal(self, XR_ERROR_VALIDATION_FAILURE, "another number of views");
-    if (stage.script.keep_pictures) stage.record.last.assign(projection.viewCount, {});
+    if (stage.script.capture_images) stage.record.last_images.assign(projection.viewCount, {});
     for (std::uint32_t k = 0; k < projection.viewCount; ++k) {
       const XrCompositionLayerProjectionView& view = projection.views[k];
       const auto* depth = static_cast<const XrCompositionLayerDepthInfoKHR*>(view.next);
@@ -257,14 +258,14 @@ XRAPI_ATTR XrResult XRAPI_CALL end_frame(XrSession handle, const XrFrameEndInfo*
       if (const char* fault = depth ? fault_of(depth->subImage) : nullptr) return illegal(self, XR_ERROR_LAYER_INVALID, fault);
       if (depth) ++stage.record.depths;
       if (k >= session->located.size() || !is_same(view, session->located[k])) ++stage.record.moved_poses;
-      if (stage.script.keep_pictures) keep(*session, view, depth, stage.record.last[k]);
+      if (stage.script.capture_images) keep(*session, view, depth, stage.record.last_images[k]);
     }
-    ++stage.record.pictures;
+    ++stage.record.projection_frames;
   }
   session->begun = false;
   session->last_ended = info->displayTime;
   ++stage.record.frames;
-  if (!std::exchange(session->shown, true)) {
+  if (!std::exchange(session->has_shown_frame, true)) {
     post_state(number(handle), *session, XR_SESSION_STATE_SYNCHRONIZED);
     if (stage.script.focus) {
       post_state(number(handle), *session, XR_SESSION_STATE_VISIBLE);
@@ -279,7 +280,7 @@ XRAPI_ATTR XrResult XRAPI_CALL visibility_mask(XrSession handle, XrViewConfigura
                                                XrVisibilityMaskKHR* out) {
   ENTER(xrGetVisibilityMaskKHR);
   FIND(SessionObject, session, handle, session);
-  const Script& script = world().stage.script;
+  const Script& script = world().shared.script;
   if (view >= script.views.size()) return illegal(self, XR_ERROR_INDEX_OUT_OF_RANGE, "no such view");
   if (type != XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR) return XR_ERROR_FEATURE_UNSUPPORTED;
   const XrFovf& fov = script.views[view].fov;

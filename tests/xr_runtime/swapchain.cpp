@@ -64,20 +64,20 @@ VkImageLayout lent_layout(const SwapchainObject& swapchain) {
 XRAPI_ATTR XrResult XRAPI_CALL swapchain_formats(XrSession handle, std::uint32_t capacity, std::uint32_t* count, std::int64_t* out) {
   ENTER(xrEnumerateSwapchainFormats);
   FIND(SessionObject, session, handle, session);
-  return fill(world().stage.script.formats, capacity, count, out);
+  return fill(world().shared.script.formats, capacity, count, out);
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, XrSwapchain* made) {
   ENTER(xrCreateSwapchain);
   FIND(SessionObject, session, handle, session);
-  const auto& formats = world().stage.script.formats;
+  const auto& formats = world().shared.script.formats;
   if (std::ranges::find(formats, info->format) == formats.end())
     return illegal(self, XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "a format that is not offered");
   auto swapchain = std::make_unique<SwapchainObject>(number(handle));
   swapchain->device = session->device;
   swapchain->info = *info;
   const bool depth = swapchain->is_depth();
-  for (std::uint32_t i = 0; i < world().stage.script.images; ++i) {
+  for (std::uint32_t i = 0; i < world().shared.script.images; ++i) {
     VkImageCreateInfo image{};
     image.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
     image.imageType = VK_IMAGE_TYPE_2D;
@@ -162,7 +162,7 @@ SwapchainObject::~SwapchainObject() {
   for (VkDeviceMemory one : memory) vkFreeMemory(device, one, nullptr);
 }
 
-void bring_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, KeptPicture& kept) {
+void read_back(SessionObject& session, SwapchainObject& swapchain, const XrRect2Di& rect, CapturedImage& kept) {
   const auto width = std::uint32_t(rect.extent.width), height = std::uint32_t(rect.extent.height);
   const VkDeviceSize bytes = VkDeviceSize(4) * width * height;
   VkBufferCreateInfo info{};

@@ -31,13 +31,13 @@ std::optional<Pattern> pattern_in(const std::string& path) {
 
 bool is_numbered(const std::string& path) { return pattern_in(path).has_value(); }
 
-std::string numbered(const std::string& path, int frame) {
+std::string numbered_path(const std::string& path, int frame) {
   const auto pattern = pattern_in(path);
   if (!pattern) return path;
   return path.substr(0, pattern->at) + fmt::format("{:0{}}", frame, pattern->width) + path.substr(pattern->at + pattern->length);
 }
 
-std::string what_is_drawn(const render::FramePacket& packet) {
+std::string describe_contents(const render::FramePacket& packet) {
   std::string text;
   const auto add = [&](std::size_t count, const char* one, const char* many) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : many);
@@ -51,7 +51,7 @@ std::string what_is_drawn(const render::FramePacket& packet) {
   add(packet.tubes.size() - curves, "streamline", "streamlines");
   add(curves, "curve", "curves");
   std::size_t balls = 0;
-  for (const render::BallsItem& item : packet.balls) balls += item.balls->places.size();
+  for (const render::SpheresItem& item : packet.spheres) balls += item.spheres->offsets.size();
   add(balls, "point", "points");
   add(packet.glyphs.size(), "set of glyphs", "sets of glyphs");
   add(packet.cursors.size(), "cursor", "cursors");
@@ -73,18 +73,18 @@ Outcome check_kind(const std::string& path, const char* option, std::initializer
 }
 
 /// Every file that will be written, with the option that names it.
-void add_outputs(const RenderOptions& o, int frames, RunFiles& files) {
+void add_outputs(const RenderOptions& o, int frames, IoConflictChecker& files) {
   for (const auto& [path, option] : {std::pair{o.output, "-o"}, {o.depth, "--depth"}, {o.ids, "--ids"}}) {
     if (path.empty()) continue;
     const int count = is_numbered(path) && !video_kind(path) ? frames : 1;
-    for (int k = 0; k < count; ++k) files.writes(option, count > 1 || is_numbered(path) ? numbered(path, k) : path);
+    for (int k = 0; k < count; ++k) files.add_output(option, count > 1 || is_numbered(path) ? numbered_path(path, k) : path);
   }
-  files.writes("--stats", o.stats);
+  files.add_output("--stats", o.stats);
 }
 
 }  // namespace
 
-Outcome check_outputs(const RenderOptions& o, const PictureShape& shape, int frames, RunFiles files) {
+Outcome check_outputs(const RenderOptions& o, const ImageFormat& shape, int frames, IoConflictChecker files) {
   CATENA_CHECK(check_kind(o.output, "-o", {".png", ".exr", ".mp4", ".webm", ".gif"}));
   if (!o.depth.empty()) CATENA_CHECK(check_kind(o.depth, "--depth", {".exr"}));
   if (!o.ids.empty()) CATENA_CHECK(check_kind(o.ids, "--ids", {".png"}));
@@ -107,7 +107,7 @@ bool uses_standard_output(const RenderOptions& o) {
   return is_stdout(o.output) || is_stdout(o.depth) || is_stdout(o.ids) || is_stdout(o.stats);
 }
 
-render::BandWants wanted_bands(const RenderOptions& o) {
+render::BandChannels required_band_channels(const RenderOptions& o) {
   const bool floats = o.bits == 16 || o.output.ends_with(".exr");
   return {!floats, floats, !o.depth.empty(), !o.ids.empty()};
 }
@@ -117,62 +117,62 @@ bool takes_all_frames(const RenderOptions& o) {
 }
 
 Outcome Outputs::open(const std::string& path, int frame,
-                      Result<std::unique_ptr<Sink>> (*opener)(const std::string&, const PictureShape&)) {
+                      Result<std::unique_ptr<ImageSink>> (*opener)(const std::string&, const ImageFormat&)) {
   if (path.empty()) return Done{};
   const bool video = video_kind(path).has_value(), each = is_numbered(path) && !video;
   if (!each && frame > 0) return Done{};
-  CATENA_TRY(std::unique_ptr<Sink> sink, opener(each ? numbered(path, frame) : path, shape_));
-  (video ? of_all_ : each ? of_frame_ : of_first_).push_back(std::move(sink));
+  CATENA_TRY(std::unique_ptr<ImageSink> sink, opener(each ? numbered_path(path, frame) : path, shape_));
+  (video ? sequence_sinks_ : each ? frame_sinks_ : first_frame_sinks_).push_back(std::move(sink));
   return Done{};
 }
 
-Outcome Outputs::begin(int frame) {
+Outcome Outputs::begin_frame(int frame) {
   const std::int64_t start = now_ns();
   frame_ = frame;
-  CATENA_CHECK(open(options_.output, frame, open_picture));
-  CATENA_CHECK(open(options_.depth, frame, open_depth));
-  CATENA_CHECK(open(options_.ids, frame, open_ids));
-  ms_ += ms_since(start);
+  CATENA_CHECK(open(options_.output, frame, open_image_sink));
+  CATENA_CHECK(open(options_.depth, frame, open_depth_sink));
+  CATENA_CHECK(open(options_.ids, frame, open_id_sink));
+  write_ms_ += ms_since(start);
   return Done{};
 }
 
-Outcome Outputs::take(const render::Band& band) {
+Outcome Outputs::write(const render::Band& band) {
   const std::int64_t start = now_ns();
-  for (auto* sinks : {&of_frame_, &of_first_, &of_all_})
-    for (const auto& sink : *sinks) CATENA_CHECK(sink->take(band));
-  ms_ += ms_since(start);
+  for (auto* sinks : {&frame_sinks_, &first_frame_sinks_, &sequence_sinks_})
+    for (const auto& sink : *sinks) CATENA_CHECK(sink->write(band));
+  write_ms_ += ms_since(start);
   return Done{};
 }
 
-Outcome Outputs::end() {
+Outcome Outputs::end_frame() {
   const std::int64_t start = now_ns();
-  for (const auto& sink : of_frame_) CATENA_CHECK(sink->finish());
-  for (const auto& sink : of_frame_) CATENA_CHECK(sink->commit());
-  of_frame_.clear();
-  for (auto& sink : of_first_) {
+  for (const auto& sink : frame_sinks_) CATENA_CHECK(sink->finish());
+  for (const auto& sink : frame_sinks_) CATENA_CHECK(sink->commit());
+  frame_sinks_.clear();
+  for (auto& sink : first_frame_sinks_) {
     CATENA_CHECK(sink->finish());
-    done_.push_back(std::move(sink));
+    finished_sinks_.push_back(std::move(sink));
   }
-  of_first_.clear();
-  ms_ += ms_since(start);
-  ++frames_;
+  first_frame_sinks_.clear();
+  write_ms_ += ms_since(start);
+  ++frame_count_;
   return Done{};
 }
 
 Outcome Outputs::finish() {
   const std::int64_t start = now_ns();
-  for (auto& sink : of_all_) {
+  for (auto& sink : sequence_sinks_) {
     CATENA_CHECK(sink->finish());
-    done_.push_back(std::move(sink));
+    finished_sinks_.push_back(std::move(sink));
   }
-  of_all_.clear();
-  ms_ += ms_since(start);
+  sequence_sinks_.clear();
+  write_ms_ += ms_since(start);
   return Done{};
 }
 
 Outcome Outputs::commit() {
-  for (const auto& sink : done_) CATENA_CHECK(sink->commit());
-  done_.clear();
+  for (const auto& sink : finished_sinks_) CATENA_CHECK(sink->commit());
+  finished_sinks_.clear();
   return Done{};
 }
 

@@ -3,54 +3,54 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/render/options.h"
-#include "engine/app/render/sinks.h"
-#include "engine/app/run_files.h"
+#include "engine/app/cli/io_conflicts.h"
+#include "engine/app/render/image_sinks.h"
+#include "engine/app/render/render_options.h"
 #include "render/frame/frame_packet.h"
 
 namespace catena::app {
 
 bool is_numbered(const std::string& path);
 /// The name of one picture; a plain name as it is.
-std::string numbered(const std::string& path, int frame);
+std::string numbered_path(const std::string& path, int frame);
 
 /// "1 volume, 3 streamlines, 1 cursor": what a packet draws.
-std::string what_is_drawn(const render::FramePacket& packet);
+std::string describe_contents(const render::FramePacket& packet);
 
 /// The files of `catena render`: what is checked before any work, and what is open while frames are drawn.
 /// Numbered names ("turn_%03d.png") are a file a frame, committed with it; a video takes all frames; a plain name the first frame.
 /// Videos and plain names are committed last, all together.
 
 /// Refuses: kinds of file that do not exist, no ffmpeg, sizes that a video cannot hold, an output that is an input or another output.
-Outcome check_outputs(const RenderOptions& options, const PictureShape& shape, int frames, RunFiles files);
+Outcome check_outputs(const RenderOptions& options, const ImageFormat& shape, int frames, IoConflictChecker files);
 /// Whether something is written to standard output; what the program says then goes to standard error.
 bool uses_standard_output(const RenderOptions& options);
 /// What the bands must hold for them.
-render::BandWants wanted_bands(const RenderOptions& options);
+render::BandChannels required_band_channels(const RenderOptions& options);
 
 /// Whether frames after the first are written.
 bool takes_all_frames(const RenderOptions& options);
 
 class Outputs {
  public:
-  Outputs(const RenderOptions& options, const PictureShape& shape) : options_(options), shape_(shape) {}
-  Outcome begin(int frame);
-  Outcome take(const render::Band& band);
+  Outputs(const RenderOptions& options, const ImageFormat& shape) : options_(options), shape_(shape) {}
+  Outcome begin_frame(int frame);
+  Outcome write(const render::Band& band);
   /// Finishes the frame; numbered files are committed.
-  Outcome end();
+  Outcome end_frame();
   /// All that is left is on its way to the disk; then the renames.
   Outcome finish();
   Outcome commit();
-  double ms_a_frame() const { return frames_ > 0 ? ms_ / frames_ : 0; }  ///< spent on encoding and writing
+  double ms_per_frame() const { return frame_count_ > 0 ? write_ms_ / frame_count_ : 0; }  ///< spent on encoding and writing
 
  private:
-  Outcome open(const std::string& path, int frame, Result<std::unique_ptr<Sink>> (*opener)(const std::string&, const PictureShape&));
+  Outcome open(const std::string& path, int frame, Result<std::unique_ptr<ImageSink>> (*opener)(const std::string&, const ImageFormat&));
 
   const RenderOptions& options_;
-  PictureShape shape_;
-  std::vector<std::unique_ptr<Sink>> of_frame_, of_first_, of_all_, done_;
-  int frame_ = 0, frames_ = 0;
-  double ms_ = 0;
+  ImageFormat shape_;
+  std::vector<std::unique_ptr<ImageSink>> frame_sinks_, first_frame_sinks_, sequence_sinks_, finished_sinks_;
+  int frame_ = 0, frame_count_ = 0;
+  double write_ms_ = 0;
 };
 
 }  // namespace catena::app

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena::app {
 namespace {
@@ -74,7 +74,7 @@ std::optional<std::string> video_kind(const std::string& path) {
   return std::nullopt;
 }
 
-bool holds_alpha(const std::string& path) { return path.ends_with(".webm"); }
+bool supports_alpha(const std::string& path) { return path.ends_with(".webm"); }
 
 Outcome check_video(const std::string& path, const VideoFormat& format) {
   if (!find_ffmpeg())
@@ -91,7 +91,7 @@ Outcome check_video(const std::string& path, const VideoFormat& format) {
 Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat& format) {
   CATENA_CHECK(check_video(path, format));
   const std::string program = find_ffmpeg().value_or("ffmpeg");
-  CATENA_TRY(PartFile part, PartFile::create(path));
+  CATENA_TRY(TemporaryFile part, TemporaryFile::create(path));
   VideoWriter self(path, std::move(part));
   self.messages_ = std::tmpfile();
   if (self.messages_ == nullptr) return cannot(path, "open a temporary file", errno);
@@ -144,8 +144,8 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat
   }
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &ignore, &self.before_);
-  self.ignores_pipe_ = true;
+  sigaction(SIGPIPE, &ignore, &self.saved_action_);
+  self.ignores_sigpipe_ = true;
   return self;
 }
 
@@ -155,8 +155,8 @@ VideoWriter::VideoWriter(VideoWriter&& other) noexcept
       child_(std::exchange(other.child_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
       messages_(std::exchange(other.messages_, nullptr)),
-      ignores_pipe_(std::exchange(other.ignores_pipe_, false)),
-      before_(other.before_) {}
+      ignores_sigpipe_(std::exchange(other.ignores_sigpipe_, false)),
+      saved_action_(other.saved_action_) {}
 
 VideoWriter::~VideoWriter() {
   if (child_ > 0) ::kill(child_, SIGKILL);
@@ -166,22 +166,22 @@ VideoWriter::~VideoWriter() {
     }
   }
   if (messages_ != nullptr) std::fclose(messages_);
-  if (ignores_pipe_) sigaction(SIGPIPE, &before_, nullptr);
+  if (ignores_sigpipe_) sigaction(SIGPIPE, &saved_action_, nullptr);
 }
 
-Outcome VideoWriter::rows(std::span<const std::uint8_t> values) {
+Outcome VideoWriter::write_rows(std::span<const std::uint8_t> values) {
   for (std::size_t at = 0; at < values.size();) {
     const ssize_t written = ::write(pipe_, values.data() + at, values.size() - at);
     if (written > 0) at += static_cast<std::size_t>(written);
     if (written >= 0 || errno == EINTR) continue;
     const int code = errno;
-    CATENA_CHECK(end());
+    CATENA_CHECK(close_pipe());
     return cannot(path_, "write to ffmpeg", code);
   }
   return Done{};
 }
 
-Outcome VideoWriter::end() {
+Outcome VideoWriter::close_pipe() {
   ::close(std::exchange(pipe_, -1));
   int status = 0;
   while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
@@ -194,7 +194,7 @@ Outcome VideoWriter::end() {
   return Error{fmt::format("{}: ffmpeg {}{}{}", path_, how, line.empty() ? "" : ": ", line)};
 }
 
-Outcome VideoWriter::finish() { return end(); }
+Outcome VideoWriter::finish() { return close_pipe(); }
 
 Outcome VideoWriter::commit() { return part_.commit(); }
 

@@ -1,5 +1,5 @@
 /// Frames into ffmpeg through a pipe (no shell, no library): .mp4 (H.264), .webm (VP9, with alpha if asked), .gif (one palette).
-/// Written beside its place and renamed by commit(); without one nothing stays behind, and ffmpeg is ended. Colours are tagged
+/// ImageWriteResult beside its place and renamed by commit(); without one nothing stays behind, and ffmpeg is ended. Colours are tagged
 /// BT.709, limited range. One thread; SIGPIPE is ignored while one is open.
 #pragma once
 #include <sys/types.h>
@@ -24,7 +24,7 @@ struct VideoFormat {
 
 /// By the name's end: "mp4", "webm", "gif".
 std::optional<std::string> video_kind(const std::string& path);
-bool holds_alpha(const std::string& path);
+bool supports_alpha(const std::string& path);
 
 /// Refuses, before any work: no ffmpeg on PATH, a size that the format cannot hold.
 Outcome check_video(const std::string& path, const VideoFormat& format);
@@ -37,24 +37,24 @@ class VideoWriter {
   VideoWriter& operator=(VideoWriter&&) = delete;
 
   /// The next rows of the next frame, 8 bits a value.
-  Outcome rows(std::span<const std::uint8_t> values);
+  Outcome write_rows(std::span<const std::uint8_t> values);
   /// After the last frame: ffmpeg has ended well, or its last line.
   Outcome finish();
   /// The rename to the final name.
   Outcome commit();
 
  private:
-  VideoWriter(std::string path, PartFile part) : path_(std::move(path)), part_(std::move(part)) {}
+  VideoWriter(std::string path, TemporaryFile part) : path_(std::move(path)), part_(std::move(part)) {}
   /// Closes the pipe and waits; the error of ffmpeg, if it failed.
-  Outcome end();
+  Outcome close_pipe();
 
   std::string path_;
-  PartFile part_;  ///< which ffmpeg writes
+  TemporaryFile part_;  ///< which ffmpeg writes
   pid_t child_ = -1;
   int pipe_ = -1;
   std::FILE* messages_ = nullptr;  ///< what ffmpeg says
-  bool ignores_pipe_ = false;
-  struct sigaction before_ {};
+  bool ignores_sigpipe_ = false;
+  struct sigaction saved_action_ {};
 };
 
 }  // namespace catena::app

@@ -1,11 +1,11 @@
 /// catena study simulate|run|merge|scene|keys|analyse|power: an experiment described by a file (docs/study.md). One file a subcommand.
 #include <CLI/CLI.hpp>
 
-#include "engine/app/study/study_command.h"
+#include "engine/app/study/study_commands.h"
 
 namespace catena::app {
 
-void add_study(CLI::App& program, Work& chosen) {
+void add_study(CLI::App& program, CommandAction& chosen) {
   CLI::App* command =
       program.add_subcommand("study", "an experiment with subjects, described by a file: its trials, its data, its statistics");
   command->require_subcommand(1);
@@ -14,7 +14,7 @@ void add_study(CLI::App& program, Work& chosen) {
   add_study_merge(*command, chosen);
   add_study_scene(*command, chosen);
   add_study_keys(*command, chosen);
-  add_study_analyse(*command, chosen);
+  add_study_analyze(*command, chosen);
   add_study_power(*command, chosen);
 }
 

@@ -16,7 +16,7 @@ bool ends_page(std::string_view line) { return line.size() >= 3 && line.find_fir
 /// Gathers lines into pages.
 class PageReader {
  public:
-  explicit PageReader(std::vector<Page>& to) : to_(&to) {}
+  explicit PageReader(std::vector<InstructionPage>& to) : to_(&to) {}
 
   void add(std::string_view line) {
     if (line.empty()) {
@@ -40,22 +40,22 @@ class PageReader {
   }
 
  private:
-  std::vector<Page>* to_;
-  Page page_;
+  std::vector<InstructionPage>* to_;
+  InstructionPage page_;
   bool open_ = false;  ///< the last paragraph goes on
 };
 
 }  // namespace
 
-const std::vector<Page>& Instructions::before_task(const std::string& task) const {
-  static const std::vector<Page> none;
-  const auto found = std::ranges::find(before, task, &Before::task);
-  return found == before.end() ? none : found->pages;
+const std::vector<InstructionPage>& Instructions::pages_before_task(const std::string& task) const {
+  static const std::vector<InstructionPage> none;
+  const auto found = std::ranges::find(task_pages, task, &TaskPages::task);
+  return found == task_pages.end() ? none : found->pages;
 }
 
 Result<Instructions> parse_instructions(std::string_view text, const std::string& file, const std::vector<std::string>& tasks) {
   Instructions all;
-  all.before.reserve(tasks.size());
+  all.task_pages.reserve(tasks.size());
   std::vector<std::string> seen, known{"introduction", "end"};
   for (const std::string& task : tasks) known.push_back(std::string(kBefore) + task);
   const std::vector<std::string_view> known_views(known.begin(), known.end());
@@ -63,17 +63,17 @@ Result<Instructions> parse_instructions(std::string_view text, const std::string
   bool page_was_ended = false;
   int number = 0;
   const auto error = [&](const std::string& what) { return Error{file + ":" + std::to_string(number) + ": " + what}; };
-  const auto pages_of = [&](const std::string& moment) -> std::vector<Page>& {
+  const auto pages_of = [&](const std::string& moment) -> std::vector<InstructionPage>& {
     if (moment == "introduction") return all.introduction;
     if (moment == "end") return all.end;
-    all.before.push_back({moment.substr(kBefore.size()), {}});
-    return all.before.back().pages;
+    all.task_pages.push_back({moment.substr(kBefore.size()), {}});
+    return all.task_pages.back().pages;
   };
   const auto end_page = [&]() -> Outcome {
     if (reader && !reader->end() && page_was_ended) return error("a page without text; a heading was expected after \"---\"");
     return Done{};
   };
-  text = without_bom(text);
+  text = strip_bom(text);
   while (!text.empty()) {
     const auto end = text.find('\n');
     const std::string_view line = trim(text.substr(0, end));
@@ -84,7 +84,7 @@ Result<Instructions> parse_instructions(std::string_view text, const std::string
       const std::string moment(trim(line.substr(2)));
       if (std::ranges::find(known, moment) == known.end())
         return error("there is no moment " + in_quotes(moment) + suggestion(moment, known_views) + "; expected " +
-                     alternatives(known_views));
+                     join_alternatives(known_views));
       if (std::ranges::find(seen, moment) != seen.end()) return error("the moment " + in_quotes(moment) + " stands here again");
       seen.push_back(moment);
       reader.emplace(pages_of(moment));
@@ -103,7 +103,7 @@ Result<Instructions> parse_instructions(std::string_view text, const std::string
 }
 
 Result<Instructions> read_instructions(const std::string& path, const std::vector<std::string>& tasks) {
-  CATENA_TRY(const std::string text, read_text(path, "a text file of instructions"));
+  CATENA_TRY(const std::string text, read_text_file(path, "a text file of instructions"));
   return parse_instructions(text, path, tasks);
 }
 

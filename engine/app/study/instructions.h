@@ -18,22 +18,22 @@
 
 namespace catena::app {
 
-struct Page {
+struct InstructionPage {
   std::string heading;
   std::vector<std::string> paragraphs;
-  bool operator==(const Page&) const = default;
+  bool operator==(const InstructionPage&) const = default;
 };
 
 struct Instructions {
-  struct Before {
+  struct TaskPages {
     std::string task;
-    std::vector<Page> pages;
+    std::vector<InstructionPage> pages;
   };
-  std::vector<Page> introduction, end;
-  std::vector<Before> before;
+  std::vector<InstructionPage> introduction, end;
+  std::vector<TaskPages> task_pages;
 
   /// None where the file says nothing of this task.
-  const std::vector<Page>& before_task(const std::string& task) const;
+  const std::vector<InstructionPage>& pages_before_task(const std::string& task) const;
 };
 
 /// `tasks`: the study's. The error names file and line: a moment that is none, a page without a heading, text before the first moment.

@@ -35,7 +35,7 @@ void remove_character(std::string& from) {
 
 std::string trial_count(std::size_t n) { return fmt::format("{} trial{}", n, n == 1 ? "" : "s"); }
 
-Page pause_page() { return {"Pause", {"Rest as long as you like. The next trial waits."}}; }
+InstructionPage pause_page() { return {"Pause", {"Rest as long as you like. The next trial waits."}}; }
 
 }  // namespace
 
@@ -47,15 +47,15 @@ Procedure::Procedure(const study::Study& study, const Instructions& instructions
   else
     add_pages(instructions.introduction);
   add_trials(instructions, finished);
-  for (std::size_t i = answered; i < questions(); ++i) steps_.push_back({Step::Kind::question, i});
+  for (std::size_t i = answered; i < question_count(); ++i) steps_.push_back({Step::Kind::question, i});
   if (instructions.end.empty())
     add_pages({{"The end", {"Thank you."}}});
   else
     add_pages(instructions.end);
 }
 
-void Procedure::add_pages(const std::vector<Page>& pages) {
-  for (const Page& page : pages) {
+void Procedure::add_pages(const std::vector<InstructionPage>& pages) {
+  for (const InstructionPage& page : pages) {
     steps_.push_back({Step::Kind::page, pages_.size()});
     pages_.push_back(page);
   }
@@ -76,7 +76,7 @@ void Procedure::add_trials(const Instructions& instructions, std::size_t finishe
       add_pages(
           {{"Pause", {fmt::format("Part {} of {} is done. Rest as long as you like.", before->block + 1, trials_.back().block + 1)}}});
     if (first || (new_block && before->task != trial.task))
-      add_pages(instructions.before_task(study_.tasks[static_cast<std::size_t>(trial.task)].name));
+      add_pages(instructions.pages_before_task(study_.tasks[static_cast<std::size_t>(trial.task)].name));
     if (trial.training && (first || new_block || !before->training))
       add_pages({{"Training", {fmt::format("First {} to try it. They do not count.", others(i))}}});
     if (!trial.training && before != nullptr && before->training && !new_block)
@@ -86,9 +86,9 @@ void Procedure::add_trials(const Instructions& instructions, std::size_t finishe
 }
 
 Procedure::Stage Procedure::stage() const {
-  if (pause_) return Stage::page;
-  if (at_ == steps_.size()) return Stage::over;
-  switch (steps_[at_].kind) {
+  if (pause_page_) return Stage::page;
+  if (step_index_ == steps_.size()) return Stage::finished;
+  switch (steps_[step_index_].kind) {
     case Step::Kind::page:
       return Stage::page;
     case Step::Kind::trial:
@@ -99,9 +99,9 @@ Procedure::Stage Procedure::stage() const {
   return Stage::question;
 }
 
-const Page& Procedure::page() const { return pause_ ? *pause_ : pages_[steps_[at_].number]; }
-std::size_t Procedure::trial() const { return steps_[at_].number; }
-std::string Procedure::trial_words() const {
+const InstructionPage& Procedure::page() const { return pause_page_ ? *pause_page_ : pages_[steps_[step_index_].index]; }
+std::size_t Procedure::trial() const { return steps_[step_index_].index; }
+std::string Procedure::trial_label() const {
   const study::Trial& now = trials_[trial()];
   std::size_t number = 0, all = 0;
   for (const study::Trial& one : trials_) {
@@ -112,79 +112,80 @@ std::string Procedure::trial_words() const {
   return fmt::format("{} {} of {}", now.training ? "Training," : "Trial", number, all);
 }
 
-const study::Question& Procedure::question() const { return study_.questions[steps_[at_].number]; }
-std::size_t Procedure::question_number() const { return steps_[at_].number; }
+const study::Question& Procedure::question() const { return study_.questions[steps_[step_index_].index]; }
+std::size_t Procedure::question_index() const { return steps_[step_index_].index; }
 
-std::optional<std::size_t> Procedure::trial_ahead() const {
-  const auto next = std::find_if(steps_.begin() + static_cast<std::ptrdiff_t>(at_), steps_.end(),
+std::optional<std::size_t> Procedure::next_trial() const {
+  const auto next = std::find_if(steps_.begin() + static_cast<std::ptrdiff_t>(step_index_), steps_.end(),
                                  [](const Step& step) { return step.kind == Step::Kind::trial; });
-  return next == steps_.end() ? std::nullopt : std::optional(next->number);
+  return next == steps_.end() ? std::nullopt : std::optional(next->index);
 }
 
-void Procedure::go_on() {
-  ++at_;
+void Procedure::advance() {
+  ++step_index_;
   running_ = false;
-  entry_.clear();
+  typed_answer_.clear();
 }
 
-void Procedure::take(const Stroke& stroke, bool at_start) {
-  using What = Stroke::What;
-  const bool on = stroke.what == What::space || stroke.what == What::enter;
+void Procedure::handle_key(const KeyPress& stroke, bool at_start) {
+  using What = KeyPress::Kind;
+  const bool on = stroke.kind == What::space || stroke.kind == What::enter;
   switch (stage()) {
     case Stage::page:
       if (!on) return;
-      if (!std::exchange(pause_, std::nullopt)) go_on();
+      if (!std::exchange(pause_page_, std::nullopt)) advance();
       return;
     case Stage::ready:
       if (on && at_start) running_ = true;
-      if (stroke.what == What::character && (stroke.character == 'p' || stroke.character == 'P')) pause_ = pause_page();
+      if (stroke.kind == What::character && (stroke.character == 'p' || stroke.character == 'P')) pause_page_ = pause_page();
       return;
     case Stage::question:
-      return answer(stroke);
+      return edit_answer(stroke);
     case Stage::running:
-    case Stage::over:
+    case Stage::finished:
       return;
   }
 }
 
-void Procedure::answer(const Stroke& stroke) {
+void Procedure::edit_answer(const KeyPress& stroke) {
   const std::vector<std::string>& choices = question().answers;
-  switch (stroke.what) {
-    case Stroke::What::backspace:
-      return choices.empty() ? remove_character(entry_) : entry_.clear();
-    case Stroke::What::character: {
+  switch (stroke.kind) {
+    case KeyPress::Kind::backspace:
+      return choices.empty() ? remove_character(typed_answer_) : typed_answer_.clear();
+    case KeyPress::Kind::character: {
       const std::uint32_t c = stroke.character;
-      if (!choices.empty() && c >= '1' && c - '1' < choices.size()) entry_ = choices[c - '1'];
-      if (choices.empty() && c >= 0x20 && c != 0x7f && c <= 0x10ffff && entry_.size() + 4 <= kMaxAnswer) append_utf8(entry_, c);
+      if (!choices.empty() && c >= '1' && c - '1' < choices.size()) typed_answer_ = choices[c - '1'];
+      if (choices.empty() && c >= 0x20 && c != 0x7f && c <= 0x10ffff && typed_answer_.size() + 4 <= kMaxAnswerBytes)
+        append_utf8(typed_answer_, c);
       return;
     }
-    case Stroke::What::enter:
-      if (!choices.empty() && entry_.empty()) return;
-      answer_ = Answer{question().name, entry_};
-      return go_on();
-    case Stroke::What::space:
+    case KeyPress::Kind::enter:
+      if (!choices.empty() && typed_answer_.empty()) return;
+      answer_ = Answer{question().name, typed_answer_};
+      return advance();
+    case KeyPress::Kind::space:
       return;  // comes as a character, too
   }
 }
 
-std::string Procedure::words() const {
-  std::size_t trials = trials_.size(), answered = questions();
-  for (std::size_t i = at_; i < steps_.size(); ++i) {
+std::string Procedure::progress_text() const {
+  std::size_t trials = trials_.size(), answered = question_count();
+  for (std::size_t i = step_index_; i < steps_.size(); ++i) {
     trials -= steps_[i].kind == Step::Kind::trial;
     answered -= steps_[i].kind == Step::Kind::question;
   }
-  return fmt::format("{} of {} trials and {} of {} questions are done{}", trials, trials_.size(), answered, questions(),
-                     at_ == steps_.size() ? "" : "; the same command goes on");
+  return fmt::format("{} of {} trials and {} of {} questions are done{}", trials, trials_.size(), answered, question_count(),
+                     step_index_ == steps_.size() ? "" : "; the same command goes on");
 }
 
-void Procedure::ended() {
-  if (stage() == Stage::running) go_on();
+void Procedure::complete_trial() {
+  if (stage() == Stage::running) advance();
 }
 
-void Procedure::cut_off(const std::string& why) {
+void Procedure::abort_trial(const std::string& why) {
   if (stage() != Stage::running) return;
   running_ = false;
-  pause_ = Page{"Once more", {why, "This trial begins again."}};
+  pause_page_ = InstructionPage{"Once more", {why, "This trial begins again."}};
 }
 
 std::optional<Procedure::Answer> Procedure::take_answer() { return std::exchange(answer_, std::nullopt); }

@@ -22,17 +22,17 @@
 namespace catena::app {
 
 /// What a person does with the keyboard.
-struct Stroke {
-  enum class What : std::uint8_t { space, enter, backspace, character };
-  What what = What::space;
+struct KeyPress {
+  enum class Kind : std::uint8_t { space, enter, backspace, character };
+  Kind kind = Kind::space;
   std::uint32_t character = 0;  ///< Unicode
 };
 
 class Procedure {
  public:
-  static constexpr std::size_t kMaxAnswer = 1000;  ///< bytes of a typed one
+  static constexpr std::size_t kMaxAnswerBytes = 1000;  ///< bytes of a typed one
 
-  enum class Stage : std::uint8_t { page, ready, running, question, over };
+  enum class Stage : std::uint8_t { page, ready, running, question, finished };
 
   /// `finished` trials and `answered` questions of an earlier run are not done again.
   /// `study` outlives it; `trials`: the subject's session.
@@ -40,27 +40,27 @@ class Procedure {
             std::size_t answered = 0);
 
   Stage stage() const;
-  const Page& page() const;   ///< Stage::page
-  std::size_t trial() const;  ///< ready, running: of trials()
+  const InstructionPage& page() const;  ///< Stage::page
+  std::size_t trial() const;            ///< ready, running: of trials()
   /// "Trial 3 of 36", or "Training, 2 of 4" of those of its block.
-  std::string trial_words() const;
+  std::string trial_label() const;
   const study::Question& question() const;  ///< Stage::question
-  std::size_t question_number() const;      ///< from 0
+  std::size_t question_index() const;       ///< from 0
   const std::vector<study::Trial>& trials() const { return trials_; }
-  std::size_t questions() const { return study_.questions.size(); }
-  const std::string& entry() const { return entry_; }  ///< what is answered so far
+  std::size_t question_count() const { return study_.questions.size(); }
+  const std::string& typed_answer() const { return typed_answer_; }  ///< what is answered so far
   /// The trial that is shown next, so that it can be got ready behind a page; nothing where no trial is left.
-  std::optional<std::size_t> trial_ahead() const;
+  std::optional<std::size_t> next_trial() const;
 
-  /// `at_start`: the cursor is at the trial's start (Stage::ready).
-  void take(const Stroke& stroke, bool at_start);
+  /// `is_at_start`: the cursor is at the trial's start (Stage::ready).
+  void handle_key(const KeyPress& stroke, bool at_start);
   /// How far it has come, for the terminal: "12 of 48 trials and 0 of 4 questions are done; the same command goes on".
-  std::string words() const;
+  std::string progress_text() const;
 
   /// The running trial's end.
-  void ended();
+  void complete_trial();
   /// The running trial does not count; `why` is shown, and it begins again.
-  void cut_off(const std::string& why);
+  void abort_trial(const std::string& why);
 
   /// The answer that Enter has just given, once: the caller keeps it.
   struct Answer {
@@ -71,21 +71,21 @@ class Procedure {
  private:
   struct Step {
     enum class Kind : std::uint8_t { page, trial, question } kind = Kind::page;
-    std::size_t number = 0;  ///< of the page, trial or question
+    std::size_t index = 0;  ///< of the page, trial or question
   };
-  void add_pages(const std::vector<Page>& pages);
+  void add_pages(const std::vector<InstructionPage>& pages);
   void add_trials(const Instructions& instructions, std::size_t finished);
-  void go_on();
-  void answer(const Stroke& stroke);
+  void advance();
+  void edit_answer(const KeyPress& stroke);
 
   const study::Study& study_;
   std::vector<study::Trial> trials_;
-  std::vector<Page> pages_;
+  std::vector<InstructionPage> pages_;
   std::vector<Step> steps_;
-  std::size_t at_ = 0;
+  std::size_t step_index_ = 0;
   bool running_ = false;
-  std::optional<Page> pause_;  ///< over the step
-  std::string entry_;
+  std::optional<InstructionPage> pause_page_;  ///< over the step
+  std::string typed_answer_;
   std::optional<Answer> answer_;
 };
 

@@ -1,8 +1,8 @@
 /// The classical volume mode: a force along the gradient of a scalar field, as large as the gradient is.
-///   p = x +- displacement min(1, |grad s| / X) grad s / |grad s|,  X the field's largest gradient (engine/field/magnitude.h)
+///   p = x +- displacement min(1, |grad s| / X) grad s / |grad s|,  X the field's largest gradient (engine/field/derived/magnitude.h)
 /// so that the force is at most k_i S displacement. The normalisation is safe: any scale of the field gives the same proxy.
 /// Keys: `field` (scalar), `displacement` (the largest |p - x|, world units, >= 0, may follow a field), `towards` high | low.
-/// Status OK; on a plateau p = x; outside the domain, the mask, or where values are not finite p = x and FREE.
+/// LinkStatus OK; on a plateau p = x; outside the domain, the mask, or where values are not finite p = x and FREE.
 /// One evaluation a tick. Haptic thread: no allocation, lock or throw.
 #pragma once
 #include "haptics/constraints/registry.h"
@@ -16,7 +16,7 @@ ConstraintType gradient_force_constraint();
 /// At a steady velocity v the gap is v T exactly, and the force k S T v: with k_i the link's stiffness, a damper of
 /// b = k_i T N s/m. At rest the proxy comes to the probe and stays on it bit for bit.
 /// Keys: `time` T, seconds, >= 0, or `coefficient` b, N s/m (T = b / k_i; 0 where k_i is 0); either may follow a field.
-/// Status OK; residual 0; never slips. Haptic thread: no allocation, lock or throw.
+/// LinkStatus OK; residual 0; never slips. Haptic thread: no allocation, lock or throw.
 ConstraintType viscosity_constraint();
 
 }  // namespace catena::haptics

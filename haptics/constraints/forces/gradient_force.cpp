@@ -1,7 +1,7 @@
 #include "haptics/constraints/forces/forces.h"
 
-#include "engine/field/magnitude.h"
-#include "haptics/constraints/rules/link_keys.h"
+#include "engine/field/derived/magnitude.h"
+#include "haptics/constraints/common/link_schema.h"
 
 namespace catena::haptics {
 namespace {
@@ -9,34 +9,34 @@ namespace {
 class GradientForce final : public Constraint {
  public:
   GradientForce(field::ScalarFieldPtr field, const Parameter& displacement, double sign)
-      : field_(std::move(field)), displacement_(displacement), sign_(sign), largest_(field::largest_gradient(*field_)) {}
+      : field_(std::move(field)), displacement_(displacement), sign_(sign), largest_(field::compute_max_gradient(*field_)) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
     state.proxy = probe;
-    state.status = Status::ok;
+    state.status = LinkStatus::ok;
   }
 
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     // at the probe, not the last proxy: a resting hand feels a resting force
-    const double most = displacement_.at(probe, scratch.parameter, state.evaluations);
+    const double most = displacement_.at(probe, scratch.parameter_cursor, state.evaluations);
     state.residual = 0;
     state.limit = 0;
     state.proxy = probe;
-    state.status = Status::free;
+    state.status = LinkStatus::free;
     ++state.evaluations;
     const field::ScalarSample sample = field_->sample(probe, scratch.cursors[0]);
     const double slope = norm(sample.gradient);
     const bool known = sample.inside && std::isfinite(sample.value) && std::isfinite(slope);
     if (!known) return;
-    state.status = Status::ok;
+    state.status = LinkStatus::ok;
     const double part = largest_ > 0 ? std::fmin(1.0, slope / largest_) : 0;
     const Vec3 shift = direction(sample.gradient) * (sign_ * most * part);
     const Vec3 proxy = probe + shift;
     if (max_abs(shift) > 0 && is_finite(proxy)) state.proxy = proxy;
   }
 
-  bool is_source() const noexcept override { return true; }
-  double domain_length() const noexcept override { return field_->length(); }
+  bool is_energy_source() const noexcept override { return true; }
+  double domain_length() const noexcept override { return field_->domain_length(); }
 
  private:
   field::ScalarFieldPtr field_;
@@ -47,7 +47,7 @@ class GradientForce final : public Constraint {
 
 Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "a gradient force", context));
-  CATENA_TRY(const Parameter displacement, require_parameter(link, "displacement", json::Range::not_negative, context));
+  CATENA_TRY(const Parameter displacement, require_parameter(link, "displacement", json::NumberRange::non_negative, context));
   CATENA_CHECK(json::require_string(link, "towards"));
   CATENA_TRY(const int towards, json::get_choice(link, "towards", 0, {"high", "low"}));
   return std::shared_ptr<const Constraint>(std::make_shared<GradientForce>(field, displacement, towards == 0 ? 1.0 : -1.0));
@@ -60,7 +60,7 @@ ConstraintType gradient_force_constraint() {
           "Draws the hand up or down a scalar field.",
           "not in the paper",
           {scalar_field_key("field").required(), length_key("displacement", "Largest distance of the proxy from the probe.").required(),
-           schema::word("towards", {"high", "low"}, "Which values draw the hand.").required()},
+           schema::choice("towards", {"high", "low"}, "Which values draw the hand.").required()},
           build_gradient_force};
 }
 

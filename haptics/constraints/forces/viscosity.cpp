@@ -1,6 +1,6 @@
 #include "haptics/constraints/forces/forces.h"
 
-#include "haptics/constraints/rules/link_keys.h"
+#include "haptics/constraints/common/link_schema.h"
 
 namespace catena::haptics {
 namespace {
@@ -14,11 +14,11 @@ class Viscosity final : public Constraint {
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
     state.proxy = probe;
     state.residual = 0;
-    state.status = Status::ok;
+    state.status = LinkStatus::ok;
   }
 
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    state.status = Status::ok;
+    state.status = LinkStatus::ok;
     state.residual = 0;
     state.limit = 0;
     const double time = time_s(state, scratch), dt = state.dt_s > 0 ? state.dt_s : 0;
@@ -35,7 +35,7 @@ class Viscosity final : public Constraint {
 
  private:
   double time_s(LinkState& state, LinkScratch& scratch) const noexcept {
-    const double amount = amount_.at(state.proxy, scratch.parameter, state.evaluations);
+    const double amount = amount_.at(state.proxy, scratch.parameter_cursor, state.evaluations);
     if (is_time_) return amount;
     return state.stiffness_n_per_m > 0 ? amount / state.stiffness_n_per_m : 0;
   }
@@ -49,7 +49,7 @@ Result<std::shared_ptr<const Constraint>> build_viscosity(const json::Node& link
   if (time == coefficient)
     return json::error_at(link, std::string("a viscosity has ") + (time ? "both" : "neither") +
                                     " \"time\" and \"coefficient\"; exactly one of them was expected");
-  CATENA_TRY(const Parameter amount, require_parameter(link, time ? "time" : "coefficient", json::Range::not_negative, context));
+  CATENA_TRY(const Parameter amount, require_parameter(link, time ? "time" : "coefficient", json::NumberRange::non_negative, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Viscosity>(amount, time));
 }
 
@@ -60,11 +60,11 @@ ConstraintType viscosity_constraint() {
           "A fluid about the hand. It has either `time` or `coefficient`.",
           "not in the paper",
           {schema::number("time", "s", "Relaxation time: the force is stiffness x time x velocity.")
-               .not_negative()
+               .non_negative()
                .or_field()
-               .begins("0.05")
-               .stated(),
-           schema::number("coefficient", "N s/m", "The damper itself.").not_negative().or_field().begins("2")},
+               .with_initial_value("0.05")
+               .recommended(),
+           schema::number("coefficient", "N s/m", "The damper itself.").non_negative().or_field().with_initial_value("2")},
           build_viscosity};
 }
 

@@ -1,10 +1,10 @@
 #include "haptics/constraints/friction/friction.h"
 
-#include "engine/field/magnitude.h"
-#include "engine/flow/flow.h"
+#include "engine/field/derived/magnitude.h"
+#include "engine/geometry/flow/flow.h"
 #include "engine/schema/values.h"
-#include "haptics/constraints/friction/contact.h"
-#include "haptics/constraints/rules/link_keys.h"
+#include "haptics/constraints/common/link_schema.h"
+#include "haptics/constraints/friction/friction_contact.h"
 
 namespace catena::haptics {
 namespace {
@@ -29,8 +29,8 @@ struct FrictionSpec {
 /// The tangential field at a place.
 struct Heading {
   SafeDirection t;
-  Status status = Status::ok;
-  Reason reason = Reason::none;  ///< of a status that ends the line
+  LinkStatus status = LinkStatus::ok;
+  SampleStatus reason = SampleStatus::ok;  ///< of a status that ends the line
   bool known() const { return t.factor > 0; }
 };
 
@@ -51,24 +51,24 @@ class FrictionTick {
       : spec_(spec),
         state_(state),
         scratch_(scratch),
-        memory_(memory_of<FrictionMemory>(state)),
+        memory_(memory_as<FrictionMemory>(state)),
         contact_(spec.contact, probe, memory_.contact, state, scratch),
         length_(spec.contact.length) {}
 
   void run() noexcept {
     if (!contact_.begin()) return;
-    const double tau = safe_threshold(spec_.threshold.at(contact_.proxy(), scratch_.parameter, state_.evaluations));
-    if (contact_.placed_anew() || memory_.heading.status == Status::budget) arrive(heading_at(contact_.here()));
+    const double tau = safe_threshold(spec_.threshold.at(contact_.proxy(), scratch_.parameter_cursor, state_.evaluations));
+    if (contact_.was_repositioned() || memory_.heading.status == LinkStatus::budget) arrive(heading_at(contact_.surface_point()));
     bool lost = false, complete = true;
     if (memory_.heading.known()) {
       lost = !slip(tau, complete);
     } else if (norm(contact_.gap()) > tau) {
       lost = !contact_.slide_to(tau);
-      if (!lost) arrive(heading_at(contact_.here()));
+      if (!lost) arrive(heading_at(contact_.surface_point()));
     }
-    if (lost) return contact_.lose();
-    if (ending_ == Status::ok) state_.reason = memory_.heading.reason;
-    contact_.end(tau, !complete ? Status::budget : ending_ != Status::ok ? ending_ : memory_.heading.status);
+    if (lost) return contact_.handle_lost_surface();
+    if (ending_ == LinkStatus::ok) state_.reason = memory_.heading.reason;
+    contact_.end(tau, !complete ? LinkStatus::budget : ending_ != LinkStatus::ok ? ending_ : memory_.heading.status);
   }
 
  private:
@@ -85,11 +85,11 @@ class FrictionTick {
       complete = true;
       const Vec3 before = contact_.proxy();
       if (!contact_.slide_to(tau)) return false;
-      arrive(heading_at(contact_.here()));
-      if (!memory_.heading.known() || ending_ != Status::ok) return true;
+      arrive(heading_at(contact_.surface_point()));
+      if (!memory_.heading.known() || ending_ != LinkStatus::ok) return true;
       // not there along the line again: the next tick goes on
       complete = is_even(excess_along(tau)) || norm(contact_.proxy() - before) <= kAlong * length_;
-      if (memory_.blocked != 0 || contact_.spent(kForStep)) return true;
+      if (memory_.blocked != 0 || contact_.out_of_budget(kForStep)) return true;
     }
     return true;
   }
@@ -112,7 +112,7 @@ class FrictionTick {
       complete = true;
       if (is_even(excess)) return moved;
       complete = false;
-      if (trials_++ >= kTrials || contact_.spent(kForStep)) return moved;
+      if (trials_++ >= kTrials || contact_.out_of_budget(kForStep)) return moved;
       const double rate = memory_.rate > 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
       // where the line ended in the last tick, near before far
       if (!moved && reach.longest == 0) reach.longest = (blocked == (g > 0 ? 1 : -1) ? 4 * kShortest : kLongest) * length_;
@@ -127,7 +127,7 @@ class FrictionTick {
       if (!straight && last_.known && learned) {
         middle = d + last_.turn * (0.5 * h);
       } else if (!straight) {
-        const LevelPoint halfway = contact_.look(p + d * (0.5 * h), false);
+        const LevelPoint halfway = contact_.sample_surface(p + d * (0.5 * h), false);
         const Heading half = heading_at(halfway);
         const double turn = turn_to(halfway, half, size);
         if (turn > most_turn(kTurn, size)) {
@@ -138,7 +138,7 @@ class FrictionTick {
       }
 
       // the step
-      const LevelPoint to = contact_.look(p + middle * h, true);
+      const LevelPoint to = contact_.sample_surface(p + middle * h, true);
       const Heading there = heading_at(to);
       const double turn = to.valid ? turn_to(to, there, size) : 2;
       if (turn > most_turn(3 * kTurn, size)) {
@@ -149,7 +149,7 @@ class FrictionTick {
       const double g2 = dot(e2, there.t.d), slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
       const bool nearer = std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e);
       memory_.bend = turn / size;
-      memory_.arch = norm(to.n - contact_.here().n) / size;
+      memory_.arch = norm(to.n - contact_.surface_point().n) / size;
       if (!nearer || beyond > 0.25 * excess) {
         if (slope > rate) memory_.rate = slope;
         // a corner of the line may be the closest point
@@ -181,7 +181,7 @@ class FrictionTick {
 
   /// By how much the line turns from the proxy to `to`, seen along the surface; 2 where it ends.
   double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
-    if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.here().n) > kBent)) return 2;
+    if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.surface_point().n) > kBent)) return 2;
     const Vec3& here = memory_.heading.t.d;
     const Vec3 flat = here - to.n * dot(here, to.n);
     const double size_of_it = norm(flat);
@@ -208,8 +208,8 @@ class FrictionTick {
   bool stop_at(const Heading& why, double step, bool& complete, bool moved) noexcept {
     memory_.blocked = step > 0 ? 1 : -1;
     complete = true;
-    ending_ = why.status != Status::ok ? why.status : Status::critical;
-    state_.reason = why.status != Status::ok ? why.reason : why.known() ? Reason::incoherent : Reason::zero;
+    ending_ = why.status != LinkStatus::ok ? why.status : LinkStatus::critical;
+    state_.reason = why.status != LinkStatus::ok ? why.reason : why.known() ? SampleStatus::incoherent : SampleStatus::zero;
     return moved;
   }
 
@@ -219,7 +219,7 @@ class FrictionTick {
   }
 
   Heading heading_at(const LevelPoint& at) noexcept {
-    if (contact_.spent(2)) return {{}, Status::budget};
+    if (contact_.out_of_budget(2)) return {{}, LinkStatus::budget};
     field::Cursor& cursor = scratch_.cursors[1];
     if (!at.valid && !(contact_.has_normal() && at.finite)) return boundary_at(at.p, cursor);
     ++state_.evaluations;
@@ -227,19 +227,21 @@ class FrictionTick {
       const field::LineSample line = spec_.field->sample_line(at.p, cursor);
       if (!line.inside) return boundary_at(at.p, cursor);
       Vec3 d;
-      if (flow::axis_direction(line, 0, memory_.side, d) == flow::Stop::incoherent) return {{}, Status::critical, Reason::incoherent};
-      return {safe_direction(line.speed * d, spec_.largest, at.n), Status::ok};
+      if (flow::axis_direction(line, 0, memory_.side, d) == flow::StopReason::incoherent)
+        return {{}, LinkStatus::critical, SampleStatus::incoherent};
+      return {safe_normalize(line.speed * d, spec_.largest, at.n), LinkStatus::ok};
     }
     const field::VectorSample v = spec_.field->sample(at.p, cursor);
-    if (!is_finite(v.value)) return {{}, Status::critical, Reason::not_finite};
+    if (!is_finite(v.value)) return {{}, LinkStatus::critical, SampleStatus::not_finite};
     if (!v.inside) return boundary_at(at.p, cursor);
-    return {safe_direction(v.value, spec_.largest, at.n), Status::ok};
+    return {safe_normalize(v.value, spec_.largest, at.n), LinkStatus::ok};
   }
 
   /// The line ends here because the vector field does, or the surface.
   Heading boundary_at(const Vec3& place, field::Cursor& cursor) const noexcept {
-    const Reason reason = spec_.field->why_outside(place, cursor);
-    return {{}, Status::boundary, reason != Reason::none ? reason : spec_.contact.surface->why_outside(place, scratch_.cursors[0])};
+    const SampleStatus reason = spec_.field->status_outside(place, cursor);
+    return {
+        {}, LinkStatus::boundary, reason != SampleStatus::ok ? reason : spec_.contact.surface->status_outside(place, scratch_.cursors[0])};
   }
 
   const FrictionSpec& spec_;
@@ -253,23 +255,23 @@ class FrictionTick {
     bool known = false;
     Vec3 from{0.0}, turn{0.0};
   } last_;
-  int trials_ = 0;              ///< of steps along the line, in this tick
-  Status ending_ = Status::ok;  ///< why the line ends, if it does
+  int trials_ = 0;                      ///< of steps along the line, in this tick
+  LinkStatus ending_ = LinkStatus::ok;  ///< why the line ends, if it does
 };
 
 class Friction final : public Constraint {
  public:
   explicit Friction(FrictionSpec spec) : spec_(std::move(spec)) {}
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<FrictionMemory>(state) = FrictionMemory{};
+    memory_as<FrictionMemory>(state) = FrictionMemory{};
     state.proxy = probe;
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     FrictionTick(spec_, probe, state, scratch).run();
   }
   bool is_sane(const LinkState& state) const noexcept override {
-    const FrictionMemory& memory = memory_of<FrictionMemory>(state);
-    return haptics::is_sane(memory.contact) && is_one_of(memory.heading.status, Status::bad_probe);
+    const FrictionMemory& memory = memory_as<FrictionMemory>(state);
+    return haptics::is_sane(memory.contact) && is_valid_enum(memory.heading.status, LinkStatus::bad_probe);
   }
   double domain_length() const noexcept override { return spec_.contact.length; }
 
@@ -281,11 +283,11 @@ Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link,
   FrictionSpec spec;
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "friction", context));
   spec.field = field;
-  spec.largest = field::largest_magnitude(*field);
+  spec.largest = field::compute_max_magnitude(*field);
   CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
-  CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::optional, context));
-  if (!spec.contact.surface) spec.contact.length = field->length();
-  CATENA_TRY(spec.threshold, get_parameter(link, "threshold", kThreshold * spec.contact.length, json::Range::not_negative, context));
+  CATENA_TRY(spec.contact, read_contact(link, SurfaceRequirement::optional, context));
+  if (!spec.contact.surface) spec.contact.length = field->domain_length();
+  CATENA_TRY(spec.threshold, get_parameter(link, "threshold", kThreshold * spec.contact.length, json::NumberRange::non_negative, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Friction>(std::move(spec)));
 }
 
@@ -296,7 +298,7 @@ ConstraintType friction_constraint() {
           "Friction across a vector field; along the field the hand moves freely.",
           "section 6.1",
           {vector_field_key("field").required(), schema::line_kind_key(),
-           length_key("threshold", "Distance at which the proxy slips across the field.").by_default("0.005 L"), surface_key(),
+           length_key("threshold", "Distance at which the proxy slips across the field.").with_default("0.005 L"), surface_key(),
            surface_level_key()},
           build_friction};
 }

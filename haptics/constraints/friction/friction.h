@@ -14,7 +14,7 @@
 /// Keys: `field`; `kind` (line: v ~ -v, dyads are interpolated, line_axis.h); `threshold` (tau, default 0.005 L, asked at the proxy
 /// before it moves); `surface`; `level` (none: the surface only gives n). On a level: the rules of friction/contact.h.
 ///
-/// Status: OK; BUDGET (not there yet along the line: goes on next tick); BOUNDARY, CRITICAL (the line ends ahead, or v is unknown
+/// LinkStatus: OK; BUDGET (not there yet along the line: goes on next tick); BOUNDARY, CRITICAL (the line ends ahead, or v is unknown
 /// or not finite at p: isotropic drag); FREE, NO_SURFACE. Haptic thread; every fetch counted.
 #pragma once
 #include "haptics/constraints/registry.h"

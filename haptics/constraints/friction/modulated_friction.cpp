@@ -1,11 +1,11 @@
 #include "haptics/constraints/friction/friction.h"
 
-#include "engine/field/magnitude.h"
-#include "engine/flow/flow.h"
+#include "engine/field/derived/magnitude.h"
+#include "engine/geometry/flow/flow.h"
 #include "engine/schema/values.h"
+#include "haptics/constraints/common/link_schema.h"
 #include "haptics/constraints/equations.h"
-#include "haptics/constraints/friction/contact.h"
-#include "haptics/constraints/rules/link_keys.h"
+#include "haptics/constraints/friction/friction_contact.h"
 
 namespace catena::haptics {
 namespace {
@@ -30,34 +30,34 @@ class ModulatedFriction final : public Constraint {
   explicit ModulatedFriction(ModulatedFrictionSpec spec) : spec_(std::move(spec)) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<ModulatedFrictionMemory>(state) = ModulatedFrictionMemory{};
+    memory_as<ModulatedFrictionMemory>(state) = ModulatedFrictionMemory{};
     state.proxy = probe;
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    ModulatedFrictionMemory& memory = memory_of<ModulatedFrictionMemory>(state);
+    ModulatedFrictionMemory& memory = memory_as<ModulatedFrictionMemory>(state);
     Contact contact(spec_.contact, probe, memory.contact, state, scratch);
     if (!contact.begin()) return;
     const Vec3 before = contact.proxy();
-    if (contact.placed_anew()) memory.angle = angle(contact.here(), memory, state, scratch);
-    const double least = spec_.least.at(before, scratch.parameter, state.evaluations);
-    const double most = spec_.most.at(before, scratch.parameter, state.evaluations);
+    if (contact.was_repositioned()) memory.angle = angle(contact.surface_point(), memory, state, scratch);
+    const double least = spec_.least.at(before, scratch.parameter_cursor, state.evaluations);
+    const double most = spec_.most.at(before, scratch.parameter_cursor, state.evaluations);
     const double u = memory.angle, hard = spec_.printed ? 1 - u : std::fabs(u);
     const double tau = safe_threshold(equation::drag_threshold(hard, least, most));
     if (norm(contact.gap()) > tau) {
-      if (!contact.slide_to(tau)) return contact.lose();
-      memory.angle = angle(contact.here(), memory, state, scratch);
+      if (!contact.slide_to(tau)) return contact.handle_lost_surface();
+      memory.angle = angle(contact.surface_point(), memory, state, scratch);
     }
-    contact.end(tau, Status::ok);
+    contact.end(tau, LinkStatus::ok);
   }
   bool is_sane(const LinkState& state) const noexcept override {
-    return haptics::is_sane(memory_of<ModulatedFrictionMemory>(state).contact);
+    return haptics::is_sane(memory_as<ModulatedFrictionMemory>(state).contact);
   }
   double domain_length() const noexcept override { return spec_.contact.length; }
 
  private:
   /// u of Eqs. 8-9.
   double angle(const LevelPoint& at, ModulatedFrictionMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
-    if (state.evaluations + 2 >= kEvaluationCap) return memory.angle;
+    if (state.evaluations + 2 >= kMaxEvaluations) return memory.angle;
     field::Cursor& cursor = scratch.cursors[1];
     ++state.evaluations;
     Vec3 v;
@@ -65,7 +65,7 @@ class ModulatedFriction final : public Constraint {
     if (spec_.line) {
       const field::LineSample line = spec_.field->sample_line(at.p, cursor);
       inside = line.inside;
-      if (flow::axis_direction(line, 0, Vec3(0.0), v) == flow::Stop::incoherent) return 0;
+      if (flow::axis_direction(line, 0, Vec3(0.0), v) == flow::StopReason::incoherent) return 0;
       v *= line.speed;
     } else {
       const field::VectorSample sample = spec_.field->sample(at.p, cursor);
@@ -73,8 +73,8 @@ class ModulatedFriction final : public Constraint {
       v = sample.value;
     }
     if (!inside || !at.finite) return 0;
-    const SafeDirection field = safe_direction(v, spec_.largest_speed);
-    const SafeDirection surface = safe_direction(at.n * at.slope, spec_.largest_slope);
+    const SafeDirection field = safe_normalize(v, spec_.largest_speed);
+    const SafeDirection surface = safe_normalize(at.n * at.slope, spec_.largest_slope);
     const double u = equation::cosine(field.d, field.factor, surface.d, surface.factor);
     return std::min(std::max(spec_.line ? std::fabs(u) : u, -1.0), 1.0);
   }
@@ -88,29 +88,30 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
   spec.field = field;
   CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
   CATENA_CHECK(schema::read_value(law_key(""), link, spec.printed));
-  CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::required, context));
+  CATENA_TRY(spec.contact, read_contact(link, SurfaceRequirement::required, context));
   const double length = spec.contact.length;
-  CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::Range::not_negative, context));
-  CATENA_TRY(spec.most, get_parameter(link, "tau_max", kMost * length, json::Range::not_negative, context));
-  spec.largest_speed = field::largest_magnitude(*field);
-  spec.largest_slope = field::largest_gradient(*spec.contact.surface);
+  CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::NumberRange::non_negative, context));
+  CATENA_TRY(spec.most, get_parameter(link, "tau_max", kMost * length, json::NumberRange::non_negative, context));
+  spec.largest_speed = field::compute_max_magnitude(*field);
+  spec.largest_slope = field::compute_max_gradient(*spec.contact.surface);
   return std::shared_ptr<const Constraint>(std::make_shared<ModulatedFriction>(std::move(spec)));
 }
 
 }  // namespace
 
 ConstraintType modulated_friction_constraint() {
-  return {"modulated_friction",
-          "Friction that is harder the more normal the field is to the surface.",
-          "section 6.1, Eqs. 7-9",
-          {schema::named("field", schema::Role::vector_field, "A vector field; its angle to the surface sets the threshold.").required(),
-           schema::line_kind_key(),
-           schema::named("surface", schema::Role::scalar_field, "A scalar field; its gradient is the normal.").required(),
-           level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
-           length_key("tau_min", "Threshold where the field is tangential.").by_default("0.001 L"),
-           length_key("tau_max", "Threshold where the field is normal.").by_default("0.01 L"),
-           law_key("`safe`: harder the more normal; `printed`: Eq. 7 to the letter.")},
-          build_modulated_friction};
+  return {
+      "modulated_friction",
+      "Friction that is harder the more normal the field is to the surface.",
+      "section 6.1, Eqs. 7-9",
+      {schema::reference("field", schema::Role::vector_field, "A vector field; its angle to the surface sets the threshold.").required(),
+       schema::line_kind_key(),
+       schema::reference("surface", schema::Role::scalar_field, "A scalar field; its gradient is the normal.").required(),
+       level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
+       length_key("tau_min", "Threshold where the field is tangential.").with_default("0.001 L"),
+       length_key("tau_max", "Threshold where the field is normal.").with_default("0.01 L"),
+       law_key("`safe`: harder the more normal; `printed`: Eq. 7 to the letter.")},
+      build_modulated_friction};
 }
 
 }  // namespace catena::haptics

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "haptics/constraints/equations.h"
-#include "haptics/constraints/isosurface/piece.h"
+#include "haptics/constraints/isosurface/cell_piece.h"
 
 namespace catena::haptics {
 namespace {
@@ -62,16 +62,17 @@ void for_subsets(unsigned mask, const Visit& visit) {
 }
 
 /// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
-Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
+Vec3 cut_short(const LevelSetField& field, const CellPiece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
                const Vec3& from, const Vec3& to) {
-  const Vec3 chord = field.cells()->mapping().world_from_index_linear * (to - from), along = equation::tangential(chord, s.n);
+  const Vec3 chord = field.trilinear_grid()->mapping().world_from_index_linear * (to - from),
+             along = equation::tangential_component(chord, s.n);
   const double most = norm(probe - piece.world(from));
   Vec3 kept = from, g;
   double low = 0, high = 1;
   for (int i = 0; i < kHalvings && !field.exhausted(); ++i) {
     const double mid = 0.5 * (low + high);
     int axis;
-    const bool fits = piece.retract(from, along * mid, s, g) && piece.outside(g, axis) <= 0 && !limit.passed_by(piece.world(g)) &&
+    const bool fits = piece.retract(from, along * mid, s, g) && piece.overshoot(g, axis) <= 0 && !limit.is_exceeded_by(piece.world(g)) &&
                       norm(probe - piece.world(g)) <= most;
     (fits ? low : high) = mid;
     if (fits) kept = g;
@@ -81,28 +82,29 @@ Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, c
 
 }  // namespace
 
-CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept {
+CellPoint to_cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept {
   const Vec3 index = grid.mapping().index_from_world(world);
   CellPoint out;
-  out.base = grid.base_of(index);
+  out.base = grid.cell_base(index);
   const Vec3 base(out.base.x, out.base.y, out.base.z);
   for (int a = 0; a < 3; ++a) out.f[a] = is_flat(grid.index_box(), a) ? 0 : std::min(std::max(index[a] - base[a], 0.0), 1.0);
   for (int a = 0; a < 3; ++a) {
-    if (out.f[a] < kFaceSlack) out.f[a] = 0;
-    if (out.f[a] > 1 - kFaceSlack) out.f[a] = 1;
+    if (out.f[a] < kFaceTolerance) out.f[a] = 0;
+    if (out.f[a] > 1 - kFaceTolerance) out.f[a] = 1;
   }
   return out;
 }
 
-Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
+Vec3 world_position(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
 }
 
-PulledBack pull_back_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at, const Vec3& f) noexcept {
-  const field::ScalarGrid& grid = *field.cells();
+PulledBackForce pull_back_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at,
+                                const Vec3& f) noexcept {
+  const field::ScalarGrid& grid = *field.trilinear_grid();
   const Corner corner(grid.index_box(), at);
   const unsigned own = corner.upper();
-  Cells cells(field);
+  CellCache cells(field);
   struct {
     double size = std::numeric_limits<double>::infinity();
     bool closest = false;
@@ -112,34 +114,34 @@ PulledBack pull_back_cells(LevelField& field, const PieceFrames& frames, const V
   } best;
   for_subsets(corner.faces, [&](unsigned flip) {
     const CellPoint here = corner.seen_from(own ^ flip);
-    const field::ScalarCell* cell = cells.find(here.base);
+    const field::ScalarCell* cell = cells.fetch(here.base);
     if (cell == nullptr) return;
     for_subsets(corner.faces, [&](unsigned held) {
-      const Piece piece(grid.mapping(), *cell, field.level(), frames.of[held | corner.flat], field.steps());
+      const CellPiece piece(grid.mapping(), *cell, field.level(), frames.by_held_axes[held | corner.flat], field.steps());
       const PieceSample s = piece.sample(here.f);
       const int count = std::popcount(held);
       if (!s.usable) return;
-      const double size = norm(piece.tangential(here.f, probe, s));
+      const double size = norm(piece.tangential_component(here.f, probe, s));
       const bool closest = size <= kWalkEnded * field.length();
       const bool better = closest != best.closest ? closest : closest && count != best.held ? count < best.held : size < best.size;
       if (better) best = {size, closest, count, held, here};
     });
   });
-  const field::ScalarCell* cell = best.held < 4 ? cells.find(best.here.base) : nullptr;
+  const field::ScalarCell* cell = best.held < 4 ? cells.fetch(best.here.base) : nullptr;
   if (cell == nullptr) return {};
-  const Piece piece(grid.mapping(), *cell, field.level(), frames.of[best.axes | corner.flat], field.steps());
+  const CellPiece piece(grid.mapping(), *cell, field.level(), frames.by_held_axes[best.axes | corner.flat], field.steps());
   return piece.pull_back(best.here.f, probe, f);
 }
 
-WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {
-  const field::ScalarGrid& grid = *field.cells();
+WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {
+  const field::ScalarGrid& grid = *field.trilinear_grid();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
-  Cells cells(field);
+  CellCache cells(field);
   WalkResult result;
   std::uint64_t exhausted = 0;
   bool steepest = false;
-  Reason wall = Reason::none;
+  SampleStatus wall = SampleStatus::ok;
   double remaining = 0;
   Vec3 last_normal(0.0);
   const auto turn_to = [&](const Vec3& n) {
@@ -157,17 +159,17 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
       const field::ScalarCell* cell;
       PieceSample s;
       Vec3 t;
-    } best{kRelease * length, 0, 0, nullptr, {}, Vec3(0.0)};
+    } best{kMinDescent * length, 0, 0, nullptr, {}, Vec3(0.0)};
     bool usable = false, pulled = false, found = false;
     remaining = 0;
     for_subsets(corner.faces, [&](unsigned flip) {
       const unsigned upper = own ^ flip;
       const CellPoint here = corner.seen_from(upper);
-      const field::ScalarCell* cell = cells.find(here.base);
+      const field::ScalarCell* cell = cells.fetch(here.base);
       if (!cell) return;
       found = true;
       for_subsets(corner.faces, [&](unsigned held) {
-        const Piece piece(mapping, *cell, field.level(), frames.of[held | corner.flat], field.steps());
+        const CellPiece piece(mapping, *cell, field.level(), frames.by_held_axes[held | corner.flat], field.steps());
         const PieceSample s = piece.sample(here.f);
         if (!s.usable) return;
         if (!usable || (flip == 0 && held == 0)) {
@@ -175,9 +177,9 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
           result.normal = s.n;
         }
         usable = true;
-        const Vec3 t = piece.tangential(here.f, probe, s);
+        const Vec3 t = piece.tangential_component(here.f, probe, s);
         const double size = norm(t);
-        if (!(size > kRelease * length)) return;
+        if (!(size > kMinDescent * length)) return;
         const Vec3 d = piece.frame().index_step(mapping, t);
         bool feasible = true;
         for (int a = 0; a < 3; ++a) {
@@ -185,9 +187,9 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
           if (here.f[a] == 0 ? d[a] >= 0 : d[a] <= 0) continue;
           feasible = false;
           // pulled across a face with nothing behind it
-          if (held == 0 && size > 1e-7 * length && !cells.find(corner.seen_from(upper ^ (1u << a)).base)) {
+          if (held == 0 && size > 1e-7 * length && !cells.fetch(corner.seen_from(upper ^ (1u << a)).base)) {
             pulled = true;
-            wall = cells.wall;
+            wall = cells.wall_reason;
           }
         }
         if (!feasible) return;
@@ -195,13 +197,13 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
         if (size > best.size && !(exhausted >> (upper * 8 + held) & 1u)) best = {size, upper, held, cell, s, t};
       });
     });
-    if (cells.spent() || field.exhausted()) {
-      result.status = Status::budget;
+    if (cells.out_of_budget() || field.exhausted()) {
+      result.status = LinkStatus::budget;
       return result;
     }
     if (!usable) {
-      result.status = Status::critical;
-      result.reason = found ? Reason::zero : cells.wall;
+      result.status = LinkStatus::critical;
+      result.reason = found ? SampleStatus::zero : cells.wall_reason;
       return result;
     }
     turn_to(result.normal);
@@ -212,36 +214,36 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
         exhausted = 0;
         continue;
       }
-      result.status = stuck ? Status::budget : pulled ? Status::boundary : Status::ok;
+      result.status = stuck ? LinkStatus::budget : pulled ? LinkStatus::boundary : LinkStatus::ok;
       result.reason = wall;
       return result;
     }
 
     // follow it
     CellPoint next = corner.seen_from(best.upper);
-    best.cell = cells.find(next.base);  // the others of the round may have taken its place
+    best.cell = cells.fetch(next.base);  // the others of the round may have taken its place
     if (!best.cell) {
-      result.status = Status::budget;
+      result.status = LinkStatus::budget;
       return result;
     }
     const Vec3 before = next.f;
     const PieceSample start = best.s;
-    const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat], field.steps());
-    const bool crossed = best.size > kFarAway * field.voxel() &&
+    const CellPiece piece(mapping, *best.cell, field.level(), frames.by_held_axes[best.held | corner.flat], field.steps());
+    const bool crossed = best.size > kFarAway * field.voxel_edge() &&
                          cross_cell(field, frames, piece, *best.cell, best.held | corner.flat, probe, best.s, best.t, next.f);
-    const Followed how = crossed ? Followed::landed : follow(field, piece, probe, steepest, next.f, best.s, best.t);
-    if (limit != nullptr && !limit->passed && limit->passed_by(piece.world(next.f))) {
-      limit->passed = true;
-      limit->last = next;
-      limit->last.f = cut_short(field, piece, probe, *limit, start, before, next.f);
+    const FollowResult how = crossed ? FollowResult::landed : follow_piece(field, piece, probe, steepest, next.f, best.s, best.t);
+    if (limit != nullptr && !limit->exceeded && limit->is_exceeded_by(piece.world(next.f))) {
+      limit->exceeded = true;
+      limit->last_within = next;
+      limit->last_within.f = cut_short(field, piece, probe, *limit, start, before, next.f);
       limit->normal = start.n;
     }
     const unsigned faces = Corner(grid.index_box(), next).faces;
-    if (how == Followed::converged && faces == 0 && norm(best.t) <= kRelease * length) {
+    if (how == FollowResult::converged && faces == 0 && norm(best.t) <= kMinDescent * length) {
       // within the cell no other piece meets the point
       at = next;
       turn_to(best.s.n);
-      result.status = Status::ok;
+      result.status = LinkStatus::ok;
       result.residual = std::fabs(best.s.distance);
       result.normal = best.s.n;
       return result;
@@ -250,10 +252,10 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
     const bool snapped = !moved && faces != corner.faces;
     if (moved || snapped) exhausted = 0;
     if (moved) steepest = false;
-    if ((!moved && !snapped) || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best.upper * 8 + best.held);
+    if ((!moved && !snapped) || how == FollowResult::blocked) exhausted |= std::uint64_t{1} << (best.upper * 8 + best.held);
     at = next;
   }
-  result.status = Status::budget;
+  result.status = LinkStatus::budget;
   return result;
 }
 

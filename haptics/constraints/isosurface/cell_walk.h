@@ -2,9 +2,9 @@
 #pragma once
 #include <cmath>
 
-#include "engine/field/grid.h"
-#include "haptics/constraints/isosurface/level.h"
-#include "haptics/constraints/isosurface/piece.h"
+#include "engine/field/grid/grid.h"
+#include "haptics/constraints/isosurface/cell_piece.h"
+#include "haptics/constraints/isosurface/level_set_field.h"
 
 namespace catena::haptics {
 
@@ -12,12 +12,12 @@ namespace catena::haptics {
 inline bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[a]); }
 
 /// The cells fetched in this tick: each is counted once.
-class Cells {
+class CellCache {
  public:
-  explicit Cells(LevelField& field) : field_(field), grid_(*field.cells()) {}
+  explicit CellCache(LevelSetField& field) : field_(field), grid_(*field.trilinear_grid()) {}
 
   /// nullptr: a wall, of which `wall` then says the kind, or the budget is spent.
-  const field::ScalarCell* find(const field::Index3& base) {
+  const field::ScalarCell* fetch(const field::Index3& base) {
     ++field_.steps();
     const field::Box& box = grid_.index_box();
     const std::array<std::int32_t, 3> at{base.x, base.y, base.z};
@@ -25,54 +25,54 @@ class Cells {
       const double last = is_flat(box, a) ? box.lo[a] : box.hi[a] - 1;
       const double b = at[static_cast<std::size_t>(a)];
       if (b < box.lo[a] || b > last) {
-        wall = Reason::box;
+        wall_reason = SampleStatus::outside_box;
         return nullptr;
       }
     }
-    for (std::size_t i = 1; i <= kCells && i <= count_; ++i) {
-      const std::size_t k = (count_ - i) % kCells;
-      if (keys_[k].base == base) return usable(k);
+    for (std::size_t i = 1; i <= kCapacity && i <= count_; ++i) {
+      const std::size_t k = (count_ - i) % kCapacity;
+      if (keys_[k].base == base) return cell_or_wall(k);
     }
-    if (field_.spent()) {
-      spent_ = true;
+    if (field_.out_of_budget()) {
+      out_of_budget_ = true;
       return nullptr;
     }
     field_.count_fetch();
-    const std::size_t k = count_++ % kCells;
+    const std::size_t k = count_++ % kCapacity;
     field::ScalarCell& cell = *new (slot(k)) field::ScalarCell(grid_.cell(base, field_.cursor()));
     cell.base = base;
-    keys_[k] = {base, wall_of(cell)};
-    return usable(k);
+    keys_[k] = {base, classify_wall(cell)};
+    return cell_or_wall(k);
   }
-  bool spent() const { return spent_; }
-  Reason wall = Reason::none;
+  bool out_of_budget() const { return out_of_budget_; }
+  SampleStatus wall_reason = SampleStatus::ok;
 
  private:
   struct Key {
     field::Index3 base;
-    Reason wall;  ///< none: a cell to walk in
+    SampleStatus wall_reason;  ///< none: a cell to walk in
   };
-  static Reason wall_of(const field::ScalarCell& cell) {
+  static SampleStatus classify_wall(const field::ScalarCell& cell) {
     for (const double c : cell.corner)
-      if (!std::isfinite(c)) return Reason::not_finite;
-    return cell.valid ? Reason::none : Reason::mask;
+      if (!std::isfinite(c)) return SampleStatus::not_finite;
+    return cell.valid ? SampleStatus::ok : SampleStatus::masked;
   }
-  const field::ScalarCell* usable(std::size_t k) {
-    if (keys_[k].wall == Reason::none) return slot(k);
-    wall = keys_[k].wall;
+  const field::ScalarCell* cell_or_wall(std::size_t k) {
+    if (keys_[k].wall_reason == SampleStatus::ok) return slot(k);
+    wall_reason = keys_[k].wall_reason;
     return nullptr;
   }
-  LevelField& field_;
+  LevelSetField& field_;
   const field::ScalarGrid& grid_;
   // raw bytes: most ticks need one cell, and clearing 32 would cost as much as the walk
-  static constexpr std::size_t kCells = 32;
+  static constexpr std::size_t kCapacity = 32;
   field::ScalarCell* slot(std::size_t k) {
     return std::launder(reinterpret_cast<field::ScalarCell*>(&bytes_[k * sizeof(field::ScalarCell)]));
   }
-  alignas(field::ScalarCell) std::array<std::byte, kCells * sizeof(field::ScalarCell)> bytes_;
-  std::array<Key, kCells> keys_;  // NOLINT: set as cells come
+  alignas(field::ScalarCell) std::array<std::byte, kCapacity * sizeof(field::ScalarCell)> bytes_;
+  std::array<Key, kCapacity> keys_;  // NOLINT: set as cells come
   std::size_t count_ = 0;
-  bool spent_ = false;
+  bool out_of_budget_ = false;
 };
 
 /// The closest point of a sampled level set to the probe x, exact to the trilinear cells: one fetch is the whole polynomial,
@@ -91,7 +91,7 @@ struct CellPoint {
   Vec3 f{0.0};
 };
 
-/// Of a state from a file (Constraint::is_sane): far from where integers end, and a place. Cells outside the grid are
+/// Of a state from a file (Constraint::is_valid_state): far from where integers end, and a place. CellCache outside the grid are
 /// walls to the walk.
 inline bool is_sane(const CellPoint& at) noexcept {
   constexpr std::int32_t most = 1 << 30;
@@ -100,9 +100,9 @@ inline bool is_sane(const CellPoint& at) noexcept {
 }
 
 struct WalkResult {
-  Status status = Status::ok;    ///< ok, boundary, budget, critical
-  Reason reason = Reason::none;  ///< of a status boundary or critical
-  double residual = 0;           ///< off the level, world units
+  LinkStatus status = LinkStatus::ok;      ///< ok, boundary, budget, critical
+  SampleStatus reason = SampleStatus::ok;  ///< of a status boundary or critical
+  double residual = 0;                     ///< off the level, world units
   Vec3 normal{0.0};
   bool smooth = true;  ///< the normal turned by less than 18 degrees from step to step
 };
@@ -110,23 +110,24 @@ struct WalkResult {
 /// How far a walk may go from where it began. It is walked to its end all the same; `last` is the last point within `room`.
 struct TravelLimit {
   Vec3 from{0.0};
-  double room = 0;  ///< world units
-  bool passed = false;
-  CellPoint last{};
+  double max_distance = 0;  ///< world units
+  bool exceeded = false;
+  CellPoint last_within{};
   Vec3 normal{0.0};
-  bool passed_by(const Vec3& p) const noexcept { return norm(p - from) > room; }
+  bool is_exceeded_by(const Vec3& p) const noexcept { return norm(p - from) > max_distance; }
 };
 
 /// The cell point of a world position (clamped to the domain).
-CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept;
-Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
+CellPoint to_cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept;
+Vec3 world_position(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
 
 /// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe. `frames`: the grid's.
-WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at,
+WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at,
                       TravelLimit* limit = nullptr) noexcept;
 
 /// J^T f of the projection at `at`, where a walk has ended: by the cell's exact Hessian, in the span of the axes that are not held. Of the
 /// pieces that meet the point the one counts on which it is a closest point, with the fewest axes held.
-PulledBack pull_back_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at, const Vec3& f) noexcept;
+PulledBackForce pull_back_cells(LevelSetField& field, const PieceFrames& frames, const Vec3& probe, const CellPoint& at,
+                                const Vec3& f) noexcept;
 
 }  // namespace catena::haptics

@@ -1,6 +1,6 @@
 #include "haptics/constraints/isosurface/crossing.h"
 
-#include "engine/field/grid.h"
+#include "engine/field/grid/grid.h"
 #include "haptics/constraints/isosurface/cell_walk.h"
 
 namespace catena::haptics {
@@ -77,23 +77,23 @@ double next_face(const Vec3& a, const Vec3& d, double t) {
   for (int k = 0; k < 3; ++k) {
     if (d[k] == 0) continue;
     const double here = a[k] + t * d[k];
-    const double face = d[k] > 0 ? std::floor(here + kFaceSlack) + 1 : std::ceil(here - kFaceSlack) - 1;
+    const double face = d[k] > 0 ? std::floor(here + kFaceTolerance) + 1 : std::ceil(here - kFaceTolerance) - 1;
     next = std::min(next, (face - a[k]) / d[k]);
   }
   return next;
 }
 
-Reached cross_cells(LevelField& field, const Vec3& from, const LevelPoint& to) noexcept {
-  const field::ScalarGrid& grid = *field.cells();
+LevelSetHit cross_cells(LevelSetField& field, const Vec3& from, const LevelPoint& to) noexcept {
+  const field::ScalarGrid& grid = *field.trilinear_grid();
   const field::Mapping& mapping = grid.mapping();
   const Vec3 a = mapping.index_from_world(from), d = mapping.index_from_world_linear * (to.p - from);
   const Part part(grid.index_box(), a, d);
-  Cells cells(field);
+  CellCache cells(field);
   double side = 0;
   double t = part.first;
-  for (int i = 0; i < kMostCells && t < part.last && !field.spent(kForTheRest); ++i) {
+  for (int i = 0; i < kMostCells && t < part.last && !field.out_of_budget(kForTheRest); ++i) {
     const double end = std::min(std::max(next_face(a, d, t), t + 1e-12), part.last);
-    const field::ScalarCell* cell = cells.find(grid.base_of(a + d * (0.5 * (t + end))));
+    const field::ScalarCell* cell = cells.fetch(grid.cell_base(a + d * (0.5 * (t + end))));
     if (cell == nullptr) {
       side = 0;
       t = end;
@@ -120,9 +120,9 @@ Reached cross_cells(LevelField& field, const Vec3& from, const LevelPoint& to) n
 }
 
 /// A dip of the value between two places on the same side that passes the level, if the tangents leave room for one.
-Reached cross_dip(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
+LevelSetHit cross_dip(LevelSetField& field, LevelPoint a, LevelPoint b) noexcept {
   const double side = a.sigma < 0 ? -1 : 1;
-  for (int i = 0; i < kDipTrials && !field.spent(kForTheRest); ++i) {
+  for (int i = 0; i < kDipTrials && !field.out_of_budget(kForTheRest); ++i) {
     const Vec3 way = b.p - a.p;
     const double va = side * a.sigma, vb = side * b.sigma;
     const double da = side * a.slope * dot(a.n, way), db = side * b.slope * dot(b.n, way);
@@ -131,21 +131,21 @@ Reached cross_dip(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
     if (!(t > 0 && t < 1) || va + da * t >= 0) return {};
     const LevelPoint c = field.at(a.p + way * std::min(std::max(t, 0.1), 0.9));
     if (!c.valid) return {};
-    if (other_side(c.sigma, side)) return root_between(field, a, c);
+    if (other_side(c.sigma, side)) return find_root_between(field, a, c);
     if (c.plateau) return {};
     (side * dot(c.n, way) > 0 ? b : a) = c;
   }
   return {};
 }
 
-Reached cross_steps(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
+LevelSetHit cross_steps(LevelSetField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
   const double length = norm(to.p - from);
   const double count = std::min(std::max(std::ceil(length / field.march_step()), 1.0), static_cast<double>(kSegmentSteps));
   LevelPoint a = known != nullptr ? *known : field.at(from);
-  for (double i = 1; i <= count && !field.spent(kForTheRest); ++i) {
+  for (double i = 1; i <= count && !field.out_of_budget(kForTheRest); ++i) {
     const LevelPoint b = i == count ? to : field.at(from + (to.p - from) * (i / count));
     if (a.valid && b.valid) {
-      const Reached root = other_side(a.sigma, b.sigma) ? root_between(field, a, b) : cross_dip(field, a, b);
+      const LevelSetHit root = other_side(a.sigma, b.sigma) ? find_root_between(field, a, b) : cross_dip(field, a, b);
       if (root.found) return root;
     }
     a = b;
@@ -155,12 +155,12 @@ Reached cross_steps(LevelField& field, const Vec3& from, const LevelPoint& to, c
 
 }  // namespace
 
-Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
-  const bool in_cells = field.cells() != nullptr && norm(to.p - from) <= kMostCells / 3 * field.voxel();
+LevelSetHit find_first_crossing(LevelSetField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known) noexcept {
+  const bool in_cells = field.trilinear_grid() != nullptr && norm(to.p - from) <= kMostCells / 3 * field.voxel_edge();
   return in_cells ? cross_cells(field, from, to) : cross_steps(field, from, to, known);
 }
 
-bool stays_on_side(const LevelField& field, const LevelPoint& a, const LevelPoint& b) noexcept {
+bool stays_on_side(const LevelSetField& field, const LevelPoint& a, const LevelPoint& b) noexcept {
   const Vec3 way = b.p - a.p;
   if (!a.valid || !b.valid || other_side(a.sigma, b.sigma) || norm(way) > field.march_step()) return false;
   const double side = a.sigma < 0 ? -1 : 1;

@@ -4,15 +4,15 @@
 ///                     which every convex dip lies above
 /// World units; every fetch counts. Haptic thread: no allocation, lock, or throw.
 #pragma once
-#include "haptics/constraints/isosurface/reach.h"
+#include "haptics/constraints/isosurface/surface_search.h"
 
 namespace catena::haptics {
 
 /// Where the segment from..to meets the level first; `to` has been asked for already, and what `known` points to, if anything, at `from`. A
 /// way longer than 53 voxels, which may pass 160 cells, or of more than 64 steps is looked at by 64 steps.
-Reached first_crossing(LevelField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known = nullptr) noexcept;
+LevelSetHit find_first_crossing(LevelSetField& field, const Vec3& from, const LevelPoint& to, const LevelPoint* known = nullptr) noexcept;
 
 /// Whether the way between two places on the same side of a formula's level, at most one step long, leaves no room for a convex dip.
-bool stays_on_side(const LevelField& field, const LevelPoint& a, const LevelPoint& b) noexcept;
+bool stays_on_side(const LevelSetField& field, const LevelPoint& a, const LevelPoint& b) noexcept;
 
 }  // namespace catena::haptics

@@ -1,14 +1,14 @@
 #include "haptics/constraints/isosurface/isosurface.h"
 
+#include "haptics/constraints/common/link_schema.h"
+#include "haptics/constraints/common/one_sided_contact.h"
+#include "haptics/constraints/common/pull_back.h"
 #include "haptics/constraints/equations.h"
-#include "haptics/constraints/isosurface/analytic.h"
 #include "haptics/constraints/isosurface/cell_walk.h"
+#include "haptics/constraints/isosurface/closest_point.h"
 #include "haptics/constraints/isosurface/crossing.h"
-#include "haptics/constraints/isosurface/reach.h"
-#include "haptics/constraints/isosurface/wall.h"
-#include "haptics/constraints/rules/link_keys.h"
-#include "haptics/constraints/rules/pull_back.h"
-#include "haptics/constraints/rules/surface_side.h"
+#include "haptics/constraints/isosurface/domain_wall.h"
+#include "haptics/constraints/isosurface/surface_search.h"
 
 namespace catena::haptics {
 namespace {
@@ -33,21 +33,21 @@ struct IsosurfaceMemory {
   Curvature curvature;  // formulas
   CellPoint cell;       // linear grids: the point held
   Vec3 normal;
-  Scan scan;
+  SurfaceScan scan;
   bool walled;  // cubic grids: held by a wall
   double owed;  // of the way that a walk out of budget was allowed and has not gone
 };
 
 bool is_long_step(const SideMemory& side, const Vec3& probe, double length) noexcept {
-  return side.fresh && norm(probe - side.probe) > kLongStep * length;
+  return side.initialized && norm(probe - side.probe) > kLongStepFraction * length;
 }
 
-class LevelSurface final : public Surface {
+class LevelSurface final : public ContactSurface {
  public:
-  LevelSurface(const LevelField& field, const PieceFrames& frames, double tolerance, const SideRules& rules, IsosurfaceMemory& memory)
+  LevelSurface(const LevelSetField& field, const PieceFrames& frames, double tolerance, const SideRules& rules, IsosurfaceMemory& memory)
       : field_(field), frames_(frames), tolerance_(tolerance), memory_(memory), one_sided_(rules.free != FreeSide::none) {}
 
-  SideValue side(const Vec3& at) noexcept override {
+  SideValue evaluate_side(const Vec3& at) noexcept override {
     here_ = field_.at(at);
     have_here_ = true;
     asked_ = at;
@@ -56,46 +56,46 @@ class LevelSurface final : public Surface {
     return {here_.sigma, here_.valid, !here_.finite};
   }
 
-  Hold place(const Vec3& probe) noexcept override {
+  SurfaceHold project_probe(const Vec3& probe) noexcept override {
     const LevelPoint start = look(probe);
-    const Reached reached = project(start, kSearchRadius * field_.length());
-    if (!reached.found) return {false, probe, 0, memory_.scan.open ? Status::budget : Status::no_surface, Reason::none};
-    const Hold hold = settle(reached.at, probe, Curvature{});
+    const LevelSetHit reached = project(start, kSearchRadius * field_.length());
+    if (!reached.found) return {false, probe, 0, memory_.scan.in_progress ? LinkStatus::budget : LinkStatus::no_surface, SampleStatus::ok};
+    const SurfaceHold hold = settle(reached.point, probe, Curvature{});
     // further away than the field says: something nearer may be in sight
     const bool far = norm(probe - hold.proxy) > 1.05 * std::fabs(start.distance);
-    return field_.cells() || !far ? hold : settle_in_sight(start, hold);
+    return field_.trilinear_grid() || !far ? hold : settle_in_sight(start, hold);
   }
 
-  Hold slide(const Vec3& probe) noexcept override {
-    const double travel = travel_of(memory_.side, probe, norm(probe - memory_.side.proxy), field_.state());
-    return field_.cells() ? slide_grid(probe, travel) : slide_formula(probe, travel);
+  SurfaceHold slide(const Vec3& probe) noexcept override {
+    const double travel = max_proxy_travel(memory_.side, probe, norm(probe - memory_.side.proxy), field_.state());
+    return field_.trilinear_grid() ? slide_grid(probe, travel) : slide_formula(probe, travel);
   }
 
-  Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
-    const bool known = before_.valid && same_bits(before_.p, from);
-    if (known && !field_.cells() && have_here_ && same_bits(asked_, probe) && stays_on_side(field_, before_, here_)) return {};
+  SurfaceHold find_crossing(const Vec3& from, const Vec3& probe) noexcept override {
+    const bool known = before_.valid && bitwise_equal(before_.p, from);
+    if (known && !field_.trilinear_grid() && have_here_ && bitwise_equal(asked_, probe) && stays_on_side(field_, before_, here_)) return {};
     const LevelPoint end = look(probe);
-    const Reached reached = first_crossing(field_, from, end, known ? &before_ : nullptr);
+    const LevelSetHit reached = find_first_crossing(field_, from, end, known ? &before_ : nullptr);
     if (!reached.found) return {};
-    return field_.cells() ? settle(reached.at, probe, Curvature{}) : settle_formula(reached.at, probe, Curvature{}, false);
+    return field_.trilinear_grid() ? settle(reached.point, probe, Curvature{}) : settle_formula(reached.point, probe, Curvature{}, false);
   }
 
-  Hold near_by(const Vec3& probe, double limit) noexcept override {
-    const Reached reached = reach_along_gradient(field_, look(probe), Vec3(0.0), 1.25 * limit);
+  SurfaceHold project_probe_within(const Vec3& probe, double limit) noexcept override {
+    const LevelSetHit reached = search_along_gradient(field_, look(probe), Vec3(0.0), 1.25 * limit);
     if (!reached.found) return {};
     const IsosurfaceMemory before = memory_;
-    Hold hold = settle(reached.at, probe, Curvature{});
+    SurfaceHold hold = settle(reached.point, probe, Curvature{});
     if (hold.found && norm(hold.proxy - probe) <= limit) return hold;
     memory_ = before;
     return {};
   }
 
   Vec3 normal() const noexcept override { return memory_.normal; }
-  bool may_be_thin() const noexcept override { return true; }
+  bool may_tunnel() const noexcept override { return true; }
   double domain_length() const noexcept override { return field_.length(); }
 
  private:
-  LevelPoint look(const Vec3& probe) noexcept { return have_here_ && same_bits(asked_, probe) ? here_ : field_.at(probe); }
+  LevelPoint look(const Vec3& probe) noexcept { return have_here_ && bitwise_equal(asked_, probe) ? here_ : field_.at(probe); }
 
   /// The closest point wins over the limit where it is the closest point itself that has moved so far, as deep inside a concave
   /// surface: what is met now was no nearer before than what is held.
@@ -105,14 +105,14 @@ class LevelSurface final : public Surface {
   }
 
   /// Whether a hand, fast as it may be, makes the probe's step: what holds it must not change to another body.
-  bool is_of_a_hand(const Vec3& probe) const noexcept { return norm(probe - memory_.side.probe) <= field_.state().hand_step; }
+  bool is_of_a_hand(const Vec3& probe) const noexcept { return norm(probe - memory_.side.probe) <= field_.state().max_probe_step; }
 
   /// Whether steps along the surface lead from one of its places to the other.
   bool leads_to(LevelPoint at, const LevelPoint& to) noexcept {
-    for (int i = 0; i < kStepsAlong && !field_.spent(kForLevel); ++i) {
+    for (int i = 0; i < kStepsAlong && !field_.out_of_budget(kForLevel); ++i) {
       const Vec3 way = to.p - at.p;
       if (norm(way) <= kThere * field_.length()) return true;
-      const Vec3 along = equation::tangential(way, at.n);
+      const Vec3 along = equation::tangential_component(way, at.n);
       const LevelPoint next = relevelled(field_.at(at.p + along * (i < kStepsAlong / 2 ? 2.0 / kStepsAlong : 1.0)));
       if (!usable(next) || dot(next.n, at.n) < 0.5) return false;
       at = next;
@@ -120,9 +120,9 @@ class LevelSurface final : public Surface {
     return false;
   }
 
-  Hold slide_grid(const Vec3& probe, double travel) noexcept {
+  SurfaceHold slide_grid(const Vec3& probe, double travel) noexcept {
     CellPoint cell = memory_.cell;
-    const Vec3 held = world_of(*field_.cells(), cell);
+    const Vec3 held = world_position(*field_.trilinear_grid(), cell);
     // a probe that was thrown goes far along the surface first as if it were smooth
     if (is_long_step(memory_.side, probe, field_.length())) {
       const LevelPoint start = field_.at(held);
@@ -130,32 +130,32 @@ class LevelSurface final : public Surface {
     }
     TravelLimit limit{held, travel + memory_.owed, false, {}, Vec3(0.0)};
     WalkResult walk = walk_cells(field_, frames_, probe, cell, &limit);
-    const Vec3 met = world_of(*field_.cells(), cell);
+    const Vec3 met = world_position(*field_.trilinear_grid(), cell);
     memory_.owed = 0;
-    if (!limit.passed_by(met)) {
-      if (walk.status == Status::budget && std::isfinite(limit.room)) memory_.owed = limit.room - norm(met - held);
-    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met)) {
-      cell = limit.last;
-      walk = {Status::budget, Reason::none, 0, limit.normal, true};
+    if (!limit.is_exceeded_by(met)) {
+      if (walk.status == LinkStatus::budget && std::isfinite(limit.max_distance)) memory_.owed = limit.max_distance - norm(met - held);
+    } else if (!walk.smooth || walk.status == LinkStatus::budget || !has_moved(held, met)) {
+      cell = limit.last_within;
+      walk = {LinkStatus::budget, SampleStatus::ok, 0, limit.normal, true};
     }
     return hold_cell(cell, walk);
   }
 
-  Hold slide_formula(const Vec3& probe, double travel) noexcept {
+  SurfaceHold slide_formula(const Vec3& probe, double travel) noexcept {
     const LevelPoint from = memory_.at;
     const Curvature curvature = memory_.curvature;
     travel_ = travel;
-    const Hold hold = settle_formula(from, probe, curvature, false);
+    const SurfaceHold hold = settle_formula(from, probe, curvature, false);
     const bool far = is_long_step(memory_.side, probe, field_.length()) && is_of_a_hand(probe);
     const auto is_other_body = [&](const LevelPoint& at) { return far && !leads_to(from, at); };
     if ((!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) && !is_other_body(memory_.at)) return hold;
     memory_.at = from;
-    if (Hold wall; hold_along(from, probe, wall)) return wall;
+    if (SurfaceHold wall; hold_along(from, probe, wall)) return wall;
 
     // so far down the surface as it may go
-    const Vec3 e = probe - from.p, way = direction(equation::tangential(e, from.n));
+    const Vec3 e = probe - from.p, way = direction(equation::tangential_component(e, from.n));
     LevelPoint at = from;
-    for (double step = travel; step > 0.1 * travel && !field_.spent(kForLevel); step *= 0.5) {
+    for (double step = travel; step > 0.1 * travel && !field_.out_of_budget(kForLevel); step *= 0.5) {
       const LevelPoint ahead = relevelled(field_.at(from.p + way * step));
       if (!usable(ahead) || norm(ahead.p - from.p) > travel || !(norm(probe - ahead.p) < norm(e)) || is_other_body(ahead)) continue;
       at = ahead;
@@ -164,109 +164,111 @@ class LevelSurface final : public Surface {
     memory_.at = at;
     memory_.curvature = curvature;
     memory_.normal = at.n;
-    return {true, at.p, std::fabs(at.distance), Status::budget, Reason::none};
+    return {true, at.p, std::fabs(at.distance), LinkStatus::budget, SampleStatus::ok};
   }
 
   /// From a point on the level to the closest point.
-  Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
-    if (!field_.cells()) return settle_formula(start, probe, curvature, true);
-    return settle_grid(cell_point(*field_.cells(), start.p), start, probe);
+  SurfaceHold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
+    if (!field_.trilinear_grid()) return settle_formula(start, probe, curvature, true);
+    return settle_grid(to_cell_point(*field_.trilinear_grid(), start.p), start, probe);
   }
 
   /// From anywhere to the level, without an earlier point. A scan that runs out of budget stays open in the memory.
-  Reached project(const LevelPoint& start, double radius) noexcept {
-    Scan& scan = memory_.scan;
-    if (scan.nothing && same_bits(scan.probe, start.p)) return {};
-    if (scan.met && same_bits(scan.probe, start.p)) return {true, field_.at(scan.nearest)};
-    const bool goes_on = scan.open && norm(scan.probe - start.p) <= kLongStep * field_.length();
+  LevelSetHit project(const LevelPoint& start, double radius) noexcept {
+    SurfaceScan& scan = memory_.scan;
+    if (scan.found_nothing && bitwise_equal(scan.probe, start.p)) return {};
+    if (scan.found_level && bitwise_equal(scan.probe, start.p)) return {true, field_.at(scan.nearest)};
+    const bool goes_on = scan.in_progress && norm(scan.probe - start.p) <= kLongStepFraction * field_.length();
     LevelPoint centre = start;
     if (!goes_on) {
-      const Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
+      const LevelSetHit reached = search_along_gradient(field_, start, Vec3(0.0), radius);
       if (reached.found) return closed(reached);
-      if (!field_.cells()) {
-        Scan near{};
-        const Reached by_axes = reach_by_scan(field_, start, true, near);
+      if (!field_.trilinear_grid()) {
+        SurfaceScan near{};
+        const LevelSetHit by_axes = search_by_scan(field_, start, true, near);
         if (by_axes.found) return by_axes;
       }
       // where the march ended it may be much closer to the level
-      const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
-      if (closer) centre = reached.at;
-      scan = Scan{};
+      const bool closer = start.valid && reached.point.valid && std::fabs(reached.point.sigma) < std::fabs(start.sigma);
+      if (closer) centre = reached.point;
+      scan = SurfaceScan{};
       scan.probe = start.p;
-      scan.centre = centre.p;
-    } else if (!same_bits(scan.centre, start.p)) {
-      centre = field_.at(scan.centre);
+      scan.center = centre.p;
+    } else if (!bitwise_equal(scan.center, start.p)) {
+      centre = field_.at(scan.center);
     }
-    Reached reached = reach_by_scan(field_, centre, false, scan);
-    if (!reached.found && !scan.open && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
-    scan.nothing = !reached.found && !scan.open;
+    LevelSetHit reached = search_by_scan(field_, centre, false, scan);
+    if (!reached.found && !scan.in_progress && reached.point.valid)
+      reached = search_along_gradient(field_, reached.point, Vec3(0.0), field_.length(), 0);
+    scan.found_nothing = !reached.found && !scan.in_progress;
     if (reached.found && goes_on) return met_late(start.p, reached);
     return reached.found ? closed(reached) : reached;
   }
   /// Of a scan that has taken more than one tick: a probe that rests need not make it again.
-  Reached met_late(const Vec3& probe, const Reached& reached) noexcept {
-    memory_.scan = Scan{};
+  LevelSetHit met_late(const Vec3& probe, const LevelSetHit& reached) noexcept {
+    memory_.scan = SurfaceScan{};
     memory_.scan.probe = probe;
-    memory_.scan.nearest = reached.at.p;
-    memory_.scan.met = true;
+    memory_.scan.nearest = reached.point.p;
+    memory_.scan.found_level = true;
     return reached;
   }
-  Reached closed(const Reached& reached) noexcept {
-    memory_.scan = Scan{};
+  LevelSetHit closed(const LevelSetHit& reached) noexcept {
+    memory_.scan = SurfaceScan{};
     return reached;
   }
 
   /// The quick iteration; then down the surface from the better end of it; where that is stuck, and any sheet will do or none is
   /// held, from a fresh projection.
-  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
+  SurfaceHold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
     LevelPoint best = at;
-    if (Hold wall; memory_.walled && hold_along(at, probe, wall)) return wall;
+    if (SurfaceHold wall; memory_.walled && hold_along(at, probe, wall)) return wall;
     memory_.walled = false;
-    if (closest_point(field_, probe, goal(field_.grid() ? quick_of_grid() : kQuick), at, curvature) == Closest::converged)
-      return hold_formula(at, Closest::converged, probe, curvature);
+    if (closest_point(field_, probe, goal(field_.grid() ? quick_of_grid() : kQuick), at, curvature) == ClosestPointResult::converged)
+      return hold_formula(at, ClosestPointResult::converged, probe, curvature);
     at = relevelled(at);
     if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
-    if (Hold wall; hold_along(at, probe, wall)) return wall;
-    Closest how = Closest::stuck;
-    if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
-    if ((!any_sheet && usable(at)) || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
+    if (SurfaceHold wall; hold_along(at, probe, wall)) return wall;
+    ClosestPointResult how = ClosestPointResult::stuck;
+    if (usable(at)) how = descend_on_surface(field_, probe, goal(kMaxEvaluations), at, curvature);
+    if ((!any_sheet && usable(at)) || how != ClosestPointResult::stuck || field_.out_of_budget(6 * kForLevel))
+      return hold_formula(at, how, probe, curvature);
 
-    const Reached fresh = project(field_.at(probe), kSearchRadius * field_.length());
+    const LevelSetHit fresh = project(field_.at(probe), kSearchRadius * field_.length());
     if (!fresh.found) return hold_formula(at, how, probe, curvature);
-    best = fresh.at;
+    best = fresh.point;
     Curvature other;
-    const Closest again = descend(field_, probe, goal(kEvaluationCap), best, other);
+    const ClosestPointResult again = descend_on_surface(field_, probe, goal(kMaxEvaluations), best, other);
     best = relevelled(best);
     if (!nearer(best, at, probe)) return hold_formula(at, how, probe, curvature);
     return hold_formula(best, again, probe, other);
   }
 
   /// Where walls of a cubic grid hold it. False: none does, or what is found there is no nearer.
-  bool hold_along(const LevelPoint& at, const Vec3& probe, Hold& hold) noexcept {
-    if (field_.grid() == nullptr || !usable(at) || field_.spent(kForWalls)) return false;
-    const AtWall found = closest_at_walls(field_, frames_, probe, goal(quick_of_grid()), at, {memory_.at.p, travel_});
+  bool hold_along(const LevelPoint& at, const Vec3& probe, SurfaceHold& hold) noexcept {
+    if (field_.grid() == nullptr || !usable(at) || field_.out_of_budget(kWallFetches)) return false;
+    const WallResult found = closest_point_at_walls(field_, frames_, probe, goal(quick_of_grid()), at, {memory_.at.p, travel_});
     if (!found.found) return false;
-    memory_.at = found.at;
+    memory_.at = found.point;
     memory_.curvature = Curvature{};
-    memory_.normal = found.at.n;
-    memory_.walled = found.status == Status::boundary;
-    hold = {true, found.at.p, std::fabs(found.at.distance), found.status, found.reason};
+    memory_.normal = found.point.n;
+    memory_.walled = found.status == LinkStatus::boundary;
+    hold = {true, found.point.p, std::fabs(found.point.distance), found.status, found.reason};
     return true;
   }
 
   /// From a point between the probe and what is held, if the level is met there.
-  Hold settle_in_sight(const LevelPoint& probe, const Hold& hold) noexcept {
+  SurfaceHold settle_in_sight(const LevelPoint& probe, const SurfaceHold& hold) noexcept {
     const LevelPoint before = memory_.at;
-    if (field_.spent(kSight + 4 * kForLevel)) return hold;
+    if (field_.out_of_budget(kSight + 4 * kForLevel)) return hold;
     LevelPoint a = probe;
     for (int i = 1; i < kSight; ++i) {
       const LevelPoint b = field_.at(probe.p + (hold.proxy - probe.p) * (i * (1.0 / kSight)));
       if (a.valid && b.valid && (a.sigma < 0) != (b.sigma < 0)) {
-        const Reached root = root_between(field_, a, b);
+        const LevelSetHit root = find_root_between(field_, a, b);
         if (!root.found) return hold;
-        LevelPoint at = root.at;
+        LevelPoint at = root.point;
         Curvature curvature;
-        const Closest how = descend(field_, probe.p, goal(kEvaluationCap), at, curvature);
+        const ClosestPointResult how = descend_on_surface(field_, probe.p, goal(kMaxEvaluations), at, curvature);
         if (nearer(at, before, probe.p)) return hold_formula(at, how, probe.p, curvature);
         return hold;
       }
@@ -275,16 +277,16 @@ class LevelSurface final : public Surface {
     return hold;
   }
 
-  Hold hold_formula(LevelPoint at, Closest how, const Vec3& probe, const Curvature& curvature) noexcept {
-    Status status = Status::ok;
-    Reason reason = Reason::none;
-    if (how != Closest::converged) {
+  SurfaceHold hold_formula(LevelPoint at, ClosestPointResult how, const Vec3& probe, const Curvature& curvature) noexcept {
+    LinkStatus status = LinkStatus::ok;
+    SampleStatus reason = SampleStatus::ok;
+    if (how != ClosestPointResult::converged) {
       at = relevelled(at);
       // not there yet is no reason to give up: only where the surface itself does
-      const bool idle = how == Closest::stuck || norm(at.p - memory_.at.p) <= 1e-12 * field_.length();
+      const bool idle = how == ClosestPointResult::stuck || norm(at.p - memory_.at.p) <= 1e-12 * field_.length();
       const bool broken = degenerate(at);
-      status = broken || (idle && usable(at) && kink(at, probe)) ? Status::critical : Status::budget;
-      reason = !broken ? Reason::incoherent : at.finite ? Reason::zero : Reason::not_finite;
+      status = broken || (idle && usable(at) && kink(at, probe)) ? LinkStatus::critical : LinkStatus::budget;
+      reason = !broken ? SampleStatus::incoherent : at.finite ? SampleStatus::zero : SampleStatus::not_finite;
     }
     memory_.at = at;
     memory_.curvature = curvature;
@@ -292,9 +294,9 @@ class LevelSurface final : public Surface {
     return {true, at.p, std::fabs(at.distance), status, reason};
   }
 
-  int quick_of_grid() const noexcept { return field_.state().most <= kThrownWork ? kThrownQuick : kQuickOfGrids; }
-  ClosestGoal goal(int most) noexcept {
-    return {tolerance_ * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
+  int quick_of_grid() const noexcept { return field_.state().max_work <= kThrownWork ? kThrownQuick : kQuickOfGrids; }
+  ClosestPointCriteria goal(int most) noexcept {
+    return {tolerance_ * field_.length(), 1e-12 * field_.length(), std::min(most, kMaxEvaluations - field_.evaluations() - kForLevel),
             kQuickRefusals};
   }
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
@@ -303,10 +305,10 @@ class LevelSurface final : public Surface {
   /// The normal jumps within 2e-9 L: on the way to the probe, or across what is then no surface.
   bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
     const Vec3 e = probe - a.p;
-    return jumps(a.p, direction(equation::tangential(e, a.n))) || jumps(a.p, a.n);
+    return jumps(a.p, direction(equation::tangential_component(e, a.n))) || jumps(a.p, a.n);
   }
   bool jumps(const Vec3& p, const Vec3& way) noexcept {
-    if (field_.spent(2)) return false;
+    if (field_.out_of_budget(2)) return false;
     const Vec3 step = way * (1e-9 * field_.length());
     const LevelPoint ahead = field_.at(p + step), behind = field_.at(p - step);
     return !ahead.valid || !behind.valid || ahead.plateau || behind.plateau || dot(ahead.n, behind.n) < 0.9;
@@ -317,41 +319,41 @@ class LevelSurface final : public Surface {
   }
   LevelPoint relevelled(const LevelPoint& a) noexcept {
     if (std::fabs(a.distance) <= 1e-11 * field_.length() || !a.valid || a.plateau) return a;
-    const Reached reached = reach_along_gradient(field_, a, a.n, field_.length(), 0);
-    return reached.found ? reached.at : a;
+    const LevelSetHit reached = search_along_gradient(field_, a, a.n, field_.length(), 0);
+    return reached.found ? reached.point : a;
   }
 
   /// Towards the closest point as if the surface were smooth; `cell` where that leads to nothing nearer.
   CellPoint leap(const CellPoint& cell, const LevelPoint& start, const Vec3& probe) noexcept {
-    const double voxel = field_.voxel();
+    const double voxel = field_.voxel_edge();
     const Vec3 e = probe - start.p;
-    if (start.valid && !start.plateau && norm(equation::tangential(e, start.n)) > 2 * voxel) {
+    if (start.valid && !start.plateau && norm(equation::tangential_component(e, start.n)) > 2 * voxel) {
       LevelPoint at = start;
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
-      const Reached reached = reach_along_gradient(field_, at, at.n, 2 * voxel);
+      const LevelSetHit reached = search_along_gradient(field_, at, at.n, 2 * voxel);
       // a probe behind a sheet is not in front of it
-      const bool same_sheet = !one_sided_ || dot(reached.at.n, probe - reached.at.p) * dot(start.n, e) > 0;
-      if (reached.found && reached.at.valid && same_sheet && norm(probe - reached.at.p) < norm(e))
-        return cell_point(*field_.cells(), reached.at.p);
+      const bool same_sheet = !one_sided_ || dot(reached.point.n, probe - reached.point.p) * dot(start.n, e) > 0;
+      if (reached.found && reached.point.valid && same_sheet && norm(probe - reached.point.p) < norm(e))
+        return to_cell_point(*field_.trilinear_grid(), reached.point.p);
     }
     return cell;
   }
 
   /// Far along the surface first, then exactly, cell by cell.
-  Hold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
+  SurfaceHold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
     cell = leap(cell, start, probe);
     const WalkResult walk = walk_cells(field_, frames_, probe, cell);
     return hold_cell(cell, walk);
   }
 
-  Hold hold_cell(const CellPoint& cell, const WalkResult& walk) noexcept {
+  SurfaceHold hold_cell(const CellPoint& cell, const WalkResult& walk) noexcept {
     memory_.cell = cell;
     memory_.normal = walk.normal;
-    return {true, world_of(*field_.cells(), cell), walk.residual, walk.status, walk.reason};
+    return {true, world_position(*field_.trilinear_grid(), cell), walk.residual, walk.status, walk.reason};
   }
 
-  LevelField field_;
+  LevelSetField field_;
   const PieceFrames& frames_;
   const double tolerance_;
   IsosurfaceMemory& memory_;
@@ -368,38 +370,38 @@ class Isosurface final : public Constraint {
       : field_(std::move(field)), level_(level), rules_(rules), tolerance_(tolerance), frames_(field_->mapping()) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    memory_of<IsosurfaceMemory>(state).scan = Scan{};
+    memory_as<IsosurfaceMemory>(state).scan = SurfaceScan{};
     seek(probe, state, scratch);
   }
   /// As start, but a search that ran out of budget goes on.
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
-    const Scan scan = memory.scan;
+    IsosurfaceMemory& memory = memory_as<IsosurfaceMemory>(state);
+    const SurfaceScan scan = memory.scan;
     memory = IsosurfaceMemory{};
     memory.scan = scan;
-    const SideRules rules = rules_.at(probe, state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
-    start_on(surface, rules, probe, memory.side, state);
+    const SideRules rules = rules_.rules_at(probe, state, scratch);
+    LevelSurface surface(LevelSetField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
+    start_on_surface(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
-    const SideRules rules = rules_.now(state, scratch);
+    IsosurfaceMemory& memory = memory_as<IsosurfaceMemory>(state);
+    const SideRules rules = rules_.rules_at_proxy(state, scratch);
     const SideMemory& side = memory.side;
-    const bool finishes = side.fresh && side.status == Status::budget;
-    if (field_->grid() != nullptr && (finishes || is_long_step(side, probe, field_->length()))) state.most = kThrownWork;
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
-    advance_on(surface, rules, probe, memory.side, state);
+    const bool finishes = side.initialized && side.status == LinkStatus::budget;
+    if (field_->grid() != nullptr && (finishes || is_long_step(side, probe, field_->domain_length()))) state.max_work = kThrownWork;
+    LevelSurface surface(LevelSetField(*field_, level_, scratch.cursors[0], state), frames_, tolerance_, rules, memory);
+    advance_on_surface(surface, rules, probe, memory.side, state);
   }
   bool is_sane(const LinkState& state) const noexcept override {
-    const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    const IsosurfaceMemory& memory = memory_as<IsosurfaceMemory>(state);
     return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.seen) && haptics::is_sane(memory.cell) &&
-           haptics::is_sane(memory.scan) && are_bools(memory.walled);
+           haptics::is_sane(memory.scan) && are_valid_bools(memory.walled);
   }
-  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
-    const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+  PulledBackForce pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
+    const IsosurfaceMemory& memory = memory_as<IsosurfaceMemory>(state);
     if (!memory.side.holding) return {f};
-    LevelField field(*field_, level_, scratch.cursors[0], state);
-    if (field.cells()) return pull_back_cells(field, frames_, probe, memory.cell, f);
+    LevelSetField field(*field_, level_, scratch.cursors[0], state);
+    if (field.trilinear_grid()) return pull_back_cells(field, frames_, probe, memory.cell, f);
     if (memory.walled) return {};  // at the end of the domain
     const LevelPoint& at = memory.at;
     const double h = 1e-5 * field.length();
@@ -412,18 +414,18 @@ class Isosurface final : public Constraint {
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
-    const LevelPoint here = LevelField(*field_, level_, scratch.cursors[0], state).at(at);
+    const LevelPoint here = LevelSetField(*field_, level_, scratch.cursors[0], state).at(at);
     if (!here.valid || here.plateau) {
       if (here.finite && !here.valid)
-        stop_link(state, Status::boundary, Reason::mask);
+        set_link_status(state, LinkStatus::boundary, SampleStatus::masked);
       else
-        stop_link(state, Status::critical, here.finite ? Reason::zero : Reason::not_finite);
+        set_link_status(state, LinkStatus::critical, here.finite ? SampleStatus::zero : SampleStatus::not_finite);
       return false;
     }
-    out = {Primitive::Kind::plane, equation::newton_to_level(here.p, here.n, here.distance), here.n};
+    out = {Primitive::Kind::plane, equation::newton_step_to_level(here.p, here.n, here.distance), here.n};
     return true;
   }
-  double domain_length() const noexcept override { return field_->length(); }
+  double domain_length() const noexcept override { return field_->domain_length(); }
 
  private:
   field::ScalarFieldPtr field_;

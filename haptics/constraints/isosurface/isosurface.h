@@ -12,7 +12,7 @@
 /// that is not enough, BUDGET. The closest point wins where it has itself moved: what is met was no nearer to the last probe than what
 /// was held, over a smooth surface. A probe that is thrown (more than 0.02 L in a tick) leaps along the surface as if it were smooth and
 /// has less work a tick (kThrownWork), so that a tick stays short.
-/// Status: OK; FREE; RELEASED; BUDGET (not at the closest point yet: goes on next tick); BOUNDARY (on a wall of the domain, the
+/// LinkStatus: OK; FREE; RELEASED; BUDGET (not at the closest point yet: goes on next tick); BOUNDARY (on a wall of the domain, the
 /// mask, or voxels that are not finite); CRITICAL (the gradient vanishes or jumps there, or a value is not finite);
 /// NO_SURFACE (probe passed through).
 #pragma once

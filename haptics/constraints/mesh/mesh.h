@@ -6,7 +6,7 @@
 /// Keys: `mesh`, `free`, `release`: lets go where |probe - proxy| >= release; takes hold again when the nearest face has the probe on
 /// the free side, or it is over an open edge (free none: when the probe passes through the mesh or comes within 0.1 release of it).
 /// No field fetch: evaluations are those of `release`. On the mesh to 1e-12 L, plus the rounding of world coordinates.
-/// Status: OK, FREE, RELEASED, BUDGET (goes on next tick), NO_SURFACE (never, unless coordinates overflow).
+/// LinkStatus: OK, FREE, RELEASED, BUDGET (goes on next tick), NO_SURFACE (never, unless coordinates overflow).
 #pragma once
 #include "haptics/constraints/registry.h"
 

@@ -19,7 +19,7 @@ struct Face {
   std::int32_t axis, sign;
 };
 
-class BoxSurface final : public Surface {
+class BoxSurface final : public ContactSurface {
  public:
   using Shape = BoxShape;
   struct Memory {
@@ -30,24 +30,24 @@ class BoxSurface final : public Surface {
   static bool is_sane(const Shape&, const Memory& m) noexcept {
     return m.face.axis >= 0 && m.face.axis <= 2 && m.face.sign >= -1 && m.face.sign <= 1;
   }
-  SideValue side(const Vec3& at) noexcept override { return {value(to_box(at)), true, false}; }
+  SideValue evaluate_side(const Vec3& at) noexcept override { return {value(to_box(at)), true, false}; }
 
-  Hold place(const Vec3& probe) noexcept override {
+  SurfaceHold project_probe(const Vec3& probe) noexcept override {
     const Vec3 y = to_box(probe);
     memory_.face = nearest_face(y);
     return hold(y);
   }
-  Hold slide(const Vec3& probe) noexcept override {
+  SurfaceHold slide(const Vec3& probe) noexcept override {
     const Vec3 y = to_box(probe);
-    if (last_.fresh && !shape_.catches && value(y) <= 0) {
+    if (last_.initialized && !shape_.catches && value(y) <= 0) {
       const Vec3 before = to_box(last_.probe);
       const Face entry = value(before) > 0 ? entry_face(before, y) : Face{0, 0};
       if (entry.sign != 0) memory_.face = entry;
     }
-    return memory_.face.sign == 0 ? place(probe) : hold(y);
+    return memory_.face.sign == 0 ? project_probe(probe) : hold(y);
   }
 
-  Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
+  SurfaceHold find_crossing(const Vec3& from, const Vec3& probe) noexcept override {
     const Vec3 a = to_box(from), b = to_box(probe);
     const double before = value(a);
     Face face{0, 0};
@@ -58,17 +58,17 @@ class BoxSurface final : public Surface {
     return hold(b);
   }
 
-  Hold near_by(const Vec3& probe, double limit) noexcept override {
-    return std::fabs(value(to_box(probe))) <= limit ? place(probe) : Hold{};
+  SurfaceHold project_probe_within(const Vec3& probe, double limit) noexcept override {
+    return std::fabs(value(to_box(probe))) <= limit ? project_probe(probe) : SurfaceHold{};
   }
   Vec3 normal() const noexcept override { return normal_; }
-  bool may_be_thin() const noexcept override { return true; }
-  double domain_length() const noexcept override { return std::max(kSceneLength, 2 * max_abs(shape_.half)); }
+  bool may_tunnel() const noexcept override { return true; }
+  double domain_length() const noexcept override { return std::max(kDefaultDomainLength, 2 * max_abs(shape_.half)); }
 
   /// A face's plane; from outside an edge's line or the corner.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     const Vec3 y = to_box(at);
-    const Hold held = slide(at);
+    const SurfaceHold held = slide(at);
     int beyond = 0, along = 0;
     for (int i = 0; i < 3; ++i) {
       if (std::fabs(y[i]) > shape_.half[i])
@@ -144,7 +144,7 @@ class BoxSurface final : public Surface {
   }
 
   /// The closest point reached from the face held; y in the box's axes.
-  Hold hold(const Vec3& y) noexcept {
+  SurfaceHold hold(const Vec3& y) noexcept {
     Face& face = memory_.face;
     Vec3 lateral = beyond(y);
     lateral[face.axis] = 0;
@@ -159,7 +159,7 @@ class BoxSurface final : public Surface {
     }
     normal_ = turned(n);
     const Vec3 proxy = shape_.center + turned(q);
-    return {true, proxy, std::fabs(value(to_box(proxy))), Status::ok};
+    return {true, proxy, std::fabs(value(to_box(proxy))), LinkStatus::ok};
   }
 
   const Shape& shape_;
@@ -194,8 +194,8 @@ ConstraintType box_constraint() {
           "Holds the proxy on the surface of a box, or on one side of it.",
           "section 3",
           {schema::vec3("center", "world", "Its centre.").required(),
-           schema::vec3("size", "world", "Its three edges.").positive().begins("0.2 L").required(),
-           schema::rotation("rotation", "World from box, written as in `workspace`.").by_default("none"), free_key("outside")},
+           schema::vec3("size", "world", "Its three edges.").positive().with_initial_value("0.2 L").required(),
+           schema::rotation("rotation", "World from box, written as in `workspace`.").with_default("none"), free_key("outside")},
           build_box,
           true};
 }

@@ -3,20 +3,20 @@
 /// Finite for |x| up to 1e300. Lengths in world units. Any thread; allocates nothing.
 #pragma once
 #include "engine/base/vec.h"
-#include "haptics/constraints/rules/pull_back.h"
-#include "haptics/constraints/rules/surface_side.h"
+#include "haptics/constraints/common/one_sided_contact.h"
+#include "haptics/constraints/common/pull_back.h"
 
 namespace catena::haptics {
 
 /// A straight piece. Plain data.
-struct Straight {
+struct LineSegment {
   Vec3 a{0.0}, b{0.0};  ///< its ends
   Vec3 d{0.0};          ///< unit
   double length = 0;    ///< finite and > 0, or the piece is not usable
 
-  Straight() = default;
+  LineSegment() = default;
   /// From one end to the other.
-  Straight(const Vec3& from, const Vec3& to) : a(from), b(to), d(direction(to - from)), length(norm(to - from)) {}
+  LineSegment(const Vec3& from, const Vec3& to) : a(from), b(to), d(direction(to - from)), length(norm(to - from)) {}
   /// Whether it has a length and a direction.
   bool usable() const noexcept { return length > 0 && std::isfinite(length) && max_abs(d) > 0; }
 
@@ -26,62 +26,62 @@ struct Straight {
   /// The place at s, clamped to the ends.
   Vec3 at(double s) const noexcept { return s <= 0 ? a : s >= length ? b : a + d * s; }
   /// The distance of a place from the whole line.
-  double off_axis(const Vec3& p) const noexcept {
+  double distance_from_line(const Vec3& p) const noexcept {
     const Vec3 away = p - a;
     return norm(away - d * dot(d, away));
   }
 };
 
-inline constexpr double kSceneLength = 4;  ///< L where no field says otherwise: the box -2..2
+inline constexpr double kDefaultDomainLength = 4;  ///< L where no field says otherwise: the box -2..2
 
 /// A constraint whose closest point is a formula: the rules of surface_side.h around a shape that is plain data. No field fetch.
-///   `ClosedForm<S>`  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
+///   `ClosedFormConstraint<S>`  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
 ///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start); static
-///                  bool is_sane(shape, memory): of memory from a file, see Constraint::is_sane.
-///   `Feature<S>`     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
+///                  bool is_valid_state(shape, memory): of memory from a file, see Constraint::is_valid_state.
+///   `FeatureSurface<S>`     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
 /// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
 /// Haptic thread: no allocation, lock, or throw.
 template <class S>
-class ClosedForm final : public Constraint {
+class ClosedFormConstraint final : public Constraint {
  public:
   /// Of a shape that has been checked.
-  ClosedForm(typename S::Shape shape, const SideSpec& rules) : shape_(std::move(shape)), rules_(rules) {}
+  ClosedFormConstraint(typename S::Shape shape, const SideSpec& rules) : shape_(std::move(shape)), rules_(rules) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    memory_of<Memory>(state) = Memory{};
+    memory_as<Memory>(state) = Memory{};
     seek(probe, state, scratch);
   }
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Memory& memory = memory_of<Memory>(state);
+    Memory& memory = memory_as<Memory>(state);
     S surface(shape_, memory.own, memory.side);
-    start_on(surface, rules_.at(probe, state, scratch), probe, memory.side, state);
-    tell(surface, memory.side.holding, state);
+    start_on_surface(surface, rules_.rules_at(probe, state, scratch), probe, memory.side, state);
+    report_state(surface, memory.side.holding, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Memory& memory = memory_of<Memory>(state);
+    Memory& memory = memory_as<Memory>(state);
     S surface(shape_, memory.own, memory.side);
-    advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
-    tell(surface, memory.side.holding, state);
+    advance_on_surface(surface, rules_.rules_at_proxy(state, scratch), probe, memory.side, state);
+    report_state(surface, memory.side.holding, state);
   }
   bool primitive(const Vec3& at, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
-    if (state.released || state.status == Status::no_surface) return false;
-    Memory copy = memory_of<Memory>(state);
+    if (state.released || state.status == LinkStatus::no_surface) return false;
+    Memory copy = memory_as<Memory>(state);
     return S(shape_, copy.own, copy.side).primitive(at, out);
   }
-  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
-    Memory copy = memory_of<Memory>(state);
+  PulledBackForce pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    Memory copy = memory_as<Memory>(state);
     if (!copy.side.holding) return {f};
     S surface(shape_, copy.own, copy.side);
     if constexpr (requires { surface.pull_back(probe, f); }) {
       return surface.pull_back(probe, f);
     } else {
       Primitive primitive;
-      return surface.primitive(probe, primitive) ? haptics::pull_back(primitive, f) : PulledBack{f};
+      return surface.primitive(probe, primitive) ? haptics::pull_back(primitive, f) : PulledBackForce{f};
     }
   }
   bool has_primitive() const noexcept override { return true; }
   bool is_sane(const LinkState& state) const noexcept override {
-    const Memory& memory = memory_of<Memory>(state);
+    const Memory& memory = memory_as<Memory>(state);
     return haptics::is_sane(memory.side) && S::is_sane(shape_, memory.own);
   }
   double domain_length() const noexcept override {
@@ -90,9 +90,9 @@ class ClosedForm final : public Constraint {
   }
 
  private:
-  static void tell(const S& surface, [[maybe_unused]] bool holding, LinkState& state) noexcept {
-    if constexpr (requires { surface.work(); }) state.steps += surface.work();
-    if constexpr (requires { surface.curve(); }) state.curve = holding ? surface.curve() : -1;
+  static void report_state(const S& surface, [[maybe_unused]] bool holding, LinkState& state) noexcept {
+    if constexpr (requires { surface.work(); }) state.other_work += surface.work();
+    if constexpr (requires { surface.curve(); }) state.curve_index = holding ? surface.curve() : -1;
   }
   struct Memory {
     SideMemory side;
@@ -106,25 +106,25 @@ struct NoMemory {};
 
 /// A Surface made of a ShapeType that is a point or a curve: nothing is inside or outside.
 template <class ShapeType>
-class Feature final : public Surface {
+class FeatureSurface final : public ContactSurface {
  public:
   /// What it is of.
   using Shape = ShapeType;
   /// None.
   using Memory = NoMemory;
-  /// As ClosedForm makes it in every tick.
-  Feature(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
+  /// As ClosedFormConstraint makes it in every tick.
+  FeatureSurface(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
   /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
 
   /// Neither.
-  SideValue side(const Vec3&) noexcept override { return {}; }
-  Hold place(const Vec3& probe) noexcept override { return shape_.closest(probe); }
-  Hold slide(const Vec3& probe) noexcept override { return shape_.closest(probe); }
-  Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
-  Hold near_by(const Vec3& probe, double limit) noexcept override {
-    const Hold hold = shape_.closest(probe);
-    return norm(probe - hold.proxy) <= limit ? hold : Hold{};
+  SideValue evaluate_side(const Vec3&) noexcept override { return {}; }
+  SurfaceHold project_probe(const Vec3& probe) noexcept override { return shape_.closest(probe); }
+  SurfaceHold slide(const Vec3& probe) noexcept override { return shape_.closest(probe); }
+  SurfaceHold find_crossing(const Vec3&, const Vec3&) noexcept override { return {}; }
+  SurfaceHold project_probe_within(const Vec3& probe, double limit) noexcept override {
+    const SurfaceHold hold = shape_.closest(probe);
+    return norm(probe - hold.proxy) <= limit ? hold : SurfaceHold{};
   }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
   /// L of the shape.
@@ -142,7 +142,7 @@ class Feature final : public Surface {
 /// The constraint of a shape, for a ConstraintType's `build`.
 template <class S>
 std::shared_ptr<const Constraint> make_closed_form(typename S::Shape shape, const SideSpec& rules) {
-  return std::make_shared<ClosedForm<S>>(std::move(shape), rules);
+  return std::make_shared<ClosedFormConstraint<S>>(std::move(shape), rules);
 }
 
 }  // namespace catena::haptics

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "engine/base/machine_failure.h"
-#include "haptics/constraints/rules/morton.h"
-#include "haptics/constraints/rules/shared_tree.h"
-#include "haptics/constraints/shapes/along_pieces.h"
+#include "engine/base/system_failure.h"
+#include "haptics/constraints/common/cached_bvh.h"
+#include "haptics/constraints/common/morton.h"
+#include "haptics/constraints/shapes/polyline_tracking.h"
 #include "haptics/constraints/shapes/shapes.h"
 
 namespace catena::haptics {
@@ -15,17 +15,17 @@ constexpr std::size_t kNoLine = ~std::size_t{0};
 
 /// Lines and what finds the closest of them. Piece k leads from point k to the next one.
 struct LineTree {
-  using Tree = ClosestSearch<glm::vec3>;
+  using Tree = ClosestPointBvh<glm::vec3>;
   curves::CurveSetPtr set;
   std::vector<std::uint32_t> runs;  ///< the first piece of each leaf
   std::vector<bool> is_last;        ///< point k ends its line
   Tree tree;
 
   LineTree(curves::CurveSetPtr of, std::size_t line) : set(std::move(of)), is_last(set->points.size(), false) {
-    for (std::size_t k = 1; k < set->first.size(); ++k) is_last[set->first[k] - 1] = true;
-    const std::size_t begin = line == kNoLine ? 0 : line, end = line == kNoLine ? set->lines() : line + 1;
+    for (std::size_t k = 1; k < set->line_offsets.size(); ++k) is_last[set->line_offsets[k] - 1] = true;
+    const std::size_t begin = line == kNoLine ? 0 : line, end = line == kNoLine ? set->line_count() : line + 1;
     for (std::size_t k = begin; k < end; ++k)
-      for (std::uint32_t p = set->first[k]; p + 1 < set->first[k + 1]; p += kRun) runs.push_back(p);
+      for (std::uint32_t p = set->line_offsets[k]; p + 1 < set->line_offsets[k + 1]; p += kRun) runs.push_back(p);
     sort_runs();
     std::vector<Tree::Box> boxes(runs.size());
     for (std::size_t i = 0; i < runs.size(); ++i) boxes[i] = box_of(runs[i]);
@@ -34,7 +34,7 @@ struct LineTree {
 
   /// Memory that it takes, from above.
   static double bytes_for(const curves::CurveSet& set) {
-    const double most_runs = static_cast<double>(set.points.size()) / kRun + static_cast<double>(set.lines());
+    const double most_runs = static_cast<double>(set.points.size()) / kRun + static_cast<double>(set.line_count());
     return most_runs * (4 * sizeof(Tree::Box) + sizeof(Tree::Box) + 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>)) +
            static_cast<double>(set.points.size()) / 8;
   }
@@ -52,12 +52,12 @@ struct LineTree {
     return box;
   }
   void sort_runs() {
-    const double edge = std::max(max_abs(set->highest - set->lowest), 1e-300);
+    const double edge = std::max(max_abs(set->max_corner - set->min_corner), 1e-300);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     order.reserve(runs.size());
     for (const std::uint32_t run : runs) {
       const Tree::Box box = box_of(run);
-      order.emplace_back(morton_code(Vec3(box.lo) * 0.5 + Vec3(box.hi) * 0.5, set->lowest, edge), run);
+      order.emplace_back(morton_code(Vec3(box.lo) * 0.5 + Vec3(box.hi) * 0.5, set->min_corner, edge), run);
     }
     std::sort(order.begin(), order.end());
     for (std::size_t i = 0; i < runs.size(); ++i) runs[i] = order[i].second;
@@ -72,21 +72,21 @@ struct FileLines {
   LineTreePtr lines;
 
   bool has(std::uint32_t k) const { return k < lines->is_last.size() && !lines->is_last[k]; }
-  Straight piece(std::uint32_t k) const { return {Vec3(lines->set->points[k]), Vec3(lines->set->points[k + 1])}; }
+  LineSegment piece(std::uint32_t k) const { return {Vec3(lines->set->points[k]), Vec3(lines->set->points[k + 1])}; }
   std::uint32_t neighbour(std::uint32_t k, int way) const {
     if (way > 0) return lines->is_last[k + 1] ? k : k + 1;
     return k == 0 || lines->is_last[k - 1] ? k : k - 1;
   }
   /// The line of a piece, as the file counts them.
   int line_of(std::uint32_t k) const noexcept {
-    const auto& first = lines->set->first;
+    const auto& first = lines->set->line_offsets;
     return static_cast<int>(std::upper_bound(first.begin(), first.end(), k) - first.begin()) - 1;
   }
   void search(const Vec3& probe, int most_visits, SearchState& state) const noexcept {
     lines->tree.search(
         probe, most_visits, state,
         [&](std::uint32_t k) {
-          const Straight straight = piece(k);
+          const LineSegment straight = piece(k);
           return straight.at(straight.along(probe));
         },
         [&](std::size_t leaf, const auto& see) {
@@ -103,18 +103,18 @@ Result<std::shared_ptr<const Constraint>> build_curves(const json::Node& link, c
   CATENA_TRY(const curves::CurveSetPtr set, context.curves(*link.find("curves"), name));
   std::size_t line = kNoLine;
   if (link.find("line") != nullptr) {
-    const auto last = static_cast<int>(std::min<std::size_t>(set->lines() - 1, std::numeric_limits<int>::max()));
+    const auto last = static_cast<int>(std::min<std::size_t>(set->line_count() - 1, std::numeric_limits<int>::max()));
     CATENA_TRY(const int index, json::get_integer(link, "line", 0, 0, last));
     line = static_cast<std::size_t>(index);
   }
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  if (const auto enough = ask_for_memory(fmt::format("feeling curves \"{}\"", name), LineTree::bytes_for(*set)); !enough)
-    return caused_by(json::error_at(*link.find("curves"), enough.error().message), enough.error());
-  FileLines shape{shared_tree<LineTree>(set->version, line, [&] { return std::make_shared<const LineTree>(set, line); })};
+  if (const auto enough = check_memory_available(fmt::format("feeling curves \"{}\"", name), LineTree::bytes_for(*set)); !enough)
+    return with_cause(json::error_at(*link.find("curves"), enough.error().message), enough.error());
+  FileLines shape{cached_bvh<LineTree>(set->version, line, [&] { return std::make_shared<const LineTree>(set, line); })};
   if (!(shape.extent() >= kLeastLength))
     return json::error_at(*link.find("curves"),
                           fmt::format("the lines span {}; an extent of at least {} was expected", shape.extent(), kLeastLength));
-  return make_closed_form<AlongPieces<FileLines>>(std::move(shape), rules);
+  return make_closed_form<PolylineTracker<FileLines>>(std::move(shape), rules);
 }
 
 }  // namespace
@@ -123,10 +123,10 @@ ConstraintType curves_constraint() {
   return {"curves",
           "Holds the proxy on a line of curves from a file.",
           "section 3",
-          {schema::named("curves", schema::Role::curves, "Some of the scene's `curves`.").required(),
+          {schema::reference("curves", schema::Role::curves, "Some of the scene's `curves`.").required(),
            schema::integer("line", "", "Only this line, counted from 0.", 0, std::numeric_limits<int>::max())
-               .ranged("an index")
-               .by_default("all, the closest where the link takes hold")},
+               .with_range_text("an index")
+               .with_default("all, the closest where the link takes hold")},
           build_curves,
           true,
           true,

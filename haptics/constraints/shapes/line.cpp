@@ -8,13 +8,13 @@ namespace {
 struct LineShape {
   Vec3 point, axis;  // axis: unit
 
-  Hold closest(const Vec3& probe) const noexcept {
+  SurfaceHold closest(const Vec3& probe) const noexcept {
     const double s = dot(axis, probe - point);
     const Vec3 proxy = point + axis * s, away = proxy - point;
-    return {true, proxy, norm(away - axis * dot(axis, away)), Status::ok};
+    return {true, proxy, norm(away - axis * dot(axis, away)), LinkStatus::ok};
   }
   Primitive primitive(const Vec3& at) const noexcept { return {Primitive::Kind::line, closest(at).proxy, axis}; }
-  double length() const noexcept { return kSceneLength; }
+  double length() const noexcept { return kDefaultDomainLength; }
 };
 
 Result<std::shared_ptr<const Constraint>> build_line(const json::Node& link, const BuildContext& context) {
@@ -24,7 +24,7 @@ Result<std::shared_ptr<const Constraint>> build_line(const json::Node& link, con
   if (!(max_abs(axis) > 0))
     return json::error_at(*link.find("direction"), "\"direction\" is zero; a vector of non-zero length was expected");
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  return make_closed_form<Feature<LineShape>>({point, axis}, rules);
+  return make_closed_form<FeatureSurface<LineShape>>({point, axis}, rules);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ ConstraintType line_constraint() {
           "Holds the proxy on an infinite line.",
           "section 3",
           {schema::vec3("point", "world", "A point of the line.").required(),
-           schema::direction("direction", "Its direction, of any length.").begins("[1, 0, 0]").required()},
+           schema::direction("direction", "Its direction, of any length.").with_initial_value("[1, 0, 0]").required()},
           build_line,
           true};
 }

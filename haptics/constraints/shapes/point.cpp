@@ -7,15 +7,15 @@ namespace {
 
 struct PointShape {
   Vec3 position;
-  Hold closest(const Vec3&) const noexcept { return {true, position, 0, Status::ok}; }
+  SurfaceHold closest(const Vec3&) const noexcept { return {true, position, 0, LinkStatus::ok}; }
   Primitive primitive(const Vec3&) const noexcept { return {Primitive::Kind::point, position, Vec3(0.0)}; }
-  double length() const noexcept { return kSceneLength; }
+  double length() const noexcept { return kDefaultDomainLength; }
 };
 
 Result<std::shared_ptr<const Constraint>> build_point(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 position, json::require_vec3(link, "position"));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  return make_closed_form<Feature<PointShape>>({position}, rules);
+  return make_closed_form<FeatureSurface<PointShape>>({position}, rules);
 }
 
 }  // namespace

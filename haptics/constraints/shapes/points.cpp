@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "engine/base/machine_failure.h"
-#include "haptics/constraints/rules/closest_search.h"
-#include "haptics/constraints/rules/morton.h"
-#include "haptics/constraints/rules/shared_tree.h"
+#include "engine/base/system_failure.h"
+#include "haptics/constraints/common/cached_bvh.h"
+#include "haptics/constraints/common/closest_point_bvh.h"
+#include "haptics/constraints/common/morton.h"
 #include "haptics/constraints/shapes/closed_form.h"
 #include "haptics/constraints/shapes/shapes.h"
 
@@ -14,17 +14,17 @@ constexpr std::size_t kPointsOfLeaf = 8;
 
 /// Points in the order of a Morton curve, eight of them a leaf.
 struct PointTree {
-  using Tree = ClosestSearch<glm::vec3>;
+  using Tree = ClosestPointBvh<glm::vec3>;
   Vec3 origin;  ///< of points and tree
   std::vector<glm::vec3> points;
   Tree tree;
 
   explicit PointTree(const curves::PointSet& set) : origin(set.origin) {
-    const double edge = std::max(max_abs(set.highest - set.lowest), 1e-300);
+    const double edge = std::max(max_abs(set.max_corner - set.min_corner), 1e-300);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     order.reserve(set.points.size());
     for (std::size_t i = 0; i < set.points.size(); ++i)
-      order.emplace_back(morton_code(set.place(i), set.lowest, edge), static_cast<std::uint32_t>(i));
+      order.emplace_back(morton_code(set.position(i), set.min_corner, edge), static_cast<std::uint32_t>(i));
     std::sort(order.begin(), order.end());
     points.reserve(order.size());
     for (const auto& [code, i] : order) points.push_back(set.points[i]);
@@ -38,7 +38,7 @@ struct PointTree {
   }
 };
 
-class NearestPoint final : public Surface {
+class NearestPoint final : public ContactSurface {
  public:
   using Shape = std::shared_ptr<const PointTree>;
   struct Memory {
@@ -49,26 +49,26 @@ class NearestPoint final : public Surface {
   NearestPoint(const Shape& shape, Memory& memory, const SideMemory&) : shape_(*shape), memory_(memory) {}
 
   static bool is_sane(const Shape& shape, const Memory& m) noexcept {
-    return shape->tree.is_sane(m.search) && m.search.best < shape->points.size() && m.held < shape->points.size();
+    return shape->tree.is_sane(m.search) && m.search.best_item < shape->points.size() && m.held < shape->points.size();
   }
-  SideValue side(const Vec3&) noexcept override { return {}; }
+  SideValue evaluate_side(const Vec3&) noexcept override { return {}; }
 
-  Hold place(const Vec3& probe) noexcept override {
+  SurfaceHold project_probe(const Vec3& probe) noexcept override {
     search(probe);
-    return memory_.search.open ? Hold{false, probe, 0, Status::budget} : hold();
+    return memory_.search.in_progress ? SurfaceHold{false, probe, 0, LinkStatus::budget} : hold();
   }
-  Hold slide(const Vec3&) noexcept override { return hold(); }
-  Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
-  Hold near_by(const Vec3& probe, double limit) noexcept override {
+  SurfaceHold slide(const Vec3&) noexcept override { return hold(); }
+  SurfaceHold find_crossing(const Vec3&, const Vec3&) noexcept override { return {}; }
+  SurfaceHold project_probe_within(const Vec3& probe, double limit) noexcept override {
     search(probe);
     if (!(norm(probe - held()) <= limit)) return {};
-    memory_.search.open = false;
+    memory_.search.in_progress = false;
     return hold();
   }
 
   int work() const noexcept { return work_; }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
-  double domain_length() const noexcept override { return std::max(kSceneLength, shape_.tree.extent()); }
+  double domain_length() const noexcept override { return std::max(kDefaultDomainLength, shape_.tree.extent()); }
   bool primitive(const Vec3&, Primitive& out) noexcept {
     out = {Primitive::Kind::point, held(), Vec3(0.0)};
     return true;
@@ -78,19 +78,19 @@ class NearestPoint final : public Surface {
   void search(const Vec3& probe) noexcept {
     SearchState& search = memory_.search;
     shape_.tree.search(
-        probe - shape_.origin, search.any ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
+        probe - shape_.origin, search.has_best ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
         [&](std::size_t leaf, const auto& see) {
           const std::size_t last = std::min((leaf + 1) * kPointsOfLeaf, shape_.points.size());
           for (std::size_t k = leaf * kPointsOfLeaf; k < last; ++k) see(static_cast<std::uint32_t>(k));
         });
     work_ += kVisitWork * search.visits;
-    memory_.held = search.best;
+    memory_.held = search.best_item;
   }
   Vec3 held() const noexcept {
     const Vec3 p(shape_.points[memory_.held]);
     return shape_.origin == Vec3(0.0) ? p : shape_.origin + p;
   }
-  Hold hold() const noexcept { return {true, held(), 0, Status::ok}; }
+  SurfaceHold hold() const noexcept { return {true, held(), 0, LinkStatus::ok}; }
 
   const PointTree& shape_;
   Memory& memory_;
@@ -101,9 +101,9 @@ Result<std::shared_ptr<const Constraint>> build_points(const json::Node& link, c
   CATENA_TRY(const std::string name, json::require_string(link, "points"));
   CATENA_TRY(const curves::PointSetPtr set, context.points(*link.find("points"), name));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  if (const auto enough = ask_for_memory(fmt::format("feeling points \"{}\"", name), PointTree::bytes_for(*set)); !enough)
-    return caused_by(json::error_at(*link.find("points"), enough.error().message), enough.error());
-  return make_closed_form<NearestPoint>(shared_tree<PointTree>(set->version, 0, [&] { return std::make_shared<const PointTree>(*set); }),
+  if (const auto enough = check_memory_available(fmt::format("feeling points \"{}\"", name), PointTree::bytes_for(*set)); !enough)
+    return with_cause(json::error_at(*link.find("points"), enough.error().message), enough.error());
+  return make_closed_form<NearestPoint>(cached_bvh<PointTree>(set->version, 0, [&] { return std::make_shared<const PointTree>(*set); }),
                                         rules);
 }
 
@@ -111,7 +111,7 @@ Result<std::shared_ptr<const Constraint>> build_points(const json::Node& link, c
 
 ConstraintType points_constraint() {
   return {"points",     "Holds the proxy at a point of a table.",
-          "section 3",  {schema::named("points", schema::Role::points, "Some of the scene's `points`.").required()},
+          "section 3",  {schema::reference("points", schema::Role::points, "Some of the scene's `points`.").required()},
           build_points, true,
           false,        "points"};
 }

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "haptics/constraints/shapes/along_pieces.h"
-#include "haptics/constraints/shapes/polyline_search.h"
+#include "haptics/constraints/shapes/polyline_bvh.h"
+#include "haptics/constraints/shapes/polyline_tracking.h"
 
 namespace catena::haptics {
 namespace {
@@ -15,12 +15,12 @@ struct PolylineShape {
   /// Of the n-th piece that is walked past: two of them are one.
   static constexpr int walk_work(int n) { return n % 2; }
 
-  std::vector<Straight> pieces;
+  std::vector<LineSegment> pieces;
   bool closed = false;
-  PolylineSearch tree;
+  PolylineBvh tree;
 
   bool has(std::uint32_t k) const { return k < pieces.size(); }
-  const Straight& piece(std::uint32_t k) const { return pieces[k]; }
+  const LineSegment& piece(std::uint32_t k) const { return pieces[k]; }
   std::uint32_t neighbour(std::uint32_t k, int way) const {
     const auto last = static_cast<std::uint32_t>(pieces.size() - 1);
     if (way > 0) return k < last ? k + 1 : closed ? 0 : k;
@@ -58,12 +58,12 @@ Result<std::shared_ptr<const Constraint>> build_polyline(const json::Node& link,
   shape.closed = closed;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) shape.pieces.emplace_back(points[i], points[i + 1]);
   if (closed) shape.pieces.emplace_back(points.back(), points.front());
-  shape.tree = PolylineSearch(shape.pieces);
+  shape.tree = PolylineBvh(shape.pieces);
   const double extent = shape.tree.extent();
   if (!(extent >= kLeastExtent && extent <= kMaxExtent))
     return json::error_at(*node,
                           fmt::format("\"points\" spans {}; an extent from {} to {} was expected", extent, kLeastExtent, kMaxExtent));
-  return make_closed_form<AlongPieces<PolylineShape>>(std::move(shape), rules);
+  return make_closed_form<PolylineTracker<PolylineShape>>(std::move(shape), rules);
 }
 
 }  // namespace
@@ -72,8 +72,8 @@ ConstraintType polyline_constraint() {
   return {"polyline",
           "Holds the proxy on a polyline.",
           "section 3",
-          {schema::places("points", "world", "Its corners in order.").items(2, 0).required(),
-           schema::boolean("closed", "The last point joins the first; three points or more.").by_default("false")},
+          {schema::points("points", "world", "Its corners in order.").with_size(2, 0).required(),
+           schema::boolean("closed", "The last point joins the first; three points or more.").with_default("false")},
           build_polyline,
           true};
 }

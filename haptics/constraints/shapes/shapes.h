@@ -14,7 +14,7 @@ ConstraintType line_constraint();
 
 /// Keeps the proxy on the straight piece from a to b: p = a + d clamp(d . (x - a), 0, |b - a|), d the unit direction; at an end
 /// it is that end, bit for bit. Keys: `from`, `to` (not the same), `release` (lets go at that distance, takes hold again within
-/// a tenth of it). Beyond an end its primitive is that point. Lengths in world units; L = max(4, |b - a|).
+/// a tenth of it). Outliers an end its primitive is that point. Lengths in world units; L = max(4, |b - a|).
 /// Closed form, no field fetch. Haptic thread: no allocation, lock, or throw.
 ConstraintType segment_constraint();
 
@@ -29,8 +29,8 @@ ConstraintType segment_constraint();
 /// Lengths in world units; L = max(4, the longest edge of the box around it). Haptic thread: no allocation, lock, or throw.
 ConstraintType polyline_constraint();
 
-/// Keeps the proxy on the lines of curves from a file (engine/curves), as on polylines with open ends: on the line that it holds, until the
-/// link lets go. Where it takes hold is the closest place of all the lines, or of one: a tree of boxes over runs of at most eight
+/// Keeps the proxy on the lines of curves from a file (engine/geometry/curves), as on polylines with open ends: on the line that it holds,
+/// until the link lets go. Where it takes hold is the closest place of all the lines, or of one: a tree of boxes over runs of at most eight
 /// consecutive pieces, put in order along a Morton curve (closest_search.h); within 512 boxes in the first tick and 256 in each later one,
 /// then BUDGET with the best so far, and on from there. A tick walks at most 1024 pieces, then BUDGET likewise. The tree is made off the
 /// tick, once for all links and programs that hold the same lines.
@@ -39,11 +39,11 @@ ConstraintType polyline_constraint();
 /// Haptic thread: no allocation, lock, or throw.
 ConstraintType curves_constraint();
 
-/// Keeps the proxy at a point of a table (engine/curves/points.h): where it takes hold, the closest of all, and there until the link lets
-/// go. A tree of boxes over eight points each, in the order of a Morton curve (closest_search.h): within 768 boxes in the first tick and
-/// 256 in each later one, then BUDGET with the best so far, and on from there. The tree is made off the tick, once for all links and
-/// programs. Keys: `points` (their name), `release` (lets go at that distance, takes hold again within a tenth of it). Its primitive is the
-/// point. Lengths in world units; L = max(4, the longest edge of the box around all). Haptic thread: no allocation, lock, or throw.
+/// Keeps the proxy at a point of a table (engine/geometry/curves/point_set.h): where it takes hold, the closest of all, and there until the
+/// link lets go. A tree of boxes over eight points each, in the order of a Morton curve (closest_search.h): within 768 boxes in the first
+/// tick and 256 in each later one, then BUDGET with the best so far, and on from there. The tree is made off the tick, once for all links
+/// and programs. Keys: `points` (their name), `release` (lets go at that distance, takes hold again within a tenth of it). Its primitive is
+/// the point. Lengths in world units; L = max(4, the longest edge of the box around all). Haptic thread: no allocation, lock, or throw.
 ConstraintType points_constraint();
 
 /// Keeps the proxy on a plane: p = x - n (n . (x - point)), the orthogonal projection of the probe x.

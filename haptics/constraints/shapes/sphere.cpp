@@ -7,7 +7,7 @@ namespace {
 
 Result<std::shared_ptr<const Constraint>> build_sphere(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 center, json::require_vec3(link, "center"));
-  CATENA_TRY(const double radius, json::require_number(link, "radius", json::Range::positive));
+  CATENA_TRY(const double radius, json::require_number(link, "radius", json::NumberRange::positive));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
   return make_closed_form<SphereSurface>({center, radius, rules.free == FreeSide::above}, rules);
 }
@@ -19,7 +19,7 @@ ConstraintType sphere_constraint() {
           "Holds the proxy on a sphere, or on one side of it.",
           "section 3",
           {schema::vec3("center", "world", "Its centre.").required(),
-           schema::number("radius", "world", "Its radius.").positive().begins("0.1 L").required(), free_key("outside")},
+           schema::number("radius", "world", "Its radius.").positive().with_initial_value("0.1 L").required(), free_key("outside")},
           build_sphere,
           true};
 }

@@ -13,33 +13,35 @@ struct PlaneShape {
 };
 
 /// The Surface of a plane.
-class PlaneSurface final : public Surface {
+class PlaneSurface final : public ContactSurface {
  public:
   /// What it is of.
   using Shape = PlaneShape;
   /// None.
   using Memory = NoMemory;
-  /// As ClosedForm makes it in every tick.
+  /// As ClosedFormConstraint makes it in every tick.
   PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
   /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
   /// Above is where the normal points.
-  SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
-  Hold place(const Vec3& probe) noexcept override {
+  SideValue evaluate_side(const Vec3& at) noexcept override { return {height(at), true, false}; }
+  SurfaceHold project_probe(const Vec3& probe) noexcept override {
     // a second projection takes off what rounding left
     Vec3 proxy = probe - normal_ * height(probe);
     proxy = proxy - normal_ * height(proxy);
-    return {true, proxy, std::fabs(height(proxy)), Status::ok};
+    return {true, proxy, std::fabs(height(proxy)), LinkStatus::ok};
   }
-  Hold slide(const Vec3& probe) noexcept override { return place(probe); }
-  Hold cross(const Vec3&, const Vec3& probe) noexcept override { return place(probe); }
-  Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
+  SurfaceHold slide(const Vec3& probe) noexcept override { return project_probe(probe); }
+  SurfaceHold find_crossing(const Vec3&, const Vec3& probe) noexcept override { return project_probe(probe); }
+  SurfaceHold project_probe_within(const Vec3& probe, double limit) noexcept override {
+    return std::fabs(height(probe)) <= limit ? project_probe(probe) : SurfaceHold{};
+  }
   Vec3 normal() const noexcept override { return normal_; }
   /// L of a scene without fields.
-  double domain_length() const noexcept override { return kSceneLength; }
+  double domain_length() const noexcept override { return kDefaultDomainLength; }
   /// Itself.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
-    out = {Primitive::Kind::plane, place(at).proxy, normal_};
+    out = {Primitive::Kind::plane, project_probe(at).proxy, normal_};
     return true;
   }
 
@@ -53,11 +55,11 @@ struct SphereShape {
   Vec3 center;    ///< world units
   double radius;  ///< world units
   /// Free above: a thin sphere is not passed within one tick.
-  bool catches;  // free above: a thin sphere is not passed within one tick
+  bool prevents_tunneling;  // free above: a thin sphere is not passed within one tick
 };
 
 /// The Surface of a sphere.
-class SphereSurface final : public Surface {
+class SphereSurface final : public ContactSurface {
  public:
   /// What it is of.
   using Shape = SphereShape;
@@ -66,16 +68,16 @@ class SphereSurface final : public Surface {
     /// At the point held; against the way in while a thin sphere is held on its near half.
     Vec3 normal;  // at the point held; against the way in while a thin sphere is held on its near half
   };
-  /// As ClosedForm makes it in every tick.
+  /// As ClosedFormConstraint makes it in every tick.
   SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
-      : center_(shape.center), radius_(shape.radius), catches_(shape.catches), memory_(memory), side_(side) {}
+      : center_(shape.center), radius_(shape.radius), prevents_tunneling_(shape.prevents_tunneling), memory_(memory), side_(side) {}
 
   /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
   /// Above is outside.
-  SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
+  SideValue evaluate_side(const Vec3& at) noexcept override { return {height(at), true, false}; }
 
-  Hold place(const Vec3& probe) noexcept override {
+  SurfaceHold project_probe(const Vec3& probe) noexcept override {
     const Vec3 n = direction(probe - center_);
     if (max_abs(n) > 0)
       memory_.normal = n;
@@ -85,12 +87,14 @@ class SphereSurface final : public Surface {
     return on_sphere(center_ + normal_ * radius_);
   }
 
-  Hold slide(const Vec3& probe) noexcept override { return side_.sheet && height(probe) > 0 ? near_side(probe) : place(probe); }
+  SurfaceHold slide(const Vec3& probe) noexcept override {
+    return side_.beyond_body && height(probe) > 0 ? near_side(probe) : project_probe(probe);
+  }
 
-  Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
+  SurfaceHold find_crossing(const Vec3& from, const Vec3& probe) noexcept override {
     const double before = height(from), after = height(probe);
     if (before <= 0 && after <= 0) return {};
-    if (before < 0 || after <= 0 || (before == 0 && !catches_)) return place(probe);
+    if (before < 0 || after <= 0 || (before == 0 && !prevents_tunneling_)) return project_probe(probe);
 
     // both outside: where the segment enters
     const Vec3 u = from - center_, way = direction(probe - from);
@@ -98,25 +102,27 @@ class SphereSurface final : public Surface {
     if (!(apart < radius_)) return {};
     const double s = middle - std::sqrt((radius_ - apart) * (radius_ + apart));
     if (!(s >= -1e-9 * radius_ && s <= norm(probe - from))) return {};
-    if (!catches_) return place(probe);
+    if (!prevents_tunneling_) return project_probe(probe);
     memory_.normal = -way;
     return near_side(probe);
   }
 
-  Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
+  SurfaceHold project_probe_within(const Vec3& probe, double limit) noexcept override {
+    return std::fabs(height(probe)) <= limit ? project_probe(probe) : SurfaceHold{};
+  }
   Vec3 normal() const noexcept override { return normal_; }
-  bool may_be_thin() const noexcept override { return true; }
+  bool may_tunnel() const noexcept override { return true; }
   /// L: its diameter, or that of a scene without fields.
-  double domain_length() const noexcept override { return std::max(kSceneLength, 2 * radius_); }
+  double domain_length() const noexcept override { return std::max(kDefaultDomainLength, 2 * radius_); }
 
   /// J = (R / d) (I - r r^T), r the unit way from the centre, d the probe's distance from it.
-  PulledBack pull_back(const Vec3& probe, const Vec3& f) const noexcept {
+  PulledBackForce pull_back(const Vec3& probe, const Vec3& f) const noexcept {
     const Vec3 r = direction(probe - center_);
-    return divided(f - r * dot(r, f), norm(probe - center_) / radius_);
+    return divide_bounded(f - r * dot(r, f), norm(probe - center_) / radius_);
   }
   /// The tangent plane where it holds.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
-    const Hold hold = slide(at);
+    const SurfaceHold hold = slide(at);
     if (!hold.found) return false;
     out = {Primitive::Kind::plane, hold.proxy, normal_};
     return true;
@@ -124,9 +130,9 @@ class SphereSurface final : public Surface {
 
  private:
   double height(const Vec3& at) const { return norm(at - center_) - radius_; }
-  Hold on_sphere(const Vec3& proxy) const { return {true, proxy, std::fabs(height(proxy)), Status::ok}; }
+  SurfaceHold on_sphere(const Vec3& proxy) const { return {true, proxy, std::fabs(height(proxy)), LinkStatus::ok}; }
 
-  Hold near_side(const Vec3& probe) noexcept {
+  SurfaceHold near_side(const Vec3& probe) noexcept {
     const Vec3 w = probe - center_, q = w - memory_.normal * dot(w, memory_.normal);
     const double apart = norm(q);
     if (!(apart < radius_)) return {};
@@ -137,7 +143,7 @@ class SphereSurface final : public Surface {
 
   Vec3 center_;
   double radius_;
-  bool catches_;
+  bool prevents_tunneling_;
   Memory& memory_;
   const SideMemory& side_;
   Vec3 normal_{0.0};

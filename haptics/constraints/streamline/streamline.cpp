@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "engine/flow/flow.h"
+#include "engine/geometry/flow/flow.h"
 #include "engine/schema/values.h"
-#include "haptics/constraints/rules/link_keys.h"
-#include "haptics/constraints/streamline/online.h"
-#include "haptics/constraints/streamline/selected.h"
+#include "haptics/constraints/common/link_schema.h"
+#include "haptics/constraints/streamline/online_streamline.h"
+#include "haptics/constraints/streamline/selected_streamline.h"
 
 namespace catena::haptics {
 namespace {
@@ -17,13 +17,13 @@ constexpr std::array<std::string_view, 7> kMethods{"linear", "euler", "rk2", "rk
 constexpr std::array<std::string_view, 2> kFollow{"selected", "online"};
 
 /// An online line needs a direction at its seed before the first tick.
-Outcome check_seed(const json::Node& where, const OnlineSpec& spec, const std::string& name) {
+Outcome check_seed(const json::Node& where, const OnlineStreamlineSpec& spec, const std::string& name) {
   field::Cursor cursor;
   Vec3 u;
-  switch (flow::seed_direction({spec.field.get(), spec.line, spec.min_speed}, *spec.seed, cursor, u)) {
-    case flow::Stop::none:
+  switch (flow::seed_direction({spec.field.get(), spec.is_line_field, spec.min_speed}, *spec.seed, cursor, u)) {
+    case flow::StopReason::none:
       return Done{};
-    case flow::Stop::outside:
+    case flow::StopReason::outside:
       return json::error_at(where, fmt::format("\"seed\" lies outside the domain of field \"{}\"; a place within it was expected", name));
     default:
       return json::error_at(where, fmt::format("\"seed\" lies where field \"{}\" is zero{}; a place with a direction was expected", name,
@@ -36,13 +36,13 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a streamline", context));
 
   // keys
-  OnlineSpec spec;
+  OnlineStreamlineSpec spec;
   spec.field = field;
-  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
-  CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::Range::not_negative));
+  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.is_line_field));
+  CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::NumberRange::non_negative));
   // neighbouring fibres of noisy data part quickly: what is not stated is chosen so that online and selected agree to 1e-6 L
-  const bool cells = spec.line && field->is_grid();
-  CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", cells ? 1e-13 : 1e-9, json::Range::positive));
+  const bool cells = spec.is_line_field && field->is_grid();
+  CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", cells ? 1e-13 : 1e-9, json::NumberRange::positive));
   if (!(spec.tolerance < 1))
     return json::error_at(
         *link.find("tolerance"),
@@ -61,7 +61,7 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
       return json::error_at(*method_node, "\"method\" contradicts \"follow\": \"selected\"; stating a method implies \"online\"");
   }
   if (spec.seed && !method_node && follow == 0) {
-    const flow::Flow flow{spec.field.get(), spec.line, spec.min_speed};
+    const flow::Flow flow{spec.field.get(), spec.is_line_field, spec.min_speed};
     CATENA_TRY(flow::CurvePtr curve, context.curve(*link.find("seed"), name, flow, *spec.seed));
     return make_selected_streamline(std::move(curve));
   }
@@ -77,18 +77,21 @@ ConstraintType streamline_constraint() {
       "Holds the proxy on a streamline: one that is traced once, or one that is integrated in every tick.",
       "section 4, Eqs. 1-4",
       {vector_field_key("field").required(),
-       schema::vec3("seed", "world", "A place on the line.").by_default("the probe where the link is switched on").or_widget().stated(),
-       schema::word("follow", {kFollow.begin(), kFollow.end()},
-                    "`selected`: on the traced curve, with a seed; `online`: integrated every tick.")
-           .by_default("`selected` with a seed"),
-       schema::word("method", {kMethods.begin(), kMethods.end()},
-                    "Integrator of online following, which it implies; `linear` is Eqs. 1-2 as printed.")
-           .by_default("`rkf34`; sampled line fields `dp54`"),
+       schema::vec3("seed", "world", "A place on the line.")
+           .with_default("the probe where the link is switched on")
+           .or_widget()
+           .recommended(),
+       schema::choice("follow", {kFollow.begin(), kFollow.end()},
+                      "`selected`: on the traced curve, with a seed; `online`: integrated every tick.")
+           .with_default("`selected` with a seed"),
+       schema::choice("method", {kMethods.begin(), kMethods.end()},
+                      "Integrator of online following, which it implies; `linear` is Eqs. 1-2 as printed.")
+           .with_default("`rkf34`; sampled line fields `dp54`"),
        schema::number("tolerance", "L", "Embedded error of one online step.")
-           .limited({0.0, 1.0, true, true})
-           .begins("1e-4")
-           .by_default("1e-9; sampled line fields 1e-13"),
-       schema::line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").not_negative().by_default("0")},
+           .with_limits({0.0, 1.0, true, true})
+           .with_initial_value("1e-4")
+           .with_default("1e-9; sampled line fields 1e-13"),
+       schema::line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").non_negative().with_default("0")},
       build_streamline,
       false,
       true,

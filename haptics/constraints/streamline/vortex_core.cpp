@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "engine/base/machine_failure.h"
-#include "engine/flow/vortex_cores.h"
+#include "engine/base/system_failure.h"
+#include "engine/geometry/flow/vortex_cores.h"
 #include "engine/schema/values.h"
-#include "haptics/constraints/rules/link_keys.h"
-#include "haptics/constraints/streamline/selected.h"
+#include "haptics/constraints/common/link_schema.h"
+#include "haptics/constraints/streamline/selected_streamline.h"
 #include "haptics/constraints/streamline/streamline.h"
 
 namespace catena::haptics {
@@ -32,7 +32,7 @@ class VortexCore final : public Constraint {
   }
 
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<CoreMemory>(state) = CoreMemory{};
+    memory_as<CoreMemory>(state) = CoreMemory{};
     state.released = false;
     pass(probe, state);
   }
@@ -42,7 +42,7 @@ class VortexCore final : public Constraint {
   }
 
   void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    CoreMemory& memory = memory_of<CoreMemory>(state);
+    CoreMemory& memory = memory_as<CoreMemory>(state);
     state.limit = search_ - radius_;
     const double moved = memory.fresh ? norm(probe - memory.probe) : std::numeric_limits<double>::infinity();
     memory.probe = probe;
@@ -51,40 +51,40 @@ class VortexCore final : public Constraint {
     state.released = false;
     memory.holding = nearest_ && max_abs(probe) < kFarthestProbe && find(probe, memory, state);
     if (!memory.holding) return pass(probe, state);
-    state.curve = static_cast<std::int32_t>(memory.line);
+    state.curve_index = static_cast<std::int32_t>(memory.line);
     const Vec3 way = state.proxy - memory.core;
-    const double gap = norm(probe - state.proxy), far = norm(way), travel = state.travel(moved, gap);
+    const double gap = norm(probe - state.proxy), far = norm(way), travel = state.max_travel(moved, gap);
     if (held && far > travel) {
       state.proxy = memory.core + way * (travel / far);
-      state.status = Status::budget;
+      state.status = LinkStatus::budget;
     }
     memory.core = state.proxy;
     leave_tube(probe, state);
   }
 
   bool primitive(const Vec3&, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
-    const CoreMemory& memory = memory_of<CoreMemory>(state);
+    const CoreMemory& memory = memory_as<CoreMemory>(state);
     if (!memory.holding || radius_ > 0) return false;
     out = {Primitive::Kind::line, memory.core, memory.axis};
     return true;
   }
   /// Of the core, J; on the wall of a tube of radius r, e from the core to the probe: J + (r / |e|) (I - e e^T / |e|^2) (I - J).
-  PulledBack pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
-    const CoreMemory& memory = memory_of<CoreMemory>(state);
-    if (!memory.holding || state.status == Status::free || state.status == Status::budget) return {f};
-    const flow::NearestPlace found = on_line(memory.line, probe);
+  PulledBackForce pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
+    const CoreMemory& memory = memory_as<CoreMemory>(state);
+    if (!memory.holding || state.status == LinkStatus::free || state.status == LinkStatus::budget) return {f};
+    const flow::NearestPoint found = on_line(memory.line, probe);
     if (!std::isfinite(found.distance2)) return {f};
-    state.steps += found.work;
+    state.other_work += found.work;
     const flow::Curve& line = *cores_->lines[memory.line];
     const Vec3 e = probe - memory.core, way = direction(e);
     const Vec3 across = radius_ > 0 ? (f - way * dot(way, f)) * (radius_ / norm(e)) : Vec3(0.0);
-    PulledBack back = pull_back_on_curve(line, found.interval, found.s, probe, f - across);
+    PulledBackForce back = pull_back_on_curve(line, found.interval, found.s, probe, f - across);
     back.force += across;
     return back;
   }
   bool is_sane(const LinkState& state) const noexcept override {
-    const CoreMemory& memory = memory_of<CoreMemory>(state);
-    return are_bools(memory.holding, memory.fresh) && (!memory.holding || memory.line < cores_->lines.size());
+    const CoreMemory& memory = memory_as<CoreMemory>(state);
+    return are_valid_bools(memory.holding, memory.fresh) && (!memory.holding || memory.line < cores_->lines.size());
   }
   bool has_primitive() const noexcept override { return radius_ == 0; }
   double domain_length() const noexcept override { return length_; }
@@ -95,25 +95,26 @@ class VortexCore final : public Constraint {
     state.proxy = probe;
     state.residual = 0;
     if (state.released)
-      state.status = Status::released;
+      state.status = LinkStatus::released;
     else
-      stop_link(state, cores_->everywhere ? Status::critical : Status::no_surface, cores_->everywhere ? Reason::parallel : Reason::none);
+      set_link_status(state, cores_->holds_everywhere ? LinkStatus::critical : LinkStatus::no_surface,
+                      cores_->holds_everywhere ? SampleStatus::parallel : SampleStatus::ok);
   }
 
   /// The nearest place of one core.
-  flow::NearestPlace on_line(std::uint32_t line, const Vec3& probe) const noexcept {
-    return (by_line_.empty() ? *nearest_ : by_line_[line]).at(probe, search_);
+  flow::NearestPoint on_line(std::uint32_t line, const Vec3& probe) const noexcept {
+    return (by_line_.empty() ? *nearest_ : by_line_[line]).find(probe, search_);
   }
 
   /// The nearest place of the core held, or of all where none is held or another one is much nearer: sets line, proxy and status. False:
   /// nothing is within `search`, or the core held has been let go for another one.
   bool find(const Vec3& probe, CoreMemory& memory, LinkState& state) const noexcept {
-    flow::NearestPlace found = nearest_->at(probe, search_);
-    state.steps += found.work;
+    flow::NearestPoint found = nearest_->find(probe, search_);
+    state.other_work += found.work;
     if (!std::isfinite(found.distance2)) return false;
     if (memory.holding && found.line != memory.line) {
-      const flow::NearestPlace held = on_line(memory.line, probe);
-      state.steps += held.work;
+      const flow::NearestPoint held = on_line(memory.line, probe);
+      state.other_work += held.work;
       state.released = found.distance2 < kNearer * kNearer * held.distance2;
       if (state.released) return false;
       found = held;
@@ -122,25 +123,25 @@ class VortexCore final : public Constraint {
     }
     const flow::Curve& line = *cores_->lines[memory.line];
     Vec3 derivative;
-    line.evaluate_in(found.interval, found.s, state.proxy, derivative);
+    line.evaluate_interval(found.interval, found.s, state.proxy, derivative);
     memory.axis = direction(derivative);
     state.residual = 0;
-    state.status = Status::ok;
+    state.status = LinkStatus::ok;
     const bool first = found.s == line.knots().front().s;
-    if (line.closed() || (!first && found.s != line.knots().back().s)) return true;
+    if (line.is_closed() || (!first && found.s != line.knots().back().s)) return true;
     const flow::LineEnd& end = first ? line.first_end() : line.last_end();
-    if (end == flow::End::boundary) stop_link(state, Status::boundary, end.reason);
+    if (end == flow::Termination::boundary) set_link_status(state, LinkStatus::boundary, end.status);
     return true;
   }
 
-  /// Within the tube the hand moves freely; beyond, it is held on its wall.
+  /// CellFinder the tube the hand moves freely; beyond, it is held on its wall.
   void leave_tube(const Vec3& probe, LinkState& state) const noexcept {
     if (!(radius_ > 0)) return;
     const Vec3 e = probe - state.proxy;
     const double distance = norm(e);
     if (distance <= radius_) {
       state.proxy = probe;
-      state.status = Status::free;
+      state.status = LinkStatus::free;
       return;
     }
     state.proxy += e * (radius_ / distance);
@@ -154,18 +155,19 @@ class VortexCore final : public Constraint {
 
 Result<std::shared_ptr<const Constraint>> build_vortex_core(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a vortex core", context));
-  CATENA_TRY(const double radius, json::get_number(link, "radius", 0, json::Range::not_negative));
-  CATENA_TRY(const double search, json::get_number(link, "search", std::fmax(0.1 * field->length(), 2 * radius), json::Range::positive));
+  CATENA_TRY(const double radius, json::get_number(link, "radius", 0, json::NumberRange::non_negative));
+  CATENA_TRY(const double search,
+             json::get_number(link, "search", std::fmax(0.1 * field->domain_length(), 2 * radius), json::NumberRange::positive));
   if (!(search > radius))
     return json::error_at(*link.find("search"),
                           fmt::format("\"search\" is {}; a number > \"radius\", which is {}, was expected", search, radius));
   flow::CoreOptions options;
   CATENA_CHECK(schema::read_value(schema::core_criterion_key(), link, options.criterion));
-  CATENA_CHECK(schema::read_value(schema::core_length_key(), link, options.least_length));
-  CATENA_CHECK(schema::read_value(schema::core_swirl_key(), link, options.least_swirl));
-  auto cores = flow::vortex_cores(field, options);
-  if (!cores) return caused_by(json::error_at(*link.find("field"), cores.error().message), cores.error());
-  return std::shared_ptr<const Constraint>(std::make_shared<VortexCore>(*cores, radius, search, field->length()));
+  CATENA_CHECK(schema::read_value(schema::core_length_key(), link, options.min_length));
+  CATENA_CHECK(schema::read_value(schema::core_swirl_key(), link, options.min_swirl));
+  auto cores = flow::find_vortex_cores(field, options);
+  if (!cores) return with_cause(json::error_at(*link.find("field"), cores.error().message), cores.error());
+  return std::shared_ptr<const Constraint>(std::make_shared<VortexCore>(*cores, radius, search, field->domain_length()));
 }
 
 }  // namespace
@@ -176,13 +178,13 @@ ConstraintType vortex_core_constraint() {
           "not in the paper",
           {vector_field_key("field").required(),
            schema::number("radius", "world", "Radius of the tube in which the hand moves freely; 0: on the core.")
-               .not_negative()
-               .begins("0.1 L")
-               .by_default("0"),
+               .non_negative()
+               .with_initial_value("0.1 L")
+               .with_default("0"),
            schema::number("search", "world", "Longest distance of the core from the probe.")
                .positive()
-               .begins("0.2 L")
-               .by_default("0.1 L or 2 `radius`, the larger"),
+               .with_initial_value("0.2 L")
+               .with_default("0.1 L or 2 `radius`, the larger"),
            schema::core_criterion_key(), schema::core_length_key(), schema::core_swirl_key()},
           build_vortex_core};
 }

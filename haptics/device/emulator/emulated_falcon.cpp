@@ -6,16 +6,16 @@ namespace catena::haptics {
 
 BootStreamReader::State BootStreamReader::feed(std::uint8_t byte) {
   if (state_ != State::reading) return state_;
-  if (low_ < 0) {
-    low_ = byte;
+  if (low_byte_ < 0) {
+    low_byte_ = byte;
     return state_;
   }
-  const auto word = static_cast<std::uint16_t>(low_ | byte << 8);
-  low_ = -1;
-  return state_ = take(word);
+  const auto word = static_cast<std::uint16_t>(low_byte_ | byte << 8);
+  low_byte_ = -1;
+  return state_ = consume_word(word);
 }
 
-BootStreamReader::State BootStreamReader::take(std::uint16_t word) {
+BootStreamReader::State BootStreamReader::consume_word(std::uint16_t word) {
   if (words_++ < kHeaderWords) return words_ == 1 && word != 0x08AA ? State::bad : State::reading;
   // a block: its size, two words of address, its data
   if (in_block_ == 0) {
@@ -30,18 +30,18 @@ BootStreamReader::State BootStreamReader::take(std::uint16_t word) {
 
 void EmulatedBootRom::reset() {
   state_ = State::asleep;
-  heard_.clear();
+  received_.clear();
 }
 
 void EmulatedBootRom::receive(std::uint8_t byte, std::uint16_t baud, bool dtr, std::vector<std::uint8_t>& answer) {
   if (state_ == State::asleep) {
     if (baud != kBaud9600) return;
-    heard_.push_back(byte);
-    const std::size_t n = heard_.size();
-    if (n < 3 || heard_[n - 3] != 0x0A || heard_[n - 2] != 0x43 || heard_[n - 1] != 0x0D) return;
-    heard_.clear();
-    if (faults_.deaf_handshakes > 0) {
-      --faults_.deaf_handshakes;
+    received_.push_back(byte);
+    const std::size_t n = received_.size();
+    if (n < 3 || received_[n - 3] != 0x0A || received_[n - 2] != 0x43 || received_[n - 1] != 0x0D) return;
+    received_.clear();
+    if (faults_.ignored_handshakes > 0) {
+      --faults_.ignored_handshakes;
       return;
     }
     if (faults_.leading_zero) answer.push_back(0x00);
@@ -103,7 +103,7 @@ EmulatedFalcon::EmulatedFalcon(const EmulatedFalconOptions& options)
 void EmulatedFalcon::plug(bool power_kept) {
   plugged_ = true;
   to_host_.clear();
-  held_.clear();
+  pending_reply_.clear();
   frame_.clear();
   baud_ = kBaud9600;
   latency_ms_ = 16;
@@ -123,7 +123,7 @@ bool EmulatedFalcon::control(const UsbControl& request) {
       if (request.value > 2) return false;
       if (request.value != 2) {
         to_host_.clear();
-        held_.clear();
+        pending_reply_.clear();
       }
       if (request.value != 1) frame_.clear();
       return true;
@@ -207,12 +207,12 @@ void EmulatedFalcon::answer_frame() {
     }
   exchange.control = (frame_[13] - unsigned{kNibble}) & 15u;
   ++frames_;
-  exchange.force_n = force_of_motors(mechanism_.legs(), exchange.motors);
+  exchange.force_n = compute_motor_force(mechanism_.legs(), exchange.motors);
   mechanism_.advance(options_.seconds_per_frame, exchange.motors, (exchange.control & 1u) != 0);
   exchange.encoders = mechanism_.encoders();
   exchange.position_m = mechanism_.position_m();
   exchange.homed = mechanism_.homed_bits();
-  last_ = exchange;
+  last_exchange_ = exchange;
   if (observer_) observer_(exchange);
 
   std::vector<std::uint8_t> reply{'<'};
@@ -226,21 +226,21 @@ void EmulatedFalcon::answer_frame() {
     faults_.replies.pop_front();
   }
   if (fault.kind == ReplyFault::Kind::drop) return;
-  if (fault.kind == ReplyFault::Kind::truncate) reply.resize(std::min(fault.n, reply.size()));
+  if (fault.kind == ReplyFault::Kind::truncate) reply.resize(std::min(fault.byte_count, reply.size()));
   if (fault.kind == ReplyFault::Kind::garbage) {
     static constexpr std::uint8_t kNoise[] = {'<', 0x00, 'J', '>', 0xFF, '<', 'A', 'A', '<', 'P', 0x7F};
     std::vector<std::uint8_t> noise;
-    for (std::size_t i = 0; i < fault.n; ++i) noise.push_back(kNoise[i % std::size(kNoise)]);
+    for (std::size_t i = 0; i < fault.byte_count; ++i) noise.push_back(kNoise[i % std::size(kNoise)]);
     reply.insert(reply.begin(), noise.begin(), noise.end());
   }
   if (fault.kind == ReplyFault::Kind::join) {
-    held_.insert(held_.end(), reply.begin(), reply.end());
+    pending_reply_.insert(pending_reply_.end(), reply.begin(), reply.end());
     return;
   }
-  reply.insert(reply.begin(), held_.begin(), held_.end());
-  held_.clear();
-  if (fault.kind == ReplyFault::Kind::split && fault.n < reply.size()) {
-    const auto at = reply.begin() + static_cast<std::ptrdiff_t>(fault.n);
+  reply.insert(reply.begin(), pending_reply_.begin(), pending_reply_.end());
+  pending_reply_.clear();
+  if (fault.kind == ReplyFault::Kind::split && fault.byte_count < reply.size()) {
+    const auto at = reply.begin() + static_cast<std::ptrdiff_t>(fault.byte_count);
     send({reply.begin(), at});
     send({at, reply.end()});
     return;

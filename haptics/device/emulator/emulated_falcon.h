@@ -25,16 +25,16 @@ class BootStreamReader {
 
  private:
   static constexpr std::size_t kHeaderWords = 1 + 8 + 2;
-  State take(std::uint16_t word);
+  State consume_word(std::uint16_t word);
   State state_ = State::reading;
   std::size_t words_ = 0, in_block_ = 0, block_words_ = 0;
-  int low_ = -1;
+  int low_byte_ = -1;
 };
 
 class EmulatedBootRom {
  public:
   struct Faults {
-    int deaf_handshakes = 0;              ///< so many handshakes get no answer
+    int ignored_handshakes = 0;           ///< so many handshakes get no answer
     bool leading_zero = false;            ///< the answer starts with a 00, as on some systems
     std::deque<std::size_t> echo_errors;  ///< one an attempt: the image byte that is damaged; npos: none in that attempt
   };
@@ -54,7 +54,7 @@ class EmulatedBootRom {
   State state_ = State::asleep;
   Faults faults_;
   BootStreamReader stream_;
-  std::vector<std::uint8_t> heard_;
+  std::vector<std::uint8_t> received_;
   std::size_t image_bytes_ = 0, error_at_ = npos;
   int attempts_ = 0;
   bool damaged_ = false;
@@ -65,7 +65,7 @@ class EmulatedBootRom {
 /// real libusb in front of it, and EmulatedTransport the driver alone.
 ///   frame to the device:  '<' 3 x int16 motors, control, 'A', '>'      from it:  '<' 3 x int16 encoders, bits, 'A', '>'
 ///   (an int16 is four bytes 0x41 + nibble, low nibble first). Each frame moves the mechanism on by `seconds_per_frame`.
-/// Deterministic: what it does depends only on what it is sent. Not thread-safe: its owner locks. Written from the protocol's
+/// Deterministic: what it does depends only on what it is sent. Not thread-safe: its owner locks. ImageWriteResult from the protocol's
 /// description, not from the driver. Faults are made on demand: see EmulatedFaults.
 struct EmulatedFalconOptions {
   bool firmware = true;  ///< runs already; else the boot ROM waits for an image
@@ -91,7 +91,7 @@ struct ReplyFault {
     drop
   };
   Kind kind = Kind::none;
-  std::size_t n = 0;
+  std::size_t byte_count = 0;
 };
 
 struct EmulatedFaults {
@@ -138,7 +138,7 @@ class EmulatedFalcon {
 
   // what has happened
   const std::vector<UsbControl>& controls() const { return controls_; }
-  const Exchange& last() const { return last_; }
+  const Exchange& last_exchange() const { return last_exchange_; }
   std::uint64_t frames() const { return frames_; }        ///< whole frames that came
   std::uint64_t bad_bytes() const { return bad_bytes_; }  ///< that came and belonged to no frame, while the firmware ran
   std::uint64_t out_bytes() const { return out_bytes_; }
@@ -147,7 +147,7 @@ class EmulatedFalcon {
   std::uint16_t baud() const { return baud_; }
   bool running() const { return running_; }
   /// Called for every frame that came, in the caller of bulk_out.
-  void on_exchange(std::function<void(const Exchange&)> observer) { observer_ = std::move(observer); }
+  void set_exchange_observer(std::function<void(const Exchange&)> observer) { observer_ = std::move(observer); }
 
  private:
   void receive(std::uint8_t byte);
@@ -159,11 +159,11 @@ class EmulatedFalcon {
   EmulatedBootRom boot_rom_;
   EmulatedFaults faults_;
   std::deque<std::vector<std::uint8_t>> to_host_;  ///< each is a packet's payload, or more
-  std::vector<std::uint8_t> held_;                 ///< a reply that waits for the next one
+  std::vector<std::uint8_t> pending_reply_;        ///< a reply that waits for the next one
   std::vector<std::uint8_t> frame_;                ///< what has come of one
   std::vector<UsbControl> controls_;
   std::function<void(const Exchange&)> observer_;
-  Exchange last_;
+  Exchange last_exchange_;
   std::uint64_t frames_ = 0, bad_bytes_ = 0, out_bytes_ = 0, overruns_ = 0;
   std::uint16_t baud_ = kBaud9600;
   int latency_ms_ = 16;

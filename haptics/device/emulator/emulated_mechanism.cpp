@@ -13,7 +13,7 @@ constexpr double kLegDegrees[3] = {105, -15, -135};
 
 }  // namespace
 
-std::optional<DeltaLegs> delta_legs(const Vec3& grip_m) {
+std::optional<DeltaLegs> solve_delta_legs(const Vec3& grip_m) {
   DeltaLegs legs;
   for (int i = 0; i < 3; ++i) {
     const double cos_phi = std::cos(kLegDegrees[i] * kDegree), sin_phi = std::sin(kLegDegrees[i] * kDegree);
@@ -34,20 +34,20 @@ std::optional<DeltaLegs> delta_legs(const Vec3& grip_m) {
     const double theta_by_v = cosine_by_length * (-cos_3 / sin_3) / sine;
     const Vec3 row{theta_by_u * cos_phi - theta_by_v * sin_phi, theta_by_u * sin_phi + theta_by_v * cos_phi, theta_by_w};
     if (!std::isfinite(legs.theta[i]) || !is_finite(row)) return std::nullopt;
-    for (int j = 0; j < 3; ++j) legs.theta_by_p[j][i] = row[j];
+    for (int j = 0; j < 3; ++j) legs.dtheta_dp[j][i] = row[j];
   }
   return legs;
 }
 
-Vec3 counts_of_angles(const Vec3& theta) { return (theta / kDegree - Vec3(kEmulatedDegreesAtZero)) / kEmulatedDegreesPerCount; }
+Vec3 angles_to_counts(const Vec3& theta) { return (theta / kDegree - Vec3(kEmulatedDegreesAtZero)) / kEmulatedDegreesPerCount; }
 
-Vec3 force_of_motors(const DeltaLegs& legs, const std::array<int, 3>& counts) {
+Vec3 compute_motor_force(const DeltaLegs& legs, const std::array<int, 3>& counts) {
   const Vec3 tau = Vec3(counts[0], counts[1], counts[2]) * (-1 / kEmulatedCountsPerNm);
-  return tau * legs.theta_by_p;  // GLM: v * M = M^T v
+  return tau * legs.dtheta_dp;  // GLM: v * M = M^T v
 }
 
-bool EmulatedMechanism::place(const Vec3& position_m) {
-  const auto legs = delta_legs(position_m);
+bool EmulatedMechanism::set_position(const Vec3& position_m) {
+  const auto legs = solve_delta_legs(position_m);
   if (!legs) return false;
   legs_ = *legs;
   position_m_ = position_m;
@@ -55,26 +55,26 @@ bool EmulatedMechanism::place(const Vec3& position_m) {
 }
 
 bool EmulatedMechanism::hold(const Vec3& position_m) {
-  if (!place(position_m)) return false;
-  hand_.path.clear();
+  if (!set_position(position_m)) return false;
+  user_.path.clear();
   velocity_ = Vec3(0.0);
   return true;
 }
 
-void EmulatedMechanism::carry(const EmulatedHand& hand) {
+void EmulatedMechanism::attach_user(const EmulatedUser& hand) {
   CATENA_ASSERT(!hand.path.empty() && hand.mass_kg > 0);
-  const bool reached = place(hand.path.front().position_m);
+  const bool reached = set_position(hand.path.front().position_m);
   CATENA_ASSERT(reached);
-  hand_ = hand;
+  user_ = hand;
   velocity_ = Vec3(0.0);
   t_s_ = hand.path.front().t_s;
   segment_ = 0;
 }
 
-Vec3 EmulatedMechanism::wish(Vec3& velocity) {
-  const auto& path = hand_.path;
-  if (hand_.repeat_from_s >= 0 && t_s_ >= path.back().t_s && path.back().t_s > hand_.repeat_from_s) {
-    t_s_ = hand_.repeat_from_s;
+Vec3 EmulatedMechanism::target_at(Vec3& velocity) {
+  const auto& path = user_.path;
+  if (user_.repeat_from_s >= 0 && t_s_ >= path.back().t_s && path.back().t_s > user_.repeat_from_s) {
+    t_s_ = user_.repeat_from_s;
     segment_ = 0;
   }
   while (segment_ + 1 < path.size() && path[segment_ + 1].t_s <= t_s_) ++segment_;
@@ -88,17 +88,17 @@ Vec3 EmulatedMechanism::wish(Vec3& velocity) {
 }
 
 void EmulatedMechanism::advance(double dt_s, const Counts& motors, bool homing) {
-  if (!hand_.path.empty()) {
+  if (!user_.path.empty()) {
     t_s_ += dt_s;
     Vec3 wish_velocity;
-    const Vec3 target = wish(wish_velocity);
-    const Vec3 force = (target - position_m_) * hand_.stiffness_n_per_m + (wish_velocity - velocity_) * hand_.damping_ns_per_m +
-                       force_of_motors(legs_, motors);
-    velocity_ += force * (dt_s / hand_.mass_kg);
-    if (!place(position_m_ + velocity_ * dt_s)) velocity_ = Vec3(0.0);
+    const Vec3 target = target_at(wish_velocity);
+    const Vec3 force = (target - position_m_) * user_.stiffness_n_per_m + (wish_velocity - velocity_) * user_.damping_ns_per_m +
+                       compute_motor_force(legs_, motors);
+    velocity_ += force * (dt_s / user_.mass_kg);
+    if (!set_position(position_m_ + velocity_ * dt_s)) velocity_ = Vec3(0.0);
   }
   // index marks
-  const Vec3 counts = counts_of_angles(legs_.theta);
+  const Vec3 counts = angles_to_counts(legs_.theta);
   for (int i = 0; i < 3; ++i) {
     const unsigned bit = 1u << i;
     if (counts[i] > kIndexCounts) {
@@ -118,7 +118,7 @@ void EmulatedMechanism::power_off(const Counts& power_on_offset) {
 void EmulatedMechanism::set_homed() { homed_ = 7; }
 
 EmulatedMechanism::Counts EmulatedMechanism::encoders() const {
-  const Vec3 counts = counts_of_angles(legs_.theta);
+  const Vec3 counts = angles_to_counts(legs_.theta);
   Counts out{};
   for (int i = 0; i < 3; ++i)
     out[static_cast<std::size_t>(i)] =

@@ -1,5 +1,5 @@
 /// The emulated Falcon's delta mechanism: where its three legs stand for a grip position, and what its motors push.
-/// Written from the published formulas, apart from the driver's kinematics: each pins the other.
+/// ImageWriteResult from the published formulas, apart from the driver's kinematics: each pins the other.
 ///   u = x cos(phi) + y sin(phi) - r,  v = -x sin(phi) + y cos(phi) - s,  w = z,  cos(theta3) = (v + f) / b
 ///   L = d + e + b sin(theta3),  R = hypot(u + c, w),  theta = atan2(w, u + c) - acos((a^2 + R^2 - L^2) / (2 a R))
 /// Metres, radians, newtons, newton metres; z points away from the base. Off the tick, pure.
@@ -16,18 +16,18 @@ inline constexpr double kEmulatedDegreesAtZero = 35, kEmulatedDegreesPerCount = 
 inline constexpr double kEmulatedCountsPerNm = 1e4;
 
 struct DeltaLegs {
-  Vec3 theta{0.0};       ///< of the three motors
-  Mat3 theta_by_p{1.0};  ///< d theta_i / d p_j: row i, column j (GLM: theta_by_p[j][i])
+  Vec3 theta{0.0};      ///< of the three motors
+  Mat3 dtheta_dp{1.0};  ///< d theta_i / d p_j: row i, column j (GLM: dtheta_dp[j][i])
 };
 
 /// Nothing where the mechanism does not reach.
-std::optional<DeltaLegs> delta_legs(const Vec3& grip_m);
+std::optional<DeltaLegs> solve_delta_legs(const Vec3& grip_m);
 
 /// Encoder counts, not yet rounded.
-Vec3 counts_of_angles(const Vec3& theta);
+Vec3 angles_to_counts(const Vec3& theta);
 
 /// What the grip feels of motor counts m: tau = -m / 1e4,  F = (dp/dtheta)^-T tau = (dtheta/dp)^T tau.
-Vec3 force_of_motors(const DeltaLegs& legs, const std::array<int, 3>& counts);
+Vec3 compute_motor_force(const DeltaLegs& legs, const std::array<int, 3>& counts);
 
 /// The mechanics of the emulated Falcon: a grip that is held at a place, or carried by a simulated hand that feels the motors.
 ///   m a = k (wish - x) + b (wish' - v) + F_motors,   semi-implicit Euler; a step that leaves the reach is not taken
@@ -35,7 +35,7 @@ Vec3 force_of_motors(const DeltaLegs& legs, const std::array<int, 3>& counts);
 /// comes back in over the index mark (+600 counts, z = 0.161 m on the centre line) after having been outside of it; then its
 /// offset is gone for good, so the origin jumps.
 /// Deterministic; owned by EmulatedFalcon. Metres, newtons, seconds.
-struct EmulatedHand {
+struct EmulatedUser {
   struct Waypoint {
     double t_s = 0;
     Vec3 position_m{0.0};
@@ -57,7 +57,7 @@ class EmulatedMechanism {
   bool hold(const Vec3& position_m);
   void hold_buttons(unsigned buttons) { buttons_ = buttons; }
   /// Lets a hand carry the grip from where its path starts.
-  void carry(const EmulatedHand& hand);
+  void attach_user(const EmulatedUser& hand);
 
   void advance(double dt_s, const Counts& motors, bool homing);
   void power_off(const Counts& power_on_offset);  ///< homing is lost
@@ -72,14 +72,14 @@ class EmulatedMechanism {
  private:
   static constexpr double kIndexCounts = 600;
 
-  Vec3 wish(Vec3& velocity);
-  bool place(const Vec3& position_m);
+  Vec3 target_at(Vec3& velocity);
+  bool set_position(const Vec3& position_m);
 
   Counts offset_;
   unsigned homed_ = 0, outside_ = 0, buttons_ = 0;
   Vec3 position_m_{0, 0, 0.11}, velocity_{0.0};
-  DeltaLegs legs_ = *delta_legs({0, 0, 0.11});
-  EmulatedHand hand_;
+  DeltaLegs legs_ = *solve_delta_legs({0, 0, 0.11});
+  EmulatedUser user_;
   double t_s_ = 0;
   std::size_t segment_ = 0;
 };

@@ -29,21 +29,21 @@ void EmulatedTransport::wait_for_bus(int ms) noexcept {
 
 usb::UsbError EmulatedTransport::control(std::uint8_t request, std::uint16_t value) noexcept {
   const std::scoped_lock lock(shared_->mutex);
-  if (!shared_->device.plugged()) return usb::UsbError::gone;
+  if (!shared_->device.plugged()) return usb::UsbError::disconnected;
   return shared_->device.control({0x40, request, value, 0}) ? usb::UsbError::none : usb::UsbError::stall;
 }
 
-usb::UsbMoved EmulatedTransport::write(std::span<const std::uint8_t> bytes, int) noexcept {
+usb::UsbTransferResult EmulatedTransport::write(std::span<const std::uint8_t> bytes, int) noexcept {
   const std::scoped_lock lock(shared_->mutex);
   EmulatedFalcon& device = shared_->device;
-  if (!device.plugged()) return {usb::UsbError::gone, 0};
+  if (!device.plugged()) return {usb::UsbError::disconnected, 0};
   if (device.halted(EmulatedFalcon::kEndpointOut)) return {usb::UsbError::stall, 0};
   device.bulk_out(bytes);
-  if (!device.plugged()) return {usb::UsbError::gone, 0};
+  if (!device.plugged()) return {usb::UsbError::disconnected, 0};
   return {usb::UsbError::none, bytes.size()};
 }
 
-usb::UsbMoved EmulatedTransport::read(usb::UsbPacket& packet, int timeout_ms) noexcept {
+usb::UsbTransferResult EmulatedTransport::read(usb::UsbPacket& packet, int timeout_ms) noexcept {
   int wait_ms = 1;
   {
     const std::scoped_lock lock(shared_->mutex);
@@ -52,7 +52,7 @@ usb::UsbMoved EmulatedTransport::read(usb::UsbPacket& packet, int timeout_ms) no
   wait_for_bus(wait_ms);
   const std::scoped_lock lock(shared_->mutex);
   EmulatedFalcon& device = shared_->device;
-  if (!device.plugged()) return {usb::UsbError::gone, 0};
+  if (!device.plugged()) return {usb::UsbError::disconnected, 0};
   if (device.halted(EmulatedFalcon::kEndpointIn)) return {usb::UsbError::stall, 0};
   if (!device.has_payload() && device.latency_ms() > timeout_ms) return {usb::UsbError::timeout, 0};
   return {usb::UsbError::none, device.bulk_in(packet)};
@@ -60,18 +60,18 @@ usb::UsbMoved EmulatedTransport::read(usb::UsbPacket& packet, int timeout_ms) no
 
 usb::UsbError EmulatedTransport::clear_halt(usb::UsbEndpoint endpoint) noexcept {
   const std::scoped_lock lock(shared_->mutex);
-  if (!shared_->device.plugged()) return usb::UsbError::gone;
+  if (!shared_->device.plugged()) return usb::UsbError::disconnected;
   shared_->device.clear_halt(endpoint == usb::UsbEndpoint::in ? EmulatedFalcon::kEndpointIn : EmulatedFalcon::kEndpointOut);
   return usb::UsbError::none;
 }
 
-Result<std::unique_ptr<usb::Transport>> EmulatedSource::open() {
+Result<std::unique_ptr<usb::Transport>> EmulatedTransportSource::open() {
   const std::scoped_lock lock(shared_->mutex);
   if (!shared_->device.plugged()) return Error{"emulated Falcon: it is unplugged"};
   return std::unique_ptr<usb::Transport>(std::make_unique<EmulatedTransport>(shared_, paced_));
 }
 
-bool EmulatedSource::wait_for_arrival(int timeout_ms) noexcept {
+bool EmulatedTransportSource::wait_for_arrival(int timeout_ms) noexcept {
   {
     const std::scoped_lock lock(shared_->mutex);
     if (shared_->device.plugged()) return true;
@@ -80,8 +80,8 @@ bool EmulatedSource::wait_for_arrival(int timeout_ms) noexcept {
   return false;
 }
 
-EmulatedHand gentle_hand() {
-  EmulatedHand hand;
+EmulatedUser gentle_user() {
+  EmulatedUser hand;
   hand.path = {{0, {0, 0, 0.12}, 0},    {0.5, {0, 0, 0.12}, 0}, {1.5, {0, 0, 0.176}, 0},  {2.5, {0, 0, 0.13}, 0},
                {3.5, {0, 0, 0.176}, 0}, {4, {0, 0, 0.176}, 0},  {6, {0.025, 0, 0.115}, 0}};
   hand.repeat_from_s = 6;
@@ -93,8 +93,8 @@ EmulatedHand gentle_hand() {
   return hand;
 }
 
-EmulatedHand still_hand() {
-  EmulatedHand hand;
+EmulatedUser resting_user() {
+  EmulatedUser hand;
   hand.path = {{0, {0, 0, 0.12}, 0},    {0.3, {0, 0, 0.12}, 0},  {1, {0, 0, 0.176}, 0}, {1.6, {0, 0, 0.13}, 0},
                {2.2, {0, 0, 0.176}, 0}, {2.5, {0, 0, 0.176}, 0}, {3, {0, 0, 0.12}, 0}};
   return hand;
@@ -132,7 +132,7 @@ EmulatedDetail parse_detail(std::string_view text) {
 
 }  // namespace
 
-std::string table_of_emulated_falcon(const std::string& detail) { return parse_detail(detail).table; }
+std::string emulated_falcon_table_path(const std::string& detail) { return parse_detail(detail).table; }
 
 Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& text, const DeviceSettings& settings,
                                                      std::function<void(const EmulatedFalcon::Exchange&)> observer) {
@@ -146,14 +146,14 @@ Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& text, co
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, usb::read_falcon_image(settings.firmware));
   }
-  options.boot.progress = usb::boot_progress_lines(settings.tell);
+  options.boot.progress = usb::make_boot_progress_reporter(settings.report_progress);
   auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.firmware = settings.firmware.empty()});
-  shared->device.mechanism().carry(detail.still ? still_hand() : gentle_hand());
-  if (observer) shared->device.on_exchange(std::move(observer));
+  shared->device.mechanism().attach_user(detail.still ? resting_user() : gentle_user());
+  if (observer) shared->device.set_exchange_observer(std::move(observer));
   options.force_gain = settings.force_gain;
   options.command_timeout_s = usb::falcon_command_timeout_s(settings.rate_hz);
   CATENA_TRY(std::unique_ptr<Device> device,
-             usb::Falcon::open(std::make_unique<EmulatedSource>(std::move(shared), true), std::move(options)));
+             usb::Falcon::open(std::make_unique<EmulatedTransportSource>(std::move(shared), true), std::move(options)));
   return device;
 }
 

@@ -27,8 +27,8 @@ class EmulatedTransport final : public usb::Transport {
   EmulatedTransport(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
 
   usb::UsbError control(std::uint8_t request, std::uint16_t value) noexcept override;
-  usb::UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
-  usb::UsbMoved read(usb::UsbPacket& packet, int timeout_ms) noexcept override;
+  usb::UsbTransferResult write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
+  usb::UsbTransferResult read(usb::UsbPacket& packet, int timeout_ms) noexcept override;
   usb::UsbError clear_halt(usb::UsbEndpoint endpoint) noexcept override;
 
  private:
@@ -39,9 +39,9 @@ class EmulatedTransport final : public usb::Transport {
   std::int64_t last_ns_ = 0;
 };
 
-class EmulatedSource final : public usb::TransportSource {
+class EmulatedTransportSource final : public usb::TransportSource {
  public:
-  EmulatedSource(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
+  EmulatedTransportSource(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
   Result<std::unique_ptr<usb::Transport>> open() override;
   bool wait_for_arrival(int timeout_ms) noexcept override;
 
@@ -56,9 +56,9 @@ class EmulatedSource final : public usb::TransportSource {
 
 /// Pulls the grip out and pushes it in (homing), pulls it out once more (arming), then goes round and round: 14 s, of which the
 /// last 8 repeat.
-EmulatedHand gentle_hand();
+EmulatedUser gentle_user();
 /// Homes and arms the same way, then rests at z = 0.12 m from 3 s on.
-EmulatedHand still_hand();
+EmulatedUser resting_user();
 
 void list_emulated_falcon(std::vector<DeviceInfo>& to);
 /// `detail`: empty or "still"; then, or alone, "process" or "process:FILE.csv": the emulated device is in a process of its own
@@ -68,6 +68,6 @@ Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, 
                                                      std::function<void(const EmulatedFalcon::Exchange&)> observer);
 
 /// The FILE of such a detail; empty: none.
-std::string table_of_emulated_falcon(const std::string& detail);
+std::string emulated_falcon_table_path(const std::string& detail);
 
 }  // namespace catena::haptics

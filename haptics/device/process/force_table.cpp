@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "engine/base/clock.h"
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena::haptics::process {
 
@@ -22,7 +22,7 @@ constexpr std::int64_t kLongestRow = 128;
 
 /// Blocks for the first `bytes` of the file, whose size stays. The code of errno; 0: they are there.
 int reserve(int descriptor, std::int64_t bytes) {
-  const auto limit = limit_in_force(RLIMIT_FSIZE);
+  const auto limit = resource_limit(RLIMIT_FSIZE);
   if (limit && *limit < static_cast<unsigned long long>(bytes)) return EFBIG;
   while (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, bytes) != 0) {
     if (errno == EINTR) continue;
@@ -33,15 +33,15 @@ int reserve(int descriptor, std::int64_t bytes) {
 
 }  // namespace
 
-Result<Descriptor> open_force_table(const std::string& path) {
-  if (path.empty()) return Descriptor(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+Result<FileDescriptor> open_force_table(const std::string& path) {
+  if (path.empty()) return FileDescriptor(::open("/dev/null", O_WRONLY | O_CLOEXEC));
   const auto cannot = [&](int code) { return system_error(path + ": cannot write", code); };
   // without waiting: nothing may read from a pipe
   struct stat about {};
   const bool was_there = ::stat(path.c_str(), &about) == 0;
   if (was_there && !S_ISREG(about.st_mode))
     return Error{path + ": is a pipe, a device or a folder: expected the name of a regular file for the table of forces"};
-  Descriptor table(::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));
+  FileDescriptor table(::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));
   if (!table) return cannot(errno);
   if (::fstat(table.get(), &about) != 0 || !S_ISREG(about.st_mode))
     return Error{path + ": expected the name of a regular file for the table of forces"};
@@ -56,7 +56,7 @@ Result<Descriptor> open_force_table(const std::string& path) {
 ForceTable::ForceTable(int descriptor, std::atomic<int>& error) : descriptor_(descriptor), error_(error) {
   struct stat about {};
   if (::fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode)) reserved_ = kPiece;
-  put("t,force_x,force_y,force_z\n");
+  append_row("t,force_x,force_y,force_z\n");
 }
 
 ForceTable::~ForceTable() {
@@ -68,17 +68,17 @@ void ForceTable::add(const Vec3& force_n) {
   const std::int64_t now = now_ns();
   if (force_n == last_n_ && now - last_ns_ < kStays) return;
   const bool begins_or_ends = (force_n == Vec3(0.0)) != (last_n_ == Vec3(0.0));
-  if (!has_room() && !begins_or_ends) return;
+  if (!reserve_space() && !begins_or_ends) return;
   last_n_ = force_n;
   last_ns_ = now;
   char row[kLongestRow];
   std::snprintf(row, sizeof row, "%.6f,%.6g,%.6g,%.6g\n", 1e-9 * static_cast<double>(now), 0.0 + force_n.x, 0.0 + force_n.y,
                 0.0 + force_n.z);  // no "-0"
-  put(row);
+  append_row(row);
 }
 
 /// Whether a row that is not the beginning or the end of a push may be written.
-bool ForceTable::has_room() {
+bool ForceTable::reserve_space() {
   if (reserved_ == 0) return true;
   if (error_ != 0) return false;
   if (reserved_ - size_ > kAhead) return true;
@@ -88,7 +88,7 @@ bool ForceTable::has_room() {
   return code == 0;
 }
 
-void ForceTable::put(const char* text) {
+void ForceTable::append_row(const char* text) {
   const auto bytes = static_cast<ssize_t>(std::strlen(text));
   const ssize_t written = ::write(descriptor_, text, static_cast<std::size_t>(bytes));
   if (written > 0) size_ += written;

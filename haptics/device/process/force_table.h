@@ -14,7 +14,7 @@ namespace catena::haptics::process {
 
 /// Opens the table and reserves its first piece, before the device is opened; an empty path is /dev/null. Errors: a pipe, a device or a
 /// folder (bad input); a disk that is full, ulimit -f (of the machine). What was in a file stays there when it cannot be replaced.
-Result<Descriptor> open_force_table(const std::string& path);
+Result<FileDescriptor> open_force_table(const std::string& path);
 
 class ForceTable {
  public:
@@ -26,12 +26,12 @@ class ForceTable {
   void add(const Vec3& force_n);
 
  private:
-  bool has_room();
-  void put(const char* text);
+  bool reserve_space();
+  void append_row(const char* text);
 
   int descriptor_;
   std::atomic<int>& error_;
-  std::int64_t size_ = 0, reserved_ = 0;  ///< bytes; reserved_ 0: no regular file
+  std::int64_t size_ = 0, reserved_ = 0;  ///< bytes; reserved_bytes_ 0: no regular file
   Vec3 last_n_{0.0};
   std::int64_t last_ns_ = 0;
 };

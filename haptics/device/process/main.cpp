@@ -1,6 +1,6 @@
 // The program `catena-device`: holds a haptic device for catena, which starts it and gives it the page (descriptor 3,
-// haptics/device/process/page.h), the lifeline (descriptor 4) and the table that it writes (descriptor 5). It has a session of its own,
-// hears no signal that can be blocked, and outlives the program by as long as it takes to let the device go.
+// haptics/device/process/device_page.h), the lifeline (descriptor 4) and the table that it writes (descriptor 5). It has a session of its
+// own, hears no signal that can be blocked, and outlives the program by as long as it takes to let the device go.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -12,8 +12,8 @@
 #include <cstring>
 
 #include "haptics/device/emulator/emulated_transport.h"
+#include "haptics/device/process/device_host.h"
 #include "haptics/device/process/force_table.h"
-#include "haptics/device/process/host.h"
 
 namespace {
 
@@ -42,7 +42,7 @@ int main() {
   void* const at = ::mmap(nullptr, sizeof(process::DevicePage), PROT_READ | PROT_WRITE, MAP_SHARED, kPage, 0);
   if (at == MAP_FAILED) return usage();
   process::DevicePage& page = *static_cast<process::DevicePage*>(at);
-  if (page.mark != process::DevicePage::kMark || page.version != process::DevicePage::kVersion) return usage();
+  if (page.magic != process::DevicePage::kMagic || page.version != process::DevicePage::kVersion) return usage();
   sched_param parameter{};
   parameter.sched_priority = kPriority;
   sched_setscheduler(0, SCHED_FIFO, &parameter);  // where that is permitted
@@ -57,12 +57,12 @@ int main() {
   auto device = open_emulated_falcon(colon == std::string::npos ? "" : name.substr(colon + 1), settings,
                                      [&table](const EmulatedFalcon::Exchange& exchange) { table.add(exchange.force_n); });
   if (!device) {
-    std::snprintf(page.problem, sizeof page.problem, "%s", device.error().message.c_str());
-    page.problem_of_machine = device.error().machine;
+    std::snprintf(page.error_text, sizeof page.error_text, "%s", device.error().message.c_str());
+    page.is_machine_error = device.error().system_failure;
     return answers(process::kFailed) ? 1 : 2;
   }
-  process::describe((*device)->capabilities(), page.description);
+  process::describe_device((*device)->capabilities(), page.description);
   if (!answers(process::kReady)) return 1;
-  process::serve(page, kLifeline, **device);
+  process::serve_device(page, kLifeline, **device);
   return 0;
 }

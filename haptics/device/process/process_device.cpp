@@ -16,9 +16,9 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/helper_process.h"
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
+#include "haptics/device/process/device_page.h"
 #include "haptics/device/process/force_table.h"
-#include "haptics/device/process/page.h"
 
 namespace catena::haptics {
 
@@ -37,12 +37,12 @@ Error cannot_start(const std::string& device, const std::string& why) {
 class SharedPage {
  public:
   static Result<SharedPage> make(const std::string& device) {
-    Descriptor file(::memfd_create("catena-device", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    FileDescriptor file(::memfd_create("catena-device", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!file || ::ftruncate(file.get(), sizeof(DevicePage)) != 0 ||
         ::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
-      return cannot_start(device, cause_of(errno));
+      return cannot_start(device, describe_errno(errno));
     void* const at = ::mmap(nullptr, sizeof(DevicePage), PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
-    if (at == MAP_FAILED) return cannot_start(device, cause_of(errno));
+    if (at == MAP_FAILED) return cannot_start(device, describe_errno(errno));
     return SharedPage(std::move(file), new (at) DevicePage{});
   }
   SharedPage(SharedPage&& other) noexcept : file_(std::move(other.file_)), page_(std::exchange(other.page_, nullptr)) {}
@@ -54,26 +54,26 @@ class SharedPage {
   int fd() const { return file_.get(); }
 
  private:
-  SharedPage(Descriptor file, DevicePage* page) : file_(std::move(file)), page_(page) {}
-  Descriptor file_;
+  SharedPage(FileDescriptor file, DevicePage* page) : file_(std::move(file)), page_(page) {}
+  FileDescriptor file_;
   DevicePage* page_;
 };
 
 class ProcessDevice final : public Device {
  public:
-  ProcessDevice(SharedPage memory, HelperProcess process, Descriptor lifeline, std::string table)
+  ProcessDevice(SharedPage memory, HelperProcess process, FileDescriptor lifeline, std::string table)
       : memory_(std::move(memory)),
         process_(std::move(process)),
         lifeline_(std::move(lifeline)),
         table_(std::move(table)),
         page_(*memory_) {
-    const process::Description& is = page_.description;
+    const process::DeviceDescription& is = page_.description;
     capabilities_.name = is.name;
     capabilities_.workspace_m = is.workspace_m;
-    capabilities_.workspace_centre_m = is.workspace_centre_m;
-    capabilities_.buttons = is.buttons;
+    capabilities_.workspace_center_m = is.workspace_center_m;
+    capabilities_.button_count = is.button_count;
     capabilities_.has_orientation = is.has_orientation;
-    capabilities_.vibrates = is.vibrates;
+    capabilities_.has_vibration = is.has_vibration;
     capabilities_.max_force_n = is.max_force_n;
     capabilities_.max_torque_nm = is.max_torque_nm;
     capabilities_.mechanics = is.mechanics;
@@ -87,8 +87,8 @@ class ProcessDevice final : public Device {
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
 
   DeviceInput read() noexcept override {
-    page_.poses.take();
-    const process::Pose& pose = page_.poses.front();
+    page_.poses.acquire();
+    const process::DevicePose& pose = page_.poses.front();
     DeviceInput input = pose.input;
     if (pose.written_ns == 0) {
       input.status = DeviceStatus::starting;
@@ -102,19 +102,19 @@ class ProcessDevice final : public Device {
     return input;
   }
 
-  void write(const DeviceOutput& output) noexcept override { page_.orders.publish({output, seen_takeovers_}); }
+  void write(const DeviceOutput& output) noexcept override { page_.commands.publish({output, seen_takeovers_}); }
   void stop() noexcept override { page_.stopped = 1; }
   void resume() noexcept override { page_.stopped = 0; }
-  bool at_rest() const noexcept override { return page_.at_rest != 0; }
+  bool zero_force_confirmed() const noexcept override { return page_.zero_force_confirmed != 0; }
 
-  Outcome files_written() const override {
+  Outcome check_output_files() const override {
     const int code = page_.table_error;
     return code == 0 ? Outcome(Done{}) : system_error(table_ + ": cannot write all rows", code);
   }
 
   std::string status_text() const override {
-    if (const Outcome whole = files_written(); !whole) return whole.error().message;
-    page_.status.take();
+    if (const Outcome whole = check_output_files(); !whole) return whole.error().message;
+    page_.status.acquire();
     const process::StatusText words = page_.status.front();
     return {words.text, ::strnlen(words.text, sizeof words.text)};
   }
@@ -122,7 +122,7 @@ class ProcessDevice final : public Device {
  private:
   SharedPage memory_;
   HelperProcess process_;
-  Descriptor lifeline_;
+  FileDescriptor lifeline_;
   std::string table_;
   DevicePage& page_;
   DeviceCapabilities capabilities_;
@@ -141,22 +141,22 @@ Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const
   CATENA_TRY(SharedPage memory, SharedPage::make(device));
   DevicePage& page = *memory;
   page.rate_hz = settings.rate_hz;
-  page.silence_ms = std::max<std::uint32_t>(50, static_cast<std::uint32_t>(4000 / settings.rate_hz));
+  page.silence_timeout_ms = std::max<std::uint32_t>(50, static_cast<std::uint32_t>(4000 / settings.rate_hz));
   page.force_gain = settings.force_gain;
   if (!fits(page.device, device) || !fits(page.firmware, settings.firmware))
     return Error{device + ": its name, or that of its firmware, is too long for a process of its own"};
-  CATENA_TRY(const Descriptor table, process::open_force_table(log));
+  CATENA_TRY(const FileDescriptor table, process::open_force_table(log));
   // a process that does not start writes nothing
   bool starts = false;
   const std::shared_ptr<void> tidy(nullptr, [&](void*) {
     if (!starts && !log.empty()) ::unlink(log.c_str());
   });
   int pair[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return cannot_start(device, cause_of(errno));
-  Descriptor ours(pair[0]);
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return cannot_start(device, describe_errno(errno));
+  FileDescriptor ours(pair[0]);
   std::optional<HelperProcess> process;
   {
-    const Descriptor theirs(pair[1]);
+    const FileDescriptor theirs(pair[1]);
     const int given[] = {memory.fd(), theirs.get(), table.get()};
     CATENA_TRY(HelperProcess started, HelperProcess::start(helper_path("catena-device"), given));
     process.emplace(std::move(started));
@@ -168,7 +168,7 @@ Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const
   char answer = 0;
   if (heard != 1 || ::read(ours.get(), &answer, 1) != 1) return cannot_start(device, "catena-device does not answer");
   if (answer != process::kReady)
-    return Error{std::string(page.problem, ::strnlen(page.problem, sizeof page.problem)), page.problem_of_machine};
+    return Error{std::string(page.error_text, ::strnlen(page.error_text, sizeof page.error_text)), page.is_machine_error};
   starts = true;
   return std::unique_ptr<Device>(std::make_unique<ProcessDevice>(std::move(memory), std::move(*process), std::move(ours), log));
 }

@@ -29,8 +29,8 @@ DeviceCapabilities Falcon::nominal_capabilities() {
   DeviceCapabilities c;
   c.name = "Novint Falcon";
   c.workspace_m = 0.06;
-  c.workspace_centre_m = kFalconWorkspaceCentre;
-  c.buttons = 4;
+  c.workspace_center_m = kFalconWorkspaceCenter;
+  c.button_count = 4;
   // Novint's data sheet: more than 2 lbf. All directions: 6.1 N at the centre, 4.5 N in the cube's corners; more is clamped
   c.max_force_n = 8.9;
   // Assumed, no identification at hand: mass and damping as in the stability table, little friction. The encoder step is
@@ -40,16 +40,16 @@ DeviceCapabilities Falcon::nominal_capabilities() {
 }
 
 Result<std::unique_ptr<Falcon>> Falcon::open(std::unique_ptr<TransportSource> source, FalconOptions options) {
-  CATENA_ASSERT(source && options.force_gain > 0 && options.lost_after > 0 && options.clock != nullptr);
-  std::unique_ptr<WatchdogMemory> memory;
+  CATENA_ASSERT(source && options.force_gain > 0 && options.lost_after_cycles > 0 && options.clock != nullptr);
+  std::unique_ptr<WatchdogSharedMemory> memory;
   if (options.watchdog) {
-    CATENA_TRY(memory, WatchdogMemory::make(kOutEndpoint, encode_command({})));
+    CATENA_TRY(memory, WatchdogSharedMemory::make(kOutEndpoint, encode_command({})));
   }
   CATENA_TRY(std::unique_ptr<Transport> transport, source->open());
   auto falcon = std::unique_ptr<Falcon>(new Falcon(std::move(source), std::move(options), std::move(transport), std::move(memory)));
   Ftdi ftdi(*falcon->transport_, falcon->counters_.ftdi);
   CATENA_CHECK(falcon_boot(ftdi, falcon->options_.firmware, falcon->options_.boot, &falcon->counters_.uploads));
-  falcon->pose_ = {.position_m = kFalconWorkspaceCentre, .state = FalconState::homing};
+  falcon->pose_ = {.position_m = kFalconWorkspaceCenter, .state = FalconState::homing};
   falcon->publish(falcon->pose_);
   CATENA_CHECK(falcon->start_watchdog());
   CATENA_TRY(falcon->thread_, start_thread("the Falcon", [device = falcon.get()] { device->run(); }));
@@ -57,7 +57,7 @@ Result<std::unique_ptr<Falcon>> Falcon::open(std::unique_ptr<TransportSource> so
 }
 
 Falcon::Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport,
-               std::unique_ptr<WatchdogMemory> memory)
+               std::unique_ptr<WatchdogSharedMemory> memory)
     : options_(std::move(options)), watchdog_memory_(std::move(memory)), source_(std::move(source)), transport_(std::move(transport)) {}
 
 Falcon::~Falcon() {
@@ -70,51 +70,51 @@ Falcon::~Falcon() {
 
 Outcome Falcon::start_watchdog() {
   if (!watchdog_memory_) return Done{};
-  watchdog::Page& page = watchdog_memory_->page();
-  page.pushing.store(0);
+  watchdog::SharedPage& page = watchdog_memory_->page();
+  page.force_active.store(0);
   page.holder.store(watchdog::Holder::program);
   watchdog_.reset();
   CATENA_TRY(watchdog_, options_.watchdog(*transport_, *watchdog_memory_));
-  until_look_ = kLookEvery;
+  cycles_until_check_ = kLookEvery;
   return Done{};
 }
 
 // ---- haptic thread ----
 
 DeviceInput Falcon::read() noexcept {
-  poses_.take();
+  poses_.acquire();
   const FalconPose& pose = poses_.front();
   const std::int64_t now_ns = options_.clock();
   DeviceInput input;
   input.position_m = pose.position_m;
   input.buttons = pose.buttons;
-  input.age_s = pose.taken_ns == 0 ? 0 : 1e-9 * static_cast<double>(now_ns - pose.taken_ns);
+  input.age_s = pose.sampled_ns == 0 ? 0 : 1e-9 * static_cast<double>(now_ns - pose.sampled_ns);
   // the I/O thread has taken the force away meanwhile: the servo must not go on where it was
-  const bool let_go = pushes_since_ns_ != 0 && 1e-9 * static_cast<double>(now_ns - pushes_since_ns_) >= options_.command_timeout_s;
+  const bool let_go = last_push_ns_ != 0 && 1e-9 * static_cast<double>(now_ns - last_push_ns_) >= options_.command_timeout_s;
   // so has the watchdog process
   const std::uint64_t takeovers = takeovers_.load(std::memory_order_acquire);
-  const bool taken = takeovers != seen_takeovers_;
-  seen_takeovers_ = takeovers;
+  const bool taken = takeovers != acknowledged_takeovers_;
+  acknowledged_takeovers_ = takeovers;
   input.forces_on = pose.state == FalconState::ready;
-  const bool homed = pose.state == FalconState::ready || pose.state == FalconState::waiting;
+  const bool homed = pose.state == FalconState::ready || pose.state == FalconState::arming;
   if (pose.state == FalconState::booting || pose.state == FalconState::homing)
     input.status = DeviceStatus::starting;
-  else if (!homed || !pose.good || let_go || taken || input.age_s > options_.lost_age_s)
+  else if (!homed || !pose.valid || let_go || taken || input.age_s > options_.max_pose_age_s)
     input.status = DeviceStatus::lost;
   return input;
 }
 
 void Falcon::write(const DeviceOutput& output) noexcept {
-  const Order order{is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock(), seen_takeovers_};
+  const ForceCommand order{is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock(), acknowledged_takeovers_};
   if (watchdog_memory_) watchdog_memory_->page().ticks.fetch_add(1, std::memory_order_release);
-  pushes_since_ns_ = max_abs(order.force_n) > 0 ? order.written_ns : 0;
-  orders_.publish(order);
+  last_push_ns_ = max_abs(order.force_n) > 0 ? order.written_ns : 0;
+  force_commands_.publish(order);
 }
 
 void Falcon::resume() noexcept {
   // what was written before the stop must not come back
-  pushes_since_ns_ = 0;
-  orders_.publish({Vec3(0.0), options_.clock(), seen_takeovers_});
+  last_push_ns_ = 0;
+  force_commands_.publish({Vec3(0.0), options_.clock(), acknowledged_takeovers_});
   stopped_.store(false);
 }
 
@@ -124,23 +124,24 @@ std::string Falcon::status_text() const {
   const std::uint8_t homed = homed_.load(std::memory_order_relaxed);
   switch (state()) {
     case FalconState::absent: {
-      const std::lock_guard lock(note_mutex_);
-      return note_.empty() ? "Falcon: lost; is it plugged in, and has it power?" : note_;
+      const std::lock_guard lock(problem_mutex_);
+      return problem_.empty() ? "Falcon: lost; is it plugged in, and has it power?" : problem_;
     }
     case FalconState::booting:
-      return boot_try_ == 0 ? std::string("Falcon: it is back, and starts")
-                            : fmt::format("Falcon: its firmware is being sent, try {}, {} %", boot_try_.load(), boot_percent_.load());
+      return boot_attempt_ == 0
+                 ? std::string("Falcon: it is back, and starts")
+                 : fmt::format("Falcon: its firmware is being sent, try {}, {} %", boot_attempt_.load(), boot_percent_.load());
     case FalconState::homing:
       return fmt::format("Falcon: pull the grip fully out, then push it in (homed: {} of 3 axes)",
                          (homed & 1) + ((homed >> 1) & 1) + ((homed >> 2) & 1));
-    case FalconState::waiting:
+    case FalconState::arming:
       return "Falcon: pull the grip fully out once; then its forces are on";
     case FalconState::ready:
       break;
   }
   if (unwatched_) {
-    const std::lock_guard lock(note_mutex_);
-    return "Falcon: its forces are off: " + note_;
+    const std::lock_guard lock(problem_mutex_);
+    return "Falcon: its forces are off: " + problem_;
   }
   return stopped_ ? "Falcon: its forces are stopped" : "";
 }
@@ -166,8 +167,8 @@ FalconStats Falcon::stats() const {
           .saturated = get(c.saturated),
           .stale_commands = get(c.stale_commands),
           .uploads = get(c.uploads),
-          .losses = get(c.losses),
-          .returns = get(c.returns),
+          .disconnects = get(c.disconnects),
+          .reconnects = get(c.reconnects),
           .takeovers = get(takeovers_),
           .watchdog_restarts = get(watchdog_restarts_),
           .realtime = realtime_.load(std::memory_order_relaxed)};
@@ -180,18 +181,18 @@ void Falcon::publish(const FalconPose& pose) noexcept {
   state_.store(pose.state, std::memory_order_relaxed);
 }
 
-void Falcon::note(const std::string& text) {
-  const std::lock_guard lock(note_mutex_);
-  note_ = text;
+void Falcon::set_problem(const std::string& text) {
+  const std::lock_guard lock(problem_mutex_);
+  problem_ = text;
 }
 
 // newest order into front(); false: none for too long
-bool Falcon::fresh_order() noexcept {
-  orders_.take();
-  const Order& order = orders_.front();
+bool Falcon::has_fresh_command() noexcept {
+  force_commands_.acquire();
+  const ForceCommand& order = force_commands_.front();
   const bool fresh = order.written_ns != 0 && 1e-9 * static_cast<double>(options_.clock() - order.written_ns) < options_.command_timeout_s;
-  if (was_fresh_ && !fresh) count(counters_.stale_commands);
-  was_fresh_ = fresh;
+  if (had_fresh_command_ && !fresh) increment(counters_.stale_commands);
+  had_fresh_command_ = fresh;
   return fresh;
 }
 
@@ -199,33 +200,34 @@ void Falcon::run() noexcept {
   realtime_ = take_realtime(options_.realtime_priority);
   while (!quit_) {
     if (transport_)
-      serve();
+      run_session();
     else
-      return_again();
+      wait_for_reconnect();
   }
 }
 
 // A packet out. One with a force that was held up on its way, by a stop of the program at this very place, is followed by a zero.
 bool Falcon::send(FalconSession& session, bool forces) noexcept {
-  watchdog::Page* page = watchdog_memory_ ? &watchdog_memory_->page() : nullptr;
+  watchdog::SharedPage* page = watchdog_memory_ ? &watchdog_memory_->page() : nullptr;
   if (page != nullptr) {
     page->cycles.fetch_add(1, std::memory_order_relaxed);
-    if (forces) page->pushing.store(1, std::memory_order_release);
+    if (forces) page->force_active.store(1, std::memory_order_release);
   }
   const std::int64_t began = options_.clock();
-  if (!session.send(orders_.front().force_n, forces)) return false;
+  if (!session.send(force_commands_.front().force_n, forces)) return false;
   const bool late = 1e-9 * static_cast<double>(options_.clock() - began) > options_.command_timeout_s;
-  if (forces && (late || (page != nullptr && page->holder.load(std::memory_order_acquire) == watchdog::Holder::watchdog))) session.let_go();
-  at_rest_.store(session.at_rest());
-  if (page != nullptr && session.at_rest()) page->pushing.store(0, std::memory_order_release);
+  if (forces && (late || (page != nullptr && page->holder.load(std::memory_order_acquire) == watchdog::Holder::watchdog)))
+    session.release_force();
+  zero_force_confirmed_.store(session.zero_force_confirmed());
+  if (page != nullptr && session.zero_force_confirmed()) page->force_active.store(0, std::memory_order_release);
   return true;
 }
 
 // The watchdog process has taken the force away: a zero from here, too, then the device is this program's again. What the device has
 // answered meanwhile is of a time that is over.
-bool Falcon::taken_away(FalconSession& session, Ftdi& ftdi) noexcept {
+bool Falcon::handle_takeover(FalconSession& session, Ftdi& ftdi) noexcept {
   if (!watchdog_memory_ || watchdog_memory_->page().holder.load(std::memory_order_acquire) == watchdog::Holder::program) return false;
-  session.let_go();
+  session.release_force();
   publish(session.pose());
   ftdi.purge_in();
   takeovers_.fetch_add(1, std::memory_order_release);
@@ -234,94 +236,95 @@ bool Falcon::taken_away(FalconSession& session, Ftdi& ftdi) noexcept {
 }
 
 // There is a watchdog, or none is wanted; one that has died is started again.
-bool Falcon::watched(FalconSession& session) noexcept {
+bool Falcon::ensure_watchdog(FalconSession& session) noexcept {
   if (!watchdog_memory_) return true;
-  if (--until_look_ > 0) return watchdog_ != nullptr;
-  until_look_ = kLookEvery;
-  if (watchdog_ && watchdog_->alive()) return true;
+  if (--cycles_until_check_ > 0) return watchdog_ != nullptr;
+  cycles_until_check_ = kLookEvery;
+  if (watchdog_ && watchdog_->is_alive()) return true;
   // starting one takes its time: not with a force on
-  session.let_go();
-  count(watchdog_restarts_);
+  session.release_force();
+  increment(watchdog_restarts_);
   const Outcome started = start_watchdog();
   if (!started) {
-    note(started.error().message);
-    until_look_ = kStartAgainEvery;
+    set_problem(started.error().message);
+    cycles_until_check_ = kStartAgainEvery;
   }
   unwatched_ = !started;
   return static_cast<bool>(started);
 }
 
 // until the device is lost, or the end
-void Falcon::serve() noexcept {
+void Falcon::run_session() noexcept {
   Ftdi ftdi(*transport_, counters_.ftdi);
   FalconSession session(ftdi, counters_, options_.force_gain, options_.clock, pose_.position_m);
   int silent = 0;
   auto cycle = FalconSession::Cycle::frame;
-  while (!quit_ && cycle != FalconSession::Cycle::gone && silent < options_.lost_after) {
-    const bool held = taken_away(session, ftdi), fresh = fresh_order();
-    at_rest_.store(false);
-    const bool forces = watched(session) && !held && fresh && !stopped_ && orders_.front().seen_takeovers == takeovers_;
-    cycle = send(session, forces) ? session.receive() : FalconSession::Cycle::gone;
+  while (!quit_ && cycle != FalconSession::Cycle::disconnected && silent < options_.lost_after_cycles) {
+    const bool held = handle_takeover(session, ftdi), fresh = has_fresh_command();
+    zero_force_confirmed_.store(false);
+    const bool forces =
+        ensure_watchdog(session) && !held && fresh && !stopped_ && force_commands_.front().acknowledged_takeovers == takeovers_;
+    cycle = send(session, forces) ? session.receive() : FalconSession::Cycle::disconnected;
     if (cycle == FalconSession::Cycle::frame) {
       silent = 0;
       homed_.store(session.homed(), std::memory_order_relaxed);
       publish(session.pose());
     } else if (++silent == kTuneAfter) {
       // setting up may take a second: not with a force on
-      session.let_go();
+      session.release_force();
       publish(session.pose());
-      count(counters_.ftdi.retries);
-      falcon_run_mode(ftdi);
+      increment(counters_.ftdi.retries);
+      enter_falcon_run_mode(ftdi);
     }
   }
-  session.leave();
-  at_rest_.store(session.at_rest() || cycle == FalconSession::Cycle::gone);
+  session.send_shutdown();
+  zero_force_confirmed_.store(session.zero_force_confirmed() || cycle == FalconSession::Cycle::disconnected);
   // a device that has not acknowledged its zero is left to the watchdog
-  if (watchdog_ && (session.at_rest() || cycle == FalconSession::Cycle::gone)) watchdog_->quit();
+  if (watchdog_ && (session.zero_force_confirmed() || cycle == FalconSession::Cycle::disconnected)) watchdog_->quit();
   watchdog_.reset();
   transport_.reset();
   if (quit_) return;
-  count(counters_.losses);
-  note("");
+  increment(counters_.disconnects);
+  set_problem("");
   pose_ = session.pose();
   pose_.state = FalconState::absent;
-  pose_.good = false;
+  pose_.valid = false;
   publish(pose_);
 }
 
 // waits for the device, opens it, starts its firmware: all that open() does, over and over
-void Falcon::return_again() noexcept {
+void Falcon::wait_for_reconnect() noexcept {
   bool arrived = false;
-  for (int waited = 0; waited < options_.return_poll_ms && !arrived && !quit_; waited += kSliceMs)
-    arrived = source_->wait_for_arrival(std::min(kSliceMs, options_.return_poll_ms - waited));
+  for (int waited = 0; waited < options_.reconnect_poll_ms && !arrived && !quit_; waited += kSliceMs)
+    arrived = source_->wait_for_arrival(std::min(kSliceMs, options_.reconnect_poll_ms - waited));
   if (quit_) return;
   auto opened = source_->open();
   if (!opened) {
-    note(opened.error().message);
+    set_problem(opened.error().message);
     return;
   }
   transport_ = std::move(*opened);
-  boot_try_ = 0;
+  boot_attempt_ = 0;
   pose_.state = FalconState::booting;
   publish(pose_);
   FalconBootOptions boot = options_.boot;
   boot.progress = [this](int attempt, double share) {
-    boot_try_ = attempt;
+    boot_attempt_ = attempt;
     boot_percent_ = static_cast<int>(100 * share);
     return true;
   };
-  boot.give_up = [this] { return quit_.load(); };
+  boot.should_abort = [this] { return quit_.load(); };
   Ftdi ftdi(*transport_, counters_.ftdi);
   Outcome booted = falcon_boot(ftdi, options_.firmware, boot, &counters_.uploads);
   if (booted) booted = start_watchdog();
   if (!booted) {
-    note(booted.error().message);
+    set_problem(booted.error().message);
     transport_.reset();
     pose_.state = FalconState::absent;
     publish(pose_);
     return;
   }
-  count(counters_.returns);
+  increment(counters_.reconnects);
   pose_.state = FalconState::homing;
   publish(pose_);
 }

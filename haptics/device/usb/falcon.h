@@ -7,7 +7,7 @@
 ///   watchdog: where one is given, a process of its own watches over the open device (watchdog_process.h) and takes the force away if
 ///          this program is stopped or killed, or this thread hangs. When it has, the force stays away until the haptic thread has
 ///          seen it: a read is `lost`, so that the force ramps in. Without its watchdog process the device gets no force
-///   lost:  silent for `lost_after` cycles, or unplugged; the thread then waits for the device to come back, starts its firmware
+///   lost:  silent for `lost_after_cycles` cycles, or unplugged; the thread then waits for the device to come back, starts its firmware
 ///          again, and homing and arming begin anew
 /// The destructor sends zero force with the LEDs off; it waits for at most some tenths of a second.
 #pragma once
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "engine/exchange/triple_buffer.h"
+#include "engine/base/triple_buffer.h"
 #include "haptics/device/device.h"
 #include "haptics/device/registry.h"
 #include "haptics/device/usb/falcon_boot.h"
@@ -35,11 +35,11 @@ struct FalconOptions {
   FalconBootOptions boot{};            ///< its `progress` is told only while open() works
   double force_gain = kFalconForceGain;
   double command_timeout_s = 0.02;
-  int lost_after = 10;      ///< cycles in a row without a frame
-  double lost_age_s = 0.1;  ///< a pose this old is `lost`, whatever the I/O thread does
-  int return_poll_ms = 500;
-  int realtime_priority = 0;  ///< of the I/O thread, SCHED_FIFO, if permitted; 0: none
-  StartWatchdog watchdog{};   ///< for each open device, once its firmware runs; empty: none
+  int lost_after_cycles = 10;   ///< cycles in a row without a frame
+  double max_pose_age_s = 0.1;  ///< a pose this old is `lost`, whatever the I/O thread does
+  int reconnect_poll_ms = 500;
+  int realtime_priority = 0;    ///< of the I/O thread, SCHED_FIFO, if permitted; 0: none
+  WatchdogLauncher watchdog{};  ///< for each open device, once its firmware runs; empty: none
   FalconSession::Clock clock = now_ns;
 };
 
@@ -50,7 +50,7 @@ struct FalconStats {
   std::uint64_t resyncs = 0, dropped_bytes = 0;  ///< of the open device
   std::uint64_t timeouts = 0, stalls = 0, retries = 0, errors = 0, line_errors = 0;
   /// frames that were not believed or are no place; cycles whose force was more than the motors have
-  std::uint64_t jumps = 0, out_of_reach = 0, saturated = 0, stale_commands = 0, uploads = 0, losses = 0, returns = 0;
+  std::uint64_t jumps = 0, out_of_reach = 0, saturated = 0, stale_commands = 0, uploads = 0, disconnects = 0, reconnects = 0;
   std::uint64_t takeovers = 0, watchdog_restarts = 0;  ///< the watchdog process took the force away; it had died
   bool realtime = false;
 };
@@ -69,7 +69,7 @@ class Falcon final : public Device {
   DeviceInput read() noexcept override;
   void write(const DeviceOutput& output) noexcept override;
   void stop() noexcept override { stopped_.store(true); }
-  bool at_rest() const noexcept override { return at_rest_.load(); }
+  bool zero_force_confirmed() const noexcept override { return zero_force_confirmed_.load(); }
   void resume() noexcept override;
 
   std::string status_text() const override;
@@ -77,54 +77,54 @@ class Falcon final : public Device {
   FalconStats stats() const;
 
  private:
-  struct Order {
+  struct ForceCommand {
     Vec3 force_n{0.0};
-    std::int64_t written_ns = 0;       ///< 0: never
-    std::uint64_t seen_takeovers = 0;  ///< by the haptic thread, when it was written
+    std::int64_t written_ns = 0;               ///< 0: never
+    std::uint64_t acknowledged_takeovers = 0;  ///< by the haptic thread, when it was written
   };
 
   Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport,
-         std::unique_ptr<WatchdogMemory> memory);
+         std::unique_ptr<WatchdogSharedMemory> memory);
   void run() noexcept;
-  void serve() noexcept;
-  void return_again() noexcept;
+  void run_session() noexcept;
+  void wait_for_reconnect() noexcept;
   void publish(const FalconPose& pose) noexcept;
-  void note(const std::string& text);
-  bool fresh_order() noexcept;
+  void set_problem(const std::string& text);
+  bool has_fresh_command() noexcept;
   Outcome start_watchdog();
-  bool watched(FalconSession& session) noexcept;
-  bool taken_away(FalconSession& session, Ftdi& ftdi) noexcept;
+  bool ensure_watchdog(FalconSession& session) noexcept;
+  bool handle_takeover(FalconSession& session, Ftdi& ftdi) noexcept;
   bool send(FalconSession& session, bool forces) noexcept;
 
   DeviceCapabilities capabilities_ = nominal_capabilities();
   FalconOptions options_;
   FalconCounters counters_;
-  exchange::TripleBuffer<FalconPose> poses_;
-  exchange::TripleBuffer<Order> orders_;
-  const std::unique_ptr<WatchdogMemory> watchdog_memory_;  ///< null: there is no watchdog
+  TripleBuffer<FalconPose> poses_;
+  TripleBuffer<ForceCommand> force_commands_;
+  const std::unique_ptr<WatchdogSharedMemory> watchdog_memory_;  ///< null: there is no watchdog
   std::atomic<std::uint64_t> takeovers_{0}, watchdog_restarts_{0};
   std::atomic<bool> unwatched_{false};
   std::atomic<bool> stopped_{false}, quit_{false}, realtime_{false};
-  std::atomic<bool> at_rest_{true};  ///< cleared before stopped_ is read: who stops and then finds it set waits for nothing
+  std::atomic<bool> zero_force_confirmed_{true};  ///< cleared before stopped_ is read: who stops and then finds it set waits for nothing
   std::atomic<FalconState> state_{FalconState::booting};
-  std::atomic<int> boot_try_{0}, boot_percent_{0};
+  std::atomic<int> boot_attempt_{0}, boot_percent_{0};
   std::atomic<std::uint8_t> homed_{0};
 
-  mutable std::mutex note_mutex_;  ///< frame and I/O thread only
-  std::string note_;               ///< why the device is not there
+  mutable std::mutex problem_mutex_;  ///< frame and I/O thread only
+  std::string problem_;               ///< why the device is not there
 
   // I/O thread only
   std::unique_ptr<TransportSource> source_;
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<ExternalWatchdog> watchdog_;  ///< after transport_: told to end before it closes
-  int until_look_ = 0;                          ///< cycles until the next look whether it lives
+  int cycles_until_check_ = 0;                  ///< cycles until the next look whether it lives
   FalconPose pose_;
-  bool was_fresh_ = false;
+  bool had_fresh_command_ = false;
   std::thread thread_;
 
   // haptic thread only
-  std::int64_t pushes_since_ns_ = 0;  ///< the last write, if it was a force; 0: it was none
-  std::uint64_t seen_takeovers_ = 0;
+  std::int64_t last_push_ns_ = 0;  ///< the last write, if it was a force; 0: it was none
+  std::uint64_t acknowledged_takeovers_ = 0;
 };
 
 /// The Falcon for the registry: which are on the bus, and how one is opened by its number. Off the tick.
@@ -133,7 +133,7 @@ class Falcon final : public Device {
 void list_falcons(std::vector<DeviceInfo>& to);
 
 /// Tells the share of an upload, ten lines a try; for FalconBootOptions::progress.
-std::function<bool(int attempt, double share)> boot_progress_lines(std::function<void(const std::string&)> tell);
+std::function<bool(int attempt, double share)> make_boot_progress_reporter(std::function<void(const std::string&)> tell);
 
 /// `detail`: empty or "0" for the first one, "1" for the second.
 Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const DeviceSettings& settings);

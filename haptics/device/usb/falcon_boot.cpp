@@ -63,7 +63,7 @@ Result<std::vector<std::uint8_t>> read_falcon_image(const std::string& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > kFalconImageMaxBytes)
     return error_at(path, kFalconImageMaxBytes, fmt::format("too long, {} bytes; at most {} were expected", size, kFalconImageMaxBytes));
-  CATENA_TRY(const std::string text, read_text(path, "a Falcon firmware image"));
+  CATENA_TRY(const std::string text, read_text_file(path, "a Falcon firmware image"));
   std::vector<std::uint8_t> image(text.begin(), text.end());
   CATENA_CHECK(check_falcon_image(image, path));
   return image;
@@ -76,7 +76,7 @@ constexpr int kProbeReads = 10, kProbeReadMs = 20;
 constexpr int kHandshakeReads = 4, kEchoIdleReads = 20;  // an idle device sends a packet each 16 ms
 
 Error unplugged(UsbError error) {
-  return Error{fmt::format("Falcon: {} while its firmware was being started; plug it in again", usb_error_text(error))};
+  return Error{fmt::format("Falcon: {} while its firmware was being started; plug it in again", to_string(error))};
 }
 
 struct Step {
@@ -86,10 +86,10 @@ struct Step {
   std::string what{};  ///< why not
 };
 Step failed(std::string what) { return {.what = std::move(what)}; }
-Step failed(UsbError error, std::string_view where) { return {.error = error, .what = fmt::format("{} {}", usb_error_text(error), where)}; }
+Step failed(UsbError error, std::string_view where) { return {.error = error, .what = fmt::format("{} {}", to_string(error), where)}; }
 
 Step cancelled() { return {.cancelled = true, .what = "given up"}; }
-bool given_up(const FalconBootOptions& options) { return options.give_up && options.give_up(); }
+bool given_up(const FalconBootOptions& options) { return options.should_abort && options.should_abort(); }
 
 #define CATENA_USB(call, where) \
   if (const UsbError usb_error = (call); usb_error != UsbError::none) return failed(usb_error, where)
@@ -97,37 +97,37 @@ bool given_up(const FalconBootOptions& options) { return options.give_up && opti
 // (1)-(2): the boot loader answers
 Step shake_hands(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.purge(), "at the boot mode");
-  CATENA_USB(ftdi.latency_ms(16), "at the boot mode");
-  CATENA_USB(ftdi.baud(FtdiBaud::boot_9600), "at the boot mode");
-  CATENA_USB(ftdi.eight_n_one(), "at the boot mode");
-  CATENA_USB(ftdi.no_flow_control(), "at the boot mode");
+  CATENA_USB(ftdi.set_latency_ms(16), "at the boot mode");
+  CATENA_USB(ftdi.set_baud(FtdiBaud::boot_9600), "at the boot mode");
+  CATENA_USB(ftdi.set_8n1(), "at the boot mode");
+  CATENA_USB(ftdi.disable_flow_control(), "at the boot mode");
   CATENA_USB(ftdi.rts_low(), "at the boot mode");
   CATENA_USB(ftdi.dtr_low(), "at the boot mode");
   CATENA_USB(ftdi.dtr_high(), "at the boot mode");
   constexpr std::uint8_t kHello[] = {0x0A, 0x43, 0x0D};
   constexpr std::uint8_t kAnswer[] = {0x0A, 0x44, 0x2C, 0x0D};  // some systems put a 0 before it
   std::size_t matched = 0;
-  for (int attempt = 0; attempt < options.handshake_tries; ++attempt) {
+  for (int attempt = 0; attempt < options.max_handshakes; ++attempt) {
     UsbError error = ftdi.write(kHello, kBootWriteMs);
-    if (error == UsbError::gone) return failed(error, "at the hand shake");
+    if (error == UsbError::disconnected) return failed(error, "at the hand shake");
     for (int i = 0; i < kHandshakeReads && error == UsbError::none; ++i) {
       if (given_up(options)) return cancelled();
       std::span<const std::uint8_t> payload;
       error = ftdi.read(payload, kBootReadMs);
-      if (error == UsbError::gone) return failed(error, "at the hand shake");
+      if (error == UsbError::disconnected) return failed(error, "at the hand shake");
       for (const std::uint8_t byte : payload) {
         matched = byte == kAnswer[matched] ? matched + 1 : (byte == kAnswer[0] ? 1 : 0);
         if (matched == std::size(kAnswer)) return {.done = true};
       }
     }
   }
-  return failed(fmt::format("the boot loader did not answer {} hand shakes", options.handshake_tries));
+  return failed(fmt::format("the boot loader did not answer {} hand shakes", options.max_handshakes));
 }
 
 // (3): the loader listens for an image
 Step ready_for_image(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.dtr_low(), "before the image");
-  CATENA_USB(ftdi.baud(FtdiBaud::image_140000), "before the image");
+  CATENA_USB(ftdi.set_baud(FtdiBaud::image_140000), "before the image");
   constexpr std::uint8_t kAsk[] = {0x41};
   CATENA_USB(ftdi.write(kAsk, kBootWriteMs), "before the image");
   for (int idle = 0; idle < kEchoIdleReads; ++idle) {
@@ -170,19 +170,19 @@ Step send_image(Ftdi& ftdi, std::span<const std::uint8_t> image, int attempt, co
 
 // firmware answers an I/O packet by a frame; a boot loader that echoes it does not run
 Step look(Ftdi& ftdi, const FalconBootOptions& options) {
-  CATENA_USB(falcon_run_mode(ftdi), "at the run mode");
+  CATENA_USB(enter_falcon_run_mode(ftdi), "at the run mode");
   // all three LEDs: as a frame it would be three buttons at once, so that an echo is told from an answer
   const FalconPacket ask = encode_command({.control = kFalconRed | kFalconGreen | kFalconBlue});
   FalconFramer framer;
   UsbError last = UsbError::none;
-  for (int attempt = 0; attempt < options.probe_tries; ++attempt) {
+  for (int attempt = 0; attempt < options.max_probe_packets; ++attempt) {
     last = ftdi.write(ask, kProbeReadMs);
-    if (last == UsbError::gone) return failed(last, "at the first packets");
+    if (last == UsbError::disconnected) return failed(last, "at the first packets");
     for (int i = 0; i < kProbeReads && last == UsbError::none; ++i) {
       if (given_up(options)) return cancelled();
       std::span<const std::uint8_t> payload;
       last = ftdi.read(payload, kProbeReadMs);
-      if (last == UsbError::gone) return failed(last, "at the first packets");
+      if (last == UsbError::disconnected) return failed(last, "at the first packets");
       for (const std::uint8_t byte : payload) {
         FalconFrame frame;
         if (!framer.push(byte, frame)) continue;
@@ -196,10 +196,10 @@ Step look(Ftdi& ftdi, const FalconBootOptions& options) {
 
 }  // namespace
 
-UsbError falcon_run_mode(Ftdi& ftdi) noexcept {
+UsbError enter_falcon_run_mode(Ftdi& ftdi) noexcept {
   UsbError error = ftdi.purge();
-  if (error == UsbError::none) error = ftdi.latency_ms(1);
-  if (error == UsbError::none) error = ftdi.baud(FtdiBaud::run_1500000);
+  if (error == UsbError::none) error = ftdi.set_latency_ms(1);
+  if (error == UsbError::none) error = ftdi.set_baud(FtdiBaud::run_1500000);
   if (error == UsbError::none) error = ftdi.purge();
   return error;
 }
@@ -207,7 +207,7 @@ UsbError falcon_run_mode(Ftdi& ftdi) noexcept {
 Result<bool> falcon_is_running(Ftdi& ftdi, const FalconBootOptions& options) {
   const Step step = look(ftdi, options);
   if (step.cancelled) return Error{"Falcon: given up while it was looked at"};
-  if (!step.done && step.error == UsbError::gone) return unplugged(step.error);
+  if (!step.done && step.error == UsbError::disconnected) return unplugged(step.error);
   return step.done;
 }
 
@@ -221,8 +221,8 @@ Outcome falcon_boot(Ftdi& ftdi, std::span<const std::uint8_t> image, const Falco
         "vendor's image (a TI C2000 boot stream, part of Novint's driver package), which Catena may not ship"};
   Step step;
   int silent = 0;
-  for (int attempt = 1; attempt <= options.tries; ++attempt) {
-    if (uploads != nullptr) count(*uploads);
+  for (int attempt = 1; attempt <= options.max_attempts; ++attempt) {
+    if (uploads != nullptr) increment(*uploads);
     if (options.progress && !options.progress(attempt, 0)) return Error{"Falcon: given up before its firmware was sent"};
     step = shake_hands(ftdi, options);
     silent = step.done ? 0 : silent + 1;
@@ -231,14 +231,14 @@ Outcome falcon_boot(Ftdi& ftdi, std::span<const std::uint8_t> image, const Falco
     if (step.done) step = look(ftdi, options);
     if (step.done) return Done{};
     if (step.cancelled) return Error{"Falcon: given up while its firmware was being sent"};
-    if (step.error == UsbError::gone) return unplugged(step.error);
+    if (step.error == UsbError::disconnected) return unplugged(step.error);
     // twice a hundred hand shakes without an answer: nobody is there
     if (silent == 2) return Error{fmt::format("Falcon: {}; unplug it, power and USB, wait a moment, and plug it in again", step.what)};
   }
   return Error{
       fmt::format("Falcon: its firmware could not be sent in {} tries, at last because: {}; another USB port, or the right image for this "
                   "device, may help",
-                  options.tries, step.what)};
+                  options.max_attempts, step.what)};
 }
 
 }  // namespace catena::haptics::usb

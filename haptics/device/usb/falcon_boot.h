@@ -33,17 +33,17 @@ Result<std::vector<std::uint8_t>> read_falcon_image(const std::string& path);
 /// image in 62-byte chunks (the device echoes every byte; compared), start it, look again. Uploads fail at first in practice:
 /// up to 10 tries. Waiting is bounded by counts of packets and time-outs, not by a clock. I/O thread, or before it starts.
 struct FalconBootOptions {
-  int tries = 10;             ///< of the whole upload
-  int handshake_tries = 100;  ///< of each
-  int probe_tries = 12;       ///< I/O packets that ask for running firmware
+  int max_attempts = 10;       ///< of the whole upload
+  int max_handshakes = 100;    ///< of each
+  int max_probe_packets = 12;  ///< I/O packets that ask for running firmware
   /// Told now and then: what is being done, and the share of the image that is sent. False: give up.
   std::function<bool(int attempt, double share)> progress;
   /// Asked before every packet; true: give up at once.
-  std::function<bool()> give_up;
+  std::function<bool()> should_abort;
 };
 
 /// Purge; latency 1 ms; 1.5 Mbaud; purge.
-UsbError falcon_run_mode(Ftdi& ftdi) noexcept;
+UsbError enter_falcon_run_mode(Ftdi& ftdi) noexcept;
 
 /// Does firmware answer? The error: unplugged, or the bus itself fails.
 Result<bool> falcon_is_running(Ftdi& ftdi, const FalconBootOptions& options = {});

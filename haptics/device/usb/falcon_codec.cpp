@@ -74,30 +74,30 @@ bool decode_frame(std::span<const std::uint8_t, kFalconPacketBytes> bytes, Falco
 }
 
 bool FalconFramer::push(std::uint8_t byte, FalconFrame& frame) noexcept {
-  if (fits(held_, byte)) {
-    bytes_[held_++] = byte;
-    if (held_ < kFalconPacketBytes) return false;
-    held_ = 0;
+  if (fits(buffered_, byte)) {
+    bytes_[buffered_++] = byte;
+    if (buffered_ < kFalconPacketBytes) return false;
+    buffered_ = 0;
     return decode_frame(bytes_, frame);
   }
   // outside a frame: wait for its first byte
-  if (held_ == 0) {
+  if (buffered_ == 0) {
     ++dropped_bytes_;
     return false;
   }
   // inside: only byte 14 can hide the start of another one, and then `byte` is its second
   ++resyncs_;
-  const bool restart = held_ == 15 && bytes_[14] == kFirst;
-  dropped_bytes_ += restart ? 14 : held_;
-  held_ = 0;
-  if (restart) bytes_[held_++] = kFirst;
-  if (fits(held_, byte)) {
-    bytes_[held_++] = byte;
+  const bool restart = buffered_ == 15 && bytes_[14] == kFirst;
+  dropped_bytes_ += restart ? 14 : buffered_;
+  buffered_ = 0;
+  if (restart) bytes_[buffered_++] = kFirst;
+  if (fits(buffered_, byte)) {
+    bytes_[buffered_++] = byte;
   } else {
-    dropped_bytes_ += held_ + 1;
-    held_ = 0;
+    dropped_bytes_ += buffered_ + 1;
+    buffered_ = 0;
     if (byte == kFirst) {
-      bytes_[held_++] = byte;
+      bytes_[buffered_++] = byte;
       --dropped_bytes_;
     }
   }

@@ -19,7 +19,7 @@ using FalconCounts = std::array<std::int16_t, 3>;
 enum FalconControl : std::uint8_t { kFalconHoming = 0x01, kFalconGreen = 0x02, kFalconBlue = 0x04, kFalconRed = 0x08 };
 
 /// Bits of FalconFrame::buttons.
-enum FalconButton : std::uint8_t { kFalconPlus = 1, kFalconForward = 2, kFalconCentre = 4, kFalconMinus = 8 };
+enum FalconButton : std::uint8_t { kFalconPlus = 1, kFalconForward = 2, kFalconCenter = 4, kFalconMinus = 8 };
 
 struct FalconCommand {
   FalconCounts motors{};     ///< +-4095 is full torque
@@ -52,14 +52,14 @@ class FalconFramer {
   /// All of `bytes`; how many frames they completed, the newest in `frame`.
   int push(std::span<const std::uint8_t> bytes, FalconFrame& frame) noexcept;
   /// Forgets a frame begun.
-  void reset() noexcept { held_ = 0; }
+  void reset() noexcept { buffered_ = 0; }
 
   std::uint64_t dropped_bytes() const { return dropped_bytes_; }  ///< that were part of no frame
   std::uint64_t resyncs() const { return resyncs_; }              ///< how often a frame begun came to nothing
 
  private:
   FalconPacket bytes_{};
-  std::size_t held_ = 0;
+  std::size_t buffered_ = 0;
   std::uint64_t dropped_bytes_ = 0, resyncs_ = 0;
 };
 

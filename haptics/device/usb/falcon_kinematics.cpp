@@ -44,7 +44,7 @@ Vec3 falcon_angles(const FalconCounts& encoders) noexcept {
 
 Vec3 falcon_encoders(const Vec3& angles) noexcept { return (angles - Vec3(kAngleAtZero)) / kAnglePerCount; }
 
-bool falcon_inverse(const Vec3& position_m, Vec3& angles) noexcept {
+bool falcon_inverse_kinematics(const Vec3& position_m, Vec3& angles) noexcept {
   Vec3 found;
   for (int i = 0; i < 3; ++i) {
     const InLeg q = in_leg(kLegs[static_cast<std::size_t>(i)], position_m);
@@ -95,7 +95,7 @@ bool newton(const Vec3& angles, double within, Vec3& p, Vec3& at) noexcept {
     Vec3 move = jacobian * (angles - at), next_at;
     bool nearer = false;
     for (int halves = 0; halves < kHalves && !nearer; ++halves, move *= 0.5) {
-      nearer = falcon_inverse(p + move, next_at) && max_abs(angles - next_at) < left;
+      nearer = falcon_inverse_kinematics(p + move, next_at) && max_abs(angles - next_at) < left;
       if (nearer) p += move;
     }
     if (!nearer) return false;
@@ -107,10 +107,10 @@ bool newton(const Vec3& angles, double within, Vec3& p, Vec3& at) noexcept {
 
 }  // namespace
 
-bool falcon_forward(const Vec3& angles, Vec3& position_m) noexcept {
+bool falcon_forward_kinematics(const Vec3& angles, Vec3& position_m) noexcept {
   if (!is_finite(angles)) return false;
   Vec3 start_angles;
-  if (!falcon_inverse(kStart, start_angles)) return false;
+  if (!falcon_inverse_kinematics(kStart, start_angles)) return false;
   Vec3 p = kStart, at = start_angles;
   bool found = newton(angles, kConverged, p, at);
   // at the rim: along the straight way of the angles, so that Newton keeps to the branch of the mechanism

@@ -28,10 +28,10 @@ Vec3 falcon_angles(const Vec3& encoders) noexcept;
 Vec3 falcon_encoders(const Vec3& angles) noexcept;
 
 /// False: out of reach (or not finite); `angles` is untouched.
-bool falcon_inverse(const Vec3& position_m, Vec3& angles) noexcept;
+bool falcon_inverse_kinematics(const Vec3& position_m, Vec3& angles) noexcept;
 
 /// False: no such place within reach; `position_m` is untouched. Bounded.
-bool falcon_forward(const Vec3& angles, Vec3& position_m) noexcept;
+bool falcon_forward_kinematics(const Vec3& angles, Vec3& position_m) noexcept;
 
 /// dp / d theta in metres per radian, a column an axis. False: out of reach or singular.
 bool falcon_jacobian(const Vec3& position_m, const Vec3& angles, Mat3& metres_per_rad) noexcept;

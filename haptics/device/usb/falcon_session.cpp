@@ -11,17 +11,17 @@ constexpr int kJumpCounts = 1000;  // 38 mm between two frames
 
 }  // namespace
 
-FalconCommand FalconSession::command(const Vec3& force_n, bool forces) noexcept {
+FalconCommand FalconSession::make_command(const Vec3& force_n, bool forces) noexcept {
   switch (pose_.state) {
     case FalconState::ready: {
       FalconCommand out{.control = forces ? kFalconGreen : kFalconBlue};
-      if (!forces || !pose_.good) return out;
-      const Vec3 torque_nm = falcon_torque(metres_per_rad_, force_n);
-      if (max_abs(torque_nm) * force_gain_ > kFalconFullTorque) count(counters_.saturated);
+      if (!forces || !pose_.valid) return out;
+      const Vec3 torque_nm = falcon_torque(meters_per_rad_, force_n);
+      if (max_abs(torque_nm) * force_gain_ > kFalconFullTorque) increment(counters_.saturated);
       out.motors = falcon_motor_counts(torque_nm, force_gain_);
       return out;
     }
-    case FalconState::waiting:
+    case FalconState::arming:
       return {.control = kFalconBlue};
     default:
       return {.control = static_cast<std::uint8_t>(kFalconHoming | kFalconRed)};
@@ -29,11 +29,11 @@ FalconCommand FalconSession::command(const Vec3& force_n, bool forces) noexcept 
 }
 
 bool FalconSession::send(const Vec3& force_n, bool forces) noexcept {
-  count(counters_.cycles);
-  sent_ = command(force_n, forces);
+  increment(counters_.cycles);
+  sent_ = make_command(force_n, forces);
   const UsbError error = ftdi_.write(encode_command(sent_), kWriteMs);
   acknowledged_ = error == UsbError::none;
-  return error != UsbError::gone;
+  return error != UsbError::disconnected;
 }
 
 FalconSession::Cycle FalconSession::receive() noexcept {
@@ -44,71 +44,71 @@ FalconSession::Cycle FalconSession::receive() noexcept {
     std::span<const std::uint8_t> payload;
     const UsbError error = ftdi_.read(payload, kReadMs);
     frames = framer_.push(payload, frame);
-    if (error == UsbError::gone) return Cycle::gone;
+    if (error == UsbError::disconnected) return Cycle::disconnected;
     if (error != UsbError::none) break;
   }
   counters_.resyncs.store(framer_.resyncs(), std::memory_order_relaxed);
   counters_.dropped_bytes.store(framer_.dropped_bytes(), std::memory_order_relaxed);
   if (frames == 0) {
-    count(counters_.bad_cycles);
+    increment(counters_.bad_cycles);
     return Cycle::no_frame;
   }
-  count(counters_.frames, static_cast<std::uint64_t>(frames));
-  take(frame);
+  increment(counters_.frames, static_cast<std::uint64_t>(frames));
+  handle_frame(frame);
   return Cycle::frame;
 }
 
-void FalconSession::leave() noexcept {
+void FalconSession::send_shutdown() noexcept {
   sent_ = {};
   UsbError error = UsbError::timeout;
-  for (int i = 0; i < kLeaveTries && error != UsbError::none && error != UsbError::gone; ++i)
+  for (int i = 0; i < kLeaveTries && error != UsbError::none && error != UsbError::disconnected; ++i)
     error = ftdi_.write(encode_command(sent_), kWriteMs);
   acknowledged_ = error == UsbError::none;
 }
 
-void FalconSession::let_go() noexcept {
-  pose_.good = false;
-  leave();
+void FalconSession::release_force() noexcept {
+  pose_.valid = false;
+  send_shutdown();
 }
 
 // compared with the last frame that was seen, believed or not
-bool FalconSession::believed(const FalconFrame& frame) noexcept {
-  bool near = has_seen_;
-  for (std::size_t axis = 0; axis < 3; ++axis) near = near && std::abs(frame.encoders[axis] - last_seen_[axis]) <= kJumpCounts;
-  last_seen_ = frame.encoders;
-  has_seen_ = true;
+bool FalconSession::is_plausible(const FalconFrame& frame) noexcept {
+  bool near = has_encoders_;
+  for (std::size_t axis = 0; axis < 3; ++axis) near = near && std::abs(frame.encoders[axis] - last_encoders_[axis]) <= kJumpCounts;
+  last_encoders_ = frame.encoders;
+  has_encoders_ = true;
   return near;
 }
 
-void FalconSession::take(const FalconFrame& frame) noexcept {
-  const bool near = believed(frame);
-  pose_.taken_ns = clock_();
+void FalconSession::handle_frame(const FalconFrame& frame) noexcept {
+  const bool near = is_plausible(frame);
+  pose_.sampled_ns = clock_();
   pose_.encoders = frame.encoders;
   pose_.buttons = frame.buttons;
-  pose_.good = false;
+  pose_.valid = false;
   homed_ = frame.homed;
   homed_run_ = frame.all_homed() ? std::min(homed_run_ + 1, kFramesToBelieve) : 0;
   unhomed_run_ = frame.all_homed() ? 0 : std::min(unhomed_run_ + 1, kFramesToBelieve);
 
-  if (state_ == FalconState::homing && homed_run_ == kFramesToBelieve) state_ = FalconState::waiting;
+  if (state_ == FalconState::homing && homed_run_ == kFramesToBelieve) state_ = FalconState::arming;
   if (state_ != FalconState::homing && unhomed_run_ == kFramesToBelieve) state_ = FalconState::homing;
   pose_.state = frame.all_homed() ? state_ : FalconState::homing;
   if (pose_.state == FalconState::homing) return;
   if (near)
-    locate(frame);
+    update_position(frame);
   else
-    count(counters_.jumps);
-  if (state_ == FalconState::waiting && pose_.good && pose_.position_m.z > kFalconArmingZ) pose_.state = state_ = FalconState::ready;
+    increment(counters_.jumps);
+  if (state_ == FalconState::arming && pose_.valid && pose_.position_m.z > kFalconArmingZ) pose_.state = state_ = FalconState::ready;
 }
 
-void FalconSession::locate(const FalconFrame& frame) noexcept {
+void FalconSession::update_position(const FalconFrame& frame) noexcept {
   const Vec3 angles = falcon_angles(frame.encoders);
   Vec3 position_m;
-  pose_.good = falcon_forward(angles, position_m) && falcon_jacobian(position_m, angles, metres_per_rad_);
-  if (pose_.good)
+  pose_.valid = falcon_forward_kinematics(angles, position_m) && falcon_jacobian(position_m, angles, meters_per_rad_);
+  if (pose_.valid)
     pose_.position_m = position_m;
   else
-    count(counters_.out_of_reach);
+    increment(counters_.out_of_reach);
 }
 
 }  // namespace catena::haptics::usb

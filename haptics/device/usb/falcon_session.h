@@ -13,7 +13,7 @@
 
 namespace catena::haptics::usb {
 
-enum class FalconState : std::uint8_t { absent, booting, homing, waiting, ready };
+enum class FalconState : std::uint8_t { absent, booting, homing, arming, ready };
 
 /// What the I/O thread tells the haptic thread.
 struct FalconPose {
@@ -21,53 +21,53 @@ struct FalconPose {
   FalconCounts encoders{};
   std::uint32_t buttons = 0;
   FalconState state = FalconState::booting;
-  bool good = false;  ///< position_m is of this frame
-  std::int64_t taken_ns = 0;
+  bool valid = false;  ///< position_m is of this frame
+  std::int64_t sampled_ns = 0;
 };
 
-/// Written by the I/O thread, read by any.
+/// ImageWriteResult by the I/O thread, read by any.
 struct FalconCounters {
   FtdiCounters ftdi;
   std::atomic<std::uint64_t> cycles{0}, frames{0}, bad_cycles{0}, resyncs{0}, dropped_bytes{0};
-  std::atomic<std::uint64_t> jumps{0}, out_of_reach{0}, saturated{0}, stale_commands{0}, uploads{0}, losses{0}, returns{0};
+  std::atomic<std::uint64_t> jumps{0}, out_of_reach{0}, saturated{0}, stale_commands{0}, uploads{0}, disconnects{0}, reconnects{0};
 };
 
-inline constexpr Vec3 kFalconWorkspaceCentre{0, 0, 0.125};  ///< of the comfortable workspace, metres
+inline constexpr Vec3 kFalconWorkspaceCenter{0, 0, 0.125};  ///< of the comfortable workspace, metres
 inline constexpr double kFalconArmingZ = 0.170;             ///< metres
 
 class FalconSession {
  public:
   using Clock = std::int64_t (*)();
 
-  /// `last_m`: the position to hold until there is one.
-  FalconSession(Ftdi& ftdi, FalconCounters& counters, double force_gain, Clock clock, const Vec3& last_m = kFalconWorkspaceCentre)
+  /// `last_position_m`: the position to hold until there is one.
+  FalconSession(Ftdi& ftdi, FalconCounters& counters, double force_gain, Clock clock, const Vec3& last_m = kFalconWorkspaceCenter)
       : ftdi_(ftdi),
         counters_(counters),
         force_gain_(force_gain),
         clock_(clock),
         pose_{.position_m = last_m, .state = FalconState::homing} {}
 
-  enum class Cycle : std::uint8_t { frame, no_frame, gone };
+  enum class Cycle : std::uint8_t { frame, no_frame, disconnected };
   /// One packet each way. `force_n` counts only where `forces` and the state allow it.
-  Cycle cycle(const Vec3& force_n, bool forces) noexcept { return send(force_n, forces) ? receive() : Cycle::gone; }
+  Cycle cycle(const Vec3& force_n, bool forces) noexcept { return send(force_n, forces) ? receive() : Cycle::disconnected; }
   /// The two halves. False: the device is gone.
   bool send(const Vec3& force_n, bool forces) noexcept;
   Cycle receive() noexcept;
   /// Zero force, all LEDs off; the last packet before closing. A time-out is tried again.
-  void leave() noexcept;
+  void send_shutdown() noexcept;
   /// Zero force until the next good frame: after cycles without one.
-  void let_go() noexcept;
+  void release_force() noexcept;
 
   const FalconPose& pose() const { return pose_; }
   std::uint8_t homed() const { return homed_; }  ///< bits 0-2, of the last frame
   /// The last packet was a zero, and the device has it.
-  bool at_rest() const { return acknowledged_ && sent_.motors == FalconCounts{}; }
+  bool zero_force_confirmed() const { return acknowledged_ && sent_.motors == FalconCounts{}; }
 
  private:
-  FalconCommand command(const Vec3& force_n, bool forces) noexcept;
-  void take(const FalconFrame& frame) noexcept;
-  bool believed(const FalconFrame& frame) noexcept;
-  void locate(const FalconFrame& frame) noexcept;
+  FalconCommand make_command(const Vec3& force_n, bool forces) noexcept;
+  void handle_frame(const FalconFrame& frame) noexcept;
+  bool is_plausible(const FalconFrame& frame) noexcept;
+  void update_position(const FalconFrame& frame) noexcept;
 
   Ftdi& ftdi_;
   FalconCounters& counters_;
@@ -78,11 +78,11 @@ class FalconSession {
   FalconState state_ = FalconState::homing;
   FalconCommand sent_;
   bool acknowledged_ = false;
-  FalconCounts last_seen_{};
-  bool has_seen_ = false;
+  FalconCounts last_encoders_{};
+  bool has_encoders_ = false;
   std::uint8_t homed_ = 0;
   int homed_run_ = 0, unhomed_run_ = 0;  ///< frames in a row
-  Mat3 metres_per_rad_{0.0};
+  Mat3 meters_per_rad_{0.0};
 };
 
 }  // namespace catena::haptics::usb

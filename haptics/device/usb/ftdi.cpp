@@ -2,7 +2,7 @@
 
 namespace catena::haptics::usb {
 
-const char* usb_error_text(UsbError error) {
+const char* to_string(UsbError error) {
   switch (error) {
     case UsbError::none:
       return "no error";
@@ -10,7 +10,7 @@ const char* usb_error_text(UsbError error) {
       return "no answer in time";
     case UsbError::stall:
       return "the endpoint is stalled";
-    case UsbError::gone:
+    case UsbError::disconnected:
       return "unplugged";
     case UsbError::other:
       break;
@@ -18,19 +18,19 @@ const char* usb_error_text(UsbError error) {
   return "a USB transfer failed";
 }
 
-UsbError Ftdi::note(UsbError error) noexcept {
-  if (error == UsbError::timeout) count(counters_.timeouts);
-  if (error == UsbError::stall) count(counters_.stalls);
-  if (error == UsbError::other) count(counters_.errors);
+UsbError Ftdi::record_error(UsbError error) noexcept {
+  if (error == UsbError::timeout) increment(counters_.timeouts);
+  if (error == UsbError::stall) increment(counters_.stalls);
+  if (error == UsbError::other) increment(counters_.errors);
   return error;
 }
 
 UsbError Ftdi::control(std::uint8_t request, std::uint16_t value) noexcept {
-  UsbError error = note(transport_.control(request, value));
+  UsbError error = record_error(transport_.control(request, value));
   // a stalled control request is over with the next one
   if (error == UsbError::stall || error == UsbError::timeout) {
-    count(counters_.retries);
-    error = note(transport_.control(request, value));
+    increment(counters_.retries);
+    error = record_error(transport_.control(request, value));
   }
   return error;
 }
@@ -42,43 +42,43 @@ UsbError Ftdi::purge() noexcept {
 
 UsbError Ftdi::write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept {
   for (int attempt = 0; attempt < 2; ++attempt) {
-    const UsbMoved moved = transport_.write(bytes, timeout_ms);
+    const UsbTransferResult moved = transport_.write(bytes, timeout_ms);
     bytes = bytes.subspan(std::min(moved.bytes, bytes.size()));
     if (moved.error == UsbError::none && bytes.empty()) {
-      count(counters_.packets_out);
+      increment(counters_.packets_out);
       return UsbError::none;
     }
     // a part only: the rest once more
-    const UsbError error = note(moved.error);
+    const UsbError error = record_error(moved.error);
     if (error == UsbError::stall) {
-      if (const UsbError cleared = note(transport_.clear_halt(UsbEndpoint::out)); cleared != UsbError::none) return cleared;
+      if (const UsbError cleared = record_error(transport_.clear_halt(UsbEndpoint::out)); cleared != UsbError::none) return cleared;
     } else if (error != UsbError::none) {
       return error;
     }
-    count(counters_.retries);
+    increment(counters_.retries);
   }
   return UsbError::other;
 }
 
 UsbError Ftdi::read(std::span<const std::uint8_t>& payload, int timeout_ms) noexcept {
   payload = {};
-  UsbMoved moved = transport_.read(packet_, timeout_ms);
+  UsbTransferResult moved = transport_.read(packet_, timeout_ms);
   if (moved.error == UsbError::stall) {
-    note(moved.error);
-    if (const UsbError cleared = note(transport_.clear_halt(UsbEndpoint::in)); cleared != UsbError::none) return cleared;
-    count(counters_.retries);
+    record_error(moved.error);
+    if (const UsbError cleared = record_error(transport_.clear_halt(UsbEndpoint::in)); cleared != UsbError::none) return cleared;
+    increment(counters_.retries);
     moved = transport_.read(packet_, timeout_ms);
   }
   // what came before a timeout came
   const std::size_t bytes = std::min(moved.bytes, packet_.size());
   if (bytes > 2) {
     payload = std::span<const std::uint8_t>(packet_).subspan(2, bytes - 2);
-    count(counters_.packets_in);
+    increment(counters_.packets_in);
   } else if (bytes > 0) {
-    count(counters_.idle_packets);
+    increment(counters_.idle_packets);
   }
-  if (bytes >= 2 && (packet_[1] & 0x1E) != 0) count(counters_.line_errors);  // overrun, parity, framing, break
-  note(moved.error);
+  if (bytes >= 2 && (packet_[1] & 0x1E) != 0) increment(counters_.line_errors);  // overrun, parity, framing, break
+  record_error(moved.error);
   return moved.error == UsbError::timeout && bytes > 0 ? UsbError::none : moved.error;
 }
 

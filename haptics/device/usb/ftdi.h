@@ -13,15 +13,15 @@ namespace catena::haptics::usb {
 
 enum class UsbError : std::uint8_t {
   none,
-  timeout,  ///< nothing, or only a part, within the time given
-  stall,    ///< the endpoint wants its halt cleared
-  gone,     ///< unplugged: nothing will work until it is opened again
+  timeout,       ///< nothing, or only a part, within the time given
+  stall,         ///< the endpoint wants its halt cleared
+  disconnected,  ///< unplugged: nothing will work until it is opened again
   other
 };
-const char* usb_error_text(UsbError error);  ///< "no answer in time", "unplugged", ...
+const char* to_string(UsbError error);  ///< "no answer in time", "unplugged", ...
 
 /// How many bytes went, also where there is an error.
-struct UsbMoved {
+struct UsbTransferResult {
   UsbError error = UsbError::none;
   std::size_t bytes = 0;
 };
@@ -35,8 +35,8 @@ class Transport {
  public:
   virtual ~Transport() = default;
   virtual UsbError control(std::uint8_t request, std::uint16_t value) noexcept = 0;  ///< type 0x40, index 0, no data
-  virtual UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept = 0;
-  virtual UsbMoved read(UsbPacket& packet, int timeout_ms) noexcept = 0;  ///< always asks for 64 bytes
+  virtual UsbTransferResult write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept = 0;
+  virtual UsbTransferResult read(UsbPacket& packet, int timeout_ms) noexcept = 0;  ///< always asks for 64 bytes
   virtual UsbError clear_halt(UsbEndpoint endpoint) noexcept = 0;
   /// The open device as a file, to be shared with another process; < 0: there is none.
   virtual int descriptor() const noexcept { return -1; }
@@ -56,12 +56,14 @@ class TransportSource {
 /// modem-status bytes with which each IN packet starts (a packet of these two alone is an idle device, not an unplug).
 /// A stalled endpoint is cleared and tried once more. Everything is counted. I/O thread.
 
-/// Written by the I/O thread, read by any.
+/// ImageWriteResult by the I/O thread, read by any.
 struct FtdiCounters {
   std::atomic<std::uint64_t> packets_out{0}, packets_in{0}, idle_packets{0}, timeouts{0}, stalls{0}, retries{0}, errors{0}, line_errors{0};
 };
 
-inline void count(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) noexcept { counter.fetch_add(by, std::memory_order_relaxed); }
+inline void increment(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) noexcept {
+  counter.fetch_add(by, std::memory_order_relaxed);
+}
 
 enum class FtdiBaud : std::uint16_t { boot_9600 = 0x4138, image_140000 = 0x15, run_1500000 = 0x02 };
 
@@ -77,10 +79,10 @@ class Ftdi {
   UsbError rts_low() noexcept { return control(1, 0x0200); }
   UsbError dtr_low() noexcept { return control(1, 0x0100); }
   UsbError dtr_high() noexcept { return control(1, 0x0101); }
-  UsbError no_flow_control() noexcept { return control(2, 0); }
-  UsbError baud(FtdiBaud baud) noexcept { return control(3, static_cast<std::uint16_t>(baud)); }
-  UsbError eight_n_one() noexcept { return control(4, 8); }
-  UsbError latency_ms(std::uint8_t ms) noexcept { return control(9, ms); }
+  UsbError disable_flow_control() noexcept { return control(2, 0); }
+  UsbError set_baud(FtdiBaud baud) noexcept { return control(3, static_cast<std::uint16_t>(baud)); }
+  UsbError set_8n1() noexcept { return control(4, 8); }
+  UsbError set_latency_ms(std::uint8_t ms) noexcept { return control(9, ms); }
 
   /// All of `bytes`, or an error.
   UsbError write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept;
@@ -89,7 +91,7 @@ class Ftdi {
 
  private:
   UsbError control(std::uint8_t request, std::uint16_t value) noexcept;
-  UsbError note(UsbError error) noexcept;
+  UsbError record_error(UsbError error) noexcept;
 
   Transport& transport_;
   FtdiCounters& counters_;

@@ -24,7 +24,7 @@ UsbError to_error(int code) noexcept {
     case LIBUSB_ERROR_PIPE:
       return UsbError::stall;
     case LIBUSB_ERROR_NO_DEVICE:
-      return UsbError::gone;
+      return UsbError::disconnected;
     default:
       return UsbError::other;
   }
@@ -127,9 +127,9 @@ int on_arrival(libusb_context*, libusb_device*, libusb_hotplug_event, void* flag
 
 }  // namespace
 
-Result<std::vector<UsbListed>> list_usb(const UsbId& id) {
+Result<std::vector<UsbDeviceInfo>> list_usb(const UsbId& id) {
   CATENA_TRY(const auto context, make_context());
-  std::vector<UsbListed> listed;
+  std::vector<UsbDeviceInfo> listed;
   for (Candidate& candidate : candidates(context.get(), id)) {
     int code = candidate.code;
     if (code == 0) code = claim(candidate.handle.get());
@@ -167,7 +167,7 @@ UsbError LibusbTransport::control(std::uint8_t request, std::uint16_t value) noe
   return to_error(std::min(code, 0));
 }
 
-UsbMoved LibusbTransport::write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept {
+UsbTransferResult LibusbTransport::write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept {
   int moved = 0;
   // libusb asks for a pointer that it could write through, and does not for OUT
   const int code = libusb_bulk_transfer(handle_, kOut, const_cast<unsigned char*>(bytes.data()), static_cast<int>(bytes.size()), &moved,
@@ -175,7 +175,7 @@ UsbMoved LibusbTransport::write(std::span<const std::uint8_t> bytes, int timeout
   return {to_error(code), static_cast<std::size_t>(std::max(moved, 0))};
 }
 
-UsbMoved LibusbTransport::read(UsbPacket& packet, int timeout_ms) noexcept {
+UsbTransferResult LibusbTransport::read(UsbPacket& packet, int timeout_ms) noexcept {
   int moved = 0;
   const int code =
       libusb_bulk_transfer(handle_, kIn, packet.data(), static_cast<int>(packet.size()), &moved, static_cast<unsigned>(timeout_ms));
@@ -188,10 +188,10 @@ UsbError LibusbTransport::clear_halt(UsbEndpoint endpoint) noexcept {
 
 // ---- where it comes from ----
 
-LibusbSource::LibusbSource(UsbId id, int index) : id_(std::move(id)), index_(index) {
+LibusbTransportSource::LibusbTransportSource(UsbId id, int index) : id_(std::move(id)), index_(index) {
   auto context = make_context();
   if (!context) {
-    why_no_context_ = context.error().message;
+    context_error_ = context.error().message;
     return;
   }
   context_ = std::move(*context);
@@ -202,12 +202,12 @@ LibusbSource::LibusbSource(UsbId id, int index) : id_(std::move(id)), index_(ind
     hotplug_ = handle;
 }
 
-LibusbSource::~LibusbSource() {
+LibusbTransportSource::~LibusbTransportSource() {
   if (hotplug_ != 0) libusb_hotplug_deregister_callback(context_.get(), hotplug_);
 }
 
-Result<std::unique_ptr<Transport>> LibusbSource::open() {
-  if (!context_) return Error{why_no_context_};
+Result<std::unique_ptr<Transport>> LibusbTransportSource::open() {
+  if (!context_) return Error{context_error_};
   arrived_ = false;
   std::vector<Candidate> found = candidates(context_.get(), id_);
   if (found.size() <= static_cast<std::size_t>(index_))
@@ -222,7 +222,7 @@ Result<std::unique_ptr<Transport>> LibusbSource::open() {
   return std::unique_ptr<Transport>(new LibusbTransport(context_, chosen.handle.release(), chosen.fd));
 }
 
-bool LibusbSource::wait_for_arrival(int timeout_ms) noexcept {
+bool LibusbTransportSource::wait_for_arrival(int timeout_ms) noexcept {
   timeval time{.tv_sec = timeout_ms / 1000, .tv_usec = 1000 * (timeout_ms % 1000)};
   const bool waited = hotplug_ != 0 && !arrived_ && libusb_handle_events_timeout_completed(context_.get(), &time, nullptr) == 0;
   if (!waited && !arrived_) std::this_thread::sleep_for(std::chrono::milliseconds(timeout_ms));

@@ -19,12 +19,12 @@ struct UsbId {
 inline const UsbId kFalconUsbId{0x0403, 0xcb48, "FALCON HAPTIC"};
 
 /// One of the bus.
-struct UsbListed {
+struct UsbDeviceInfo {
   bool can_open = false;
   std::string detail;  ///< where it is, or why it cannot be opened and what to do
 };
-/// Those of this id, in the order in which LibusbSource counts them.
-Result<std::vector<UsbListed>> list_usb(const UsbId& id);
+/// Those of this id, in the order in which LibusbTransportSource counts them.
+Result<std::vector<UsbDeviceInfo>> list_usb(const UsbId& id);
 
 class LibusbTransport final : public Transport {
  public:
@@ -36,13 +36,13 @@ class LibusbTransport final : public Transport {
   LibusbTransport& operator=(const LibusbTransport&) = delete;
 
   UsbError control(std::uint8_t request, std::uint16_t value) noexcept override;
-  UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
-  UsbMoved read(UsbPacket& packet, int timeout_ms) noexcept override;
+  UsbTransferResult write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
+  UsbTransferResult read(UsbPacket& packet, int timeout_ms) noexcept override;
   UsbError clear_halt(UsbEndpoint endpoint) noexcept override;
   int descriptor() const noexcept override { return fd_; }
 
  private:
-  friend class LibusbSource;
+  friend class LibusbTransportSource;
   LibusbTransport(std::shared_ptr<libusb_context> context, libusb_device_handle* handle, int fd);
 
   std::shared_ptr<libusb_context> context_;
@@ -51,22 +51,22 @@ class LibusbTransport final : public Transport {
 };
 
 /// The n-th device of an id on the bus, again and again.
-class LibusbSource final : public TransportSource {
+class LibusbTransportSource final : public TransportSource {
  public:
-  explicit LibusbSource(UsbId id, int index = 0);
-  ~LibusbSource() override;
-  LibusbSource(const LibusbSource&) = delete;
-  LibusbSource& operator=(const LibusbSource&) = delete;
+  explicit LibusbTransportSource(UsbId id, int index = 0);
+  ~LibusbTransportSource() override;
+  LibusbTransportSource(const LibusbTransportSource&) = delete;
+  LibusbTransportSource& operator=(const LibusbTransportSource&) = delete;
 
   Result<std::unique_ptr<Transport>> open() override;
   bool wait_for_arrival(int timeout_ms) noexcept override;
-  bool hears_hotplug() const { return hotplug_ != 0; }
+  bool has_hotplug() const { return hotplug_ != 0; }
 
  private:
   UsbId id_;
   int index_;
   std::shared_ptr<libusb_context> context_;  ///< null: libusb does not start here
-  std::string why_no_context_;
+  std::string context_error_;
   int hotplug_ = 0;  ///< libusb's handle of the callback
   std::atomic<bool> arrived_{false};
 };

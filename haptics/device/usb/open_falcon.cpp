@@ -26,7 +26,7 @@ void list_falcons(std::vector<DeviceInfo>& to) {
     to.push_back({i == 0 ? "falcon" : fmt::format("falcon:{}", i), (*listed)[i].can_open, "Novint Falcon, " + (*listed)[i].detail});
 }
 
-std::function<bool(int, double)> boot_progress_lines(std::function<void(const std::string&)> tell) {
+std::function<bool(int, double)> make_boot_progress_reporter(std::function<void(const std::string&)> tell) {
   return [tell = std::move(tell), told = std::string()](int attempt, double share) mutable {
     std::string line = fmt::format("Falcon: its firmware is being sent, try {}, {} %", attempt, 10 * static_cast<int>(10 * share));
     if (tell && line != told) tell(line);
@@ -46,9 +46,10 @@ Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const Dev
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));
   }
-  options.watchdog = watchdog_process(helper_path("catena-watchdog"));
-  options.boot.progress = boot_progress_lines(settings.tell);
-  CATENA_TRY(auto falcon, Falcon::open(std::make_unique<LibusbSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
+  options.watchdog = make_watchdog_launcher(helper_path("catena-watchdog"));
+  options.boot.progress = make_boot_progress_reporter(settings.report_progress);
+  CATENA_TRY(auto falcon,
+             Falcon::open(std::make_unique<LibusbTransportSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
   return std::unique_ptr<Device>(std::move(falcon));
 }
 

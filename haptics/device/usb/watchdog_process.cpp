@@ -42,7 +42,7 @@ class WatchdogProcess final : public ExternalWatchdog {
     }
     // still writes: a device that does not answer. It goes on until the device is gone
   }
-  bool alive() noexcept override {
+  bool is_alive() noexcept override {
     pollfd line{lifeline_, POLLIN, 0};
     return poll(&line, 1, 0) == 0;  // it says nothing after it was ready: only its end is heard
   }
@@ -89,15 +89,16 @@ bool becomes_ready(int lifeline) {
   return n == 1 && read(lifeline, &byte, 1) == 1 && byte == watchdog::kReady;
 }
 
-Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path, Transport& transport, const WatchdogMemory& memory) {
+Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path, Transport& transport, const WatchdogSharedMemory& memory) {
   if (transport.descriptor() < 0) return no_watchdog("the device's file could not be found among libusb's");
   int pair[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return no_watchdog(std::strerror(errno));
-  Descriptor ours(pair[0]);
-  Descriptor theirs(pair[1]);
+  FileDescriptor ours(pair[0]);
+  FileDescriptor theirs(pair[1]);
   // out of the way of 3, 4 and 5
-  const Descriptor usb(fcntl(transport.descriptor(), F_DUPFD_CLOEXEC, kFirstFree)), page(fcntl(memory.fd(), F_DUPFD_CLOEXEC, kFirstFree));
-  Descriptor lifeline(fcntl(theirs.get(), F_DUPFD_CLOEXEC, kFirstFree));
+  const FileDescriptor usb(fcntl(transport.descriptor(), F_DUPFD_CLOEXEC, kFirstFree)),
+      page(fcntl(memory.fd(), F_DUPFD_CLOEXEC, kFirstFree));
+  FileDescriptor lifeline(fcntl(theirs.get(), F_DUPFD_CLOEXEC, kFirstFree));
   if (usb.get() < 0 || page.get() < 0 || lifeline.get() < 0) return no_watchdog(std::strerror(errno));
   pid_t child = 0;
   if (const int code = spawn(path, usb.get(), page.get(), lifeline.get(), child); code != 0)
@@ -115,28 +116,28 @@ Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path,
 
 }  // namespace
 
-Result<std::unique_ptr<WatchdogMemory>> WatchdogMemory::make(std::uint8_t endpoint, std::span<const std::uint8_t> off) {
-  CATENA_ASSERT(off.size() <= watchdog::Page::kMaxOffBytes);
-  Descriptor fd(memfd_create("catena-watchdog", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  if (fd.get() < 0 || ftruncate(fd.get(), sizeof(watchdog::Page)) != 0 ||
+Result<std::unique_ptr<WatchdogSharedMemory>> WatchdogSharedMemory::make(std::uint8_t endpoint, std::span<const std::uint8_t> off) {
+  CATENA_ASSERT(off.size() <= watchdog::SharedPage::kMaxZeroPacketBytes);
+  FileDescriptor fd(memfd_create("catena-watchdog", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (fd.get() < 0 || ftruncate(fd.get(), sizeof(watchdog::SharedPage)) != 0 ||
       fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
     return no_watchdog(std::strerror(errno));
-  void* const at = mmap(nullptr, sizeof(watchdog::Page), PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+  void* const at = mmap(nullptr, sizeof(watchdog::SharedPage), PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
   if (at == MAP_FAILED) return no_watchdog(std::strerror(errno));
-  auto* const page = new (at) watchdog::Page{};
+  auto* const page = new (at) watchdog::SharedPage{};
   page->endpoint = endpoint;
-  page->off_bytes = static_cast<std::uint32_t>(off.size());
-  std::memcpy(page->off, off.data(), off.size());
-  return std::unique_ptr<WatchdogMemory>(new WatchdogMemory(fd.release(), page));
+  page->zero_packet_bytes = static_cast<std::uint32_t>(off.size());
+  std::memcpy(page->zero_packet, off.data(), off.size());
+  return std::unique_ptr<WatchdogSharedMemory>(new WatchdogSharedMemory(fd.release(), page));
 }
 
-WatchdogMemory::~WatchdogMemory() {
-  munmap(page_, sizeof(watchdog::Page));
+WatchdogSharedMemory::~WatchdogSharedMemory() {
+  munmap(page_, sizeof(watchdog::SharedPage));
   close(fd_);
 }
 
-StartWatchdog watchdog_process(const std::string& path) {
-  return [path](Transport& transport, const WatchdogMemory& memory) { return start_process(path, transport, memory); };
+WatchdogLauncher make_watchdog_launcher(const std::string& path) {
+  return [path](Transport& transport, const WatchdogSharedMemory& memory) { return start_process(path, transport, memory); };
 }
 
 }  // namespace catena::haptics::usb

@@ -10,13 +10,13 @@
 
 #include "engine/base/hash.h"
 #include "engine/base/input_files.h"
-#include "engine/base/machine_failure.h"
+#include "engine/base/system_failure.h"
 
 namespace catena::haptics::log {
 
 namespace {
 
-class File final : public Source {
+class File final : public ByteSource {
  public:
   File(int descriptor, std::uint64_t size) : descriptor_(descriptor), size_(size) {}
   ~File() override { ::close(descriptor_); }
@@ -41,7 +41,7 @@ class File final : public Source {
   std::uint64_t size_;
 };
 
-class Memory final : public Source {
+class Memory final : public ByteSource {
  public:
   explicit Memory(std::string_view bytes) : bytes_(bytes) {}
   std::uint64_t size() const override { return bytes_.size(); }
@@ -57,24 +57,24 @@ class Memory final : public Source {
 
 }  // namespace
 
-Result<std::unique_ptr<Source>> open_file(const std::string& path) {
+Result<std::unique_ptr<ByteSource>> open_file_source(const std::string& path) {
   const auto cannot = [&](const std::string& why, int code = 0) {
-    return Error{path + ": cannot read: " + why + "; a recording (.catlog) was expected", is_machine_failure(code)};
+    return Error{path + ": cannot read: " + why + "; a recording (.catlog) was expected", is_system_failure(code)};
   };
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     const int why = errno;
-    return cannot(cause_of(why), why);
+    return cannot(describe_errno(why), why);
   }
   struct stat about {};
   if (::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode)) {
     ::close(descriptor);
     return cannot("it is no regular file");
   }
-  return std::unique_ptr<Source>(std::make_unique<File>(descriptor, static_cast<std::uint64_t>(about.st_size)));
+  return std::unique_ptr<ByteSource>(std::make_unique<File>(descriptor, static_cast<std::uint64_t>(about.st_size)));
 }
 
-std::unique_ptr<Source> from_memory(std::string_view bytes) { return std::make_unique<Memory>(bytes); }
+std::unique_ptr<ByteSource> make_memory_source(std::string_view bytes) { return std::make_unique<Memory>(bytes); }
 
 namespace {
 
@@ -88,7 +88,7 @@ Error cannot_write(const std::string& path, int code) { return system_error(path
 }  // namespace
 
 Result<BlockFile> BlockFile::create(const std::string& path) {
-  CATENA_CHECK(check_no_input(path));
+  CATENA_CHECK(check_not_input(path));
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
   if (descriptor < 0 && errno == ENXIO) return Error{path + ": nothing reads from this pipe or socket: expected a file, or a reader first"};
   if (descriptor < 0) return cannot_write(path, errno);
@@ -103,7 +103,7 @@ Result<BlockFile> BlockFile::create(const std::string& path) {
   unsigned char preamble[kPreambleBytes];
   std::memcpy(preamble, kMagic, 8);
   std::memcpy(preamble + 8, &kVersion, 4);
-  std::memcpy(preamble + 12, &kByteOrder, 4);
+  std::memcpy(preamble + 12, &kByteOrderMark, 4);
   if (!file.write_all(preamble, sizeof preamble)) {
     file.discard();
     return file.error();
@@ -145,12 +145,12 @@ bool BlockFile::write(BlockType type, std::string_view payload) {
     error_ = EFBIG;
     return false;
   }
-  BlockHead head;
+  BlockHeader head;
   head.type = static_cast<std::uint32_t>(type);
   head.sequence = sequence_++;
   head.length = payload.size();
-  head.payload_hash = hash_of(payload.data(), payload.size());
-  head.head_hash = hash_of(&head, BlockHead::kHashed);
+  head.payload_hash = hash_bytes(payload.data(), payload.size());
+  head.header_hash = hash_bytes(&head, BlockHeader::kHashedBytes);
   buffer_.assign(reinterpret_cast<const char*>(&head), sizeof head);
   buffer_.append(payload);
   return write_all(buffer_.data(), buffer_.size());
@@ -179,25 +179,26 @@ Error BlockFile::error() const { return error_ == 0 ? Error{} : cannot_write(pat
 
 namespace {
 
-constexpr std::uint64_t kHeadBytes = sizeof(BlockHead);
+constexpr std::uint64_t kHeadBytes = sizeof(BlockHeader);
 constexpr std::size_t kWindow = std::size_t{64} << 10;
 
-bool is_head(const char* bytes, BlockHead& head) {
+bool is_head(const char* bytes, BlockHeader& head) {
   std::memcpy(&head, bytes, sizeof head);
-  return head.mark == BlockHead::kBlockMark && head.head_hash == hash_of(bytes, BlockHead::kHashed) && head.length <= kMaxPayload;
+  return head.magic == BlockHeader::kBlockMagic && head.header_hash == hash_bytes(bytes, BlockHeader::kHashedBytes) &&
+         head.length <= kMaxPayload;
 }
 
 }  // namespace
 
-bool BlockReader::read_head(std::uint64_t at, BlockHead& head) {
+bool BlockReader::read_header(std::uint64_t at, BlockHeader& head) {
   char bytes[kHeadBytes];
   return source_->read(at, bytes, kHeadBytes) && is_head(bytes, head);
 }
 
 // Moves on to the next place where a block's own 32 bytes are good.
-bool BlockReader::find_next_head() {
+bool BlockReader::find_next_header() {
   std::string window;
-  BlockHead head;
+  BlockHeader head;
   for (std::uint64_t from = at_ + 1; from + kHeadBytes <= source_->size();) {
     window.resize(std::min<std::uint64_t>(kWindow, source_->size() - from));
     if (!source_->read(from, window.data(), window.size())) return false;
@@ -212,20 +213,20 @@ bool BlockReader::find_next_head() {
   return false;
 }
 
-BlockReader::Found BlockReader::next() {
+BlockReader::ReadResult BlockReader::next() {
   const std::uint64_t size = source_->size();
-  if (at_ >= size) return Found::end;
-  if (size - at_ < kHeadBytes) return Found::cut_off;
-  if (!read_head(at_, head_)) {
-    if (find_next_head()) return Found::damaged;
-    return Found::cut_off;
+  if (at_ >= size) return ReadResult::end;
+  if (size - at_ < kHeadBytes) return ReadResult::truncated;
+  if (!read_header(at_, header_)) {
+    if (find_next_header()) return ReadResult::damaged;
+    return ReadResult::truncated;
   }
-  if (head_.length > size - at_ - kHeadBytes) return Found::cut_off;
-  payload_.resize(head_.length);
-  const bool good =
-      source_->read(at_ + kHeadBytes, payload_.data(), payload_.size()) && hash_of(payload_.data(), payload_.size()) == head_.payload_hash;
-  at_ += kHeadBytes + head_.length;
-  return good ? Found::block : Found::damaged;
+  if (header_.length > size - at_ - kHeadBytes) return ReadResult::truncated;
+  payload_.resize(header_.length);
+  const bool good = source_->read(at_ + kHeadBytes, payload_.data(), payload_.size()) &&
+                    hash_bytes(payload_.data(), payload_.size()) == header_.payload_hash;
+  at_ += kHeadBytes + header_.length;
+  return good ? ReadResult::block : ReadResult::damaged;
 }
 
 }  // namespace catena::haptics::log

@@ -10,17 +10,17 @@
 namespace catena::haptics::log {
 
 /// Bytes with random access. One thread.
-class Source {
+class ByteSource {
  public:
-  virtual ~Source() = default;
+  virtual ~ByteSource() = default;
   virtual std::uint64_t size() const = 0;  ///< as it was when it was opened
   /// False where the bytes cannot be read.
   virtual bool read(std::uint64_t offset, void* to, std::size_t bytes) = 0;
 };
 
 /// A regular file. An error names it.
-Result<std::unique_ptr<Source>> open_file(const std::string& path);
-std::unique_ptr<Source> from_memory(std::string_view bytes);  ///< which outlive it
+Result<std::unique_ptr<ByteSource>> open_file_source(const std::string& path);
+std::unique_ptr<ByteSource> make_memory_source(std::string_view bytes);  ///< which outlive it
 
 /// The writing end of a log: whole blocks, each with one write(2), straight into the file under its own name, so that what is
 /// written survives the death of the process at any moment. `sync` (fdatasync) makes it survive the machine's, too.
@@ -44,7 +44,7 @@ class BlockFile {
   /// Whether something could not be written.
   bool failed() const { return error_ != 0; }
   Error error() const;  ///< "FILE: cannot write: No space left on device"
-  /// Written so far.
+  /// ImageWriteResult so far.
   std::uint64_t bytes() const { return bytes_; }
 
  private:
@@ -61,36 +61,36 @@ class BlockFile {
 class BlockReader {
  public:
   /// Of a log's bytes, from the first on.
-  explicit BlockReader(std::unique_ptr<Source> source) : source_(std::move(source)) {}
+  explicit BlockReader(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
 
   /// What next() came to.
-  enum class Found {
+  enum class ReadResult {
     block,
-    damaged,  ///< one or more blocks are passed over
-    end,      ///< the file ends with the last block
-    cut_off   ///< what follows is no complete block
+    damaged,   ///< one or more blocks are passed over
+    end,       ///< the file ends with the last block
+    truncated  ///< what follows is no complete block
   };
   /// Goes to the next good block.
-  Found next();
+  ReadResult next();
 
   // of the last block found
   /// What it holds.
-  BlockType type() const { return static_cast<BlockType>(head_.type); }
+  BlockType type() const { return static_cast<BlockType>(header_.type); }
   /// Its number, from 0.
-  std::uint64_t sequence() const { return head_.sequence; }
+  std::uint64_t sequence() const { return header_.sequence; }
   /// Its bytes, until the next call.
   std::string_view payload() const { return payload_; }
 
   /// Where the bytes come from.
-  Source& source() { return *source_; }
+  ByteSource& source() { return *source_; }
 
  private:
-  bool read_head(std::uint64_t at, BlockHead& head);
-  bool find_next_head();
+  bool read_header(std::uint64_t at, BlockHeader& head);
+  bool find_next_header();
 
-  std::unique_ptr<Source> source_;
+  std::unique_ptr<ByteSource> source_;
   std::uint64_t at_ = kPreambleBytes;
-  BlockHead head_;
+  BlockHeader header_;
   std::string payload_;
 };
 

@@ -10,7 +10,7 @@
 namespace catena::haptics::log {
 
 // What a program brings along has grown: write it, read it, say so in format.h and raise kVersion.
-static_assert(sizeof(Limits) == 88 && sizeof(Coupling) == 56);
+static_assert(sizeof(DeviceLimits) == 88 && sizeof(Coupling) == 56);
 
 namespace {
 
@@ -21,13 +21,13 @@ void each_number(P& p, const F& each) {
                   &p.limits.max_torque_nm, &p.limits.slew_n_per_s, &p.limits.ramp_in_s, &p.limits.ramp_out_s, &p.limits.damping_ns_per_m,
                   &p.limits.delay_s, &p.limits.max_added_damping_ns_per_m})
     each(*v);
-  each(p.limits.late_ticks);
-  each(p.limits.passivity);
+  each(p.limits.max_late_ticks);
+  each(p.limits.passivity_control);
   for (auto* v : {&p.coupling.stiffness_n_per_m, &p.coupling.damping_ns_per_m, &p.coupling.max_force_n, &p.coupling.ramp_s,
                   &p.coupling.rotational_stiffness_nm_per_rad, &p.coupling.rotational_damping_nms_per_rad})
     each(*v);
   each(p.coupling.method);
-  each(p.metres_per_unit);
+  each(p.meters_per_unit);
   for (int a = 0; a < 3; ++a) each(p.workspace_origin[a]);
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) each(p.workspace_rotation[c][r]);
@@ -68,10 +68,10 @@ struct GetNumber {
 /// What must agree for the bytes of a state to mean the same.
 std::uint64_t state_layout() {
   Fnv1a layout;
-  for (const std::size_t size : {sizeof(ChainState), sizeof(LinkState), sizeof(Ramp), sizeof(LeftOut), sizeof(PassivityState),
-                                 sizeof(AlignmentState), sizeof(SingleProxy), std::size_t{kMaxLinks}})
+  for (const std::size_t size : {sizeof(ChainState), sizeof(LinkState), sizeof(Ramp), sizeof(UnaccountedEnergy), sizeof(PassivityState),
+                                 sizeof(AlignmentState), sizeof(SingleProxyState), std::size_t{kMaxLinks}})
     layout.add(static_cast<std::uint64_t>(size));
-  layout.bytes(__VERSION__, sizeof __VERSION__);
+  layout.add_bytes(__VERSION__, sizeof __VERSION__);
   return layout.value;
 }
 
@@ -89,22 +89,22 @@ std::vector<std::string> LogProgram::widget_names() const {
   return names;
 }
 
-std::string LogGap::text() const {
+std::string LogGap::description() const {
   const std::string which =
       ticks == 1 ? fmt::format("tick {} is", first_tick) : fmt::format("ticks {} to {} are", first_tick, first_tick + ticks - 1);
-  return which + (why == Why::damaged ? " lost: the log is damaged there" : " lost: the disk did not keep up");
+  return which + (cause == Cause::damaged ? " lost: the log is damaged there" : " lost: the disk did not keep up");
 }
 
-LogProgram facts_of(const Program& program, std::optional<std::string> scene_text) {
+LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text) {
   LogProgram out;
   out.epoch = program.epoch;
   out.scene_text = std::move(scene_text);
   out.limits = program.limits;
   out.coupling = program.coupling;
-  out.metres_per_unit = program.metres_per_unit;
+  out.meters_per_unit = program.meters_per_unit;
   out.workspace_origin = program.workspace_origin;
   out.workspace_rotation = program.workspace_rotation;
-  for (const haptics::Link& link : program.links) out.links.push_back({link.name, link.recipe});
+  for (const haptics::Link& link : program.links) out.links.push_back({link.name, link.spec_hash});
   for (const Mode& mode : program.modes) out.modes.push_back(mode.name);
   for (std::size_t i = 0; i < program.widgets.size(); ++i) {
     const widget::Spec& spec = program.widgets[i];
@@ -133,7 +133,7 @@ std::string to_bytes(const LogHeader& h) {
   return std::move(out.bytes());
 }
 
-std::optional<LogHeader> header_from(std::string_view bytes) {
+std::optional<LogHeader> parse_header(std::string_view bytes) {
   ByteReader in(bytes);
   LogHeader h;
   for (std::string* text : {&h.scene_path, &h.working_folder, &h.scene_text}) *text = in.get_string();
@@ -143,8 +143,8 @@ std::optional<LogHeader> header_from(std::string_view bytes) {
   h.catena_version = in.get_string();
   h.rate_hz = in.get<double>();
   h.started_unix_ns = in.get<std::int64_t>();
-  if (!in.finished()) h.about = in.get_string();
-  const auto plugins = in.finished() ? 0 : in.get<std::uint32_t>();
+  if (!in.at_end()) h.about = in.get_string();
+  const auto plugins = in.at_end() ? 0 : in.get<std::uint32_t>();
   for (std::uint32_t i = 0; i < plugins && in.good(); ++i) {
     LogPlugin& plugin = h.plugins.emplace_back();
     plugin.file = in.get_string();
@@ -152,7 +152,7 @@ std::optional<LogHeader> header_from(std::string_view bytes) {
     const auto types = in.get<std::uint32_t>();
     for (std::uint32_t k = 0; k < types && in.good(); ++k) plugin.types.push_back(in.get_string());
   }
-  if (!in.finished()) return std::nullopt;
+  if (!in.at_end()) return std::nullopt;
   return h;
 }
 
@@ -160,14 +160,14 @@ std::string to_bytes(const LogProgram& p) {
   ByteWriter out;
   out.put(p.epoch);
   out.put(p.first_tick);
-  out.put(static_cast<std::uint8_t>(p.known));
+  out.put(static_cast<std::uint8_t>(p.is_known));
   out.put(static_cast<std::uint8_t>(p.scene_text.has_value()));
   out.put_string(p.scene_text.value_or(std::string()));
   each_number(p, PutNumber{out});
   out.put(static_cast<std::uint32_t>(p.links.size()));
   for (const LogProgram::Link& link : p.links) {
     out.put_string(link.name);
-    out.put(link.recipe);
+    out.put(link.spec_hash);
   }
   out.put(static_cast<std::uint32_t>(p.modes.size()));
   for (const std::string& mode : p.modes) out.put_string(mode);
@@ -180,14 +180,14 @@ std::string to_bytes(const LogProgram& p) {
   return std::move(out.bytes());
 }
 
-std::optional<LogProgram> program_from(std::string_view bytes) {
+std::optional<LogProgram> parse_program(std::string_view bytes) {
   ByteReader in(bytes);
   LogProgram p;
   p.epoch = in.get<std::uint64_t>();
   p.first_tick = in.get<std::uint64_t>();
   const auto known = in.get<std::uint8_t>(), own_text = in.get<std::uint8_t>();
   bool good = known <= 1 && own_text <= 1;
-  p.known = known == 1;
+  p.is_known = known == 1;
   std::string text = in.get_string();
   if (own_text == 1) p.scene_text = std::move(text);
   each_number(p, GetNumber{in, good});
@@ -201,7 +201,7 @@ std::optional<LogProgram> program_from(std::string_view bytes) {
   good = good && modes <= kMaxModes;
   for (std::uint32_t i = 0; i < modes && good && in.good(); ++i) p.modes.push_back(in.get_string());
   const auto widgets = in.get<std::uint32_t>();
-  good = good && widgets <= exchange::kMaxWidgets;
+  good = good && widgets <= kMaxWidgets;
   for (std::uint32_t i = 0; i < widgets && good && in.good(); ++i) {
     LogProgram::Widget w;
     w.name = in.get_string();
@@ -209,7 +209,7 @@ std::optional<LogProgram> program_from(std::string_view bytes) {
     each_pose_number(w, GetNumber{in, good});
     p.widgets.push_back(std::move(w));
   }
-  if (!good || !in.finished()) return std::nullopt;
+  if (!good || !in.at_end()) return std::nullopt;
   return p;
 }
 
@@ -221,15 +221,15 @@ std::string to_bytes(const ChainState& state) {
   return std::move(out.bytes());
 }
 
-std::optional<LogState> state_from(std::string_view bytes) {
+std::optional<LogState> parse_state(std::string_view bytes) {
   ByteReader in(bytes);
   LogState out;
   out.tick = in.get<std::uint64_t>();
   const bool own = in.get<std::uint64_t>() == state_layout();
   if (!in.good() || out.tick == 0 || out.tick == ~std::uint64_t{0}) return std::nullopt;
   if (!own) return out;
-  const char* from = in.take(sizeof(ChainState));
-  if (from == nullptr || !in.finished()) return std::nullopt;
+  const char* from = in.read_bytes(sizeof(ChainState));
+  if (from == nullptr || !in.at_end()) return std::nullopt;
   out.chain.emplace();
   std::memcpy(&*out.chain, from, sizeof(ChainState));
   if (out.chain->ticks != out.tick) return std::nullopt;
@@ -243,12 +243,12 @@ std::string to_bytes(const LogGap& gap) {
   return std::move(out.bytes());
 }
 
-std::optional<LogGap> gap_from(std::string_view bytes) {
+std::optional<LogGap> parse_gap(std::string_view bytes) {
   ByteReader in(bytes);
   LogGap gap;
   gap.first_tick = in.get<std::uint64_t>();
   gap.ticks = in.get<std::uint64_t>();
-  if (!in.finished() || gap.ticks == 0) return std::nullopt;
+  if (!in.at_end() || gap.ticks == 0) return std::nullopt;
   return gap;
 }
 
@@ -258,11 +258,11 @@ std::string to_bytes(const LogEnd& end) {
   return std::move(out.bytes());
 }
 
-std::optional<LogEnd> end_from(std::string_view bytes) {
+std::optional<LogEnd> parse_end(std::string_view bytes) {
   ByteReader in(bytes);
   LogEnd end;
   for (std::uint64_t* v : {&end.ticks, &end.lost, &end.last_tick, &end.state_hash}) *v = in.get<std::uint64_t>();
-  if (!in.finished()) return std::nullopt;
+  if (!in.at_end()) return std::nullopt;
   return end;
 }
 

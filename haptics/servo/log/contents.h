@@ -33,18 +33,18 @@ struct LogHeader {
 struct LogProgram {
   /// A link of the program.
   struct Link {
-    std::string name;          ///< its name
-    std::uint64_t recipe = 0;  ///< as in Link::recipe
+    std::string name;             ///< its name
+    std::uint64_t spec_hash = 0;  ///< as in Link::recipe
   };
-  std::uint64_t epoch = 0;                ///< as in Program
+  std::uint64_t epoch = 0;                ///< as in HapticProgram
   std::uint64_t first_tick = 0;           ///< the tick that it runs from
-  bool known = true;                      ///< false: the log does not say what ran here; the links are named link_1 ..
+  bool is_known = true;                   ///< false: the log does not say what ran here; the links are named link_1 ..
   std::optional<std::string> scene_text;  ///< none: the header's
-  Limits limits;                          ///< of the device
+  DeviceLimits limits;                    ///< of the device
   Coupling coupling;                      ///< how the links made a force
-  double metres_per_unit = 1;             ///< as in Program
-  Vec3 workspace_origin{0.0};             ///< as in Program
-  Mat3 workspace_rotation{1.0};           ///< as in Program
+  double meters_per_unit = 1;             ///< as in HapticProgram
+  Vec3 workspace_origin{0.0};             ///< as in HapticProgram
+  Mat3 workspace_rotation{1.0};           ///< as in HapticProgram
   std::vector<Link> links;                ///< in the order of the chain
   /// A widget of the program.
   struct Widget {
@@ -65,10 +65,10 @@ struct LogProgram {
 /// Ticks that the log does not hold.
 struct LogGap {
   /// Why they are not there.
-  enum class Why { not_kept_up, damaged };
+  enum class Cause { overrun, damaged };
   std::uint64_t first_tick = 0, ticks = 0;  ///< the first that is missing, and how many
-  Why why = Why::not_kept_up;               ///< why
-  std::string text() const;                 ///< "ticks 5 to 9 are lost: ..."
+  Cause cause = Cause::overrun;             ///< why
+  std::string description() const;          ///< "ticks 5 to 9 are lost: ..."
 };
 
 /// What the writer wrote at the end.
@@ -77,14 +77,14 @@ struct LogEnd {
 };
 
 /// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`. Its bytes are the file's: they are to be
-/// run only after check_state (haptics/chain/check_state.h) with the program.
+/// run only after validate_state (haptics/chain/validate_state.h) with the program.
 struct LogState {
   std::uint64_t tick = 0;           ///< the tick before the log's first
   std::optional<ChainState> chain;  ///< none: the program that recorded keeps its state in another way
 };
 
 /// What the log tells of a program; none: its scene text is the header's.
-LogProgram facts_of(const Program& program, std::optional<std::string> scene_text);
+LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text);
 
 /// The payload of the block.
 std::string to_bytes(const LogHeader& header);
@@ -97,14 +97,14 @@ std::string to_bytes(const LogGap& gap);
 /// The payload of the block.
 std::string to_bytes(const LogEnd& end);
 /// Nothing where the bytes are none of these.
-std::optional<LogHeader> header_from(std::string_view bytes);
+std::optional<LogHeader> parse_header(std::string_view bytes);
 /// Nothing where the bytes are none of these.
-std::optional<LogProgram> program_from(std::string_view bytes);
+std::optional<LogProgram> parse_program(std::string_view bytes);
 /// Nothing where the bytes are none of these.
-std::optional<LogState> state_from(std::string_view bytes);
+std::optional<LogState> parse_state(std::string_view bytes);
 /// Nothing where the bytes are none of these.
-std::optional<LogGap> gap_from(std::string_view bytes);
+std::optional<LogGap> parse_gap(std::string_view bytes);
 /// Nothing where the bytes are none of these.
-std::optional<LogEnd> end_from(std::string_view bytes);
+std::optional<LogEnd> parse_end(std::string_view bytes);
 
 }  // namespace catena::haptics::log

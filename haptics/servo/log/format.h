@@ -45,17 +45,17 @@ class ByteReader {
   T get() {
     static_assert(std::is_arithmetic_v<T>);
     T value{};
-    if (const char* from = take(sizeof value)) std::memcpy(&value, from, sizeof value);
+    if (const char* from = read_bytes(sizeof value)) std::memcpy(&value, from, sizeof value);
     return value;
   }
   /// The next string.
   std::string get_string() {
     const auto size = get<std::uint32_t>();
-    const char* from = take(size);
+    const char* from = read_bytes(size);
     return from != nullptr ? std::string(from, size) : std::string();
   }
   /// nullptr where fewer are left.
-  const char* take(std::size_t size) {
+  const char* read_bytes(std::size_t size) {
     if (!good_ || size > bytes_.size() - at_) {
       good_ = false;
       return nullptr;
@@ -66,7 +66,7 @@ class ByteReader {
   }
   /// Whether nothing was read past the end.
   bool good() const { return good_; }
-  bool finished() const { return good_ && at_ == bytes_.size(); }  ///< all read, nothing left
+  bool at_end() const { return good_ && at_ == bytes_.size(); }  ///< all read, nothing left
 
  private:
   std::string_view bytes_;
@@ -119,26 +119,26 @@ class ByteReader {
 /// A file cut at any byte holds every block that is complete. A block whose hashes do not fit is damaged: where its own 32 bytes
 /// are good its length is, too; else the next block is found by its mark.
 inline constexpr unsigned char kMagic[8] = {0x89, 'C', 'A', 'T', 'L', 'O', 'G', '\n'};
-inline constexpr std::uint32_t kVersion = 2;             ///< Of the format; another one is refused.
-inline constexpr std::uint32_t kByteOrder = 0x01020304;  ///< As the writing machine has it.
-inline constexpr std::uint64_t kPreambleBytes = 16;      ///< Before the first block.
+inline constexpr std::uint32_t kVersion = 2;                 ///< Of the format; another one is refused.
+inline constexpr std::uint32_t kByteOrderMark = 0x01020304;  ///< As the writing machine has it.
+inline constexpr std::uint64_t kPreambleBytes = 16;          ///< Before the first block.
 
 /// What a block holds.
 enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6, poses = 7 };
 
 /// The 40 bytes before each payload.
-struct BlockHead {
-  std::uint32_t mark = kBlockMark;  ///< begins every block
-  std::uint32_t type = 0;           ///< a BlockType
-  std::uint64_t sequence = 0;       ///< 0, 1, 2 ..
-  std::uint64_t length = 0;         ///< bytes of the payload
-  std::uint64_t payload_hash = 0;   ///< FNV-1a-64 of the payload
-  std::uint64_t head_hash = 0;      ///< FNV-1a-64 of the 32 bytes before it
+struct BlockHeader {
+  std::uint32_t magic = kBlockMagic;  ///< begins every block
+  std::uint32_t type = 0;             ///< a BlockType
+  std::uint64_t sequence = 0;         ///< 0, 1, 2 ..
+  std::uint64_t length = 0;           ///< bytes of the payload
+  std::uint64_t payload_hash = 0;     ///< FNV-1a-64 of the payload
+  std::uint64_t header_hash = 0;      ///< FNV-1a-64 of the 32 bytes before it
 
-  static constexpr std::uint32_t kBlockMark = 0x4b4c4243;  ///< "CBLK"
-  static constexpr std::uint64_t kHashed = 32;             ///< bytes before head_hash
+  static constexpr std::uint32_t kBlockMagic = 0x4b4c4243;  ///< "CBLK"
+  static constexpr std::uint64_t kHashedBytes = 32;         ///< bytes before header_hash
 };
-static_assert(sizeof(BlockHead) == 40);
+static_assert(sizeof(BlockHeader) == 40);
 
 inline constexpr std::uint64_t kMaxPayload = std::uint64_t{64} << 20;  ///< of any block; a longer one is damaged
 

@@ -3,21 +3,21 @@
 #include <utility>
 
 #include "engine/base/clock.h"
-#include "haptics/chain/check_state.h"
 #include "haptics/chain/tick.h"
+#include "haptics/chain/validate_state.h"
 
 namespace catena::haptics::log {
 
 namespace {
 
 // The program that was built, if it has the links that the log names.
-Result<std::shared_ptr<const Program>> with_recorded_recipes(const Program& built, const LogProgram& recorded) {
-  Program program = built;
+Result<std::shared_ptr<const HapticProgram>> with_recorded_recipes(const HapticProgram& built, const LogProgram& recorded) {
+  HapticProgram program = built;
   bool same = program.widgets.size() == recorded.widgets.size() && program.links.size() == recorded.links.size() &&
               program.modes.size() == recorded.modes.size();
   for (std::size_t i = 0; same && i < program.links.size(); ++i) {
     same = program.links[i].name == recorded.links[i].name;
-    program.links[i].recipe = recorded.links[i].recipe;
+    program.links[i].spec_hash = recorded.links[i].spec_hash;
   }
   for (std::size_t i = 0; same && i < program.widgets.size(); ++i) {
     const LogProgram::Widget& widget = recorded.widgets[i];
@@ -29,12 +29,12 @@ Result<std::shared_ptr<const Program>> with_recorded_recipes(const Program& buil
   if (!same)
     return Error{"tick " + std::to_string(recorded.first_tick) +
                  ": the scene has other links or widgets than the recording; expected the scene that was recorded"};
-  return std::shared_ptr<const Program>(std::make_shared<Program>(std::move(program)));
+  return std::shared_ptr<const HapticProgram>(std::make_shared<HapticProgram>(std::move(program)));
 }
 
 // The log says where it begins, and which links of the next program keep their state: neither is trusted.
-Outcome check_at(std::uint64_t tick, const Program& program, const ChainState& state) {
-  const Outcome sane = check_state(program, state);
+Outcome check_at(std::uint64_t tick, const HapticProgram& program, const ChainState& state) {
+  const Outcome sane = validate_state(program, state);
   if (!sane) return Error{"before tick " + std::to_string(tick) + ": " + sane.error().message};
   return Done{};
 }
@@ -45,23 +45,23 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
   bool begun = false;
-  exchange::HapticState out;
-  std::shared_ptr<const Program> program;
+  HapticState out;
+  std::shared_ptr<const HapticProgram> program;
   std::vector<std::string> names, widgets;
-  Words words{};
+  RecordWords words{};
   ReplayMeter meter;
   LogReplay result;
-  for (LogEvent event = log.next(); event != LogEvent::done && result.stopped.empty(); event = log.next()) {
+  for (LogEvent event = log.next(); event != LogEvent::done && result.stop_reason.empty(); event = log.next()) {
     switch (event) {
       case LogEvent::program: {
-        if (!log.program().known) {
-          result.stopped = "the log does not say what ran from tick " + std::to_string(log.program().first_tick) + " on";
+        if (!log.program().is_known) {
+          result.stop_reason = "the log does not say what ran from tick " + std::to_string(log.program().first_tick) + " on";
           break;
         }
-        CATENA_TRY(const std::shared_ptr<const Program> built, hooks.build(log.program()));
-        CATENA_TRY(std::shared_ptr<const Program> next, with_recorded_recipes(*built, log.program()));
+        CATENA_TRY(const std::shared_ptr<const HapticProgram> built, hooks.build(log.program()));
+        CATENA_TRY(std::shared_ptr<const HapticProgram> next, with_recorded_recipes(*built, log.program()));
         if (program) {
-          rebind(*program, *next, *state, *scratch);
+          rebind_program(*program, *next, *state, *scratch);
           CATENA_CHECK(check_at(log.program().first_tick, *next, *state));
         }
         program = std::move(next);
@@ -75,7 +75,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
                        ", with a state that another build of Catena has written; expected the build that recorded it"};
         break;
       case LogEvent::gap:
-        result.stopped = log.gap().text();
+        result.stop_reason = log.gap().description();
         break;
       case LogEvent::tick: {
         if (!std::exchange(begun, true) && log.state().chain) {
@@ -85,8 +85,8 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         const std::int64_t start = now_ns();
         tick(*program, log.tick().input, *state, *scratch, out);
         meter.add(static_cast<double>(now_ns() - start), out);
-        pack(log.tick().input, out, words.data());
-        std::string difference = first_difference(log.words(), words, names, widgets);
+        pack_tick(log.tick().input, out, words.data());
+        std::string difference = first_difference(log.record_words(), words, names, widgets);
         if (difference.empty() && out.tick != log.tick().output.tick) difference = "the tick's number";
         if (!difference.empty() && result.differing++ == 0) {
           result.first_differing = log.tick().output.tick;

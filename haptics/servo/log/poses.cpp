@@ -19,8 +19,8 @@ void each_tracked_number(Pose& pose, const F& each) {
 
 }  // namespace
 
-const char* tracked_word(TrackedPart part) {
-  constexpr const char* words[kTrackedParts] = {"head", "left_hand", "right_hand", "gaze"};
+const char* to_string(TrackedPart part) {
+  constexpr const char* words[kTrackedPartCount] = {"head", "left_hand", "right_hand", "gaze"};
   return words[static_cast<std::size_t>(part)];
 }
 
@@ -31,7 +31,7 @@ std::string to_bytes(const std::vector<LogPoses>& poses) {
     out.put(one.tick);
     out.put(one.predicted_ns);
     std::uint8_t known = 0;
-    for (std::size_t i = 0; i < kTrackedParts; ++i) known = static_cast<std::uint8_t>(known | (one.parts[i] ? 1u << i : 0u));
+    for (std::size_t i = 0; i < kTrackedPartCount; ++i) known = static_cast<std::uint8_t>(known | (one.parts[i] ? 1u << i : 0u));
     out.put(known);
     for (const auto& pose : one.parts)
       if (pose) each_tracked_number(*pose, [&](double v) { out.put(v); });
@@ -39,7 +39,7 @@ std::string to_bytes(const std::vector<LogPoses>& poses) {
   return std::move(out.bytes());
 }
 
-std::optional<std::vector<LogPoses>> poses_from(std::string_view bytes) {
+std::optional<std::vector<LogPoses>> parse_poses(std::string_view bytes) {
   ByteReader in(bytes);
   const auto count = in.get<std::uint32_t>();
   if (count > kMaxPosesABlock) return std::nullopt;
@@ -50,8 +50,8 @@ std::optional<std::vector<LogPoses>> poses_from(std::string_view bytes) {
     one.tick = in.get<std::uint64_t>();
     one.predicted_ns = in.get<std::int64_t>();
     const auto known = in.get<std::uint8_t>();
-    good = known < 1u << kTrackedParts;
-    for (std::size_t part = 0; part < kTrackedParts; ++part) {
+    good = known < 1u << kTrackedPartCount;
+    for (std::size_t part = 0; part < kTrackedPartCount; ++part) {
       if ((known >> part & 1u) == 0) continue;
       each_tracked_number(one.parts[part].emplace(), [&](double& v) {
         v = in.get<double>();
@@ -60,20 +60,20 @@ std::optional<std::vector<LogPoses>> poses_from(std::string_view bytes) {
     }
     out.push_back(one);
   }
-  if (!good || !in.finished()) return std::nullopt;
+  if (!good || !in.at_end()) return std::nullopt;
   return out;
 }
 
-std::string poses_header() {
+std::string poses_csv_header() {
   std::string line = "tick,predicted_ns";
-  for (std::size_t i = 0; i < kTrackedParts; ++i) {
-    const char* part = tracked_word(static_cast<TrackedPart>(i));
+  for (std::size_t i = 0; i < kTrackedPartCount; ++i) {
+    const char* part = to_string(static_cast<TrackedPart>(i));
     for (const char* number : {"x", "y", "z", "qw", "qx", "qy", "qz"}) line += fmt::format(",{}_{}", part, number);
   }
   return line + "\n";
 }
 
-void append_poses(std::string& line, const LogPoses& poses) {
+void append_poses_csv(std::string& line, const LogPoses& poses) {
   line += fmt::format("{},{}", poses.tick, poses.predicted_ns);
   for (const auto& pose : poses.parts) {
     if (!pose) {
@@ -82,7 +82,7 @@ void append_poses(std::string& line, const LogPoses& poses) {
     }
     each_tracked_number(*pose, [&](double v) {
       line += ',';
-      append_text(line, v);
+      append_number(line, v);
     });
   }
   line += '\n';

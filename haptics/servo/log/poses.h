@@ -14,13 +14,13 @@ namespace catena::haptics::log {
 
 /// What a headset tracks.
 enum class TrackedPart : std::size_t { head, left_hand, right_hand, gaze };
-inline constexpr std::size_t kTrackedParts = 4;  ///< How many they are.
-const char* tracked_word(TrackedPart part);      ///< head, left_hand, right_hand, gaze
+inline constexpr std::size_t kTrackedPartCount = 4;  ///< How many they are.
+const char* to_string(TrackedPart part);             ///< head, left_hand, right_hand, gaze
 
 /// One pose.
 struct TrackedPose {
-  Vec3 position_m{0.0};           ///< metres of the room
-  Quat orientation{kNoRotation};  ///< room from part, unit
+  Vec3 position_m{0.0};                 ///< metres of the room
+  Quat orientation{kIdentityRotation};  ///< room from part, unit
   bool operator==(const TrackedPose&) const = default;
 };
 
@@ -28,7 +28,7 @@ struct TrackedPose {
 struct LogPoses {
   std::uint64_t tick = 0;         ///< the newest tick that was known when the picture was begun
   std::int64_t predicted_ns = 0;  ///< when it was to be shown, on the runtime's clock: what the poses are of
-  std::array<std::optional<TrackedPose>, kTrackedParts> parts{};  ///< none: not tracked
+  std::array<std::optional<TrackedPose>, kTrackedPartCount> parts{};  ///< none: not tracked
   bool operator==(const LogPoses&) const = default;
 
   /// The pose of a part.
@@ -38,11 +38,11 @@ struct LogPoses {
 /// The payload of the block.
 std::string to_bytes(const std::vector<LogPoses>& poses);
 /// Nothing where the bytes are none, or a number is not finite.
-std::optional<std::vector<LogPoses>> poses_from(std::string_view bytes);
+std::optional<std::vector<LogPoses>> parse_poses(std::string_view bytes);
 
 /// As a table: tick, predicted_ns, then head_x,y,z,qw,qx,qy,qz and so on for each part; empty where a part was not tracked.
-std::string poses_header();
+std::string poses_csv_header();
 /// One row, without a line end.
-void append_poses(std::string& line, const LogPoses& poses);
+void append_poses_csv(std::string& line, const LogPoses& poses);
 
 }  // namespace catena::haptics::log

@@ -9,68 +9,68 @@
 namespace catena::haptics::log {
 
 Result<LogReader> LogReader::open(const std::string& path) {
-  CATENA_TRY(std::unique_ptr<Source> source, open_file(path));
+  CATENA_TRY(std::unique_ptr<ByteSource> source, open_file_source(path));
   return open(std::move(source), path);
 }
 
-Result<LogReader> LogReader::open(std::unique_ptr<Source> source, const std::string& name) {
+Result<LogReader> LogReader::open(std::unique_ptr<ByteSource> source, const std::string& name) {
   unsigned char preamble[kPreambleBytes];
   std::uint32_t version = 0, order = 0;
   if (source->size() < sizeof preamble || !source->read(0, preamble, sizeof preamble) || std::memcmp(preamble, kMagic, sizeof kMagic) != 0)
     return Error{name + ": is no recording of Catena, or was cut off within its first bytes; a .catlog file was expected"};
   std::memcpy(&version, preamble + 8, sizeof version);
   std::memcpy(&order, preamble + 12, sizeof order);
-  if (order != kByteOrder) return Error{name + ": was recorded on a machine of another byte order; expected one like this"};
+  if (order != kByteOrderMark) return Error{name + ": was recorded on a machine of another byte order; expected one like this"};
   if (version != kVersion)
     return Error{fmt::format("{}: is a recording of version {}; this program reads version {}", name, version, kVersion)};
   LogReader reader{BlockReader(std::move(source))};
-  const BlockReader::Found found = reader.blocks_.next();
-  if (found == BlockReader::Found::block && reader.blocks_.type() == BlockType::header && reader.blocks_.sequence() == 0) {
-    if (auto header = header_from(reader.blocks_.payload())) {
+  const BlockReader::ReadResult found = reader.blocks_.next();
+  if (found == BlockReader::ReadResult::block && reader.blocks_.type() == BlockType::header && reader.blocks_.sequence() == 0) {
+    if (auto header = parse_header(reader.blocks_.payload())) {
       reader.header_ = std::move(*header);
       return reader;
     }
   }
-  return Error{name + (found == BlockReader::Found::cut_off || found == BlockReader::Found::end
+  return Error{name + (found == BlockReader::ReadResult::truncated || found == BlockReader::ReadResult::end
                            ? ": was cut off before its header was complete; it holds no tick"
                            : ": its header is damaged; expected it as it was written")};
 }
 
-bool LogReader::damage() {
+bool LogReader::mark_damaged() {
   damaged_ = true;
   return false;
 }
 
-LogEvent LogReader::lost_before(std::uint64_t next) {
-  gap_ = {last_ + 1, next - last_ - 1, LogGap::Why::damaged};
+LogEvent LogReader::report_gap_before(std::uint64_t next) {
+  gap_ = {last_tick_ + 1, next - last_tick_ - 1, LogGap::Cause::damaged};
   damaged_ = true;
-  last_ = next - 1;
+  last_tick_ = next - 1;
   return LogEvent::gap;
 }
 
 LogEvent LogReader::next() {
   while (!finished_) {
-    if (left_ > 0) return next_record();
-    if (!again_) {
+    if (records_left_ > 0) return next_record();
+    if (!reprocess_block_) {
       switch (blocks_.next()) {
-        case BlockReader::Found::end:
-        case BlockReader::Found::cut_off:
+        case BlockReader::ReadResult::end:
+        case BlockReader::ReadResult::truncated:
           finished_ = true;
           continue;
-        case BlockReader::Found::damaged:
-          damage();
+        case BlockReader::ReadResult::damaged:
+          mark_damaged();
           continue;
-        case BlockReader::Found::block:
+        case BlockReader::ReadResult::block:
           break;
       }
       if (blocks_.sequence() < next_sequence_) {
-        damage();  // a block for the second time
+        mark_damaged();  // a block for the second time
         continue;
       }
-      if (blocks_.sequence() > next_sequence_) damage();
+      if (blocks_.sequence() > next_sequence_) mark_damaged();
       next_sequence_ = blocks_.sequence() + 1;
     }
-    again_ = false;
+    reprocess_block_ = false;
     if (const auto event = read_block()) return *event;
   }
   return LogEvent::done;
@@ -93,18 +93,18 @@ std::optional<LogEvent> LogReader::read_block() {
     case BlockType::header:
       break;
   }
-  damage();
+  mark_damaged();
   return std::nullopt;
 }
 
 std::optional<LogEvent> LogReader::read_program() {
-  auto program = program_from(blocks_.payload());
-  if (!program || program->first_tick <= last_) {
-    damage();
+  auto program = parse_program(blocks_.payload());
+  if (!program || program->first_tick <= last_tick_) {
+    mark_damaged();
     return std::nullopt;
   }
   program_ = std::move(*program);
-  has_program_ = program_.known;
+  has_program_ = program_.is_known;
   if (!has_program_) return std::nullopt;  // its ticks say how many links it has
   return LogEvent::program;
 }
@@ -113,89 +113,89 @@ std::optional<LogEvent> LogReader::read_ticks() {
   ByteReader in(blocks_.payload());
   const auto epoch = in.get<std::uint64_t>(), first = in.get<std::uint64_t>();
   const auto count = in.get<std::uint32_t>(), links = in.get<std::uint32_t>(), widgets = in.get<std::uint32_t>();
-  const bool sane = in.good() && count > 0 && links <= kMaxLinks && widgets <= exchange::kMaxWidgets && first > last_ &&
+  const bool sane = in.good() && count > 0 && links <= kMaxLinks && widgets <= kMaxWidgets && first > last_tick_ &&
                     count <= blocks_.payload().size() && first <= ~std::uint64_t{0} - count;
   constexpr std::size_t kHead = 28;
-  const Shape shape{static_cast<int>(links & 0xff), static_cast<int>(widgets & 0xff)};
+  const RecordLayout shape{static_cast<int>(links & 0xff), static_cast<int>(widgets & 0xff)};
   // all of it is looked at before any of it is told
-  Words words{};
+  RecordWords words{};
   LogTick tick;
   bool good = sane;
   std::string_view rest = sane ? blocks_.payload().substr(kHead) : std::string_view();
   for (std::uint32_t i = 0; i < count && good; ++i) {
-    const std::size_t used = unsqueeze(rest, words_of(shape), words);
-    good = used > 0 && unpack(words, shape, tick);
+    const std::size_t used = decompress_record(rest, record_word_count(shape), words);
+    good = used > 0 && unpack_tick(words, shape, tick);
     rest.remove_prefix(used);
   }
   if (!good || !rest.empty()) {
-    damage();
+    mark_damaged();
     return std::nullopt;
   }
-  if (first > last_ + 1) {
-    again_ = true;
-    return lost_before(first);
+  if (first > last_tick_ + 1) {
+    reprocess_block_ = true;
+    return report_gap_before(first);
   }
   if (!has_program_ || program_.epoch != epoch || program_.links.size() != links || program_.widgets.size() != widgets) {
     // its block is damaged, or nobody told the writer
-    if (has_program_ || program_.known) damage();
+    if (has_program_ || program_.is_known) mark_damaged();
     program_ = {};
     program_.epoch = epoch;
     program_.first_tick = first;
-    program_.known = false;
+    program_.is_known = false;
     for (std::uint32_t i = 0; i < links; ++i) program_.links.push_back({fmt::format("link_{}", i + 1), 0});
     for (std::uint32_t i = 0; i < widgets; ++i) program_.widgets.push_back({fmt::format("widget_{}", i + 1), 0, {}, 0});
     has_program_ = true;
-    again_ = true;
+    reprocess_block_ = true;
     return LogEvent::program;
   }
   records_ = blocks_.payload().substr(kHead);
-  left_ = count;
-  shape_ = shape;
-  words_.fill(0);
+  records_left_ = count;
+  layout_ = shape;
+  record_words_.fill(0);
   tick_ = {};
   tick_.output.program_epoch = epoch;
   return std::nullopt;
 }
 
 LogEvent LogReader::next_record() {
-  const std::size_t used = unsqueeze(records_, words_of(shape_), words_);
+  const std::size_t used = decompress_record(records_, record_word_count(layout_), record_words_);
   records_.remove_prefix(used);
-  --left_;
-  unpack(words_, shape_, tick_);
-  tick_.output.tick = ++last_;
+  --records_left_;
+  unpack_tick(record_words_, layout_, tick_);
+  tick_.output.tick = ++last_tick_;
   return LogEvent::tick;
 }
 
 std::optional<LogEvent> LogReader::read_state() {
-  auto state = state_from(blocks_.payload());
-  if (!state || last_ != 0) {
-    damage();
+  auto state = parse_state(blocks_.payload());
+  if (!state || last_tick_ != 0) {
+    mark_damaged();
     return std::nullopt;
   }
   state_ = std::move(*state);
-  last_ = state_.tick;
+  last_tick_ = state_.tick;
   return LogEvent::state;
 }
 
 std::optional<LogEvent> LogReader::read_gap() {
-  const auto gap = gap_from(blocks_.payload());
-  if (!gap || gap->first_tick <= last_ || gap->ticks > ~std::uint64_t{0} - gap->first_tick) {
-    damage();
+  const auto gap = parse_gap(blocks_.payload());
+  if (!gap || gap->first_tick <= last_tick_ || gap->ticks > ~std::uint64_t{0} - gap->first_tick) {
+    mark_damaged();
     return std::nullopt;
   }
-  if (gap->first_tick > last_ + 1) {
-    again_ = true;
-    return lost_before(gap->first_tick);
+  if (gap->first_tick > last_tick_ + 1) {
+    reprocess_block_ = true;
+    return report_gap_before(gap->first_tick);
   }
   gap_ = *gap;
-  last_ += gap->ticks;
+  last_tick_ += gap->ticks;
   return LogEvent::gap;
 }
 
 std::optional<LogEvent> LogReader::read_poses() {
-  auto poses = poses_from(blocks_.payload());
+  auto poses = parse_poses(blocks_.payload());
   if (!poses) {
-    damage();
+    mark_damaged();
     return std::nullopt;
   }
   poses_ = std::move(*poses);
@@ -203,25 +203,25 @@ std::optional<LogEvent> LogReader::read_poses() {
 }
 
 std::optional<LogEvent> LogReader::read_end() {
-  const auto end = end_from(blocks_.payload());
+  const auto end = parse_end(blocks_.payload());
   if (!end || end->last_tick == ~std::uint64_t{0}) {
-    damage();
+    mark_damaged();
     return std::nullopt;
   }
-  if (end->last_tick > last_) {
-    again_ = true;
-    return lost_before(end->last_tick + 1);
+  if (end->last_tick > last_tick_) {
+    reprocess_block_ = true;
+    return report_gap_before(end->last_tick + 1);
   }
   end_ = *end;
-  if (blocks_.next() != BlockReader::Found::end) damage();
+  if (blocks_.next() != BlockReader::ReadResult::end) mark_damaged();
   finished_ = true;
   return std::nullopt;
 }
 
-std::string LogReader::ending() const {
-  std::string text = end_       ? fmt::format("ends cleanly with tick {}", last_)
-                     : damaged_ ? fmt::format("nothing can be read after tick {}", last_)
-                                : fmt::format("cut off after tick {}", last_);
+std::string LogReader::end_summary() const {
+  std::string text = end_       ? fmt::format("ends cleanly with tick {}", last_tick_)
+                     : damaged_ ? fmt::format("nothing can be read after tick {}", last_tick_)
+                                : fmt::format("cut off after tick {}", last_tick_);
   if (damaged_) text += "; the log is damaged";
   return text;
 }

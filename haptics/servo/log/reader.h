@@ -26,7 +26,7 @@ class LogReader {
  public:
   /// The error says what is wrong with the file's first bytes.
   static Result<LogReader> open(const std::string& path);
-  static Result<LogReader> open(std::unique_ptr<Source> source,
+  static Result<LogReader> open(std::unique_ptr<ByteSource> source,
                                 const std::string& name);  ///< The same of any source; `name` begins every message.
 
   /// What was known before the first tick.
@@ -36,7 +36,7 @@ class LogReader {
   const LogProgram& program() const { return program_; }  ///< that of the ticks that follow
   /// After LogEvent::tick.
   const LogTick& tick() const { return tick_; }
-  const Words& words() const { return words_; }  ///< the same tick (record.h)
+  const RecordWords& record_words() const { return record_words_; }  ///< the same tick (record.h)
   /// After LogEvent::gap.
   const LogGap& gap() const { return gap_; }
   /// After LogEvent::state.
@@ -45,12 +45,12 @@ class LogReader {
   const std::vector<LogPoses>& poses() const { return poses_; }
 
   /// Number of the newest tick so far.
-  std::uint64_t last_tick() const { return last_; }
+  std::uint64_t last_tick() const { return last_tick_; }
   /// Once done: the end that the writer wrote; none: the log was cut off.
   const std::optional<LogEnd>& end() const { return end_; }
   bool damaged() const { return damaged_; }  ///< some block was not as it was written
   /// Once done, one line: "ends cleanly with tick 5", "cut off after tick 5", and whether it is damaged.
-  std::string ending() const;
+  std::string end_summary() const;
 
  private:
   explicit LogReader(BlockReader blocks) : blocks_(std::move(blocks)) {}
@@ -62,25 +62,25 @@ class LogReader {
   std::optional<LogEvent> read_gap();
   std::optional<LogEvent> read_poses();
   std::optional<LogEvent> read_end();
-  LogEvent lost_before(std::uint64_t next);
-  bool damage();
+  LogEvent report_gap_before(std::uint64_t next);
+  bool mark_damaged();
 
   BlockReader blocks_;
   LogHeader header_;
   LogProgram program_;
   LogTick tick_;
-  Words words_{};
+  RecordWords record_words_{};
   LogGap gap_;
   LogState state_;
   std::vector<LogPoses> poses_;
   std::optional<LogEnd> end_;
-  bool has_program_ = false, damaged_ = false, finished_ = false, again_ = false;
-  std::uint64_t next_sequence_ = 1, last_ = 0;
+  bool has_program_ = false, damaged_ = false, finished_ = false, reprocess_block_ = false;
+  std::uint64_t next_sequence_ = 1, last_tick_ = 0;
 
   // the block of ticks that is being read
   std::string_view records_;
-  std::uint32_t left_ = 0;
-  Shape shape_;
+  std::uint32_t records_left_ = 0;
+  RecordLayout layout_;
 };
 
 }  // namespace catena::haptics::log

@@ -8,13 +8,8 @@
 
 namespace catena::haptics::log {
 
-using exchange::HapticState;
-using exchange::LinkReport;
-using exchange::WidgetReport;
-
 // What a tick takes and gives has grown: give it words in record.h and raise kVersion.
-static_assert(sizeof(ProbeSample) == 80 && sizeof(LinkReport) == 168 && sizeof(exchange::WidgetReport) == 96 &&
-              sizeof(HapticState) == 3024);
+static_assert(sizeof(ProbeSample) == 80 && sizeof(LinkReport) == 168 && sizeof(WidgetReport) == 96 && sizeof(HapticState) == 3024);
 
 namespace {
 
@@ -69,9 +64,9 @@ void pack_link(const LinkReport& link, std::uint64_t* words) noexcept {
   for (const double v : {link.residual, link.weight, link.stiffness_n_per_m, link.gap}) put(v);
   put(link.orientation);
   put(link.torque_nm);
-  put(link.booked_j);
-  put(link.leaving);
-  *put.at = from_parts(static_cast<std::uint32_t>(link.evaluations), link.status, link.active, link.left, link.reason);
+  put(link.accounted_j);
+  put(link.release_ratio);
+  *put.at = from_parts(static_cast<std::uint32_t>(link.evaluations), link.status, link.active, link.released, link.sample_status);
 }
 
 bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
@@ -81,17 +76,17 @@ bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
   for (double* v : {&link.residual, &link.weight, &link.stiffness_n_per_m, &link.gap}) take(*v);
   take(link.orientation);
   take(link.torque_nm);
-  take(link.booked_j);
-  take(link.leaving);
+  take(link.accounted_j);
+  take(link.release_ratio);
   const std::uint64_t packed = *take.at;
   link.evaluations = static_cast<std::int32_t>(static_cast<std::uint32_t>(packed));
-  link.status = static_cast<exchange::Status>(byte_of(packed, 4));
+  link.status = static_cast<LinkStatus>(byte_of(packed, 4));
   link.active = byte_of(packed, 5) == 1;
-  link.left = byte_of(packed, 6) == 1;
-  link.reason = static_cast<Reason>(byte_of(packed, 7));
-  link.curve = exchange::kUnknownCurve;
-  return byte_of(packed, 4) <= static_cast<std::uint8_t>(exchange::Status::bad_probe) && byte_of(packed, 5) <= 1 &&
-         byte_of(packed, 6) <= 1 && byte_of(packed, 7) <= static_cast<std::uint8_t>(Reason::parallel);
+  link.released = byte_of(packed, 6) == 1;
+  link.sample_status = static_cast<SampleStatus>(byte_of(packed, 7));
+  link.curve = kUnknownCurve;
+  return byte_of(packed, 4) <= static_cast<std::uint8_t>(LinkStatus::bad_probe) && byte_of(packed, 5) <= 1 && byte_of(packed, 6) <= 1 &&
+         byte_of(packed, 7) <= static_cast<std::uint8_t>(SampleStatus::parallel);
 }
 
 void pack_widget(const WidgetReport& widget, std::uint64_t* words) noexcept {
@@ -99,7 +94,7 @@ void pack_widget(const WidgetReport& widget, std::uint64_t* words) noexcept {
   for (const Vec3& point : widget.pose.points) put(point);
   put(widget.pose.orientation);
   put(widget.value);
-  *put.at = from_parts(widget.revision, widget.mode, widget.handle, widget.held);
+  *put.at = from_parts(widget.revision, widget.mode, widget.handle, widget.active_planes);
 }
 
 bool unpack_widget(const std::uint64_t* words, WidgetReport& widget) noexcept {
@@ -109,16 +104,16 @@ bool unpack_widget(const std::uint64_t* words, WidgetReport& widget) noexcept {
   take(widget.value);
   const std::uint64_t packed = *take.at;
   widget.revision = static_cast<std::uint32_t>(packed);
-  widget.mode = static_cast<exchange::WidgetMode>(byte_of(packed, 4));
+  widget.mode = static_cast<WidgetMode>(byte_of(packed, 4));
   widget.handle = static_cast<std::int8_t>(byte_of(packed, 5));
-  widget.held = byte_of(packed, 6);
-  return byte_of(packed, 4) <= static_cast<std::uint8_t>(exchange::WidgetMode::drag) && widget.handle >= -1 && widget.handle <= 6 &&
-         widget.held <= 7 && byte_of(packed, 7) == 0;
+  widget.active_planes = byte_of(packed, 6);
+  return byte_of(packed, 4) <= static_cast<std::uint8_t>(WidgetMode::drag) && widget.handle >= -1 && widget.handle <= 6 &&
+         widget.active_planes <= 7 && byte_of(packed, 7) == 0;
 }
 
 }  // namespace
 
-int pack(const ProbeSample& input, const HapticState& output, std::uint64_t* words) noexcept {
+int pack_tick(const ProbeSample& input, const HapticState& output, std::uint64_t* words) noexcept {
   Put put{words};
   put(input.t_s);
   put(input.position);
@@ -136,10 +131,10 @@ int pack(const ProbeSample& input, const HapticState& output, std::uint64_t* wor
   for (int i = 0; i < output.link_count; ++i) pack_link(output.links[static_cast<std::size_t>(i)], words + kTickWords + kLinkWords * i);
   std::uint64_t* const widgets = words + kTickWords + kLinkWords * output.link_count;
   for (int i = 0; i < output.widget_count; ++i) pack_widget(output.widgets[static_cast<std::size_t>(i)], widgets + kWidgetWords * i);
-  return words_of(shape_of(output));
+  return record_word_count(record_layout(output));
 }
 
-bool unpack(const Words& words, const Shape& shape, LogTick& tick) noexcept {
+bool unpack_tick(const RecordWords& words, const RecordLayout& shape, LogTick& tick) noexcept {
   ProbeSample& input = tick.input;
   HapticState& output = tick.output;
   Take take{words.data()};
@@ -148,7 +143,7 @@ bool unpack(const Words& words, const Shape& shape, LogTick& tick) noexcept {
   take(input.orientation);
   const std::uint64_t packed = *take.at++;
   input.buttons = static_cast<std::uint32_t>(packed);
-  input.condition = static_cast<Condition>(byte_of(packed, 4));
+  input.condition = static_cast<TickCondition>(byte_of(packed, 4));
   input.forces_on = byte_of(packed, 5) == 1;
   output.force_state = static_cast<ForceState>(byte_of(packed, 6));
   output.mode = static_cast<std::int8_t>(byte_of(packed, 7));
@@ -168,7 +163,7 @@ bool unpack(const Words& words, const Shape& shape, LogTick& tick) noexcept {
   output.condition = input.condition;
   output.link_count = shape.links;
   output.widget_count = shape.widgets;
-  bool good = byte_of(packed, 4) <= static_cast<std::uint8_t>(Condition::watchdog) && byte_of(packed, 5) <= 1 &&
+  bool good = byte_of(packed, 4) <= static_cast<std::uint8_t>(TickCondition::watchdog) && byte_of(packed, 5) <= 1 &&
               byte_of(packed, 6) <= static_cast<std::uint8_t>(ForceState::stopped) && output.mode >= -1 && output.mode < kMaxModes;
   for (int i = 0; i < shape.links; ++i)
     good = unpack_link(words.data() + kTickWords + kLinkWords * i, output.links[static_cast<std::size_t>(i)]) && good;
@@ -232,7 +227,7 @@ std::string said(const std::string& what, const std::string& recorded, const std
 }
 
 std::string packed_difference(std::uint64_t a, std::uint64_t b) {
-  const auto forces = [](std::uint64_t w) -> std::string { return exchange::force_state_word(static_cast<ForceState>(byte_of(w, 6))); };
+  const auto forces = [](std::uint64_t w) -> std::string { return to_string(static_cast<ForceState>(byte_of(w, 6))); };
   const auto mode = [](std::uint64_t w) { return std::to_string(static_cast<std::int8_t>(byte_of(w, 7))); };
   if (byte_of(a, 6) != byte_of(b, 6)) return said("force_state", forces(a), forces(b));
   if (byte_of(a, 7) != byte_of(b, 7)) return said("mode", mode(a), mode(b));
@@ -241,11 +236,11 @@ std::string packed_difference(std::uint64_t a, std::uint64_t b) {
 
 std::string packed_link_difference(const std::string& link, std::uint64_t a, std::uint64_t b) {
   const auto evaluations = [](std::uint64_t w) { return std::to_string(static_cast<std::int32_t>(static_cast<std::uint32_t>(w))); };
-  const auto status = [](std::uint64_t w) -> std::string { return exchange::status_word(static_cast<exchange::Status>(byte_of(w, 4))); };
+  const auto status = [](std::uint64_t w) -> std::string { return to_string(static_cast<LinkStatus>(byte_of(w, 4))); };
   if (byte_of(a, 4) != byte_of(b, 4)) return said(link + "_status", status(a), status(b));
   if (byte_of(a, 5) != byte_of(b, 5)) return said(link + "_active", std::to_string(byte_of(a, 5)), std::to_string(byte_of(b, 5)));
   if (byte_of(a, 6) != byte_of(b, 6)) return said(link + "_left", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
-  const auto reason = [](std::uint64_t w) -> std::string { return reason_word(static_cast<Reason>(byte_of(w, 7))); };
+  const auto reason = [](std::uint64_t w) -> std::string { return to_string(static_cast<SampleStatus>(byte_of(w, 7))); };
   if (byte_of(a, 7) != byte_of(b, 7) && byte_of(a, 7) != 0) return said(link + "_reason", reason(a), reason(b));
   return said(link + "_evaluations", evaluations(a), evaluations(b));
 }
@@ -257,7 +252,7 @@ bool same_packed_link(std::uint64_t recorded, std::uint64_t replayed) {
 }
 
 std::string packed_widget_difference(const std::string& widget, std::uint64_t a, std::uint64_t b) {
-  const auto mode = [](std::uint64_t w) -> std::string { return exchange::mode_word(static_cast<exchange::WidgetMode>(byte_of(w, 4))); };
+  const auto mode = [](std::uint64_t w) -> std::string { return to_string(static_cast<WidgetMode>(byte_of(w, 4))); };
   const auto revision = [](std::uint64_t w) { return std::to_string(static_cast<std::uint32_t>(w)); };
   if (byte_of(a, 4) != byte_of(b, 4)) return said(widget + "_mode", mode(a), mode(b));
   if (static_cast<std::uint32_t>(a) != static_cast<std::uint32_t>(b)) return said(widget + "_revision", revision(a), revision(b));
@@ -269,7 +264,7 @@ std::string packed_widget_difference(const std::string& widget, std::uint64_t a,
 
 }  // namespace
 
-std::string first_difference(const Words& recorded, const Words& replayed, const std::vector<std::string>& link_names,
+std::string first_difference(const RecordWords& recorded, const RecordWords& replayed, const std::vector<std::string>& link_names,
                              const std::vector<std::string>& widget_names) {
   const auto numbers = [&](const std::string& what, std::size_t k) {
     return said(what, to_text(number(recorded[k])), to_text(number(replayed[k])));
@@ -295,7 +290,7 @@ std::string first_difference(const Words& recorded, const Words& replayed, const
   return {};
 }
 
-void squeeze(std::span<const std::uint64_t> words, Words& before, std::string& out) {
+void compress_record(std::span<const std::uint64_t> words, RecordWords& before, std::string& out) {
   const std::size_t mask_at = out.size();
   out.append((words.size() + 7) / 8, '\0');
   for (std::size_t k = 0; k < words.size(); ++k) {
@@ -306,7 +301,7 @@ void squeeze(std::span<const std::uint64_t> words, Words& before, std::string& o
   }
 }
 
-std::size_t unsqueeze(std::string_view bytes, int count, Words& words) noexcept {
+std::size_t decompress_record(std::string_view bytes, int count, RecordWords& words) noexcept {
   const auto n = static_cast<std::size_t>(count);
   std::size_t at = (n + 7) / 8;
   if (bytes.size() < at) return 0;

@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "engine/base/clock.h"
+#include "engine/base/console.h"
 #include "engine/base/output_file.h"
-#include "engine/base/tell.h"
 #include "engine/base/threads.h"
-#include "haptics/servo/log/tick_blocks.h"
+#include "haptics/servo/log/tick_block_writer.h"
 
 namespace catena::haptics::log {
 
@@ -25,17 +25,17 @@ namespace {
 
 // A message of the ring: tick, epoch, links, then the record.
 constexpr std::size_t kMessageHead = 3;
-using Message = std::array<std::uint64_t, kMessageHead + kMaxWords>;
+using Message = std::array<std::uint64_t, kMessageHead + kMaxRecordWords>;
 
 }  // namespace
 
-struct LogWriter::Parts {
-  Parts(BlockFile file, const std::string& name, const LogOptions& chosen)
+struct LogWriter::Impl {
+  Impl(BlockFile file, const std::string& name, const LogOptions& chosen)
       : path(name), options(chosen), ring(chosen.ring_bytes), blocks(std::move(file), [this](std::uint64_t e) { return programs_of(e); }) {}
 
   std::string path;
   LogOptions options;
-  Ring ring;
+  SpscRing ring;
 
   // haptic thread
   Message message{};
@@ -52,7 +52,7 @@ struct LogWriter::Parts {
   std::vector<LogPoses> poses;
 
   // writer's thread
-  TickBlocks blocks;
+  TickBlockWriter blocks;
   std::atomic<std::uint64_t> ticks{0}, bytes{0};
   std::atomic<bool> failed{false};
   std::thread thread;
@@ -63,7 +63,7 @@ struct LogWriter::Parts {
   void loop();
 };
 
-std::vector<LogProgram> LogWriter::Parts::programs_of(std::uint64_t epoch) {
+std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
   const std::lock_guard lock(mutex);
   std::vector<LogProgram> found;
   // a change before the first tick is a change, too
@@ -72,7 +72,7 @@ std::vector<LogProgram> LogWriter::Parts::programs_of(std::uint64_t epoch) {
   const auto wanted = programs.find(epoch);
   if (wanted == programs.end()) {
     found.emplace_back().epoch = epoch;
-    found.back().known = false;
+    found.back().is_known = false;
     return found;
   }
   found.push_back(std::move(wanted->second));
@@ -80,14 +80,14 @@ std::vector<LogProgram> LogWriter::Parts::programs_of(std::uint64_t epoch) {
   return found;
 }
 
-void LogWriter::Parts::drain() {
+void LogWriter::Impl::drain() {
   Message taken;
   while (ring.available() >= kMessageHead) {
-    ring.take({taken.data(), kMessageHead});
+    ring.pop({taken.data(), kMessageHead});
     if (std::exchange(has_start, false)) blocks.begin_after(start);
-    const TickBlocks::Tick tick{taken[0], taken[1], {static_cast<int>(taken[2] & 0xff), static_cast<int>(taken[2] >> 8)}};
-    const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(words_of(tick.shape)));
-    ring.take(words);
+    const TickBlockWriter::Tick tick{taken[0], taken[1], {static_cast<int>(taken[2] & 0xff), static_cast<int>(taken[2] >> 8)}};
+    const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(record_word_count(tick.layout)));
+    ring.pop(words);
     if (!blocks.file().failed()) blocks.add(tick, words);
   }
   blocks.flush();
@@ -99,13 +99,13 @@ void LogWriter::Parts::drain() {
   if (!said.empty() && !blocks.file().failed()) blocks.file().write(BlockType::poses, to_bytes(said));
 }
 
-void LogWriter::Parts::publish() {
+void LogWriter::Impl::publish() {
   ticks.store(blocks.ticks(), std::memory_order_relaxed);
   bytes.store(blocks.file().bytes(), std::memory_order_relaxed);
   failed.store(blocks.file().failed(), std::memory_order_release);
 }
 
-void LogWriter::Parts::loop() {
+void LogWriter::Impl::loop() {
   const auto pause = std::chrono::duration<double>(options.flush_s);
   std::int64_t synced = now_ns();
   for (bool last = false; !last;) {
@@ -139,7 +139,7 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
     file.discard();
     return file.error();
   }
-  auto parts = std::make_unique<Parts>(std::move(file), path, options);
+  auto parts = std::make_unique<Impl>(std::move(file), path, options);
   auto thread = start_thread("the recording", [p = parts.get()] { p->loop(); });
   if (!thread) {
     parts->blocks.file().discard();
@@ -149,29 +149,29 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
   return std::unique_ptr<LogWriter>(new LogWriter(std::move(parts)));
 }
 
-LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+LogWriter::LogWriter(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}
 
 LogWriter::~LogWriter() {
-  if (const Outcome done = finish(); !done) tell(done.error().message);
+  if (const Outcome done = finish(); !done) print_line(done.error().message);
 }
 
-void LogWriter::add_program(const Program& program, std::optional<std::string> scene_text) {
-  LogProgram facts = facts_of(program, std::move(scene_text));
-  const std::lock_guard lock(parts_->mutex);
-  if (!std::exchange(parts_->has_first, true)) parts_->first_epoch = program.epoch;
-  parts_->programs.insert_or_assign(program.epoch, std::move(facts));
+void LogWriter::add_program(const HapticProgram& program, std::optional<std::string> scene_text) {
+  LogProgram facts = to_log_program(program, std::move(scene_text));
+  const std::lock_guard lock(impl_->mutex);
+  if (!std::exchange(impl_->has_first, true)) impl_->first_epoch = program.epoch;
+  impl_->programs.insert_or_assign(program.epoch, std::move(facts));
 }
 
 bool LogWriter::add_poses(const LogPoses& poses) {
-  Parts& p = *parts_;
+  Impl& p = *impl_;
   const std::lock_guard lock(p.mutex);
-  if (p.stop || p.failed.load(std::memory_order_acquire) || p.poses.size() >= kMaxWaitingPoses) return false;
+  if (p.stop || p.failed.load(std::memory_order_acquire) || p.poses.size() >= kMaxPendingPoses) return false;
   p.poses.push_back(poses);
   return true;
 }
 
 void LogWriter::begin(const ChainState& state) noexcept {
-  Parts& p = *parts_;
+  Impl& p = *impl_;
   if (state.ticks == 0 || p.newest_tick.load(std::memory_order_relaxed) != 0) return;
   p.start = state;
   p.has_start = true;
@@ -179,19 +179,19 @@ void LogWriter::begin(const ChainState& state) noexcept {
   p.newest_tick.store(state.ticks, std::memory_order_release);
 }
 
-void LogWriter::put(const ProbeSample& input, const exchange::HapticState& output) noexcept {
-  Parts& p = *parts_;
+void LogWriter::put(const ProbeSample& input, const HapticState& output) noexcept {
+  Impl& p = *impl_;
   p.message[0] = output.tick;
   p.message[1] = output.program_epoch;
   p.message[2] = static_cast<std::uint64_t>(output.link_count) | static_cast<std::uint64_t>(output.widget_count) << 8;
-  const int count = pack(input, output, p.message.data() + kMessageHead);
-  if (!p.ring.put({p.message.data(), kMessageHead + static_cast<std::size_t>(count)}))
+  const int count = pack_tick(input, output, p.message.data() + kMessageHead);
+  if (!p.ring.try_push({p.message.data(), kMessageHead + static_cast<std::size_t>(count)}))
     p.ring_lost.store(p.ring_lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   p.newest_tick.store(output.tick, std::memory_order_release);
 }
 
 LogStatus LogWriter::status() const {
-  const Parts& p = *parts_;
+  const Impl& p = *impl_;
   LogStatus now;
   now.failed = p.failed.load(std::memory_order_acquire);
   now.ticks = p.ticks.load(std::memory_order_relaxed);
@@ -202,7 +202,7 @@ LogStatus LogWriter::status() const {
 }
 
 Outcome LogWriter::finish() {
-  Parts& p = *parts_;
+  Impl& p = *impl_;
   if (!p.thread.joinable()) return Done{};
   {
     const std::lock_guard lock(p.mutex);

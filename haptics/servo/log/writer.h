@@ -40,17 +40,17 @@ class LogWriter final : public TickSink {
 
   /// Frame side, before the servo can run it; the first one is that with which the servo begins, or that it runs when it takes the log
   /// up (Servo::set_sink). Every set_program needs a program of an
-  /// epoch of its own, as extract_program gives it. `scene_text`: that of the moment; none: still the header's.
-  void add_program(const Program& program, std::optional<std::string> scene_text = {});
+  /// epoch of its own, as build_program gives it. `scene_text`: that of the moment; none: still the header's.
+  void add_program(const HapticProgram& program, std::optional<std::string> scene_text = {});
 
   /// Frame side: of a picture that a headset is about to show. False: it is left out, since nothing is written any more or the disk does
-  /// not keep up with kMaxWaitingPoses of them.
+  /// not keep up with kMaxPendingPoses of them.
   bool add_poses(const LogPoses& poses);
-  static constexpr std::size_t kMaxWaitingPoses = 4096;
+  static constexpr std::size_t kMaxPendingPoses = 4096;
 
   // haptic thread
   void begin(const ChainState& state) noexcept override;
-  void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override;
+  void put(const ProbeSample& input, const HapticState& output) noexcept override;
 
   /// Frame side, any time.
   LogStatus status() const;
@@ -59,9 +59,9 @@ class LogWriter final : public TickSink {
   Outcome finish();
 
  private:
-  struct Parts;
-  explicit LogWriter(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  explicit LogWriter(std::unique_ptr<Impl> parts);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace catena::haptics::log

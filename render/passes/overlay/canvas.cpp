@@ -20,7 +20,7 @@ double length(const Vec2& v) { return std::hypot(v.x, v.y); }
 
 }  // namespace
 
-Vec2 anchor_share(Anchor anchor) {
+Vec2 anchor_fraction(Anchor anchor) {
   const int i = static_cast<int>(anchor);
   return {0.5 * (i % 3), 0.5 * (i / 3)};
 }
@@ -29,20 +29,20 @@ Canvas::Canvas(const FramePacket& packet, Typesetter& typesetter) : typesetter_(
   const OverlayFrame& frame = packet.overlay.frame;
   size_ = frame.width > 0 ? Vec2(frame.width, frame.height) : Vec2(packet.width, packet.height);
   if (frame.width > 0) corner_ = {frame.x, frame.y};
-  scale_ = packet.overlay.scale * std::min(size_.x, size_.y) / kPicturePoints;
+  scale_ = packet.overlay.scale * std::min(size_.x, size_.y) / kImagePoints;
   // transparent pictures end on paper more often than not
   const auto& b = packet.background;
   const bool light = b[3] < 0.5f || luminance({b[0], b[1], b[2]}) > 0.5;
-  ink_ = grey(light ? kDarkInk : 1);
-  halo_ = grey(light ? 1 : 0);
-  typesetter_.use_family(packet.overlay.font);
+  foreground_ = grey(light ? kDarkInk : 1);
+  contrast_color_ = grey(light ? 1 : 0);
+  typesetter_.set_family(packet.overlay.font);
 }
 
-Color Canvas::around(const Color& text) { return luminance(text) > 0.5 ? grey(0) : grey(1); }
+Color Canvas::outline_color(const Color& text) { return luminance(text) > 0.5 ? grey(0) : grey(1); }
 
-double Canvas::hair() const { return std::max(1.0, std::round(px(kHairPt))); }
+double Canvas::hairline_width() const { return std::max(1.0, std::round(px(kHairPt))); }
 
-TextExtent Canvas::measure(std::string_view text, const TextLook& look) const {
+TextExtent Canvas::measure(std::string_view text, const CanvasTextStyle& look) const {
   TextExtent extent = typesetter_.measure(text, {px(look.size_pt), look.bold, 0});
   if (look.rotated) std::swap(extent.width, extent.height);
   return extent;
@@ -55,10 +55,10 @@ shared::OverlayShape& Canvas::add(std::uint32_t kind, const Vec2& origin, const 
   shape.axis_x = narrow(axis);
   shape.axis_y = narrow({-axis.y, axis.x});
   shape.color = {paint.color.r, paint.color.g, paint.color.b, float(paint.alpha)};
-  shape.hide_depth = NO_DEPTH;
-  if (hiding_) {
-    shape.anchor = narrow(hiding_->at - corner_);
-    shape.hide_depth = float(hiding_->depth);
+  shape.occlusion_depth = NO_DEPTH;
+  if (occlusion_test_) {
+    shape.anchor = narrow(occlusion_test_->position - corner_);
+    shape.occlusion_depth = float(occlusion_test_->depth);
   }
   return shapes_.emplace_back(shape);
 }
@@ -111,13 +111,13 @@ void Canvas::ellipse(const Vec2& centre, const Vec2& axis, double along, double 
   s.size = {s.hi, ball ? 1.0f : 0.0f, 0.0f};
 }
 
-void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const TextLook& look) {
-  const Vec2 share = anchor_share(anchor);
+void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const CanvasTextStyle& look) {
+  const Vec2 share = anchor_fraction(anchor);
   // along the text and down across it
   const Vec2 axis = look.rotated ? Vec2(0.0, -1.0) : Vec2(1.0, 0.0), down(-axis.y, axis.x);
   const Vec2 text_share = look.rotated ? Vec2(1 - share.y, share.x) : share;
   const double size_px = px(look.size_pt);
-  const SetText set = typesetter_.set(text, {size_px, look.bold, text_share.x});
+  const TextLayout set = typesetter_.layout(text, {size_px, look.bold, text_share.x});
   if (set.glyphs.empty()) return;
 
   // pens stand on whole pixels across the line and on quarters along it
@@ -127,18 +127,18 @@ void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const Te
   const Color color = text_color(look.color);
   const double halo_px = std::max(kHaloLeastPx, kHaloShare * size_px);
   for (const bool halo : {true, false})
-    for (const SetGlyph& g : set.glyphs) {
+    for (const PlacedGlyph& g : set.glyphs) {
       const double along = std::round(4 * (corner.x + g.x)) / 4;
-      add(OVERLAY_GLYPH, origin, axis, halo ? Paint{around(color), kHaloAlpha} : Paint{color});
-      pens_.push_back({shapes_.size() - 1, typesetter_.font(look.bold), g.glyph, size_px, halo ? halo_px : 0, int(std::floor(along)),
-                       int(std::lround(corner.y + g.y)), int(4 * (along - std::floor(along)))});
+      add(OVERLAY_GLYPH, origin, axis, halo ? Paint{outline_color(color), kHaloAlpha} : Paint{color});
+      pending_glyphs_.push_back({shapes_.size() - 1, typesetter_.font(look.bold), g.glyph, size_px, halo ? halo_px : 0,
+                                 int(std::floor(along)), int(std::lround(corner.y + g.y)), int(4 * (along - std::floor(along)))});
     }
 }
 
 void Canvas::place_glyphs() {
-  for (const Pen& pen : pens_) {
+  for (const PendingGlyph& pen : pending_glyphs_) {
     shared::OverlayShape& s = shapes_[pen.shape];
-    const GlyphAtlas::Entry* entry = typesetter_.atlas().get(*pen.font, pen.glyph, pen.size_px, pen.quarter, pen.halo_px);
+    const GlyphAtlas::Entry* entry = typesetter_.atlas().get(*pen.font, pen.glyph, pen.size_px, pen.subpixel_quarter, pen.halo_px);
     if (entry == nullptr) continue;  // stays empty
     s.lo = {float(pen.x + entry->left), float(pen.y - entry->top)};
     s.hi = s.lo + glm::vec2(float(entry->width), float(entry->height));

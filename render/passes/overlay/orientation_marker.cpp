@@ -19,15 +19,15 @@ Color darker(const Color& c, float by) { return {by * c.r, by * c.g, by * c.b}; 
 
 }  // namespace
 
-MarkerPlace place_orientation_marker(const Canvas& canvas, const OrientationMarkerItem& marker) {
+MarkerLayout layout_orientation_marker(const Canvas& canvas, const OrientationMarkerItem& marker) {
   const double side = canvas.px(marker.size_pt), margin = canvas.px(0.5 * kMarginPt);
   const Vec2 room = canvas.size() - Vec2(side + 2 * margin);
-  return {Vec2(margin + 0.5 * side) + anchor_share(marker.anchor) * room, kArrowShare * side};
+  return {Vec2(margin + 0.5 * side) + anchor_fraction(marker.anchor) * room, kArrowShare * side};
 }
 
 void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker, const Camera& camera) {
-  const MarkerPlace place = place_orientation_marker(canvas, marker);
-  const double radius = kRadiusShare * place.arrow, wide = kConeRadius * place.arrow;
+  const MarkerLayout place = layout_orientation_marker(canvas, marker);
+  const double radius = kRadiusShare * place.arrow_length, wide = kConeRadius * place.arrow_length;
 
   struct Arrow {
     int axis;
@@ -41,26 +41,26 @@ void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker
   bool ball = false;
   for (const Arrow& arrow : arrows) {
     if (!ball && arrow.towards >= 0) {
-      canvas.ellipse(place.centre, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
+      canvas.ellipse(place.center, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
       ball = true;
     }
     const Color& color = kAxisColors[arrow.axis];
     const double seen = std::hypot(arrow.along.x, arrow.along.y);
     const Vec2 unit = seen > 1e-9 ? arrow.along / seen : Vec2(1.0, 0.0);
-    const Vec2 base = place.centre + kConeStart * place.arrow * arrow.along, tip = place.centre + place.arrow * arrow.along;
+    const Vec2 base = place.center + kConeStart * place.arrow_length * arrow.along, tip = place.center + place.arrow_length * arrow.along;
     const double squeezed = std::max(0.05, std::fabs(arrow.towards)) * wide;
     // what is nearer comes later: a cone that points away shows its base, one that points here hides it
     if (arrow.towards < 0) {
       canvas.cone(base, tip, wide, color);
       canvas.ellipse(base, unit, squeezed, wide, darker(color, kShade), false);
-      canvas.tube(place.centre, base, radius, color);
+      canvas.tube(place.center, base, radius, color);
     } else {
-      canvas.tube(place.centre, base, radius, color);
+      canvas.tube(place.center, base, radius, color);
       canvas.ellipse(base, unit, squeezed, wide, color, true);
       canvas.cone(base, tip, wide, color);
     }
   }
-  if (!ball) canvas.ellipse(place.centre, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
+  if (!ball) canvas.ellipse(place.center, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
 
   // letters over all arrows; that of an axis along the view stands where the others are not
   for (const Arrow& arrow : arrows) {
@@ -70,8 +70,8 @@ void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker
       if (!(std::hypot(aside.x, aside.y) > 1e-3)) aside = {0.0, 1.0};
     }
     aside /= std::hypot(aside.x, aside.y);
-    canvas.text(marker.names[std::size_t(arrow.axis)], place.centre + place.arrow * arrow.along + canvas.px(kLetterGapPt) * aside,
-                Anchor::centre, {12, true, false, {}});
+    canvas.text(marker.names[std::size_t(arrow.axis)], place.center + place.arrow_length * arrow.along + canvas.px(kLetterGapPt) * aside,
+                Anchor::center, {12, true, false, {}});
   }
 }
 

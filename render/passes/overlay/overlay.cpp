@@ -22,8 +22,8 @@ constexpr std::uint32_t kOverlayBlendFloatShader[] = {
 };
 constexpr VkFormat kAtlasFormat = VK_FORMAT_R8_UNORM;
 constexpr VkFormat kOverlayFormat = VK_FORMAT_R8G8B8A8_UNORM;  // premultiplied
-constexpr vk::Use kComputeBoth{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                               VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT};
+constexpr vk::ResourceUse kComputeBoth{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                       VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT};
 constexpr double kSlackShare = 1e-3;  // of the distance: a label on a surface is not behind it
 
 class OverlayPass final : public Pass {
@@ -32,7 +32,7 @@ class OverlayPass final : public Pass {
   PassUse use(const Frame& frame) const override;
   Outcome prepare(Frame& frame) override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
-  std::string note() const override { return typesetter_.fault(); }
+  std::string warning() const override { return typesetter_.error_message(); }
 
  private:
   OverlayPass() = default;
@@ -53,11 +53,11 @@ Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
   vk::GraphicsInfo draw;
   draw.vertex = kOverlayVertexShader;
   draw.fragment = kOverlayFragmentShader;
-  draw.slots = {{0, vk::Resource::uniform},
-                {1, vk::Resource::buffer},
-                {2, vk::Resource::buffer},
-                {3, vk::Resource::texture},
-                {4, vk::Resource::texture}};
+  draw.layout_bindings = {{0, vk::DescriptorKind::uniform},
+                          {1, vk::DescriptorKind::buffer},
+                          {2, vk::DescriptorKind::buffer},
+                          {3, vk::DescriptorKind::texture},
+                          {4, vk::DescriptorKind::texture}};
   draw.colors = {kOverlayFormat};
   draw.blends = {vk::Blend::over};
   CATENA_TRY(self->draw_, vk::Pipeline::create(device, draw));
@@ -67,8 +67,8 @@ Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
 /// The opaque depth hides labels that ask for it.
 PassUse OverlayPass::use(const Frame& frame) const {
   const auto& labels = frame.packet.overlay.labels;
-  const bool hides = std::any_of(labels.begin(), labels.end(), [](const LabelItem& label) { return label.behind_hidden; });
-  return {hides ? frame.written & target::opaque_depth : 0, target::picture, true};
+  const bool hides = std::any_of(labels.begin(), labels.end(), [](const LabelItem& label) { return label.hide_if_occluded; });
+  return {hides ? frame.written_targets & target::opaque_depth : 0, target::output, true};
 }
 
 Outcome OverlayPass::upload_atlas(vk::Device& device) {
@@ -92,7 +92,7 @@ Outcome OverlayPass::upload_atlas(vk::Device& device) {
 
 /// An image of the picture's size.
 Outcome OverlayPass::prepare(Frame& frame) {
-  return vk::fit_image(frame.device, image_, kOverlayFormat, frame.packet.width, frame.packet.height);
+  return vk::ensure_image(frame.device, image_, kOverlayFormat, frame.packet.width, frame.packet.height);
 }
 
 /// The items as shapes; the camera is known now.
@@ -124,32 +124,32 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
   CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
 
   // the shapes, in order
-  if (hides) commands.use(targets.opaque_depth, vk::kShaderRead);
+  if (hides) commands.transition(targets.opaque_depth, vk::kShaderRead);
   const vk::ColorTarget into{&image_, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&into, 1}, {});
-  const vk::Binding drawn[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                               {1, vk::Resource::buffer, &shapes_, nullptr, nullptr},
-                               {2, vk::Resource::buffer, &stops_, nullptr, nullptr},
-                               {3, vk::Resource::texture, nullptr, &atlas_, nullptr},
-                               {4, vk::Resource::texture, nullptr, hides ? &targets.opaque_depth : &targets.none, nullptr}};
+  const vk::Binding drawn[] = {{0, vk::DescriptorKind::uniform, &uniform_, nullptr, nullptr},
+                               {1, vk::DescriptorKind::buffer, &shapes_, nullptr, nullptr},
+                               {2, vk::DescriptorKind::buffer, &stops_, nullptr, nullptr},
+                               {3, vk::DescriptorKind::texture, nullptr, &atlas_, nullptr},
+                               {4, vk::DescriptorKind::texture, nullptr, hides ? &targets.opaque_depth : &targets.placeholder, nullptr}};
   commands.bind(draw_, drawn);
   commands.draw(6 * count_, 1);
   commands.end_pass();
 
   // into the picture, in its format
-  const VkFormat format = targets.picture.info().format;
+  const VkFormat format = targets.output.info().format;
   if (!blend_ || format != blend_format_) {
     vk::ComputeInfo blend;
     blend.shader = vk::Spirv(kOverlayBlendShader);
     if (format == VK_FORMAT_R32G32B32A32_SFLOAT) blend.shader = vk::Spirv(kOverlayBlendFloatShader);
-    blend.slots = {{0, vk::Resource::texture}, {1, vk::Resource::storage_image}};
+    blend.layout_bindings = {{0, vk::DescriptorKind::texture}, {1, vk::DescriptorKind::storage_image}};
     CATENA_TRY(blend_, vk::Pipeline::create(frame.device, blend));
     blend_format_ = format;
   }
-  commands.use(image_, vk::kFragmentRead);
-  commands.use(targets.picture, kComputeBoth);
-  const vk::Binding blended[] = {{0, vk::Resource::texture, nullptr, &image_, nullptr},
-                                 {1, vk::Resource::storage_image, nullptr, &targets.picture, nullptr}};
+  commands.transition(image_, vk::kFragmentRead);
+  commands.transition(targets.output, kComputeBoth);
+  const vk::Binding blended[] = {{0, vk::DescriptorKind::texture, nullptr, &image_, nullptr},
+                                 {1, vk::DescriptorKind::storage_image, nullptr, &targets.output, nullptr}};
   commands.bind(blend_, blended);
   commands.dispatch((extent.width + 15) / 16, (extent.height + 3) / 4, 1);
   return Done{};
@@ -158,6 +158,6 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
 }  // namespace
 
 const PassEntry kOverlayPass{"overlay", [](const Frame& frame) { return !frame.packet.overlay.empty(); }, OverlayPass::create,
-                             target::picture};
+                             target::output};
 
 }  // namespace catena::render

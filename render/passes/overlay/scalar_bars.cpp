@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "engine/base/result.h"
-#include "engine/base/value_scale.h"
+#include "engine/base/symlog_scale.h"
 #include "render/passes/overlay/canvas.h"
 
 namespace catena::render {
@@ -13,11 +13,11 @@ constexpr double kThicknessPt = 14, kTickPt = 4, kGapPt = 3, kTitleGapPt = 7, kB
 constexpr double kBorderAlpha = 0.85;
 constexpr double kStepPt = 17;  // most: of a legend's band
 
-const TextLook kValueLook{10.5, false, false, {}};
-const TextLook kTitleLook{12, false, false, {}};
+const CanvasTextStyle kValueLook{10.5, false, false, {}};
+const CanvasTextStyle kTitleLook{12, false, false, {}};
 
-TextLook title_look(bool upright) {
-  TextLook look = kTitleLook;
+CanvasTextStyle title_look(bool upright) {
+  CanvasTextStyle look = kTitleLook;
   look.rotated = upright;
   return look;
 }
@@ -43,7 +43,7 @@ std::pair<double, double> range(const ScalarBarItem& bar) {
 /// Where a value lies on the way from the low to the high end.
 double share_of(const ScalarBarItem& bar, double value) {
   const auto [lo, hi] = range(bar);
-  const auto place = [&](double v) { return scaled(v, bar.linear_below); };
+  const auto place = [&](double v) { return symlog(v, bar.linear_below); };
   return hi > lo ? (place(value) - place(lo)) / (place(hi) - place(lo)) : 0.5;
 }
 
@@ -55,8 +55,8 @@ double title_thickness(const Canvas& canvas, const ScalarBarItem& bar, bool upri
 
 }  // namespace
 
-std::vector<BarPlace> place_scalar_bars(const Canvas& canvas, const Overlay& overlay) {
-  std::vector<BarPlace> places;
+std::vector<BarLayout> layout_scalar_bars(const Canvas& canvas, const Overlay& overlay) {
+  std::vector<BarLayout> places;
   const Vec2 size = canvas.size();
   const double thickness = std::round(canvas.px(kThicknessPt)), tick = canvas.px(kTickPt + kGapPt);
   // what is taken already at each edge
@@ -72,12 +72,12 @@ std::vector<BarPlace> place_scalar_bars(const Canvas& canvas, const Overlay& ove
 
   for (const ScalarBarItem& bar : overlay.scalar_bars) {
     double& edge = taken[int(bar.side)];
-    BarPlace place;
+    BarLayout place;
     place.upright = bar.side == Side::right || bar.side == Side::left;
     const TextExtent values = values_extent(canvas, bar);
     const double title = title_thickness(canvas, bar, place.upright);
     double length = std::round(place.upright ? kUprightShare * size.y : kLyingShare * size.x);
-    if (bar.steps > 0) length = std::min(length, std::round(canvas.px(kStepPt)) * bar.steps);
+    if (bar.band_count > 0) length = std::min(length, std::round(canvas.px(kStepPt)) * bar.band_count);
     const double middle = std::round(0.5 * ((place.upright ? size.y : size.x) - length));
     const double mark = tick + (place.upright ? values.width : values.height + values.descent);
     switch (bar.side) {
@@ -114,37 +114,38 @@ std::vector<BarPlace> place_scalar_bars(const Canvas& canvas, const Overlay& ove
   return places;
 }
 
-double tick_place(const BarPlace& place, const ScalarBarItem& bar, double value) {
+double tick_position(const BarLayout& place, const ScalarBarItem& bar, double value) {
   const double share = share_of(bar, value);
   return place.upright ? place.ramp.y + (1 - share) * place.ramp.height : place.ramp.x + share * place.ramp.width;
 }
 
 void draw_scalar_bars(Canvas& canvas, const Overlay& overlay) {
-  const std::vector<BarPlace> places = place_scalar_bars(canvas, overlay);
-  const double hair = canvas.hair(), mark = std::round(canvas.px(kTickPt));
+  const std::vector<BarLayout> places = layout_scalar_bars(canvas, overlay);
+  const double hair = canvas.hairline_width(), mark = std::round(canvas.px(kTickPt));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const ScalarBarItem& bar = overlay.scalar_bars[i];
-    const BarPlace& place = places[i];
+    const BarLayout& place = places[i];
     const Rect& r = place.ramp;
 
     // colours within a border
     std::vector<shared::OverlayStop> stops;
     for (const auto& c : bar.colors) stops.push_back({float(share_of(bar, c[0])), {float(c[1]), float(c[2]), float(c[3])}});
-    canvas.box({r.x - hair, r.y - hair, r.width + 2 * hair, r.height + 2 * hair}, {canvas.ink(), kBorderAlpha}, 0, hair);
+    canvas.box({r.x - hair, r.y - hair, r.width + 2 * hair, r.height + 2 * hair}, {canvas.foreground(), kBorderAlpha}, 0, hair);
     canvas.ramp(r, place.upright, stops);
 
     // marks and values
     for (const BarTick& tick : bar.ticks) {
-      const double at = tick_place(place, bar, tick.value), from = std::round(at - 0.5 * hair);
+      const double at = tick_position(place, bar, tick.value), from = std::round(at - 0.5 * hair);
       if (place.upright) {
-        canvas.box({r.x + r.width + hair, from, mark, hair}, {canvas.ink()});
+        canvas.box({r.x + r.width + hair, from, mark, hair}, {canvas.foreground()});
         canvas.text(tick.text, {r.x + r.width + canvas.px(kTickPt + kGapPt), at}, Anchor::left, kValueLook);
       } else {
-        canvas.box({from, r.y + r.height + hair, hair, mark}, {canvas.ink()});
+        canvas.box({from, r.y + r.height + hair, hair, mark}, {canvas.foreground()});
         canvas.text(tick.text, {at, r.y + r.height + canvas.px(kTickPt + kGapPt)}, Anchor::top, kValueLook);
       }
     }
-    if (!bar.more.empty()) canvas.text(bar.more, {r.x, r.y + r.height + canvas.px(2 * kGapPt)}, Anchor::top_left, kValueLook);
+    if (!bar.overflow_text.empty())
+      canvas.text(bar.overflow_text, {r.x, r.y + r.height + canvas.px(2 * kGapPt)}, Anchor::top_left, kValueLook);
     if (!bar.factor.empty()) {
       if (place.upright)
         canvas.text(bar.factor, {r.x, r.y - canvas.px(2 * kGapPt)}, Anchor::bottom_left, kValueLook);

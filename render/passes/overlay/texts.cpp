@@ -7,7 +7,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kDotPt = 2.2, kDotHaloAlpha = 0.75;
-const TextLook kRowLook{11, false, false, {}}, kHeadLook{11, true, false, {}};
+const CanvasTextStyle kRowLook{11, false, false, {}}, kHeadLook{11, true, false, {}};
 constexpr double kPanelAlpha = 0.5, kPadPt = 8, kRowPt = 16, kColumnPt = 12, kMeterPt = 5, kLeastWidthPt = 120;
 
 /// What a link does, as a colour: held, free, or in trouble.
@@ -20,7 +20,7 @@ Color word_color(const std::string& word, bool light) {
 
 /// The corner of a box of this size that its anchor puts at the picture's edge.
 Vec2 corner_of(const Canvas& canvas, Anchor anchor, const Vec2& size) {
-  const Vec2 share = anchor_share(anchor), room = canvas.size() - size - Vec2(2 * canvas.px(kMarginPt));
+  const Vec2 share = anchor_fraction(anchor), room = canvas.size() - size - Vec2(2 * canvas.px(kMarginPt));
   return Vec2(canvas.px(kMarginPt)) + share * room;
 }
 
@@ -28,7 +28,7 @@ Vec2 corner_of(const Canvas& canvas, Anchor anchor, const Vec2& size) {
 
 void draw_texts(Canvas& canvas, const Overlay& overlay) {
   for (const TextItem& text : overlay.texts) {
-    const Vec2 at = anchor_share(text.anchor) * canvas.size() + Vec2(canvas.px(text.offset_pt.x), canvas.px(text.offset_pt.y));
+    const Vec2 at = anchor_fraction(text.anchor) * canvas.size() + Vec2(canvas.px(text.offset_pt.x), canvas.px(text.offset_pt.y));
     canvas.text(text.text, at, text.anchor, {text.size_pt, text.bold, false, text.color});
   }
 }
@@ -37,22 +37,22 @@ void draw_labels(Canvas& canvas, const Overlay& overlay, const Camera& camera, d
   std::vector<LabelItem> labels = overlay.labels;
   labels.insert(labels.end(), overlay.axis_labels.begin(), overlay.axis_labels.end());
   for (const LabelItem& label : labels) {
-    const auto place = project(camera, label.at);
+    const auto place = project(camera, label.position);
     if (!place) continue;
     const Vec2 at =
         Vec2(place->x, place->y) + Vec2(overlay.frame.width > 0 ? overlay.frame.x : 0, overlay.frame.width > 0 ? overlay.frame.y : 0);
     // far outside nothing of it is seen, and floats run out
     if (at.x < -canvas.size().x || at.y < -canvas.size().y || at.x > 2 * canvas.size().x || at.y > 2 * canvas.size().y) continue;
-    if (label.behind_hidden) canvas.hide(Canvas::Hiding{at, place->z - reference_depth});
-    if (label.dot) {
+    if (label.hide_if_occluded) canvas.set_occlusion_test(Canvas::OcclusionTest{at, place->z - reference_depth});
+    if (label.show_dot) {
       const double r = canvas.px(kDotPt);
       const Color color = canvas.text_color(label.color);
-      canvas.box({at.x - r - 1, at.y - r - 1, 2 * r + 2, 2 * r + 2}, {Canvas::around(color), kDotHaloAlpha}, r + 1);
+      canvas.box({at.x - r - 1, at.y - r - 1, 2 * r + 2, 2 * r + 2}, {Canvas::outline_color(color), kDotHaloAlpha}, r + 1);
       canvas.box({at.x - r, at.y - r, 2 * r, 2 * r}, {color}, r);
     }
     canvas.text(label.text, at + Vec2(canvas.px(label.offset_pt.x), canvas.px(label.offset_pt.y)), label.anchor,
                 {label.size_pt, false, false, label.color});
-    canvas.hide(std::nullopt);
+    canvas.set_occlusion_test(std::nullopt);
   }
 }
 
@@ -66,13 +66,13 @@ void draw_status(Canvas& canvas, const StatusItem& status) {
   words = std::max(words, canvas.measure(force, kHeadLook).width);
   for (const StatusItem::Row& r : status.rows) {
     names = std::max(names, canvas.measure(r.name, kRowLook).width);
-    words = std::max(words, canvas.measure(r.word, kRowLook).width);
+    words = std::max(words, canvas.measure(r.status_text, kRowLook).width);
   }
   const double inner = std::max(names + column + words, canvas.px(kLeastWidthPt)), meter = status.max_force_n > 0 ? row : 0;
   const Vec2 size(inner + 2 * pad, 2 * pad + meter + row * double(status.rows.size()) + canvas.measure("N", kHeadLook).height);
   const Vec2 corner = corner_of(canvas, status.anchor, size);
-  const bool light = canvas.ink().r < 0.5f;
-  canvas.box({corner.x, corner.y, size.x, size.y}, {canvas.halo(), kPanelAlpha}, canvas.px(4));
+  const bool light = canvas.foreground().r < 0.5f;
+  canvas.box({corner.x, corner.y, size.x, size.y}, {canvas.contrast_color(), kPanelAlpha}, canvas.px(4));
 
   // the force, its share of the largest, and the links
   const double left = corner.x + pad, right = left + inner;
@@ -82,18 +82,18 @@ void draw_status(Canvas& canvas, const StatusItem& status) {
   if (meter > 0) {
     const double share = std::clamp(status.force_n / status.max_force_n, 0.0, 1.0), h = canvas.px(kMeterPt);
     const double top = y + row - 0.1 * canvas.px(kRowPt);
-    canvas.box({left, top, inner, h}, {canvas.ink(), 0.25}, 0.5 * h);
+    canvas.box({left, top, inner, h}, {canvas.foreground(), 0.25}, 0.5 * h);
     const Color fill = share < 0.8 ? word_color("OK", light) : share < 1 ? word_color("BUDGET", light) : word_color("BAD_PROBE", light);
     if (share > 0) canvas.box({left, top, std::max(h, share * inner), h}, {fill}, 0.5 * h);
     y += row;
   }
   for (const StatusItem::Row& r : status.rows) {
     y += row;
-    TextLook name = kRowLook, word = kRowLook;
-    if (!r.active) name.color = word_color("FREE", light);
-    word.color = word_color(r.active ? r.word : "FREE", light);
+    CanvasTextStyle name = kRowLook, word = kRowLook;
+    if (!r.is_active) name.color = word_color("FREE", light);
+    word.color = word_color(r.is_active ? r.status_text : "FREE", light);
     canvas.text(r.name, {left, y}, Anchor::top_left, name);
-    canvas.text(r.word, {right, y}, Anchor::top_right, word);
+    canvas.text(r.status_text, {right, y}, Anchor::top_right, word);
   }
 }
 

@@ -3,17 +3,17 @@
 
 #include <cstdlib>
 
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace annotate_test {
 
 using namespace catena;
-using render::Picture;
+using render::Image8;
 
 /// Pixels in columns x0..x1 that differ between two pictures by more than a rounding.
-int changed(const Picture& a, const Picture& b, std::uint32_t x0, std::uint32_t x1) {
+int changed(const Image8& a, const Image8& b, std::uint32_t x0, std::uint32_t x1) {
   int count = 0;
   for (std::uint32_t y = 0; y < a.height; ++y)
     for (std::uint32_t x = x0; x < x1; ++x) {
@@ -24,9 +24,9 @@ int changed(const Picture& a, const Picture& b, std::uint32_t x0, std::uint32_t 
   return count;
 }
 
-class Annotate : public testing::Test {
+class AnnotateCommand : public testing::Test {
  protected:
-  Picture picture(const std::vector<std::string>& arguments, std::string* err = nullptr) {
+  Image8 picture(const std::vector<std::string>& arguments, std::string* err = nullptr) {
     std::vector<std::string> all{"render"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     for (const char* more : {"--size", "256x192", "--validation", "--quality", "step=1"}) all.push_back(more);
@@ -42,32 +42,32 @@ class Annotate : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Annotate, ABareFileTakesATitleABarAndAMarker) {
+TEST_F(AnnotateCommand, ABareFileTakesATitleABarAndAMarker) {
   const auto made = test::run_catena({"generate", "gaussian", "-o", folder_ / "g.vdb", "--resolution", "24"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const Picture plain = picture({folder_ / "g.vdb", "--colormap", "magma"});
-  const Picture full = picture({folder_ / "g.vdb", "--colormap", "magma", "--title", "A Gaussian", "--scalar-bar", "--orientation-marker"});
+  const Image8 plain = picture({folder_ / "g.vdb", "--colormap", "magma"});
+  const Image8 full = picture({folder_ / "g.vdb", "--colormap", "magma", "--title", "A Gaussian", "--scalar-bar", "--orientation-marker"});
   EXPECT_GT(changed(plain, full, 220, 256), 400) << "the bar at the right";
   EXPECT_GT(changed(plain, full, 0, 40), 50) << "the marker at the left";
   EXPECT_GT(changed(plain, full, 90, 166), 100) << "the title";
   EXPECT_EQ(changed(plain, full, 50, 80), 0) << "and nothing else";
 }
 
-TEST_F(Annotate, AScalarBarNeedsColours) {
+TEST_F(AnnotateCommand, AScalarBarNeedsColours) {
   test::write_file(folder_ / "s.json", R"({"fields": {}})");
   const auto run = test::run_catena({"render", folder_ / "s.json", "-o", folder_ / "o.png", "--scalar-bar"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("--scalar-bar: nothing here has colours"), std::string::npos) << run.err;
 }
 
-TEST_F(Annotate, WithoutAFontThereIsOneSentenceAndNoText) {
+TEST_F(AnnotateCommand, WithoutAFontThereIsOneSentenceAndNoText) {
   test::write_file(folder_ / "s.json", R"({"fields": {}, "title": "unseen", "orientation_marker": true})");
   test::write_file(folder_ / "plain.json", R"({"fields": {}})");
   test::write_file(folder_ / "fonts.conf", "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig></fontconfig>");
-  const Picture plain = picture({folder_ / "plain.json"});
+  const Image8 plain = picture({folder_ / "plain.json"});
   ::setenv("FONTCONFIG_FILE", (folder_ / "fonts.conf").c_str(), 1);
   std::string err;
-  const Picture without = picture({folder_ / "s.json"}, &err);
+  const Image8 without = picture({folder_ / "s.json"}, &err);
   ::unsetenv("FONTCONFIG_FILE");
   EXPECT_NE(err.find("no font was found"), std::string::npos) << err;
   EXPECT_EQ(err.find("no font was found"), err.rfind("no font was found")) << "said once";

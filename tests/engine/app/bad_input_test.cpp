@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace bad_input_test {
@@ -229,7 +229,7 @@ TEST_F(BadArguments, AnEmptyNumberIsRefusedByEveryOption) {
   refused({"feel", s, "--seconds", ""}, {}, {"--seconds", empty});
 }
 
-TEST(BadWords, WhatNothingKnowsIsNamedWithTheNearestThatThereIs) {
+TEST(UnknownWords, WhatNothingKnowsIsNamedWithTheNearestThatThereIs) {
   const auto says = [](const std::vector<std::string>& words) {
     const test::ProgramResult run = test::run_catena(words);
     EXPECT_EQ(run.exit_code, 2);

@@ -4,18 +4,18 @@
 #include <cmath>
 
 #include "engine/scene/color_maps.h"
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace color_map_test {
 
 using namespace catena;
-using render::Picture;
+using render::Image8;
 
 test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
-Picture draw(std::vector<std::string> arguments, const std::string& keep) {
+Image8 draw(std::vector<std::string> arguments, const std::string& keep) {
   const test::TemporaryFolder folder;
   arguments.insert(arguments.begin(), "render");
   arguments.insert(arguments.end(), {"-o", folder / "o.png", "--validation", "--stats", folder / "o.json"});
@@ -41,7 +41,7 @@ struct Entry {
   double rgb[3];
 };
 
-TEST(ColorMapPicture, ARampShowsTheMapInOrder) {
+TEST(ColorMapImage, ARampShowsTheMapInOrder) {
   const test::TemporaryFolder folder;
   const std::pair<const char*, std::vector<Entry>> maps[] = {
       {"viridis", {{26, {72.0, 37.2, 117.7}}, {77, {52.3, 95.8, 141.2}}, {128, {32.5, 144.6, 140.4}}, {203, {119.4, 208.8, 82.6}}}},
@@ -49,7 +49,7 @@ TEST(ColorMapPicture, ARampShowsTheMapInOrder) {
       {"grey", {{26, {26, 26, 26}}, {77, {77, 77, 77}}, {128, {128, 128, 128}}, {203, {203, 203, 203}}}}};
   for (const auto& [name, entries] : maps) {
     test::write_file(folder / "s.json", ramp("\"color\": \"" + std::string(name) + "\""));
-    const Picture picture = draw({folder / "s.json", "--size", "64x256", "--quality", "reference"}, std::string("ramp-") + name);
+    const Image8 picture = draw({folder / "s.json", "--size", "64x256", "--quality", "reference"}, std::string("ramp-") + name);
     for (const Entry& entry : entries) {
       // row y has its centre at the share (255.5 - y) / 256 of the map, entry i at i / 255
       const double y = 255.5 - 256 * entry.at / 255.0;
@@ -60,7 +60,7 @@ TEST(ColorMapPicture, ARampShowsTheMapInOrder) {
       }
     }
     // every row, against the map's own points
-    const auto table = scene::named_map(name, -2, 2);
+    const auto table = scene::make_color_map(name, -2, 2);
     for (std::uint32_t y = 1; y < 255; ++y) {
       const double z = 2 - 4 * (y + 0.5) / 256;
       std::size_t i = 1;
@@ -74,15 +74,15 @@ TEST(ColorMapPicture, ARampShowsTheMapInOrder) {
   }
 }
 
-TEST(ColorMapPicture, ARangeMovesTheMapAndATransferFileIsTheSame) {
+TEST(ColorMapImage, ARangeMovesTheMapAndATransferFileIsTheSame) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", ramp(R"("color": "grey", "range": [-1, 1])"));
   test::write_file(folder / "t.json", R"([{"RGBPoints": [0, 0, 0, 0, 8, 1, 1, 1], "Points": [0, 1, 0.5, 0, 8, 1, 0.5, 0]}])");
   std::string by_file = ramp(R"("transfer": "t.json", "opacity_unit": 0.005, "range": [-1, 1])");
   by_file.erase(by_file.find("\"extinction\""), std::string("\"extinction\": [[0, 1000]], ").size());
   test::write_file(folder / "f.json", by_file);
-  const Picture named = draw({folder / "s.json", "--size", "64x128", "--quality", "reference"}, "ramp-range");
-  const Picture filed = draw({folder / "f.json", "--size", "64x128", "--quality", "reference"}, "ramp-file");
+  const Image8 named = draw({folder / "s.json", "--size", "64x128", "--quality", "reference"}, "ramp-range");
+  const Image8 filed = draw({folder / "f.json", "--size", "64x128", "--quality", "reference"}, "ramp-file");
   for (std::uint32_t y = 1; y < 127; ++y) {
     const double z = 2 - 4 * (y + 0.5) / 128, grey = 255 * std::min(1.0, std::max(0.0, 0.5 + 0.5 * z));
     EXPECT_NEAR(named.pixel(32, y)[0], grey, 2) << y;
@@ -100,15 +100,15 @@ TEST(ColorMapProgram, ListsItsMaps) {
 TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(program({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
-  const Picture plain = draw({folder / "g.vdb", "--size", "64x48"}, "bare");
-  const Picture red = draw({folder / "g.vdb", "--size", "64x48", "--colormap", "grey", "--range", "0", "1"}, "bare-grey");
+  const Image8 plain = draw({folder / "g.vdb", "--size", "64x48"}, "bare");
+  const Image8 red = draw({folder / "g.vdb", "--size", "64x48", "--colormap", "grey", "--range", "0", "1"}, "bare-grey");
   // what was chosen, and why, is said once the picture is there
   const auto render = program({"render", folder / "g.vdb", "-o", folder / "note.png", "--size", "16x12"});
   EXPECT_NE(render.err.find("\"gaussian\" looks like a simulation: "), std::string::npos) << render.err;
   EXPECT_NE(program({"info", folder / "g.vdb"}).out.find("\"gaussian\" looks like a simulation: "), std::string::npos);
   EXPECT_NE(plain.rgba, red.rgba);
   // grey over the backdrop, which is bluer by 13 of 255, and grey alone where it is dense
-  const auto bluer = [](const Picture& picture, std::uint32_t x, std::uint32_t y) {
+  const auto bluer = [](const Image8& picture, std::uint32_t x, std::uint32_t y) {
     return int(picture.pixel(x, y)[2]) - int(picture.pixel(x, y)[0]);
   };
   for (std::uint32_t y = 0; y < 48; ++y)
@@ -122,7 +122,7 @@ TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
   EXPECT_GT(greener, 20) << "not grey without the map";
   // lines show their speed
   ASSERT_EQ(program({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "16"}).exit_code, 0);
-  const Picture lines = draw({folder / "c.vdb", "--size", "64x48", "--colormap", "grey_r"}, "bare-lines");
+  const Image8 lines = draw({folder / "c.vdb", "--size", "64x48", "--colormap", "grey_r"}, "bare-lines");
   bool any = false;
   for (std::uint32_t y = 0; y < 48; ++y)
     for (std::uint32_t x = 0; x < 64; ++x) {

@@ -1,5 +1,5 @@
 // The table of commands: which stroke asks for what, and what menu and list of keys say of it.
-#include "engine/app/viewer/shell/commands.h"
+#include "engine/app/viewer/input/commands.h"
 
 #include <gtest/gtest.h>
 
@@ -12,11 +12,11 @@ constexpr int kEscape = 256, kTab = 258, kLeft = 263, kHome = 268, kF1 = 290, kF
 
 std::optional<Action> asked(int key, bool control = false, bool shift = false, bool fly = false) {
   KeyEvent event;
-  event.what = KeyEvent::What::press;
+  event.type = KeyEvent::Type::press;
   event.key = key;
   event.control = control;
   event.shift = shift;
-  return action_of(event, fly);
+  return find_action(event, fly);
 }
 
 TEST(Commands, AStrokeAsksForOneThing) {
@@ -27,8 +27,8 @@ TEST(Commands, AStrokeAsksForOneThing) {
   } kStrokes[] = {
       {'O', true, false, Action::open},
       {'O', true, true, Action::open},
-      {'O', false, false, Action::projection},
-      {'O', false, true, Action::projection},
+      {'O', false, false, Action::toggle_projection},
+      {'O', false, true, Action::toggle_projection},
       {'S', true, false, Action::save},
       {'S', true, true, Action::save_as},
       {'S', false, false, {}},
@@ -39,29 +39,29 @@ TEST(Commands, AStrokeAsksForOneThing) {
       {'Z', false, false, {}},
       {'Y', true, false, Action::redo},
       {'Y', true, true, Action::redo},
-      {'1', false, false, Action::along_x},
-      {'2', false, false, Action::along_y},
-      {'3', false, true, Action::against_z},
+      {'1', false, false, Action::view_along_plus_x},
+      {'2', false, false, Action::view_along_plus_y},
+      {'3', false, true, Action::view_along_minus_z},
       {'1', true, false, {}},
-      {'A', false, false, Action::fit},
-      {kHome, false, false, Action::fit},
+      {'A', false, false, Action::fit_view},
+      {kHome, false, false, Action::fit_view},
       {'A', true, false, {}},
-      {'R', false, true, Action::first_view},
-      {'T', false, false, Action::turntable},
+      {'R', false, true, Action::reset_view},
+      {'T', false, false, Action::toggle_turntable},
       {'T', true, false, {}},
-      {'V', false, false, Action::fly},
-      {'H', false, false, Action::hand_mode},
-      {'F', false, false, Action::forces},
-      {'P', false, false, Action::pulses},
-      {kF1, false, false, Action::help},
+      {'V', false, false, Action::toggle_fly},
+      {'H', false, false, Action::toggle_probe_mode},
+      {'F', false, false, Action::toggle_forces},
+      {'P', false, false, Action::toggle_band_animation},
+      {kF1, false, false, Action::toggle_help},
       {kF1, true, false, {}},
-      {kF2, false, false, Action::next_stereo},
-      {kEscape, false, false, Action::close},
-      {kTab, true, false, Action::panels},
-      {kTab, false, false, Action::panels},
-      {kF11, true, true, Action::full_screen},
-      {kF12, false, false, Action::picture},
-      {kF12, true, true, Action::window_picture},
+      {kF2, false, false, Action::next_stereo_mode},
+      {kEscape, false, false, Action::dismiss},
+      {kTab, true, false, Action::toggle_panels},
+      {kTab, false, false, Action::toggle_panels},
+      {kF11, true, true, Action::toggle_fullscreen},
+      {kF12, false, false, Action::save_image},
+      {kF12, true, true, Action::save_window_image},
       {'B', false, false, {}},
       {'?', false, false, {}},
   };
@@ -70,44 +70,44 @@ TEST(Commands, AStrokeAsksForOneThing) {
 }
 
 TEST(Commands, OnlyAPressAndAQuestionMarkAsk) {
-  for (const auto what : {KeyEvent::What::release, KeyEvent::What::repeat}) {
+  for (const auto what : {KeyEvent::Type::release, KeyEvent::Type::repeat}) {
     KeyEvent event;
-    event.what = what;
+    event.type = what;
     event.key = 'R';
-    EXPECT_FALSE(action_of(event, false));
+    EXPECT_FALSE(find_action(event, false));
   }
   KeyEvent text;
-  text.what = KeyEvent::What::character;
+  text.type = KeyEvent::Type::character;
   for (std::uint32_t c = 1; c < 512; ++c) {
     text.character = c;
-    EXPECT_EQ(action_of(text, false).has_value(), c == U'?') << c;
+    EXPECT_EQ(find_action(text, false).has_value(), c == U'?') << c;
   }
   text.character = U'?';
-  EXPECT_EQ(action_of(text, true), Action::help);
+  EXPECT_EQ(find_action(text, true), Action::toggle_help);
 }
 
 TEST(Commands, LettersThatFlyAreNoCommandsButShortcutsAre) {
   for (const int key : {int('A'), int('S'), int('W'), int('D'), int('E'), int('Q'), kLeft})
     EXPECT_FALSE(asked(key, false, false, true)) << key;
-  EXPECT_EQ(asked('A', false, false, false), Action::fit);
+  EXPECT_EQ(asked('A', false, false, false), Action::fit_view);
   EXPECT_EQ(asked('S', true, false, true), Action::save);
-  EXPECT_EQ(asked('V', false, false, true), Action::fly);
+  EXPECT_EQ(asked('V', false, false, true), Action::toggle_fly);
 }
 
 TEST(Commands, MenuAndKeysSayWhatTheTableSays) {
-  EXPECT_STREQ(menu_words(Action::save_as), "Save as...");
-  EXPECT_EQ(key_words(Action::save_as), "Ctrl+Shift+S");
-  EXPECT_EQ(key_words(Action::against_y), "Shift+2");
-  EXPECT_EQ(key_words(Action::fit), "A");
-  EXPECT_EQ(key_words(Action::window_picture), "Shift+F12");
-  EXPECT_EQ(key_words(Action::redo), "Ctrl+Y");
+  EXPECT_STREQ(menu_label(Action::save_as), "Save as...");
+  EXPECT_EQ(shortcut_label(Action::save_as), "Ctrl+Shift+S");
+  EXPECT_EQ(shortcut_label(Action::view_along_minus_y), "Shift+2");
+  EXPECT_EQ(shortcut_label(Action::fit_view), "A");
+  EXPECT_EQ(shortcut_label(Action::save_window_image), "Shift+F12");
+  EXPECT_EQ(shortcut_label(Action::redo), "Ctrl+Y");
 }
 
 TEST(Commands, TheListOfKeysNamesEachStrokeOnce) {
   std::set<std::string> keys;
   for (const KeyHelp& line : key_list()) {
     EXPECT_TRUE(keys.insert(line.keys).second) << line.keys;
-    EXPECT_FALSE(line.section.empty() || line.keys.empty() || line.does.empty()) << line.keys;
+    EXPECT_FALSE(line.section.empty() || line.keys.empty() || line.description.empty()) << line.keys;
   }
 }
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {

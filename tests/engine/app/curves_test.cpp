@@ -3,16 +3,16 @@
 
 #include "engine/scene/scene.h"
 #include "render/extract/extract.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 #include "tests/support/curve_files.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 
 namespace catena::app {
 namespace curves_test {
 
 using test::Polylines;
 
-class CurvePictures : public test::PictureTest {
+class CurveImages : public test::ImageTest {
  protected:
   /// Three crossing lines along the axes, seen from where all three can be told apart.
   std::string scene_of(const std::string& keys, const std::string& more = "") {
@@ -40,7 +40,7 @@ class CurvePictures : public test::PictureTest {
     return render::make_frame(*scene, 256, 192);
   }
   /// The colour of the picture where a world place is, without the light: its brightest component is 1.
-  Color hue_at(const render::FramePacket& packet, const render::Picture& picture, const Vec3& place) {
+  Color hue_at(const render::FramePacket& packet, const render::Image8& picture, const Vec3& place) {
     const auto camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
     const auto at = render::project(camera, place);
     const std::size_t pixel = 4 * (static_cast<std::size_t>(at->y) * packet.width + static_cast<std::size_t>(at->x));
@@ -53,7 +53,7 @@ class CurvePictures : public test::PictureTest {
 
 const Vec3 kOn[] = {{0.7, 0.4, 0}, {0, 0.7, 0.4}, {0.4, 0, 0.7}};
 
-TEST_F(CurvePictures, ColoursOfTheDirections) {
+TEST_F(CurveImages, ColoursOfTheDirections) {
   const auto packet = packet_of(scene_of(""));
   ASSERT_TRUE(packet) << packet.error().message;
   const auto picture = draw(*packet, {}, "directions");
@@ -73,7 +73,7 @@ TEST_F(CurvePictures, ColoursOfTheDirections) {
   EXPECT_EQ(askew->tubes[0].colors[0].b, 0);
 }
 
-TEST_F(CurvePictures, OneColourValuesAndLengths) {
+TEST_F(CurveImages, OneColourValuesAndLengths) {
   const auto one = packet_of(scene_of(R"(, "color": [0, 1, 1])"));
   ASSERT_TRUE(one);
   EXPECT_NEAR(hue_at(*one, draw(*one), kOn[0]).r, 0, 0.02);
@@ -99,7 +99,7 @@ TEST_F(CurvePictures, OneColourValuesAndLengths) {
   EXPECT_NEAR(field->tubes[0].colors[13].r, 0.5 + 0.5 * (0.3 + 0.4), 1e-5) << "x + y + z";
 }
 
-TEST_F(CurvePictures, ClipPlanesAndTheFitOfTheRadius) {
+TEST_F(CurveImages, ClipPlanesAndTheFitOfTheRadius) {
   const auto clipped = packet_of(scene_of("", R"(, "clip": [{"plane": {"point": [0, 0, 0], "normal": [-1, 0, 0]}}])"));
   ASSERT_TRUE(clipped);
   const auto picture = draw(*clipped);
@@ -112,7 +112,7 @@ TEST_F(CurvePictures, ClipPlanesAndTheFitOfTheRadius) {
   EXPECT_NEAR(fitted->tubes[0].radius, 0.003 * 5, 1e-9);
 }
 
-TEST_F(CurvePictures, VeryManyAreDrawnInPartAndSaySo) {
+TEST_F(CurveImages, VeryManyAreDrawnInPartAndSaySo) {
   // 2.2 million points: 11 lines of 200 000
   std::vector<Vec3> line;
   for (int i = 0; i < 200000; ++i) line.push_back({1e-5 * i, 0, 0});
@@ -121,11 +121,11 @@ TEST_F(CurvePictures, VeryManyAreDrawnInPartAndSaySo) {
   const auto packet = packet_of(R"({"curves": [{"name": "many", "file": "many.tck"}]})");
   ASSERT_TRUE(packet);
   EXPECT_EQ(packet->tubes.size(), 10u);
-  EXPECT_EQ(packet->left_out,
+  EXPECT_EQ(packet->omitted,
             "curves \"many\": 10 of 11 lines are drawn, evenly chosen, so that they have about 2000000 points; all are felt");
 }
 
-TEST_F(CurvePictures, BallsAreRoundLitAndWhereTheyAre) {
+TEST_F(CurveImages, BallsAreRoundLitAndWhereTheyAre) {
   test::write_file(folder_ / "p.csv", "x,y,z,v,size\n0,0,0,0,0.5\n1.5,0,0,1,0.25\n0,5,0,2,nan\n");
   for (const bool flat : {false, true}) {
     const std::string camera = flat ? R"("projection": "orthographic", "height": 3)" : R"("fovy_deg": 30)";
@@ -135,8 +135,8 @@ TEST_F(CurvePictures, BallsAreRoundLitAndWhereTheyAre) {
                                       "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], )" +
                                   camera + "}}");
     ASSERT_TRUE(packet) << packet.error().message;
-    ASSERT_EQ(packet->balls.size(), 1u);
-    EXPECT_EQ(packet->balls[0].balls->places.size(), 2u) << "one has no radius";
+    ASSERT_EQ(packet->spheres.size(), 1u);
+    EXPECT_EQ(packet->spheres[0].spheres->offsets.size(), 2u) << "one has no radius";
     EXPECT_EQ(packet->overlay.scalar_bars.size(), 1u);
     const auto picture = draw(*packet, {}, flat ? "flat" : "perspective");
     EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).r, 1, 0.02);
@@ -165,7 +165,7 @@ TEST_F(CurvePictures, BallsAreRoundLitAndWhereTheyAre) {
   }
 }
 
-TEST_F(CurvePictures, AClippedBallShowsItsInside) {
+TEST_F(CurveImages, AClippedBallShowsItsInside) {
   test::write_file(folder_ / "p.csv", "x,y,z\n0,0,0\n");
   const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "color": [0, 1, 0]}],
                                     "clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}],

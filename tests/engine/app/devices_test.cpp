@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "engine/app/device_check.h"
+#include "engine/app/haptics/device_check.h"
 #include "engine/base/json.h"
 #include "haptics/device/device.h"
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/emulator/boot_image.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace devices_test {
@@ -52,25 +52,25 @@ class Springy final : public haptics::Device {
   haptics::DeviceCapabilities able_;
 };
 
-DeviceCheck check(haptics::Device& device, bool forces, double seconds = 0.5) {
+DeviceCheckResult check(haptics::Device& device, bool forces, double seconds = 0.5) {
   DeviceCheckOptions options;
   options.seconds = seconds;
   options.forces = forces;
-  return check_device(device, options, unpaced(options.rate_hz));
+  return check_device(device, options, make_immediate_schedule(options.rate_hz));
 }
 
 TEST(DeviceCheck, WithoutForcesItOnlyReads) {
   Springy device;
   device.noise = 1e-5;
   device.starts = 100;
-  const DeviceCheck out = check(device, false);
+  const DeviceCheckResult out = check(device, false);
   EXPECT_EQ(out.failure, "");
   EXPECT_EQ(device.strongest, 0);
   EXPECT_NEAR(out.ready_after_s, 0.1, 1e-12);
-  EXPECT_EQ(out.reads, 500u);
+  EXPECT_EQ(out.read_count, 500u);
   EXPECT_NEAR(out.rate_hz(), 1000, 1e-6);
   EXPECT_NEAR(out.jitter_m, 2e-5 / std::sqrt(1.5), 1e-9);  // x_k - mean of neighbours = 2 a
-  EXPECT_NEAR(out.highest_m.y - out.lowest_m.y, 2e-5, 1e-12);
+  EXPECT_NEAR(out.max_m.y - out.min_m.y, 2e-5, 1e-12);
   EXPECT_NEAR(out.mean_age_s, 0.002, 1e-12);
   EXPECT_EQ(out.buttons, 0u);
   Springy other;
@@ -79,19 +79,19 @@ TEST(DeviceCheck, WithoutForcesItOnlyReads) {
 
 TEST(DeviceCheck, PushesAreSmallRampedAndReported) {
   Springy device;
-  const DeviceCheck out = check(device, true);
+  const DeviceCheckResult out = check(device, true);
   ASSERT_EQ(out.failure, "");
   ASSERT_EQ(out.pushes.size(), 6u);
   EXPECT_NEAR(device.strongest, 1, 1e-12);
   EXPECT_LE(device.steepest, 1.0 / 200 + 1e-12);
-  for (const Push& push : out.pushes) EXPECT_LE(norm(push.moved_m - 0.002 * push.asked_n), 1e-12);
+  for (const PushResult& push : out.pushes) EXPECT_LE(norm(push.displacement_m - 0.002 * push.requested_n), 1e-12);
   EXPECT_EQ(device.force, Vec3(0.0));
 }
 
 TEST(DeviceCheck, AHandThatMovesTooFarEndsItAtOnce) {
   Springy device;
   device.compliance = 0.05;
-  const DeviceCheck out = check(device, true);
+  const DeviceCheckResult out = check(device, true);
   EXPECT_NE(out.failure.find("under a push of"), std::string::npos) << out.failure;
   EXPECT_NE(out.failure.find("+x"), std::string::npos) << out.failure;
   EXPECT_LE(device.strongest, 0.41);  // 0.02 m at 0.4 N
@@ -109,7 +109,7 @@ TEST(DeviceCheck, LossAndNonsenseAreFailuresWithZeroForce) {
   for (const int when : {50, 900, 1300}) {
     Springy lost, broken, fallen;
     lost.lost = broken.broken = when;
-    const DeviceCheck a = check(lost, true), b = check(broken, true);
+    const DeviceCheckResult a = check(lost, true), b = check(broken, true);
     EXPECT_NE(a.failure.find("lost"), std::string::npos) << a.failure;
     EXPECT_NE(b.failure.find("not a number"), std::string::npos) << b.failure;
     EXPECT_EQ(lost.force, Vec3(0.0));
@@ -121,9 +121,9 @@ TEST(DeviceCheck, LossAndNonsenseAreFailuresWithZeroForce) {
 TEST(DeviceCheck, WaitsForAStartOnlySoLong) {
   Springy device;
   device.starts = 1 << 30;
-  const DeviceCheck out = check(device, false);
+  const DeviceCheckResult out = check(device, false);
   EXPECT_NE(out.failure.find("not ready after 20 s"), std::string::npos) << out.failure;
-  EXPECT_EQ(out.reads, 0u);
+  EXPECT_EQ(out.read_count, 0u);
 }
 
 // Not ready for a while; says why.
@@ -148,12 +148,12 @@ TEST(DeviceCheck, SaysWhatTheDeviceAsksForWhileItIsNotReady) {
   std::vector<std::string> told;
   DeviceCheckOptions options;
   options.seconds = 0.1;
-  options.tell = [&](const std::string& text) { told.push_back(text); };
-  EXPECT_EQ(check_device(device, options, unpaced(options.rate_hz)).failure, "");
+  options.prompt = [&](const std::string& text) { told.push_back(text); };
+  EXPECT_EQ(check_device(device, options, make_immediate_schedule(options.rate_hz)).failure, "");
   EXPECT_EQ(told, (std::vector<std::string>{"pull it out", "push it in"}));
 }
 
-// Ready, but forces are not let through at first, and the hand moves until `rests`.
+// DrawState, but forces are not let through at first, and the hand moves until `rests`.
 class Arming final : public haptics::Device {
  public:
   Arming() { able_.max_force_n = 5; }
@@ -179,8 +179,8 @@ TEST(DeviceCheck, PushesOnlyOnceForcesAreLetThroughAndTheGripRests) {
     DeviceCheckOptions options;
     options.seconds = 0.1;
     options.forces = true;
-    options.tell = [&](const std::string& text) { told.push_back(text); };
-    return check_device(device, options, unpaced(options.rate_hz));
+    options.prompt = [&](const std::string& text) { told.push_back(text); };
+    return check_device(device, options, make_immediate_schedule(options.rate_hz));
   };
   std::vector<std::string> told;
   Arming device;
@@ -204,7 +204,7 @@ TEST(DeviceCheck, StopsWhenAsked) {
   DeviceCheckOptions options;
   options.forces = true;
   options.stop = &stop;
-  const DeviceCheck out = check_device(device, options, [&](std::uint64_t k) {
+  const DeviceCheckResult out = check_device(device, options, [&](std::uint64_t k) {
     if (k == 2800) stop = true;
     return 1e-3 * static_cast<double>(k);
   });

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/app/viewer/shell/scene_host.h"
+#include "engine/app/viewer/scene/scene_model.h"
 
 namespace catena::app {
 namespace edits_test {
@@ -16,40 +16,40 @@ struct Notes {
   Edits edits{commands, state};
 
   /// As the session does after each frame.
-  void carry_out(SceneHost& host) {
+  void carry_out(SceneModel& host) {
     for (const Command& command : std::exchange(commands, {})) {
       const Edit* edit = std::get_if<Edit>(&command);
       ASSERT_NE(edit, nullptr);
-      const Outcome done = host.apply(edit->edits, edit->what, edit->drag);
+      const Outcome done = host.apply(edit->edits, edit->undo_label, edit->undo_group);
       EXPECT_TRUE(done) << done.error().message;
     }
   }
 };
 
-SceneHost open_scene() {
-  auto document = scene::Document::make(kScene, "scene.json");
+SceneModel open_scene() {
+  auto document = scene::Document::create(kScene, "scene.json");
   EXPECT_TRUE(document);
-  auto host = SceneHost::open(std::move(*document), {});
+  auto host = SceneModel::open(std::move(*document), {});
   EXPECT_TRUE(host);
   return std::move(*host);
 }
 
 TEST(Edits, AreNotedAndChangeNothingAtOnce) {
-  SceneHost host = open_scene();
+  SceneModel host = open_scene();
   Notes notes;
   notes.edits.set("/isosurfaces/0/opacity", "0.5", "opacity");
   notes.edits.remove("/isosurfaces/0", "remove isosurface");
   EXPECT_EQ(notes.commands.size(), 2u);
   EXPECT_EQ(host.document().text(), kScene);
   notes.carry_out(host);
-  EXPECT_EQ(host.scene().world.count<scene::Isosurface>(), 0u);
-  EXPECT_EQ(host.document().undo_what(), "remove isosurface");
+  EXPECT_EQ(host.scene().entities.count<scene::Isosurface>(), 0u);
+  EXPECT_EQ(host.document().undo_label(), "remove isosurface");
   EXPECT_TRUE(host.undo());
-  EXPECT_EQ(host.document().undo_what(), "opacity") << "in order, a step each";
+  EXPECT_EQ(host.document().undo_label(), "opacity") << "in order, a step each";
 }
 
 TEST(Edits, OfOneGestureAreOneStepOfUndo) {
-  SceneHost host = open_scene();
+  SceneModel host = open_scene();
   Notes notes;
   for (int frame = 1; frame <= 5; ++frame) {
     notes.edits.drag("/isosurfaces/0/level", std::to_string(0.1 * frame), "isolevel");
@@ -61,7 +61,7 @@ TEST(Edits, OfOneGestureAreOneStepOfUndo) {
 }
 
 TEST(Edits, OfTwoGesturesOrOfTwoThingsAreTwoSteps) {
-  SceneHost host = open_scene();
+  SceneModel host = open_scene();
   Notes notes;
   notes.edits.drag("/isosurfaces/0/level", "0.1", "isolevel");
   ++notes.state.gesture;
@@ -74,7 +74,7 @@ TEST(Edits, OfTwoGesturesOrOfTwoThingsAreTwoSteps) {
 }
 
 TEST(Edits, ThatBelongTogetherAreAllOrNothing) {
-  SceneHost host = open_scene();
+  SceneModel host = open_scene();
   const Outcome done = host.apply({{"/isosurfaces/0/level", "0.1"}, {"/isosurfaces/0/opacity", "\"thick\""}}, "level");
   EXPECT_FALSE(done);
   EXPECT_EQ(host.document().text(), kScene);

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "engine/field/load.h"
-#include "engine/mesh/load.h"
-#include "tests/support/program.h"
+#include "engine/io/mesh/load_mesh.h"
+#include "engine/io/volume/load_field.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {
@@ -120,8 +120,8 @@ TEST_F(ExportScene, SliceHasTheValuesOfAllFields) {
 #ifdef CATENA_TEST_VTK
   const mesh::MeshPtr mesh = mesh_in("s.vtp");
   ASSERT_TRUE(mesh);
-  EXPECT_EQ(mesh->lowest(), Vec3(-2, -2, 0.5));
-  EXPECT_EQ(mesh->highest(), Vec3(2, 2, 0.5));
+  EXPECT_EQ(mesh->min_corner(), Vec3(-2, -2, 0.5));
+  EXPECT_EQ(mesh->max_corner(), Vec3(2, 2, 0.5));
 #endif
 }
 
@@ -146,7 +146,7 @@ TEST_F(ExportScene, ProbePathHasTheValuesThatItMet) {
   EXPECT_EQ(table.number(1, "w_x"), -0.25);
   EXPECT_EQ(table.number(1, "w_y"), 0.5);
   EXPECT_NEAR(table.number(1, "g"), 0.75, 1e-3);
-  EXPECT_EQ(table.word(2, "g"), "") << "outside the grid";
+  EXPECT_EQ(table.text(2, "g"), "") << "outside the grid";
   EXPECT_EQ(table.number(2, "r"), 5);
 }
 

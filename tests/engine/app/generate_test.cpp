@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace generate_test {

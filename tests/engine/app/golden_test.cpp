@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {
@@ -40,9 +40,9 @@ std::string scene_of(const Golden& golden) {
          golden.scene + R"(, "camera": {"position": [3, -7, 4], "target": [0, 0, 0], "fovy_deg": 32}})";
 }
 
-class GoldenPicture : public testing::TestWithParam<Golden> {};
+class GoldenImage : public testing::TestWithParam<Golden> {};
 
-TEST_P(GoldenPicture, IsAsItWasLookedAt) {
+TEST_P(GoldenImage, IsAsItWasLookedAt) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene_of(GetParam()));
   const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "192x144", "--quality", "step=0.5",
@@ -74,7 +74,7 @@ TEST_P(GoldenPicture, IsAsItWasLookedAt) {
   EXPECT_LE(double(far_pixels) / double(pixels), kMaxFar);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GoldenPicture, testing::ValuesIn(kGoldens), [](const auto& golden) {
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenImage, testing::ValuesIn(kGoldens), [](const auto& golden) {
   std::string name = golden.param.name;
   for (char& c : name)
     if (c == '-') c = '_';

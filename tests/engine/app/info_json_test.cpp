@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
-#include "tests/engine/vtk/files.h"
-#include "tests/support/program.h"
+#include "tests/engine/io/vtk/files.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {

@@ -1,4 +1,4 @@
-#include "engine/app/viewer/shell/keys.h"
+#include "engine/app/viewer/input/keys.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 namespace catena::app {
 namespace keys_test {
 
-using What = KeyEvent::What;
+using What = KeyEvent::Type;
 constexpr int kA = 65, kB = 66, kEscape = 256, kEnter = 257, kBackspace = 259, kShift = 340, kControl = 341;
 
 KeyEvent event(What what, int key, std::uint32_t character = 0) {
   KeyEvent e;
-  e.what = what;
+  e.type = what;
   e.key = key;
   e.character = character;
   return e;
@@ -22,7 +22,7 @@ KeyEvent event(What what, int key, std::uint32_t character = 0) {
 
 /// An interface as Dear ImGui 1.86 is one: keys and modifiers as they are when a frame begins, text before keys within a frame.
 struct Interface {
-  KeyFrames frames;
+  KeyFrameScheduler frames;
   std::set<int> down, down_before;
   std::string text_told, text_read, strokes_read;
   int mixed = 0;
@@ -35,16 +35,16 @@ struct Interface {
     text_read += text_told;
     text_told.clear();
     down_before = down;
-    frames.framed();
+    frames.end_frame();
   }
   void tell(const KeyEvent& e) {
-    if (!frames.joins(e)) frame();
-    EXPECT_TRUE(frames.joins(e)) << "after a frame anything joins";
-    frames.tell(e);
-    if (e.what == What::press) down.insert(e.key);
-    if (e.what == What::release) down.erase(e.key);
-    if (e.what == What::focus_lost) down.clear();
-    if (e.what == What::character) text_told += static_cast<char>(e.character);
+    if (!frames.fits_current_frame(e)) frame();
+    EXPECT_TRUE(frames.fits_current_frame(e)) << "after a frame anything joins";
+    frames.add(e);
+    if (e.type == What::press) down.insert(e.key);
+    if (e.type == What::release) down.erase(e.key);
+    if (e.type == What::focus_lost) down.clear();
+    if (e.type == What::character) text_told += static_cast<char>(e.character);
   }
 };
 
@@ -70,11 +70,11 @@ TEST(Keys, TextAndEditingKeysKeepTheirOrder) {
 }
 
 TEST(Keys, AHeldBackspaceRepeatsAndAHeldReturnDoesNot) {
-  const auto repeated = without_repeats(event(What::repeat, kBackspace));
+  const auto repeated = resolve_repeats(event(What::repeat, kBackspace));
   ASSERT_EQ(repeated.size(), 2u);
-  EXPECT_EQ(repeated[0].what, What::release);
-  EXPECT_EQ(repeated[1].what, What::press);
-  for (const int key : {kEnter, kEscape, kA, kControl}) EXPECT_TRUE(without_repeats(event(What::repeat, key)).empty());
+  EXPECT_EQ(repeated[0].type, What::release);
+  EXPECT_EQ(repeated[1].type, What::press);
+  for (const int key : {kEnter, kEscape, kA, kControl}) EXPECT_TRUE(resolve_repeats(event(What::repeat, key)).empty());
   Interface ui;
   ui.tell(event(What::press, kBackspace));
   for (const KeyEvent& e : repeated) ui.tell(e);
@@ -103,7 +103,7 @@ TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
       made_with.clear();
     };
     const auto tell = [&](const KeyEvent& e) {
-      if (!ui.frames.joins(e)) check_frame();
+      if (!ui.frames.fits_current_frame(e)) check_frame();
       ui.tell(e);
     };
     for (int step = 0; step < 60; ++step) {
@@ -121,7 +121,7 @@ TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
         check_frame();
         ui.frame();
       } else if (dice < 4 && held.contains(key)) {
-        for (const KeyEvent& e : without_repeats(event(What::repeat, key))) tell(e);
+        for (const KeyEvent& e : resolve_repeats(event(What::repeat, key))) tell(e);
         if (key == kBackspace) expected_strokes += "<259>";
       } else if (held.erase(key) > 0) {
         tell(event(What::release, key));

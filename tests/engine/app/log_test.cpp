@@ -3,17 +3,17 @@
 
 #include <filesystem>
 
-#include "engine/app/replay_log.h"
-#include "haptics/extract/extract.h"
+#include "engine/app/haptics/log_replay.h"
+#include "haptics/build/build_program.h"
 #include "tests/fuzz/log_bytes.h"
-#include "tests/support/log_rig.h"
-#include "tests/support/program.h"
+#include "tests/support/recording_fixture.h"
+#include "tests/support/run_program.h"
 
 namespace log_test {
 
 using namespace catena;
 using namespace catena::haptics;
-using test::Change;
+using test::ProgramChange;
 
 test::ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
@@ -71,22 +71,22 @@ void make_data(const std::string& folder) {
 }
 
 /// As a session at a device: a fitted workspace, limits, four programs: the scene, the same again, another one, the scene again.
-std::vector<Change> session(const std::string& scene_path, const std::string& text) {
-  Limits limits;
+std::vector<ProgramChange> session(const std::string& scene_path, const std::string& text) {
+  DeviceLimits limits;
   limits.max_force_n = 6;
   limits.max_stiffness_n_per_m = 450;
-  std::vector<Change> changes;
+  std::vector<ProgramChange> changes;
   auto scene = scene::parse_scene(text, scene_path), between = scene::parse_scene(kBetween, scene_path);
   EXPECT_TRUE(scene) << scene.error().message;
   EXPECT_TRUE(between) << between.error().message;
   for (scene::Scene* s : {&*scene, &*between}) {
     if (!s->coupling.ramp_s) s->coupling.ramp_s = 0.02;
-    s->workspace.metres_per_unit = 0.07;
+    s->workspace.meters_per_unit = 0.07;
     s->workspace.origin = {0.01, 0.02, 0.03};
   }
   const std::pair<std::uint64_t, bool> plan[] = {{1, false}, {400, false}, {700, true}, {900, false}};
   for (const auto& [tick, other] : plan) {
-    auto program = extract_program(other ? *between : *scene, limits);
+    auto program = build_program(other ? *between : *scene, limits);
     EXPECT_TRUE(program) << program.error().message;
     changes.push_back({tick, *program, other ? std::optional<std::string>(kBetween) : std::nullopt});
   }
@@ -94,11 +94,11 @@ std::vector<Change> session(const std::string& scene_path, const std::string& te
 }
 
 std::uint64_t record_session(const std::string& log, const std::string& scene_path, int ticks = 1200) {
-  auto header = app::log_header(scene_path, {}, "simulated", 1000);
+  auto header = app::make_log_header(scene_path, {}, "simulated", 1000);
   EXPECT_TRUE(header) << header.error().message;
   auto writer = log::LogWriter::open(log, *header, {scene_path});
   EXPECT_TRUE(writer) << writer.error().message;
-  const std::uint64_t hash = test::record(**writer, session(scene_path, header->scene_text), test::hostile_path(ticks));
+  const std::uint64_t hash = test::record_ticks(**writer, session(scene_path, header->scene_text), test::adversarial_path(ticks));
   const Outcome done = (*writer)->finish();
   EXPECT_TRUE(done) << done.error().message;
   return hash;
@@ -110,7 +110,7 @@ std::string without_curves(const std::string& path) {
   std::string text;
   for (std::size_t row = 0; row < table.rows(); ++row)
     for (const std::string& column : table.header())
-      if (!column.ends_with("_curve")) text += table.word(row, column) + (column == "t" ? "\n" : ",");
+      if (!column.ends_with("_curve")) text += table.text(row, column) + (column == "t" ? "\n" : ",");
   return text;
 }
 
@@ -136,24 +136,24 @@ TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
   EXPECT_EQ(without_curves(folder / "e.csv"), without_curves(folder / "t.csv"));
   for (const std::string& column : exported_ticks.header()) {
     if (column.ends_with("_curve")) {
-      EXPECT_EQ(exported_ticks.word(0, column), "") << column;
+      EXPECT_EQ(exported_ticks.text(0, column), "") << column;
     }
   }
   const test::Table details = test::Table::read(folder / "d.csv"), all = test::Table::read(folder / "ed.csv");
   ASSERT_EQ(details.rows(), 1200u);
   ASSERT_EQ(all.rows(), 1200u);
   for (const std::string& column : details.header())
-    for (std::size_t row = 0; row < 1200; row += 41) EXPECT_EQ(all.word(row, column), details.word(row, column)) << column << " " << row;
+    for (std::size_t row = 0; row < 1200; row += 41) EXPECT_EQ(all.text(row, column), details.text(row, column)) << column << " " << row;
   for (const char* column : {"probe_time", "orientation_w", "coupling_x", "torque_z", "observer_energy", "compute_us", "device_us"})
     EXPECT_TRUE(all.has(column)) << column;
-  EXPECT_EQ(all.word(50, "condition"), "NO_DEVICE");
-  EXPECT_EQ(all.word(50, "force_state"), "STOPPED");
-  EXPECT_EQ(all.word(5, "probe_time"), "0.005");
-  EXPECT_EQ(all.word(1199, "tick"), "1200");
-  EXPECT_EQ(all.word(100, "period_us"), "1000.5");
+  EXPECT_EQ(all.text(50, "condition"), "NO_DEVICE");
+  EXPECT_EQ(all.text(50, "force_state"), "STOPPED");
+  EXPECT_EQ(all.text(5, "probe_time"), "0.005");
+  EXPECT_EQ(all.text(1199, "tick"), "1200");
+  EXPECT_EQ(all.text(100, "period_us"), "1000.5");
   // a link that only the program between has: cells for its ticks only
-  EXPECT_EQ(all.word(600, "pin_gap"), "");
-  EXPECT_NE(all.word(800, "pin_gap"), "");
+  EXPECT_EQ(all.text(600, "pin_gap"), "");
+  EXPECT_NE(all.text(800, "pin_gap"), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, RecordedScene, testing::ValuesIn(kFelt),
@@ -277,15 +277,15 @@ TEST_F(Recording, ReplacedFieldsAreFoundFromWhereItWasRecorded) {
   // --field s=a/sphere.vdb, recorded in the folder
   std::string text = kFelt[1].scene;
   text.replace(text.find("sphere.vdb"), 10, "circle.vdb:x");
-  auto header = app::log_header(folder_ / "a/s.json", {"s=a/sphere.vdb"}, "null", 1000);
+  auto header = app::make_log_header(folder_ / "a/s.json", {"s=a/sphere.vdb"}, "null", 1000);
   header->working_folder = folder_.path();
   header->scene_path = "a/s.json";
   auto scene = app::open_scene(folder_ / "a/s.json", {"s=" + (folder_ / "a/sphere.vdb")});
   ASSERT_TRUE(scene) << scene.error().message;
-  auto program = extract_program(*scene);
+  auto program = build_program(*scene);
   ASSERT_TRUE(program);
   auto writer = log::LogWriter::open(log_, *header);
-  test::record(**writer, {{1, *program, {}}}, test::hostile_path(200));
+  test::record_ticks(**writer, {{1, *program, {}}}, test::adversarial_path(200));
   ASSERT_TRUE((*writer)->finish());
   const auto run = catena_program({"replay", "--log", log_});
   EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -297,16 +297,16 @@ TEST(ForgedRecording, IsOneSentenceAndExitCodeTwo) {
   const test::TemporaryFolder folder;
   const std::string scene_path = folder / "s.json", log_path = folder / "l.catlog";
   test::write_file(scene_path, R"({"chain": [{"name": "path", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0]]}]})");
-  auto header = app::log_header(scene_path, {}, "simulated", 1000);
+  auto header = app::make_log_header(scene_path, {}, "simulated", 1000);
   ASSERT_TRUE(header);
   auto scene = scene::parse_scene(header->scene_text, scene_path);
   ASSERT_TRUE(scene);
-  const auto program = extract_program(*scene, {});
+  const auto program = build_program(*scene, {});
   ASSERT_TRUE(program);
-  const auto path = test::hostile_path(80);
+  const auto path = test::adversarial_path(80);
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
-  exchange::HapticState out;
+  HapticState out;
   auto writer = log::LogWriter::open(log_path, *header, {scene_path});
   ASSERT_TRUE(writer);
   for (std::size_t k = 0; k < path.size(); ++k) {
@@ -326,14 +326,14 @@ TEST(ForgedRecording, IsOneSentenceAndExitCodeTwo) {
   // the piece of the polyline that is held, far outside of it
   std::string bytes = test::read_file(log_path);
   for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
-    log::BlockHead head;
+    log::BlockHeader head;
     std::memcpy(&head, bytes.data() + at, sizeof head);
     at += sizeof head;
     if (head.type == static_cast<std::uint32_t>(log::BlockType::state))
       std::memset(bytes.data() + at + 16 + offsetof(LinkState, memory) + 64, 0x7f, 300);
     at += head.length;
   }
-  test::seal(bytes);
+  test::rewrite_hashes(bytes);
   test::write_file(log_path, bytes);
   const auto forged = catena_program({"replay", "--log", log_path, "-o", folder / "t.csv"});
   EXPECT_EQ(forged.exit_code, 2) << forged.out << forged.err;

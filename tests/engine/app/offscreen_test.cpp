@@ -7,15 +7,15 @@
 
 #include "engine/base/json.h"
 #include "engine/base/vec.h"
-#include "render/image/picture.h"
+#include "render/image/image.h"
 #include "tests/render/support/read_files.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace offscreen_test {
 
 using namespace catena;
-using render::Picture;
+using render::Image8;
 
 class Offscreen : public testing::Test {
  protected:
@@ -47,10 +47,10 @@ class Offscreen : public testing::Test {
     for (const std::string& part : expects) EXPECT_NE(run.err.find(part), std::string::npos) << "\"" << part << "\" in: " << run.err;
     EXPECT_EQ(files(), before) << "nothing is left behind";
   }
-  Picture picture(const std::string& name) {
+  Image8 picture(const std::string& name) {
     auto read = render::read_png(folder_ / name);
     EXPECT_TRUE(read) << read.error().message;
-    return read ? std::move(*read) : Picture();
+    return read ? std::move(*read) : Image8();
   }
   int files() const { return int(std::distance(std::filesystem::directory_iterator(folder_.path()), {})); }
   /// Kept in the build folder, to look at.
@@ -63,7 +63,7 @@ class Offscreen : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-int most_different(const Picture& a, const Picture& b) {
+int most_different(const Image8& a, const Image8& b) {
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
   int most = 0;
   for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i) most = std::max(most, std::abs(int(a.rgba[i]) - int(b.rgba[i])));
@@ -101,14 +101,14 @@ TEST_F(Offscreen, SixteenBitsHoldTheClosedFormToALevelOfSixteenBits) {
   EXPECT_EQ(corner[3], 0);
   // 8 bits of the same picture
   rendered({"-o", folder_ / "o8.png", "--size", "64x64", "--quality", "reference"});
-  const Picture eight = picture("o8.png");
+  const Image8 eight = picture("o8.png");
   for (std::size_t i = 0; i < eight.rgba.size(); ++i) ASSERT_LE(std::abs(eight.rgba[i] - png.values[i] / 257.0), 1) << i;
 }
 
 TEST_F(Offscreen, ExrIsLinearAndPremultiplied) {
   scene(kSlab);
   rendered({"-o", folder_ / "o.exr", "--size", "64x64", "--quality", "reference"});
-  const test::ExrPicture exr = test::read_exr(folder_ / "o.exr");
+  const test::ExrImage exr = test::read_exr(folder_ / "o.exr");
   const double alpha = 1 - std::exp(-0.5);
   const std::size_t middle = 32 * 64 + 32;
   EXPECT_NEAR(exr.channels.at("A")[middle], alpha, 1e-4);
@@ -127,7 +127,7 @@ TEST_F(Offscreen, ExrIsLinearAndPremultiplied) {
 TEST_F(Offscreen, DepthIsTheDistanceAlongTheAxisAndInfiniteWhereNothingIs) {
   scene(kBalls);
   rendered({"-o", folder_ / "o.png", "--depth", folder_ / "z.exr", "--size", "96x64", "--quality", "reference"});
-  const test::ExrPicture exr = test::read_exr(folder_ / "z.exr");
+  const test::ExrImage exr = test::read_exr(folder_ / "z.exr");
   ASSERT_EQ(exr.channels.size(), 1u);
   EXPECT_NE(exr.comments.find("view axis"), std::string::npos);
   const double half = std::tan(20 * M_PI / 180);
@@ -226,7 +226,7 @@ TEST_F(Offscreen, TextAndBarsLieInTheWholePictureNotInEachTile) {
   EXPECT_LE(most_different(picture("o.png"), picture("t.png")), 1);
   // in 16 bits, too: the overlay is blended into floats
   draw("d.png", {"--bits", "16"});
-  const Picture eight = picture("o.png");
+  const Image8 eight = picture("o.png");
   const test::DeepPng deep = test::read_deep_png(folder_ / "d.png");
   ASSERT_EQ(deep.channels, 3);
   for (std::size_t i = 0; i < deep.values.size(); ++i) ASSERT_LE(std::abs(eight.rgba[i / 3 * 4 + i % 3] - deep.values[i] / 257.0), 1) << i;
@@ -240,7 +240,7 @@ TEST_F(Offscreen, AntialiasingIsTheMeanOfTheSamples) {
   rendered({"-o", folder_ / "small.png", "--size", "60x40", "--antialias", "3", "--quality", "reference"});
   rendered({"-o", folder_ / "tiled.png", "--size", "60x40", "--antialias", "3", "--quality", "reference", "--tile", "48"});
   rendered({"-o", folder_ / "rough.png", "--size", "60x40", "--quality", "reference"});
-  const Picture big = picture("big.png"), small = picture("small.png"), rough = picture("rough.png");
+  const Image8 big = picture("big.png"), small = picture("small.png"), rough = picture("rough.png");
   int most = 0, edge = 0;
   for (std::uint32_t y = 0; y < 40; ++y)
     for (std::uint32_t x = 0; x < 60; ++x)
@@ -279,7 +279,7 @@ TEST_F(Offscreen, AVeryWidePictureIsWrittenInBands) {
   scene(kBalls);
   // wider than what the CPU device holds in one image
   rendered({"-o", folder_ / "o.png", "--size", "20000x4", "--stats", folder_ / "o.json", "--quality", "draft", "--zoom", "3"});
-  const Picture wide = picture("o.png");
+  const Image8 wide = picture("o.png");
   EXPECT_EQ(wide.width, 20000u);
   EXPECT_EQ(wide.height, 4u);
   EXPECT_GT(wide.pixel(10000, 2)[0], 60);
@@ -321,7 +321,7 @@ TEST_F(Offscreen, ViewsAlongTheAxesShowTheirSide) {
     "volumes": [{"field": "z", "color": [[-0.01, 1, 0, 0], [0.01, 0, 0, 1]], "extinction": [[-1, 8], [1, 8]]}], "background": [0, 0, 0]})");
   const auto seen = [&](const char* view, std::uint32_t row) {
     rendered({"-o", folder_ / "o.png", "--view", view, "--size", "48x48"});
-    const Picture p = picture("o.png");
+    const Image8 p = picture("o.png");
     return p.pixel(24, row)[0] > 200 && p.pixel(24, row)[2] < 50 ? 'r' : p.pixel(24, row)[0] < 50 && p.pixel(24, row)[2] > 200 ? 'b' : '?';
   };
   EXPECT_EQ(seen("+z", 24), 'r');

@@ -1,5 +1,5 @@
 // Places under the pointer against closed forms.
-#include "engine/app/viewer/shell/pick.h"
+#include "engine/app/viewer/input/pick.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "engine/field/grid.h"
+#include "engine/field/grid/grid.h"
 
 namespace catena::app {
 namespace pick_test {
@@ -48,7 +48,7 @@ TEST(Pick, AUniformMistIsPickedWhereHalfOfItIsCrossed) {
   ASSERT_TRUE(place);
   EXPECT_TRUE(place->is_volume);
   EXPECT_NEAR(place->world.x, -2 + std::log(2) / sigma, 1e-6);
-  EXPECT_EQ(object_words(packet, place->id), "volume f");
+  EXPECT_EQ(object_label(packet, place->id), "volume f");
 }
 
 TEST(Pick, AMistThatThickensLinearlyIsPickedAtTheRootOfItsSquare) {
@@ -81,9 +81,9 @@ TEST(Pick, AProjectionIsPickedAtItsValue) {
 
 TEST(Pick, ClipPlanesCountUnlessTheVolumeIgnoresThem) {
   auto packet = packet_with([](const Vec3&) { return 1.0; }, {{0, 2}, {2, 2}});
-  packet.clip.push_back({{0.3, 0, 0}, {1, 0, 0}});
+  packet.clip_planes.push_back({{0.3, 0, 0}, {1, 0, 0}});
   EXPECT_NEAR(pick_volume(packet, kAlongX, kNone)->world.x, 0.3 + std::log(2) / 2, 1e-6);
-  packet.volumes[0].clipped = false;
+  packet.volumes[0].is_clipped = false;
   EXPECT_NEAR(pick_volume(packet, kAlongX, kNone)->world.x, -2 + std::log(2) / 2, 1e-6);
 }
 
@@ -107,7 +107,7 @@ TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
   packet.view.target = {0, 0, 0};
   const render::Camera camera = render::make_camera(packet.view, 160, 120, Bounds());
   for (const auto& [x, y] : {std::pair{80.5, 60.5}, std::pair{95.5, 50.5}, std::pair{70.5, 72.5}}) {
-    const render::Ray ray = render::ray_through(camera, x, y);
+    const render::Ray ray = render::pixel_ray(camera, x, y);
     // |o + t d| = 1
     const double b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1, t = -b - std::sqrt(b * b - c);
     const Vec3 truth = ray.origin + t * ray.direction;
@@ -124,8 +124,8 @@ TEST(Pick, AnArrowIsMetOnItsShaftAndItsHead) {
   render::FramePacket packet;
   render::GlyphItem item;
   item.glyphs = {{{0, -2, 0}, {0, 2, 0}, {1, 0, 0}}, {{3, -1, 0}, {3, 1, 0}, {1, 0, 0}}};
-  item.shaft = 0.05;
-  item.head = 0.25;
+  item.shaft_radius = 0.05;
+  item.head_length = 0.25;
   item.head_radius = 0.15;
   item.id = packet.add_object("glyphs", "v", "glyphs[0]");
   packet.glyphs = {item};
@@ -133,11 +133,11 @@ TEST(Pick, AnArrowIsMetOnItsShaftAndItsHead) {
   const auto shaft = met(0, 0);
   ASSERT_TRUE(shaft);
   EXPECT_NEAR(shaft->world.x, -0.2, 1e-9);
-  EXPECT_EQ(object_words(packet, shaft->id), "glyphs v");
+  EXPECT_EQ(object_label(packet, shaft->id), "glyphs v");
   ASSERT_TRUE(met(1.5, 0.25));
   EXPECT_FALSE(met(0, 0.25));
   EXPECT_FALSE(met(2.7, 0));
-  packet.clip = {{{1, 0, 0}, {1, 0, 0}}};
+  packet.clip_planes = {{{1, 0, 0}, {1, 0, 0}}};
   ASSERT_TRUE(met(0, 0));
   EXPECT_NEAR(met(0, 0)->world.x, 2.9, 1e-9) << "the first one is cut away";
 }

@@ -9,7 +9,7 @@
 #include <csignal>
 #include <thread>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {

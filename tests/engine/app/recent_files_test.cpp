@@ -1,4 +1,4 @@
-#include "engine/app/viewer/shell/file_list.h"
+#include "engine/app/viewer/scene/file_browser.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -18,14 +18,14 @@ TEST(RecentFiles, TheNewestIsFirstAndEachIsThereOnce) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.json", "b.vdb", "c\"\xc3\xa9.json"}) test::write_file(folder / name, "");
   RecentFiles recent(folder / "state/catena/recent.json");
-  EXPECT_TRUE(recent.shown().empty());
+  EXPECT_TRUE(recent.existing_files().empty());
   recent.add(folder / "a.json");
   recent.add(folder / "b.vdb");
   recent.add(folder / "c\"\xc3\xa9.json");
   recent.add(folder / "./a.json");
   const Names expected{folder / "a.json", folder / "c\"\xc3\xa9.json", folder / "b.vdb"};
-  EXPECT_EQ(recent.shown(), expected);
-  EXPECT_EQ(RecentFiles(recent.path()).shown(), expected);
+  EXPECT_EQ(recent.existing_files(), expected);
+  EXPECT_EQ(RecentFiles(recent.path()).existing_files(), expected);
 }
 
 TEST(RecentFiles, RelativeNamesAreKeptWhole) {
@@ -42,9 +42,9 @@ TEST(RecentFiles, MissingFilesAreNotShownButComeBack) {
   RecentFiles recent(folder / "recent.json");
   recent.add(folder / "a.json");
   recent.add(folder / "gone.json");
-  EXPECT_EQ(recent.shown(), Names{folder / "a.json"});
+  EXPECT_EQ(recent.existing_files(), Names{folder / "a.json"});
   test::write_file(folder / "gone.json", "");
-  EXPECT_EQ(recent.shown().size(), 2u);
+  EXPECT_EQ(recent.existing_files().size(), 2u);
 }
 
 TEST(RecentFiles, TenAtMost) {
@@ -55,9 +55,9 @@ TEST(RecentFiles, TenAtMost) {
     test::write_file(name, "");
     recent.add(name);
   }
-  ASSERT_EQ(recent.shown().size(), kMaxRecentFiles);
-  EXPECT_EQ(recent.shown().front(), folder / "14.json");
-  EXPECT_EQ(recent.shown().back(), folder / "5.json");
+  ASSERT_EQ(recent.existing_files().size(), kMaxRecentFiles);
+  EXPECT_EQ(recent.existing_files().front(), folder / "14.json");
+  EXPECT_EQ(recent.existing_files().back(), folder / "5.json");
 }
 
 TEST(RecentFiles, TwoProgramsAddToOneList) {
@@ -66,7 +66,7 @@ TEST(RecentFiles, TwoProgramsAddToOneList) {
   RecentFiles one(folder / "recent.json"), other(folder / "recent.json");
   one.add(folder / "a.json");
   other.add(folder / "b.json");
-  EXPECT_EQ(RecentFiles(folder / "recent.json").shown(), (Names{folder / "b.json", folder / "a.json"}));
+  EXPECT_EQ(RecentFiles(folder / "recent.json").existing_files(), (Names{folder / "b.json", folder / "a.json"}));
 }
 
 TEST(RecentFiles, GarbageIsAnEmptyList) {
@@ -74,12 +74,12 @@ TEST(RecentFiles, GarbageIsAnEmptyList) {
   test::write_file(folder / "a.json", "");
   for (const char* garbage : {"", "{", "[]", "{\"files\": 3}", "{\"files\": [1, null, {}]}", "\xff\xfe", "{\"files\": {\"a\": 1}}"}) {
     test::write_file(folder / "recent.json", garbage);
-    EXPECT_TRUE(RecentFiles(folder / "recent.json").shown().empty()) << garbage;
+    EXPECT_TRUE(RecentFiles(folder / "recent.json").existing_files().empty()) << garbage;
   }
   RecentFiles recent(folder / "recent.json");
   recent.add(folder / "a.json");
-  EXPECT_EQ(RecentFiles(folder / "recent.json").shown(), Names{folder / "a.json"});
-  EXPECT_TRUE(RecentFiles(folder.path()).shown().empty());
+  EXPECT_EQ(RecentFiles(folder / "recent.json").existing_files(), Names{folder / "a.json"});
+  EXPECT_TRUE(RecentFiles(folder.path()).existing_files().empty());
 }
 
 TEST(RecentFiles, APlaceThatCannotBeWrittenIsNoError) {
@@ -89,7 +89,7 @@ TEST(RecentFiles, APlaceThatCannotBeWrittenIsNoError) {
        {std::string(), std::string("/proc/none/recent.json"), folder / "a.json/catena/recent.json", folder.path()}) {
     RecentFiles recent(path);
     recent.add(folder / "a.json");
-    EXPECT_EQ(recent.shown(), Names{folder / "a.json"}) << path;
+    EXPECT_EQ(recent.existing_files(), Names{folder / "a.json"}) << path;
   }
   EXPECT_EQ(test::read_file(folder / "a.json"), "");
 }

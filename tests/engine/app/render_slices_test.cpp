@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace render_slices_test {

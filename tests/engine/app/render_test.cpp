@@ -9,18 +9,18 @@
 
 #include "engine/base/json.h"
 #include "engine/base/vec.h"
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace render_test {
 
 using namespace catena;
-using render::Picture;
+using render::Image8;
 
 test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
-Picture picture_of(const std::string& scene, const std::vector<std::string>& more, const std::string& keep) {
+Image8 picture_of(const std::string& scene, const std::vector<std::string>& more, const std::string& keep) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene);
   std::vector<std::string> arguments{"render", folder / "s.json", "-o", folder / "o.png", "--validation", "--stats", folder / "o.json"};
@@ -165,10 +165,10 @@ TEST(Render, AHomogeneousBoxSeenObliquelyIsExactAtEveryStep) {
   const Vec3 forward = direction(target - position), right = direction(cross(forward, up)), over = cross(right, forward);
   const double half = std::tan(0.5 * 40 * M_PI / 180);
   for (const char* step : {"step=0.25", "step=0.5", "step=1"}) {
-    const Picture picture = picture_of(R"({"fields": {"d": {"analytic": "constant", "resolution": 17, "box": [-1, 1]}},
+    const Image8 picture = picture_of(R"({"fields": {"d": {"analytic": "constant", "resolution": 17, "box": [-1, 1]}},
       "volumes": [{"field": "d", "color": [[1, 1, 1, 1]], "extinction": [[1, 0.7]]}],
       "camera": {"position": [3.1, -6.2, 4.3], "target": [0.1, 0.2, -0.1], "up": [0, 0, 1], "fovy_deg": 40}, "background": "transparent"})",
-                                       {"--size", "120x90", "--quality", step}, std::string("box-") + step);
+                                      {"--size", "120x90", "--quality", step}, std::string("box-") + step);
     double worst = 0;
     for (std::uint32_t y = 0; y < h; ++y)
       for (std::uint32_t x = 0; x < w; ++x) {
@@ -215,8 +215,8 @@ TEST(Render, TheGlyphOfTheProxySitsOnTheDrawnLine) {
     "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.02, "color": [1, 0, 0]}],
     "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 40}CURSOR})";
   const auto with = [&](const std::string& cursor) { return std::string(scene).replace(scene.find("CURSOR"), 6, cursor); };
-  const Picture bare = picture_of(with(""), {"--size", "256x192"}, "line");
-  const Picture held = picture_of(with(R"(, "cursor": {"probe": [0.2, 1.3, 0]})"), {"--size", "256x192"}, "held");
+  const Image8 bare = picture_of(with(""), {"--size", "256x192"}, "line");
+  const Image8 held = picture_of(with(R"(, "cursor": {"probe": [0.2, 1.3, 0]})"), {"--size", "256x192"}, "held");
   // the proxy: the closest point of the circle
   const Vec3 proxy = direction(Vec3(0.2, 1.3, 0));
   const double scale = 96 / (6 * std::tan(20 * M_PI / 180));
@@ -367,7 +367,7 @@ TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
   const test::Table ticks = test::Table::read(folder / "t.csv");
   int both = 0;
   for (std::size_t row = 0; row < ticks.rows(); ++row)
-    both += ticks.word(row, "curve_status") == "OK" && ticks.word(row, "surface_status") == "OK";
+    both += ticks.text(row, "curve_status") == "OK" && ticks.text(row, "surface_status") == "OK";
   EXPECT_GT(both, 100) << "the hand is on the streamline and pressed into the isosurface";
   const auto seen = program({"render", assets + "scenes/data/combustor.json", "--probe", assets + "probes/combustor.csv", "-o",
                              test::binary_dir() + "/app-combustor.png", "--size", "256x192", "--validation"});

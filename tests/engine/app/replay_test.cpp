@@ -6,7 +6,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/vec.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace replay_test {
@@ -83,8 +83,8 @@ TEST(Replay, SphereIsHeldAtTheLocalClosestPointWithinTheTick) {
     EXPECT_NEAR(norm(p), 0.5, 1e-11) << row;
     const Vec3 closest = direction(probe) * 0.5;
     EXPECT_LE(norm(p - closest), 1e-6) << row;
-    EXPECT_EQ(table.word(row, "surface_status"), "OK");
-    EXPECT_EQ(table.word(row, "surface_active"), "1");
+    EXPECT_EQ(table.text(row, "surface_status"), "OK");
+    EXPECT_EQ(table.text(row, "surface_active"), "1");
   }
 }
 
@@ -178,7 +178,7 @@ TEST(Replay, ReleaseAndReArmOfAOneSidedSurface) {
   const Table table = Table::read(folder / "t.csv");
   bool released = false;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::string status = table.word(row, "surface_status");
+    const std::string status = table.text(row, "surface_status");
     const double d = depth[row];
     if (std::fabs(d) < 1e-12) continue;  // on the level to rounding
     if (d < 0) released = false;
@@ -190,8 +190,8 @@ TEST(Replay, ReleaseAndReArmOfAOneSidedSurface) {
     if (d > 0.05) released = true;
     if (released) {
       EXPECT_EQ(status, "RELEASED") << row;
-      EXPECT_EQ(table.word(row, "surface_active"), "0");
-      EXPECT_EQ(table.word(row, "surface_x"), table.word(row, "probe_x"));
+      EXPECT_EQ(table.text(row, "surface_active"), "0");
+      EXPECT_EQ(table.text(row, "surface_x"), table.text(row, "probe_x"));
       EXPECT_EQ(table.number(row, "force_x"), 0);
     } else if (d > 1e-12) {
       EXPECT_EQ(status, "OK") << row;
@@ -199,8 +199,8 @@ TEST(Replay, ReleaseAndReArmOfAOneSidedSurface) {
       EXPECT_NEAR(table.number(row, "force_x"), 100 * d, 1e-7);
     } else if (d < -1e-12) {
       EXPECT_EQ(status, "FREE") << row;
-      EXPECT_EQ(table.word(row, "surface_active"), "1");
-      EXPECT_EQ(table.word(row, "surface_x"), table.word(row, "probe_x"));
+      EXPECT_EQ(table.text(row, "surface_active"), "1");
+      EXPECT_EQ(table.text(row, "surface_x"), table.text(row, "probe_x"));
     }
   }
 }
@@ -252,11 +252,11 @@ TEST(Replay, DetailsTellWhatEveryLinkFeels) {
     EXPECT_EQ(table.number(row, "floor_stiffness"), 200);
     EXPECT_EQ(table.number(row, "pin_stiffness"), 10);
     EXPECT_NEAR(table.number(row, "floor_force_z") + table.number(row, "pin_force_z"), ticks.number(row, "force_z"), 1e-12);
-    EXPECT_EQ(table.word(row, "mode"), "");
+    EXPECT_EQ(table.text(row, "mode"), "");
   }
   EXPECT_EQ(table.number(56, "floor_left"), 1);
   EXPECT_EQ(table.number(56, "floor_leaving"), 1);
-  EXPECT_EQ(table.word(66, "mode"), "pinned");
+  EXPECT_EQ(table.text(66, "mode"), "pinned");
   EXPECT_EQ(ticks.number(66, "floor_active"), 0);
   EXPECT_EQ(ticks.number(66, "pin_active"), 1);
 }

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "engine/app/scene_schema.h"
+#include "engine/app/cli/scene_schema.h"
 #include "engine/schema/documents.h"
 #include "engine/study/study.h"
 #include "tests/support/support.h"
@@ -38,9 +38,9 @@ std::string with_tables(const std::string& text, const std::map<std::string, std
   }
 }
 
-void check_document(const std::string& document, const std::vector<schema::Component>& components) {
+void check_document(const std::string& document, const std::vector<schema::Section>& components) {
   std::map<std::string, std::string> tables;
-  for (const schema::Component& component : components)
+  for (const schema::Section& component : components)
     for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
   const std::string path = test::source_dir() + "/" + document, text = test::read_file(path);
   std::set<std::string> named, shown;
@@ -53,7 +53,7 @@ void check_document(const std::string& document, const std::vector<schema::Compo
     EXPECT_TRUE(text == right) << document << " is not current; ./run docs writes it";
 }
 
-TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/scene.md", app::scene_description()); }
+TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/scene.md", app::scene_file_components()); }
 
 TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/study.md", study::study_components()); }
 

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace stereo_test {
 
 using namespace catena;
-using render::Picture;
+using render::Image8;
 
 std::string scene(const std::string& more) {
   return R"({"fields": {"s": {"analytic": "sphere", "resolution": 24, "box": [-1.2, 1.2]}},
@@ -20,7 +20,7 @@ std::string scene(const std::string& more) {
 }
 
 struct Drawn {
-  Picture picture;
+  Image8 picture;
   std::string out;
 };
 
@@ -35,11 +35,11 @@ Drawn draw(const std::string& more, const std::vector<std::string>& options) {
   EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
   auto picture = render::read_png(folder / "o.png");
   EXPECT_TRUE(picture);
-  return {picture ? *picture : Picture{}, run.out};
+  return {picture ? *picture : Image8{}, run.out};
 }
 
 /// The mean column of what is not the background.
-double middle(const Picture& p, std::uint32_t from, std::uint32_t to) {
+double middle(const Image8& p, std::uint32_t from, std::uint32_t to) {
   double sum = 0, count = 0;
   for (std::uint32_t y = 0; y < p.height; ++y)
     for (std::uint32_t x = from; x < to; ++x)
@@ -50,7 +50,7 @@ double middle(const Picture& p, std::uint32_t from, std::uint32_t to) {
   return sum / count;
 }
 
-bool same_columns(const Picture& whole, std::uint32_t from, const Picture& part) {
+bool same_columns(const Image8& whole, std::uint32_t from, const Image8& part) {
   for (std::uint32_t y = 0; y < part.height; ++y)
     if (!std::equal(part.pixel(0, y), part.pixel(0, y) + 4 * part.width, whole.pixel(from, y))) return false;
   return true;
@@ -63,7 +63,7 @@ TEST(RenderStereo, SideBySideIsTheLeftAndTheRightPicture) {
     options.insert(options.end(), apart.begin(), apart.end());
     return draw("", options);
   };
-  const Picture left = with("left").picture, right = with("right").picture;
+  const Image8 left = with("left").picture, right = with("right").picture;
   const Drawn pair = with("side-by-side");
   ASSERT_EQ(left.width, 80u);
   ASSERT_EQ(pair.picture.width, 160u);
@@ -71,26 +71,26 @@ TEST(RenderStereo, SideBySideIsTheLeftAndTheRightPicture) {
   EXPECT_NE(pair.out.find("160x60"), std::string::npos) << pair.out;
   EXPECT_TRUE(same_columns(pair.picture, 0, left));
   EXPECT_TRUE(same_columns(pair.picture, 80, right));
-  const Picture crossed = with("cross-eyed").picture;
+  const Image8 crossed = with("cross-eyed").picture;
   EXPECT_TRUE(same_columns(crossed, 0, right));
   EXPECT_TRUE(same_columns(crossed, 80, left));
   // the ball is beyond the zero-parallax distance: uncrossed
   EXPECT_GT(middle(right, 0, 80), middle(left, 0, 80) + 1);
-  const Picture top = with("top-bottom").picture, half = with("side-by-side-half").picture, anaglyph = with("anaglyph").picture;
+  const Image8 top = with("top-bottom").picture, half = with("side-by-side-half").picture, anaglyph = with("anaglyph").picture;
   EXPECT_EQ(top.height, 120u);
   EXPECT_EQ(half.width, 80u);
   EXPECT_EQ(anaglyph.width, 80u);
 }
 
 TEST(RenderStereo, ByDefaultTheTargetHasNoDisparity) {
-  const Picture pair = draw("", {"--stereo", "side-by-side"}).picture;
+  const Image8 pair = draw("", {"--stereo", "side-by-side"}).picture;
   EXPECT_NEAR(middle(pair, 0, 80), middle(pair, 80, 160), 0.15);  // without zero parallax: 3.7
 }
 
 TEST(RenderStereo, TheSceneSaysItAndTheOptionGoesFirst) {
   const std::string keys = R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5})";
-  const Picture by_scene = draw(keys, {}).picture;
-  const Picture by_option = draw("", {"--stereo", "side-by-side", "--eye-separation", "0.8", "--zero-parallax", "5"}).picture;
+  const Image8 by_scene = draw(keys, {}).picture;
+  const Image8 by_option = draw("", {"--stereo", "side-by-side", "--eye-separation", "0.8", "--zero-parallax", "5"}).picture;
   EXPECT_EQ(by_scene.rgba, by_option.rgba);
   EXPECT_EQ(draw(keys, {"--stereo", "mono"}).picture.rgba, draw("", {}).picture.rgba);
   const std::string swapped = R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5, "swap": true})";

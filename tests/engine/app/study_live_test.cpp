@@ -40,23 +40,23 @@ TEST(StudySession, BeforeATrialBeginsNothingTellsItsCondition) {
   ASSERT_TRUE(study) << study.error().message;
   std::vector<json::Node> before;
   std::vector<std::size_t> links;
-  for (const study::Trial& trial : study::session_of(*study, 1)) {
+  for (const study::Trial& trial : study::make_session(*study, 1)) {
     LiveTrial live(*study);
     auto host = live.open(trial, {});
     ASSERT_TRUE(host) << host.error().message;
     const auto text = json::parse(host->document().text(), "scene");
     ASSERT_TRUE(text);
     before.push_back(*text);
-    EXPECT_EQ(host->scene().world.count<scene::Link>(), 1u) << "what both feel";
-    EXPECT_EQ(host->scene().world.count<scene::StreamlineSet>(), 1u) << "the ball at the start";
-    EXPECT_TRUE(live.is_at_start(live.start()));
-    EXPECT_FALSE(live.is_at_start(live.start() + Vec3(0.1, 0, 0)));
+    EXPECT_EQ(host->scene().entities.count<scene::Link>(), 1u) << "what both feel";
+    EXPECT_EQ(host->scene().entities.count<scene::StreamlineSet>(), 1u) << "the ball at the start";
+    EXPECT_TRUE(live.is_at_start(live.start_position()));
+    EXPECT_FALSE(live.is_at_start(live.start_position() + Vec3(0.1, 0, 0)));
     ASSERT_TRUE(host->undo());
-    EXPECT_EQ(host->scene().world.count<scene::StreamlineSet>(), 0u);
-    links.push_back(host->scene().world.count<scene::Link>());
+    EXPECT_EQ(host->scene().entities.count<scene::StreamlineSet>(), 0u);
+    links.push_back(host->scene().entities.count<scene::Link>());
   }
   ASSERT_EQ(before.size(), 2u);
-  EXPECT_TRUE(json::same_value(before[0], before[1]));
+  EXPECT_TRUE(json::is_equal_value(before[0], before[1]));
   EXPECT_NE(links[0], links[1]);
 }
 
@@ -87,12 +87,12 @@ void go_through(const std::string& folder) {
   ASSERT_TRUE(study) << study.error().message;
   auto subject = SubjectFolder::open(folder + "/data", *study, 7);
   ASSERT_TRUE(subject) << subject.error().message;
-  Procedure procedure(*study, {}, subject->trials(), subject->finished(), subject->answered());
-  HandHost::Options options;
+  Procedure procedure(*study, {}, subject->trials(), subject->finished_trials(), subject->answered_questions());
+  HapticSession::Options options;
   options.device = "simulated:" + folder + "/path.csv";
-  options.forces = true;
+  options.start_with_forces = true;
   options.realtime = {.fifo = false, .lock_memory = false, .cpu = haptics::RealtimeOptions::kUnbound};
-  HandHost hand(options);
+  HapticSession hand(options);
   LiveSession session(*study, *subject, procedure, {});
   const auto load = [&]() -> std::optional<LoadedScene> {
     auto next = session.next_scene();
@@ -104,23 +104,23 @@ void go_through(const std::string& folder) {
   };
   auto first = load();
   ASSERT_TRUE(first);
-  SceneHost scene = std::move(first->host);
+  SceneModel scene = std::move(first->model);
   ASSERT_TRUE(hand.open_device(scene.scene()));
   ASSERT_TRUE(hand.prepare(scene.scene(), first->bounds, {}));
   ASSERT_TRUE(hand.start());
-  while (procedure.stage() != Stage::over) {
-    hand.take(scene.scene());
+  while (procedure.stage() != Stage::finished) {
+    hand.pull_state(scene.scene());
     const bool asked = procedure.stage() == Stage::question;
     if (asked) {
-      ASSERT_TRUE(session.take({Stroke::What::character, '2'}, scene, hand));
+      ASSERT_TRUE(session.handle_key({KeyPress::Kind::character, '2'}, scene, hand));
     }
-    const Outcome taken = session.take({asked ? Stroke::What::enter : Stroke::What::space}, scene, hand);
+    const Outcome taken = session.handle_key({asked ? KeyPress::Kind::enter : KeyPress::Kind::space}, scene, hand);
     ASSERT_TRUE(taken) << taken.error().message;
-    const Outcome followed = session.follow(scene, hand);
+    const Outcome followed = session.update(scene, hand);
     ASSERT_TRUE(followed) << followed.error().message;
     if (auto next = load()) {
-      ASSERT_TRUE(hand.take_over(next->host.scene(), next->bounds));
-      scene = std::move(next->host);
+      ASSERT_TRUE(hand.switch_scene(next->model.scene(), next->bounds));
+      scene = std::move(next->model);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -184,7 +184,7 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
   ASSERT_TRUE(study);
   const auto rows = study::parse_rows(test::read_file(rows_file), rows_file);
   ASSERT_TRUE(rows) << rows.error().message;
-  const std::vector<study::Trial> trials = study::session_of(*study, 7);
+  const std::vector<study::Trial> trials = study::make_session(*study, 7);
   ASSERT_EQ(rows->size(), trials.size());
   for (std::size_t i = 0; i < trials.size(); ++i) {
     EXPECT_EQ((*rows)[i].index, static_cast<int>(i));
@@ -192,7 +192,7 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
     // a recording of it, whole, that says what it is
     auto log = haptics::log::LogReader::open(folder / fmt::format("data/recordings/007-{:03}.catlog", i));
     ASSERT_TRUE(log) << log.error().message;
-    EXPECT_EQ(log->header().about, about_trial(*study, trials[i]));
+    EXPECT_EQ(log->header().about, trial_metadata_json(*study, trials[i]));
     // the ticks span the trial's time; a busy machine may have left some of them out
     std::optional<double> first_s;
     double last_s = 0;
@@ -203,7 +203,7 @@ TEST(StudySession, KilledTwentyTimesLosesNoFinishedTrial) {
     }
     ASSERT_TRUE(first_s) << i;
     EXPECT_GE(last_s - *first_s, (*rows)[i].time_s - 1e-9) << i;
-    EXPECT_EQ(log->ending().find("ends cleanly"), 0u) << log->ending();
+    EXPECT_EQ(log->end_summary().find("ends cleanly"), 0u) << log->end_summary();
   }
   EXPECT_FALSE(is_recording(folder.path(), fs::file_time_type::min()));
   EXPECT_EQ(test::read_file(folder / "data/questionnaire/007.csv"), "question,answer\nhard,yes\n");

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "engine/app/study/subject_folder.h"
-#include "engine/app/study/tick_tap.h"
+#include "engine/app/study/tick_observer.h"
 #include "tests/support/support.h"
 
 namespace catena::app {
@@ -41,16 +41,16 @@ std::vector<study::Trial> six_trials() {
   return trials;
 }
 
-const Stroke kSpace{Stroke::What::space}, kEnter{Stroke::What::enter}, kBackspace{Stroke::What::backspace};
+const KeyPress kSpace{KeyPress::Kind::space}, kEnter{KeyPress::Kind::enter}, kBackspace{KeyPress::Kind::backspace};
 
-Stroke letter(char32_t c) { return {Stroke::What::character, c}; }
+KeyPress letter(char32_t c) { return {KeyPress::Kind::character, c}; }
 
 /// Goes on with space until the next trial is ready or no page is left; the headings on the way.
 std::vector<std::string> pages_passed(Procedure& procedure) {
   std::vector<std::string> headings;
   while (procedure.stage() == Stage::page) {
     headings.push_back(procedure.page().heading);
-    procedure.take(kSpace, false);
+    procedure.handle_key(kSpace, false);
   }
   return headings;
 }
@@ -58,10 +58,10 @@ std::vector<std::string> pages_passed(Procedure& procedure) {
 TEST(StudyInstructions, PagesHaveAHeadingAndParagraphs) {
   const Instructions all = instructions();
   ASSERT_EQ(all.introduction.size(), 2u);
-  EXPECT_EQ(all.introduction[0], (Page{"Welcome", {"one two", "- a point", "- another"}}));
-  EXPECT_EQ(all.introduction[1], (Page{"The hand", {}}));
-  EXPECT_EQ(all.before_task("trace").size(), 1u);
-  EXPECT_TRUE(all.before_task("flow").empty());
+  EXPECT_EQ(all.introduction[0], (InstructionPage{"Welcome", {"one two", "- a point", "- another"}}));
+  EXPECT_EQ(all.introduction[1], (InstructionPage{"The hand", {}}));
+  EXPECT_EQ(all.pages_before_task("trace").size(), 1u);
+  EXPECT_TRUE(all.pages_before_task("flow").empty());
   EXPECT_EQ(all.end.size(), 1u);
 }
 
@@ -94,52 +94,52 @@ TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
     }
     ASSERT_EQ(procedure.stage(), Stage::ready) << i;
     EXPECT_EQ(procedure.trial(), i);
-    procedure.take(kSpace, false);
+    procedure.handle_key(kSpace, false);
     EXPECT_EQ(procedure.stage(), Stage::ready) << "the cursor is not at the start";
-    procedure.take(i % 2 == 0 ? kSpace : kEnter, true);
+    procedure.handle_key(i % 2 == 0 ? kSpace : kEnter, true);
     ASSERT_EQ(procedure.stage(), Stage::running);
-    procedure.take(kSpace, true);
-    procedure.take(letter('p'), true);
+    procedure.handle_key(kSpace, true);
+    procedure.handle_key(letter('p'), true);
     EXPECT_EQ(procedure.stage(), Stage::running) << "no key counts";
-    procedure.ended();
+    procedure.complete_trial();
   }
   ASSERT_EQ(procedure.stage(), Stage::question);
-  procedure.take(kEnter, false);
+  procedure.handle_key(kEnter, false);
   EXPECT_EQ(procedure.question().name, "hard") << "nothing was chosen";
-  for (const char key : {'4', '0', 'x', '2', '3'}) procedure.take(letter(key), false);
-  EXPECT_EQ(procedure.entry(), "very");
-  procedure.take(kEnter, false);
+  for (const char key : {'4', '0', 'x', '2', '3'}) procedure.handle_key(letter(key), false);
+  EXPECT_EQ(procedure.typed_answer(), "very");
+  procedure.handle_key(kEnter, false);
   const auto hard = procedure.take_answer();
   ASSERT_TRUE(hard);
   EXPECT_EQ(hard->question + "=" + hard->answer, "hard=very");
   EXPECT_FALSE(procedure.take_answer()) << "once";
-  for (const char32_t c : {U'a', U' ', U'\u00e9', U'b'}) procedure.take(letter(c), false);
-  procedure.take(kSpace, false);
-  procedure.take(kBackspace, false);
-  procedure.take(kBackspace, false);
-  EXPECT_EQ(procedure.entry(), "a ") << "a whole letter goes, and space is text";
-  procedure.take(kEnter, false);
+  for (const char32_t c : {U'a', U' ', U'\u00e9', U'b'}) procedure.handle_key(letter(c), false);
+  procedure.handle_key(kSpace, false);
+  procedure.handle_key(kBackspace, false);
+  procedure.handle_key(kBackspace, false);
+  EXPECT_EQ(procedure.typed_answer(), "a ") << "a whole letter goes, and space is text";
+  procedure.handle_key(kEnter, false);
   EXPECT_EQ(procedure.take_answer()->answer, "a ");
   EXPECT_EQ(pages_passed(procedure), Words{"Thanks"});
-  EXPECT_EQ(procedure.stage(), Stage::over);
-  EXPECT_EQ(procedure.words(), "6 of 6 trials and 2 of 2 questions are done");
+  EXPECT_EQ(procedure.stage(), Stage::finished);
+  EXPECT_EQ(procedure.progress_text(), "6 of 6 trials and 2 of 2 questions are done");
 }
 
 TEST(StudyProcedure, APauseAndATrialThatIsCutOffComeBackToTheSameTrial) {
   const study::Study study = small_study();
   Procedure procedure(study, {}, six_trials());
   pages_passed(procedure);
-  procedure.take(letter('P'), true);
+  procedure.handle_key(letter('P'), true);
   EXPECT_EQ(procedure.page().heading, "Pause");
-  EXPECT_EQ(procedure.trial_ahead(), 0u);
-  procedure.take(kSpace, true);
+  EXPECT_EQ(procedure.next_trial(), 0u);
+  procedure.handle_key(kSpace, true);
   ASSERT_EQ(procedure.stage(), Stage::ready);
-  procedure.take(kSpace, true);
-  procedure.cut_off("Why");
+  procedure.handle_key(kSpace, true);
+  procedure.abort_trial("Why");
   ASSERT_EQ(procedure.stage(), Stage::page);
   EXPECT_EQ(procedure.page().paragraphs.front(), "Why");
-  procedure.ended();
-  procedure.take(kSpace, true);
+  procedure.complete_trial();
+  procedure.handle_key(kSpace, true);
   EXPECT_EQ(procedure.stage(), Stage::ready);
   EXPECT_EQ(procedure.trial(), 0u) << "it was not done";
 }
@@ -151,17 +151,17 @@ TEST(StudyProcedure, GoesOnAfterAnyNumberOfTrialsAndAnswers) {
       Procedure procedure(study, instructions(), six_trials(), finished, answered);
       std::vector<std::size_t> trials;
       std::vector<std::string> headings, questions;
-      for (int guard = 0; procedure.stage() != Stage::over && guard < 100; ++guard) {
+      for (int guard = 0; procedure.stage() != Stage::finished && guard < 100; ++guard) {
         const auto passed = pages_passed(procedure);
         headings.insert(headings.end(), passed.begin(), passed.end());
         if (procedure.stage() == Stage::ready) {
           trials.push_back(procedure.trial());
-          procedure.take(kSpace, true);
-          procedure.ended();
+          procedure.handle_key(kSpace, true);
+          procedure.complete_trial();
         } else if (procedure.stage() == Stage::question) {
           questions.push_back(procedure.question().name);
-          procedure.take(letter('1'), false);
-          procedure.take(kEnter, false);
+          procedure.handle_key(letter('1'), false);
+          procedure.handle_key(kEnter, false);
         }
       }
       ASSERT_EQ(trials.size(), 6 - finished);
@@ -218,17 +218,17 @@ TEST_F(StudyFolder, ARowComesWithItsRecordingAndTheNextSessionGoesOnBehindIt) {
     ASSERT_EQ(folder->trials().size(), 4u);
     const std::string unfinished = folder->unfinished_recording(folder->trials()[0]);
     test::write_file(unfinished, "ticks");
-    study::Measured measured;
+    study::TrialResult measured;
     measured.time_s = 1.25;
-    ASSERT_TRUE(folder->keep(folder->trials()[0], measured, unfinished));
+    ASSERT_TRUE(folder->save_trial(folder->trials()[0], measured, unfinished));
     EXPECT_FALSE(test::exists(unfinished));
     EXPECT_EQ(read("recordings/007-000.catlog"), "ticks");
     // without its recording there is no row
-    EXPECT_FALSE(folder->keep(folder->trials()[1], measured, unfinished));
+    EXPECT_FALSE(folder->save_trial(folder->trials()[1], measured, unfinished));
   }
   auto again = open();
   ASSERT_TRUE(again) << again.error().message;
-  EXPECT_EQ(again->finished(), 1u);
+  EXPECT_EQ(again->finished_trials(), 1u);
   const std::string rows = read("subjects/007.csv");
   EXPECT_EQ(std::ranges::count(rows, '\n'), 2) << rows;
 }
@@ -236,7 +236,7 @@ TEST_F(StudyFolder, ARowComesWithItsRecordingAndTheNextSessionGoesOnBehindIt) {
 TEST_F(StudyFolder, AnswersSurviveACutAtAnyByte) {
   {
     auto folder = open();
-    ASSERT_TRUE(folder && folder->keep_answer("hard", "a \"bit\", yes\n") && folder->keep_answer("how", "so"));
+    ASSERT_TRUE(folder && folder->save_answer("hard", "a \"bit\", yes\n") && folder->save_answer("how", "so"));
   }
   const std::string whole = read("questionnaire/007.csv"), one = "question,answer\nhard,\"a \"\"bit\"\", yes \"\n";
   EXPECT_EQ(whole, one + "how,so\n");
@@ -244,12 +244,12 @@ TEST_F(StudyFolder, AnswersSurviveACutAtAnyByte) {
     test::write_file(folder_ / "data/questionnaire/007.csv", whole.substr(0, bytes));
     auto folder = open();
     ASSERT_TRUE(folder) << bytes << " " << folder.error().message;
-    ASSERT_EQ(folder->answered(), bytes == whole.size() ? 2u : bytes >= one.size() ? 1u : 0u) << bytes;
-    if (folder->answered() == 0) {
-      ASSERT_TRUE(folder->keep_answer("hard", "a \"bit\", yes\n"));
+    ASSERT_EQ(folder->answered_questions(), bytes == whole.size() ? 2u : bytes >= one.size() ? 1u : 0u) << bytes;
+    if (folder->answered_questions() == 0) {
+      ASSERT_TRUE(folder->save_answer("hard", "a \"bit\", yes\n"));
     }
-    if (folder->answered() <= 1) {
-      ASSERT_TRUE(folder->keep_answer("how", "so"));
+    if (folder->answered_questions() <= 1) {
+      ASSERT_TRUE(folder->save_answer("how", "so"));
     }
     ASSERT_EQ(read("questionnaire/007.csv"), whole) << bytes;
   }
@@ -262,45 +262,45 @@ TEST_F(StudyFolder, AnotherSessionsRowsAndAnswersAreRefused) {
   ASSERT_FALSE(answers);
   EXPECT_NE(answers.error().message.find("007.csv:2: this is not the answer to question 1"), std::string::npos) << answers.error().message;
   std::filesystem::remove(folder_ / "data/questionnaire/007.csv");
-  study::Trial second = study::session_of(study_, 7)[1];
+  study::Trial second = study::make_session(study_, 7)[1];
   second.index = 1;
-  test::write_file(folder_ / "data/subjects/007.csv", study::table_header() + study::row_text(study::row_of(study_, second, {})));
+  test::write_file(folder_ / "data/subjects/007.csv", study::table_header() + study::format_row(study::make_row(study_, second, {})));
   const auto rows = open();
   ASSERT_FALSE(rows);
   EXPECT_NE(rows.error().message.find("007.csv:2: this is not trial 0"), std::string::npos) << rows.error().message;
 }
 
-TEST(StudyTickTap, HandsOnEveryTickAndSaysWhatItLost) {
+TEST(StudyTickObserver, HandsOnEveryTickAndSaysWhatItLost) {
   struct Counting final : haptics::TickSink {
-    void put(const haptics::ProbeSample&, const exchange::HapticState&) noexcept override { ++count; }
+    void put(const haptics::ProbeSample&, const HapticState&) noexcept override { ++count; }
     int count = 0;
   } next;
-  TickTap tap(100);
+  TickObserver tap(100);
   tap.begin(&next);
-  exchange::HapticState state;
+  HapticState state;
   for (std::uint64_t k = 1; k <= 50; ++k) {
     state.tick = k;
     state.program_epoch = 9;
     state.t_s = 0.001 * static_cast<double>(k);
     state.probe = Vec3(static_cast<double>(k), 0, 0);
-    state.condition = k == 50 ? exchange::Condition::no_device : exchange::Condition::normal;
+    state.condition = k == 50 ? TickCondition::no_device : TickCondition::normal;
     tap.put({}, state);
   }
   for (int k = 1; k <= 50; ++k) {
-    const auto tick = tap.take();
+    const auto tick = tap.pop();
     ASSERT_TRUE(tick) << k;
     EXPECT_EQ(tick->epoch, 9u);
     EXPECT_EQ(tick->probe.x, k);
-    EXPECT_EQ(tick->good, k != 50);
+    EXPECT_EQ(tick->is_valid, k != 50);
   }
-  EXPECT_FALSE(tap.take());
+  EXPECT_FALSE(tap.pop());
   EXPECT_EQ(next.count, 50);
-  EXPECT_FALSE(tap.has_lost());
+  EXPECT_FALSE(tap.has_lost_ticks());
   for (int k = 0; k < 1000; ++k) tap.put({}, state);
-  EXPECT_TRUE(tap.has_lost());
+  EXPECT_TRUE(tap.has_lost_ticks());
   EXPECT_EQ(next.count, 1050) << "the recording loses nothing by it";
   tap.begin(nullptr);
-  EXPECT_FALSE(tap.has_lost() || tap.take());
+  EXPECT_FALSE(tap.has_lost_ticks() || tap.pop());
 }
 
 }  // namespace study_procedure_test

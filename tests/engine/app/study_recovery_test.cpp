@@ -2,9 +2,9 @@
 /// analyses a data folder.
 #include <gtest/gtest.h>
 
-#include "engine/statistics/distributions.h"
-#include "engine/statistics/power.h"
-#include "tests/engine/app/study_tables.h"
+#include "engine/study/statistics/distributions.h"
+#include "engine/study/statistics/power.h"
+#include "tests/engine/app/trial_table_fixtures.h"
 
 namespace study_recovery_test {
 
@@ -23,15 +23,16 @@ TEST(StudyRecovery, APlantedDifferenceIsFoundAtTheStatedPower) {
   const int tables = table_count();
   int found = 0, by_flips = 0, supported = 0, elsewhere = 0;
   for (int i = 0; i < tables; ++i) {
-    const Analysis a = analysed(table(random, {.effect = 0.5}));
-    EXPECT_EQ(a.all_rejected().rejected(), 0);
-    const Paired& p = difference(a, Quantity::error, 0);
+    const Analysis a = run_analysis(make_trial_table(random, {.effect = 0.5}));
+    EXPECT_EQ(a.total_rejections().total(), 0);
+    const PairedComparison& p = find_difference(a, Quantity::error, 0);
     found += p.test->p < 0.05 ? 1 : 0;
-    by_flips += p.flips->p < 0.05 ? 1 : 0;
-    supported += finding(a, "held is more accurate").verdict == Verdict::supported ? 1 : 0;
-    elsewhere += difference(a, Quantity::error, 1).test->p < 0.05 ? 1 : 0;
+    by_flips += p.sign_flip_test->p < 0.05 ? 1 : 0;
+    supported += find_finding(a, "held is more accurate").verdict == Verdict::supported ? 1 : 0;
+    elsewhere += find_difference(a, Quantity::error, 1).test->p < 0.05 ? 1 : 0;
   }
-  const auto share = statistics::share_interval(found, tables, 0.99), false_share = statistics::share_interval(elsewhere, tables, 0.99);
+  const auto share = statistics::proportion_interval(found, tables, 0.99),
+             false_share = statistics::proportion_interval(elsewhere, tables, 0.99);
   std::printf("planted d_z 0.5: found in %d of %d tables (power %.4f), by sign flips in %d, after correction in %d; nothing planted: %d\n",
               found, tables, power, by_flips, supported, elsewhere);
   EXPECT_TRUE(share.contains(power)) << found;
@@ -39,7 +40,7 @@ TEST(StudyRecovery, APlantedDifferenceIsFoundAtTheStatedPower) {
   // the correction for eight tests costs power, but what it leaves was found before it, too
   EXPECT_LT(supported, found);
   EXPECT_GT(supported, 0.15 * tables);
-  EXPECT_TRUE(statistics::share_interval(by_flips, tables, 0.999).contains(power)) << by_flips;
+  EXPECT_TRUE(statistics::proportion_interval(by_flips, tables, 0.999).contains(power)) << by_flips;
 }
 
 TEST(StudyRecovery, WhereNothingIsPlantedAlphaIsKept) {
@@ -47,27 +48,27 @@ TEST(StudyRecovery, WhereNothingIsPlantedAlphaIsKept) {
   const int tables = table_count();
   int tests = 0, found = 0, by_flips = 0, families = 0, correlations = 0, trades = 0;
   for (int i = 0; i < tables; ++i) {
-    const Analysis a = analysed(table(random, {}));
+    const Analysis a = run_analysis(make_trial_table(random, {}));
     bool any = false;
-    for (const Paired& p : a.conditions) {
+    for (const PairedComparison& p : a.condition_comparisons) {
       ++tests;
       found += p.test->p < 0.05 ? 1 : 0;
-      by_flips += p.flips->p < 0.05 ? 1 : 0;
-      any = any || p.corrected < 0.05;
+      by_flips += p.sign_flip_test->p < 0.05 ? 1 : 0;
+      any = any || p.corrected_p < 0.05;
     }
     families += any ? 1 : 0;
-    for (const Correlated& c : a.correlations) correlations += c.of->p < 0.05 ? 1 : 0;
-    for (const Paired& p : a.trade) trades += p.test->p < 0.05 ? 1 : 0;
+    for (const ConditionCorrelation& c : a.correlations) correlations += c.result->p < 0.05 ? 1 : 0;
+    for (const PairedComparison& p : a.tradeoff_comparisons) trades += p.test->p < 0.05 ? 1 : 0;
   }
   std::printf(
       "nothing planted: %d of %d tests below 0.05, %d by sign flips; %d of %d families after correction; %d of %d correlations; %d of %d "
       "trades\n",
       found, tests, by_flips, families, tables, correlations, 4 * tables, trades, 2 * tables);
-  EXPECT_TRUE(statistics::share_interval(found, tests, 0.99).contains(0.05)) << found;
-  EXPECT_TRUE(statistics::share_interval(by_flips, tests, 0.99).contains(0.05)) << by_flips;
-  EXPECT_LE(statistics::share_interval(families, tables, 0.99).low, 0.05) << families;
-  EXPECT_TRUE(statistics::share_interval(correlations, 4 * tables, 0.99).contains(0.05)) << correlations;
-  EXPECT_TRUE(statistics::share_interval(trades, 2 * tables, 0.99).contains(0.05)) << trades;
+  EXPECT_TRUE(statistics::proportion_interval(found, tests, 0.99).contains(0.05)) << found;
+  EXPECT_TRUE(statistics::proportion_interval(by_flips, tests, 0.99).contains(0.05)) << by_flips;
+  EXPECT_LE(statistics::proportion_interval(families, tables, 0.99).low, 0.05) << families;
+  EXPECT_TRUE(statistics::proportion_interval(correlations, 4 * tables, 0.99).contains(0.05)) << correlations;
+  EXPECT_TRUE(statistics::proportion_interval(trades, 2 * tables, 0.99).contains(0.05)) << trades;
 }
 
 }  // namespace study_recovery_test

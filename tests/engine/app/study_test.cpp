@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "engine/base/json.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace study_test {
@@ -97,7 +97,7 @@ TEST(Study, AStudyOfOnesOwnRunsWithoutCode) {
   const test::Table table = test::Table::read(folder / "d/trials.csv");
   ASSERT_EQ(table.rows(), 18u);
   std::map<std::string, double> force;
-  for (std::size_t i = 0; i < table.rows(); ++i) force[table.word(i, "condition")] += table.number(i, "peak_force_n");
+  for (std::size_t i = 0; i < table.rows(); ++i) force[table.text(i, "condition")] += table.number(i, "peak_force_n");
   ASSERT_EQ(force.size(), 3u);
   EXPECT_EQ(force["none"], 0);
   EXPECT_GT(force["drag"], 1);

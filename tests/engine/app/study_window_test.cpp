@@ -9,9 +9,9 @@
 #include "engine/app/study/live_trial.h"
 #include "engine/study/trial_table.h"
 #include "render/frame/camera.h"
-#include "tests/support/program.h"
+#include "tests/support/drive_window.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace study_window_test {
@@ -39,7 +39,7 @@ std::string way_of(const study::Study& study, const study::Trial& trial, std::si
   if (!host) return {};
   auto loaded = load_scene(std::move(*host), kWidth, kHeight);
   EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().message);
-  auto stimulus = study::StimulusMaker(study).make(trial.task, trial.seed);
+  auto stimulus = study::StimulusGenerator(study).generate(trial.task, trial.seed);
   EXPECT_TRUE(stimulus);
   if (!loaded || !stimulus) return {};
   const render::Camera camera = render::make_camera(loaded->packet.view, kWidth, kHeight, Bounds());
@@ -89,11 +89,11 @@ class StudyWindowTest : public testing::Test {
     return test::drive_windows(folder_, start + script);
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
-  std::vector<study::Row> rows() const {
+  std::vector<study::TrialRow> rows() const {
     const std::string file = folder_ / "data/subjects/007.csv";
     auto rows = study::parse_rows(test::read_file(file), file);
     EXPECT_TRUE(rows) << rows.error().message;
-    return rows ? *rows : std::vector<study::Row>();
+    return rows ? *rows : std::vector<study::TrialRow>();
   }
 
   test::TemporaryFolder folder_;
@@ -102,7 +102,7 @@ class StudyWindowTest : public testing::Test {
 
 TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessions) {
   write_study(kStudy, "# introduction\nHello\n# before trace\nTrace\n");
-  const std::vector<study::Trial> trials = study::session_of(study_, 7);
+  const std::vector<study::Trial> trials = study::make_session(study_, 7);
   ASSERT_EQ(trials.size(), 2u);
   ASSERT_EQ(drive("study\ntitled Hello\nkeys space\ntitled Trace\nkeys Return\n" + way_of(study_, trials[0], 2, 0.01) +
                   "titled 'trial 2 of 2'\nkeys p\ntitled Pause\nkeys ctrl+q\nwait $V\n"
@@ -116,14 +116,14 @@ TEST_F(StudyWindowTest, AScriptedMouseGoesFromThePagesToTheLastAnswerInTwoSessio
   EXPECT_NE(log().find("subject 7: 1 of 2 trials and 0 of 2 questions are done; the same command goes on"), std::string::npos) << log();
   EXPECT_NE(log().find("subject 7: 2 of 2 trials and 2 of 2 questions are done"), std::string::npos) << log();
   EXPECT_EQ(log().find("condition_"), std::string::npos) << "neither titles nor the terminal tell the condition";
-  const std::vector<study::Row> done = rows();
+  const std::vector<study::TrialRow> done = rows();
   ASSERT_EQ(done.size(), 2u);
-  for (const study::Row& row : done) {
-    EXPECT_TRUE(row.by_target);
+  for (const study::TrialRow& row : done) {
+    EXPECT_TRUE(row.reached_target);
     EXPECT_GT(row.time_s, 0);
     // a mouse cuts corners between two pictures
     EXPECT_LT(row.error_mm, 10) << row.index;
-    EXPECT_NEAR(row.travelled_mm, 60, 20) << row.index;
+    EXPECT_NEAR(row.traveled_mm, 60, 20) << row.index;
     EXPECT_TRUE(test::exists(folder_ / fmt::format("data/recordings/007-{:03}.catlog", row.index)));
   }
   EXPECT_NE(done[0].condition, done[1].condition);
@@ -144,7 +144,7 @@ TEST_F(StudyWindowTest, DISABLED_AScriptedMouseGoesThroughAllFourTasks) {
   replace("\"training\": 2", "\"training\": 0");
   replace("proxy-chain.txt", "pages.txt");
   write_study(text, test::read_file(studies + "proxy-chain.txt"));
-  const std::vector<study::Trial> trials = study::session_of(study_, 7);
+  const std::vector<study::Trial> trials = study::make_session(study_, 7);
   // a page a name, and on
   const std::string pages =
       "pages() { n=0; while ! xdotool search --name '^catena study  (trial|question)' > /dev/null 2>&1 && kill -0 $V 2> /dev/null; "
@@ -160,12 +160,12 @@ TEST_F(StudyWindowTest, DISABLED_AScriptedMouseGoesThroughAllFourTasks) {
       "$V\n";
   ASSERT_EQ(drive(script), 0) << log();
   EXPECT_EQ(log().find("never"), std::string::npos) << log();
-  const std::vector<study::Row> done = rows();
+  const std::vector<study::TrialRow> done = rows();
   ASSERT_EQ(done.size(), trials.size());
-  for (const study::Row& row : done) {
-    EXPECT_TRUE(row.by_target) << row.index;
+  for (const study::TrialRow& row : done) {
+    EXPECT_TRUE(row.reached_target) << row.index;
     fmt::print("{:<14} {:<6} {:6.2f} s {:6.2f} mm off, {:6.1f} mm travelled\n", row.task, row.condition, row.time_s, row.error_mm,
-               row.travelled_mm);
+               row.traveled_mm);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "engine/base/numbers.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace catena {

@@ -1,5 +1,5 @@
 // A tracked head before a screen: what is shown of one that follows, leaps and is lost, and the window's picture beside render's.
-#include "engine/app/viewer/shell/tracked_head.h"
+#include "engine/app/viewer/input/tracked_head.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "engine/scene/document.h"
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/drive_window.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace tracked_head_test {
@@ -21,44 +21,44 @@ namespace tracked_head_test {
 const scene::DisplayScreen kDesk{"desk", {-2, -2, -1.5}, {2, -2, -1.5}, {-2, -2, 1.5}};  // 5 across; a head is at y < -2
 constexpr double kDt = 1.0 / 60;
 
-TEST(ShownHead, FollowsToTheBitAndGlidesAfterALeap) {
-  ShownHead head(kDesk);
-  EXPECT_FALSE(head.step(0, std::nullopt));
-  EXPECT_EQ(head.step(kDt, Vec3(0, -8, 0)), Vec3(0, -8, 0));  // there at once
+TEST(SmoothedHead, FollowsToTheBitAndGlidesAfterALeap) {
+  SmoothedHead head(kDesk);
+  EXPECT_FALSE(head.update(0, std::nullopt));
+  EXPECT_EQ(head.update(kDt, Vec3(0, -8, 0)), Vec3(0, -8, 0));  // there at once
   double t = kDt;
-  for (int k = 1; k < 20; ++k) EXPECT_EQ(head.step(t += kDt, Vec3(0.1 * k, -8, 0.01 * k)), Vec3(0.1 * k, -8, 0.01 * k));
+  for (int k = 1; k < 20; ++k) EXPECT_EQ(head.update(t += kDt, Vec3(0.1 * k, -8, 0.01 * k)), Vec3(0.1 * k, -8, 0.01 * k));
   // 4 units within a picture
   const Vec3 from(1.9, -8, 0.19), to(-2.1, -8, 0.19);
   Vec3 last = from;
   const double leapt = t + kDt;
   int steps = 0;
   while (last != to && steps++ < 100) {
-    const Vec3 now = *head.step(t += kDt, to);
+    const Vec3 now = *head.update(t += kDt, to);
     EXPECT_LE(now.x, last.x + 1e-12);
     EXPECT_LT(norm(now - last), 0.4) << "no step of the glide is a leap";
     last = now;
   }
-  EXPECT_NEAR(t - leapt, ShownHead::kGlide_s, 1.5 * kDt);
+  EXPECT_NEAR(t - leapt, SmoothedHead::kGlideS, 1.5 * kDt);
   // half way in the middle of it
-  ShownHead other(kDesk);
-  other.step(10, from);
-  other.step(10.001, to);
-  EXPECT_NEAR(other.step(10.001 + 0.15, to)->x, -0.1, 1e-9);
+  SmoothedHead other(kDesk);
+  other.update(10, from);
+  other.update(10.001, to);
+  EXPECT_NEAR(other.update(10.001 + 0.15, to)->x, -0.1, 1e-9);
 }
 
-TEST(ShownHead, StaysWhileItIsLost) {
-  ShownHead head(kDesk);
+TEST(SmoothedHead, StaysWhileItIsLost) {
+  SmoothedHead head(kDesk);
   double t = 0;
-  head.step(t, Vec3(1, -6, 0));
+  head.update(t, Vec3(1, -6, 0));
   const std::optional<Vec3> odd[] = {std::nullopt, Vec3(NAN, -6, 0), Vec3(0, INFINITY, 0), Vec3(0, -2, 0), Vec3(0, 3, 0)};
   for (const auto& lost : odd) {
-    EXPECT_EQ(head.step(t += kDt, lost), Vec3(1, -6, 0));
-    EXPECT_TRUE(head.lost());
+    EXPECT_EQ(head.update(t += kDt, lost), Vec3(1, -6, 0));
+    EXPECT_TRUE(head.is_lost());
   }
   // found again close by: no jump, and it arrives
-  EXPECT_LT(norm(*head.step(t += kDt, Vec3(1.1, -6, 0)) - Vec3(1, -6, 0)), 1e-12);
-  EXPECT_FALSE(head.lost());
-  EXPECT_EQ(head.step(t += 0.4, Vec3(1.1, -6, 0)), Vec3(1.1, -6, 0));
+  EXPECT_LT(norm(*head.update(t += kDt, Vec3(1.1, -6, 0)) - Vec3(1, -6, 0)), 1e-12);
+  EXPECT_FALSE(head.is_lost());
+  EXPECT_EQ(head.update(t += 0.4, Vec3(1.1, -6, 0)), Vec3(1.1, -6, 0));
 }
 
 constexpr const char* kScene = R"({ "fields": {"s": {"analytic": "sphere"}},
@@ -76,7 +76,7 @@ std::string scene(const std::string& workspace = "") {
   return text;
 }
 
-class HeadInTheWindow : public testing::Test {
+class HeadTrackedWindow : public testing::Test {
  protected:
   int view(const std::string& options) {
     test::write_file(folder_ / "script.sh", "export HOME=" + folder_.path() + "\nexec " + test::program_path() + " view " +
@@ -89,7 +89,7 @@ class HeadInTheWindow : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(HeadInTheWindow, ShowsWhatRenderShows) {
+TEST_F(HeadTrackedWindow, ShowsWhatRenderShows) {
   test::write_file(folder_ / "s.json", scene());
   // to the right of the middle and nearer; it rests there
   test::write_file(folder_ / "head.csv", "t,x,y,z\n10,0,-8,2\n10.1,0.8,-7.5,1.5\n10.2,1.6,-6,0.5\n");
@@ -101,7 +101,7 @@ TEST_F(HeadInTheWindow, ShowsWhatRenderShows) {
              last = render::read_png(folder_ / "r_1.png");
   ASSERT_TRUE(window && first && last) << log();
   ASSERT_EQ(window->width, 160u);
-  const auto differing = [&](const render::Picture& other) {
+  const auto differing = [&](const render::Image8& other) {
     int count = 0;
     for (std::size_t i = 0; i < window->rgba.size(); ++i) count += std::abs(window->rgba[i] - other.rgba[i]) > 1;
     return count;
@@ -111,7 +111,7 @@ TEST_F(HeadInTheWindow, ShowsWhatRenderShows) {
 }
 
 /// Metres of the desk, by the workspace: 0.1 m to the right and 0.6 m before the screen's middle.
-TEST_F(HeadInTheWindow, ADeviceIsAHead) {
+TEST_F(HeadTrackedWindow, ADeviceIsAHead) {
   const std::string workspace = R"("workspace": {"metres_per_unit": 0.1, "origin": [0, -2, 0], "rotation": [[1,0,0],[0,0,-1],[0,1,0]]},
     "device": {"type": "simulated", "friction": 0},)";
   test::write_file(folder_ / "s.json", scene(workspace));
@@ -120,20 +120,20 @@ TEST_F(HeadInTheWindow, ADeviceIsAHead) {
   ASSERT_TRUE(document) << document.error().message;
   auto read = document->read();
   ASSERT_TRUE(read) << read.error().message;
-  read->stereo.through = 0;
+  read->stereo.screen_index = 0;
   auto head = TrackedHead::open("simulated:" + (folder_ / "hand.csv"), *read);
   ASSERT_TRUE(head) << head.error().message;
   ASSERT_TRUE((*head)->start(0));
   std::optional<Vec3> at;
   for (int k = 0; k < 5000 && !at; ++k) {
-    at = (*head)->at(1e-3 * k);
+    at = (*head)->position_at(1e-3 * k);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ASSERT_TRUE(at);
   EXPECT_LT(norm(*at - Vec3(1, -8, 0.5)), 1e-3);
 }
 
-TEST_F(HeadInTheWindow, WhatCannotBeFollowedIsSaid) {
+TEST_F(HeadTrackedWindow, WhatCannotBeFollowedIsSaid) {
   test::write_file(folder_ / "s.json", scene());
   test::write_file(folder_ / "behind.csv", "t,x,y,z\n0,0,3,0\n");
   test::write_file(folder_ / "nan.csv", "t,x,y,z\n0,0,-8,nan\n");

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/app/tradeoff/measure/choice.h"
-#include "engine/app/tradeoff/measure/eye/eye.h"
-#include "engine/app/tradeoff/measure/floor.h"
-#include "engine/app/tradeoff/measure/hand/streamline.h"
-#include "engine/app/tradeoff/measure/subject.h"
-#include "engine/app/tradeoff/measure/timing.h"
-#include "engine/app/tradeoff/report/report.h"
+#include "engine/app/tuning/tradeoff/measure/discretization_error.h"
+#include "engine/app/tuning/tradeoff/measure/haptics/streamline.h"
+#include "engine/app/tuning/tradeoff/measure/pareto_choice.h"
+#include "engine/app/tuning/tradeoff/measure/rendering/render_workload.h"
+#include "engine/app/tuning/tradeoff/measure/timing.h"
+#include "engine/app/tuning/tradeoff/measure/workload.h"
+#include "engine/app/tuning/tradeoff/report/report.h"
 #include "engine/base/json.h"
-#include "engine/field/analytic.h"
-#include "engine/flow/curve.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/geometry/flow/curve.h"
 #include "render/quality/refinement.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace tradeoff_measure_test {
@@ -41,13 +41,13 @@ double true_error(const Grid& grid, const Formula& formula, const Off& off) {
   return std::sqrt(sum / count);
 }
 
-TEST(TradeoffFloor, IsWithinTwiceTheTruthOnScalarFormulas) {
+TEST(TradeoffDiscretizationError, IsWithinTwiceTheTruthOnScalarFormulas) {
   for (const char* name : {"gaussian", "torus", "tanh", "sphere"}) {
     const auto formula = field::make_analytic(name);
     ASSERT_TRUE(formula);
     const auto grid = field::sample_on_grid(*formula->scalar, 41, -2, 2);
-    for (const auto& read : {grid, grid->cubic().value()}) {
-      const auto floor = interpolation_floor({read, nullptr});
+    for (const auto& read : {grid, grid->as_cubic().value()}) {
+      const auto floor = estimate_interpolation_error({read, nullptr});
       ASSERT_TRUE(floor) << name;
       const double truth = true_error(*read, *formula->scalar, [](double a, double b) { return (a - b) * (a - b); });
       EXPECT_GT(floor->at_h.error, truth / 2) << name << (read == grid ? "" : ", cubic");
@@ -57,13 +57,13 @@ TEST(TradeoffFloor, IsWithinTwiceTheTruthOnScalarFormulas) {
   }
 }
 
-TEST(TradeoffFloor, IsWithinTwiceTheTruthOnVectorFormulas) {
+TEST(TradeoffDiscretizationError, IsWithinTwiceTheTruthOnVectorFormulas) {
   for (const char* name : {"lamb-oseen", "abc"}) {
     const auto formula = field::make_analytic(name);
     ASSERT_TRUE(formula);
     const auto grid = field::sample_on_grid(*formula->vector, 41, -2, 2);
-    for (const auto& read : {grid, grid->cubic().value()}) {
-      const auto floor = interpolation_floor({nullptr, read});
+    for (const auto& read : {grid, grid->as_cubic().value()}) {
+      const auto floor = estimate_interpolation_error({nullptr, read});
       ASSERT_TRUE(floor) << name;
       const double truth = true_error(*read, *formula->vector, [](const Vec3& a, const Vec3& b) { return dot(a - b, a - b); });
       EXPECT_GT(floor->at_h.error, truth / 2) << name << (read == grid ? "" : ", cubic");
@@ -73,11 +73,11 @@ TEST(TradeoffFloor, IsWithinTwiceTheTruthOnVectorFormulas) {
 }
 
 /// What a line is off the formula's line, from the grid alone: differences of lines rather than errors of samples.
-TEST(TradeoffFloor, OfAStreamlineIsWithinTwiceTheTruth) {
+TEST(TradeoffDiscretizationError, OfAStreamlineIsWithinTwiceTheTruth) {
   const auto formula = field::make_analytic("abc");
   ASSERT_TRUE(formula);
   const auto grid = field::sample_on_grid(*formula->vector, 65, -2, 2);
-  const auto levels = make_levels(*grid);
+  const auto levels = make_resolution_levels(*grid);
   ASSERT_TRUE(levels);
   const Vec3 seed(0.3, 0.2, -0.4);
   const auto far = [&](const field::VectorField& field, const field::VectorField& from) {
@@ -85,15 +85,16 @@ TEST(TradeoffFloor, OfAStreamlineIsWithinTwiceTheTruth) {
     EXPECT_TRUE(line && truth);
     const flow::NearestOnCurve nearest(*truth);
     double most = 0;
-    for (double s = -1; s <= 1; s += 0.01) most = std::max(most, nearest.at((*line)->position(s)).distance2);
+    for (double s = -1; s <= 1; s += 0.01) most = std::max(most, nearest.find((*line)->position(s)).distance2);
     return std::sqrt(most);
   };
-  const double truth = far(*levels->at[0], *formula->vector);
-  const Extrapolated e = from_differences(far(*levels->at[1], *levels->at[0]), far(*levels->at[2], *levels->at[0]));
+  const double truth = far(*levels->grids[0], *formula->vector);
+  const ExtrapolatedError e =
+      extrapolate_from_differences(far(*levels->grids[1], *levels->grids[0]), far(*levels->grids[2], *levels->grids[0]));
   EXPECT_GT(e.error, truth / 2);
   EXPECT_LT(e.error, truth * 2);
   EXPECT_NEAR(e.order, 2, 0.7);
-  EXPECT_TRUE(e.settled);
+  EXPECT_TRUE(e.is_converged);
 }
 
 Point made(double error, double time, double spread = 0.01) {
@@ -103,96 +104,97 @@ Point made(double error, double time, double spread = 0.01) {
   return p;
 }
 
-TEST(TradeoffFloor, SaysWhereDifferencesDoNotSettle) {
-  const Extrapolated e = from_differences(3, 3.5);
-  EXPECT_FALSE(e.settled);
+TEST(TradeoffDiscretizationError, SaysWhereDifferencesDoNotSettle) {
+  const ExtrapolatedError e = extrapolate_from_differences(3, 3.5);
+  EXPECT_FALSE(e.is_converged);
   EXPECT_DOUBLE_EQ(e.error, 1);  // at order 2: the least
-  EXPECT_DOUBLE_EQ(from_differences(3, 15).error, 1);
-  EXPECT_DOUBLE_EQ(from_errors(4, 16).error, 1);
-  EXPECT_EQ(order_words(e).rfind("at least 1: a third of the difference made by every 2nd voxel", 0), 0u) << order_words(e);
+  EXPECT_DOUBLE_EQ(extrapolate_from_differences(3, 15).error, 1);
+  EXPECT_DOUBLE_EQ(extrapolate_from_errors(4, 16).error, 1);
+  EXPECT_EQ(describe_order(e).rfind("at least 1: a third of the difference made by every 2nd voxel", 0), 0u) << describe_order(e);
   Curve curve;
   curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
-  curve.floor = 1;
-  curve.floor_name += ", at least";
-  choose(curve);
-  EXPECT_NE(curve.why.find("is not above the data's own error, at least 1:"), std::string::npos) << curve.why;
+  curve.discretization_error = 1;
+  curve.discretization_error_name += ", at least";
+  choose_setting(curve);
+  EXPECT_NE(curve.choice_reason.find("is not above the data's own error, at least 1:"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffFloor, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels) {
+TEST(TradeoffDiscretizationError, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels) {
   const auto formula = field::make_analytic("linear");
   ASSERT_TRUE(formula);
   const auto grid = field::sample_on_grid(*formula->scalar, 20, -2, 2);
-  const auto levels = make_levels(*grid);
+  const auto levels = make_resolution_levels(*grid);
   ASSERT_TRUE(levels);
-  for (const auto& level : levels->at) {
-    EXPECT_LT(max_abs(level->world_bounds().lo - levels->at[0]->world_bounds().lo), 1e-12);
-    EXPECT_LT(max_abs(level->world_bounds().hi - levels->at[0]->world_bounds().hi), 1e-12);
+  for (const auto& level : levels->grids) {
+    EXPECT_LT(max_abs(level->world_bounds().lo - levels->grids[0]->world_bounds().lo), 1e-12);
+    EXPECT_LT(max_abs(level->world_bounds().hi - levels->grids[0]->world_bounds().hi), 1e-12);
     EXPECT_LT(true_error(*level, *formula->scalar, [](double a, double b) { return (a - b) * (a - b); }), 1e-6);
   }
-  EXPECT_EQ(levels->at[2]->index_box().hi.x, 4);
-  EXPECT_FALSE(make_levels(*field::sample_on_grid(*formula->scalar, 8, -2, 2)));
+  EXPECT_EQ(levels->grids[2]->index_box().hi.x, 4);
+  EXPECT_FALSE(make_resolution_levels(*field::sample_on_grid(*formula->scalar, 8, -2, 2)));
 }
 
-TEST(TradeoffChoice, FrontHoldsWhatNothingBeats) {
+TEST(TradeoffParetoChoice, FrontHoldsWhatNothingBeats) {
   const std::vector<Point> points{made(1, 10), made(5, 2), made(5, 3), made(7, 4), made(0.5, 30), made(kNotMeasured, 0.1), made(1, 11)};
-  EXPECT_EQ(pareto_front(points, Cost::time), (std::vector<int>{1, 0, 4}));
-  EXPECT_TRUE(pareto_front({}, Cost::time).empty());
+  EXPECT_EQ(pareto_front(points, CostKind::time), (std::vector<int>{1, 0, 4}));
+  EXPECT_TRUE(pareto_front({}, CostKind::time).empty());
 }
 
-TEST(TradeoffChoice, TakesTheCheapestThatReachesTheFloor) {
+TEST(TradeoffParetoChoice, TakesTheCheapestThatReachesTheFloor) {
   Curve curve;
   curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
-  curve.floor = 1;
-  choose(curve);
+  curve.discretization_error = 1;
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 2);
   curve.reference_error = 3;  // what the reference cannot tell is no reason
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.why.find("the reference can tell"), std::string::npos) << curve.why;
-  curve.floor = 0.01, curve.reference_error = kNotMeasured;
-  choose(curve);
-  EXPECT_NE(curve.why.find("None reaches"), std::string::npos) << curve.why;
+  EXPECT_NE(curve.choice_reason.find("the reference can tell"), std::string::npos) << curve.choice_reason;
+  curve.discretization_error = 0.01, curve.reference_error = kNotMeasured;
+  choose_setting(curve);
+  EXPECT_NE(curve.choice_reason.find("None reaches"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffChoice, ErrorsBelowTheReferencesAreOne) {
+TEST(TradeoffParetoChoice, ErrorsBelowTheReferencesAreOne) {
   Curve curve;
   curve.points = {made(100, 1), made(0.5, 1.5), made(0.2, 100)};
   curve.reference_error = 1;
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
   EXPECT_EQ(curve.front, (std::vector<int>{0, 1})) << "what costs more shows nothing";
-  EXPECT_NE(curve.why.find("not above what the reference can tell, 1:"), std::string::npos) << curve.why;
+  EXPECT_NE(curve.choice_reason.find("not above what the reference can tell, 1:"), std::string::npos) << curve.choice_reason;
   // of a knee beside them no ratio is said that cannot be told
   curve.points = {made(100, 1), made(2, 1.5), made(0.01, 100)};
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.why.find("has 2 times less error. Errors below 1 cannot be told."), std::string::npos) << curve.why;
+  EXPECT_NE(curve.choice_reason.find("has 2 times less error. Errors below 1 cannot be told."), std::string::npos) << curve.choice_reason;
   // all below: none is better than what the scene has
   curve.points = {made(0.1, 2), made(0.9, 2), made(0.4, 2)};
   curve.current = 1;
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_TRUE(curve.even);
-  EXPECT_NE(curve.why.find("No setting errs by more than what the reference can tell, 1"), std::string::npos) << curve.why;
+  EXPECT_TRUE(curve.is_flat);
+  EXPECT_NE(curve.choice_reason.find("No setting errs by more than what the reference can tell, 1"), std::string::npos)
+      << curve.choice_reason;
 }
 
-TEST(TradeoffChoice, OfBytesTheFewestAreNotCalledCheap) {
+TEST(TradeoffParetoChoice, OfBytesTheFewestAreNotCalledCheap) {
   Curve curve;
-  curve.cost = Cost::bytes;
+  curve.cost = CostKind::bytes;
   curve.points = {made(8, 1), made(0.9, 1), made(0.1, 1)};
   for (std::size_t i = 0; i < 3; ++i) curve.points[i].bytes = 100.0 * double(i + 1);
-  curve.floor = 1;
-  choose(curve);
+  curve.discretization_error = 1;
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
-  EXPECT_NE(curve.why.find("fewest bytes"), std::string::npos) << curve.why;
-  EXPECT_EQ(curve.why.find("cheap"), std::string::npos) << curve.why;
+  EXPECT_NE(curve.choice_reason.find("fewest bytes"), std::string::npos) << curve.choice_reason;
+  EXPECT_EQ(curve.choice_reason.find("cheap"), std::string::npos) << curve.choice_reason;
 }
 
-TEST(TradeoffChoice, NumbersAreAsKeysHaveThem) {
+TEST(TradeoffParetoChoice, NumbersAreAsKeysHaveThem) {
   Curve curve;
   curve.points = {made(1.5e-6, 1)};
-  choose(curve);
-  EXPECT_NE(curve.why.find(" 1.5e-6."), std::string::npos) << curve.why;
+  choose_setting(curve);
+  EXPECT_NE(curve.choice_reason.find(" 1.5e-6."), std::string::npos) << curve.choice_reason;
 }
 
 /// What the reader of scenes refuses beside a setting is to be taken out.
@@ -200,9 +202,9 @@ TEST(TradeoffAdvice, NamesTheKeysThatItReplaces) {
   const auto advice = [](const std::string& text, const std::string& words) -> std::string {
     auto node = json::parse(text, "s.json");
     EXPECT_TRUE(node);
-    const LinkOf link{"curve", *node};
+    const NamedLink link{"curve", *node};
     for (const StreamlineSetting& s : streamline_settings(link.node))
-      if (s.words == words) return s.write(link);
+      if (s.label == words) return s.config_text(link);
     return "none";
   };
   EXPECT_EQ(advice("{}", "selected"), "\"follow\": \"selected\"");
@@ -214,75 +216,75 @@ TEST(TradeoffAdvice, NamesTheKeysThatItReplaces) {
   EXPECT_EQ(advice(R"({"tolerance": 2e-6})", "rkf34, tolerance 2e-6"), "\"method\": \"rkf34\", \"tolerance\": 2e-6");
 }
 
-TEST(TradeoffChoice, NoiseDoesNotDecide) {
+TEST(TradeoffParetoChoice, NoiseDoesNotDecide) {
   Curve curve;
   curve.points = {made(0.5, 10, 2), made(0.4, 9.5, 2), made(0.3, 10.5, 2)};
   for (std::size_t i = 0; i < 3; ++i) curve.points[i].work = i == 2 ? 7 : 8;
-  curve.floor = 1;
-  choose(curve);
+  curve.discretization_error = 1;
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 2);
 }
 
-TEST(TradeoffChoice, TakesTheKneeOrWhatTheSceneHas) {
+TEST(TradeoffParetoChoice, TakesTheKneeOrWhatTheSceneHas) {
   Curve curve;
   curve.points = {made(100, 1), made(1, 1.5), made(0.5, 100)};
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 1);
   // both neighbours are what makes it one
-  EXPECT_NE(curve.why.find("costs 1.5 times less and has 1e+02 times the error"), std::string::npos) << curve.why;
-  EXPECT_NE(curve.why.find("costs 67 times as much and has 2 times less error"), std::string::npos) << curve.why;
+  EXPECT_NE(curve.choice_reason.find("costs 1.5 times less and has 1e+02 times the error"), std::string::npos) << curve.choice_reason;
+  EXPECT_NE(curve.choice_reason.find("costs 67 times as much and has 2 times less error"), std::string::npos) << curve.choice_reason;
   curve.points = {made(8, 1), made(4, 2), made(2, 4), made(1, 8)};  // a straight line has none
   curve.current = 2;
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 2);
   curve.points = {made(0, 1), made(0, 2)};
   curve.current = -1;
-  choose(curve);
+  choose_setting(curve);
   EXPECT_EQ(curve.chosen, 0);
-  EXPECT_NE(curve.why.find("No setting changes"), std::string::npos);
+  EXPECT_NE(curve.choice_reason.find("No setting changes"), std::string::npos);
 }
 
 TEST(TradeoffTiming, ARunThatIsLateRepeatsLess) {
-  const Effort& whole = effort(true, false);
-  EXPECT_EQ(in_time(whole, 0, 0).eye_s, whole.eye_s);
-  EXPECT_EQ(in_time(whole, 0.4 * whole.run_s, 0.5).eye_s, whole.eye_s) << "early";
-  EXPECT_NEAR(in_time(whole, 0.75 * whole.run_s, 0.5).eye_s, 0.5 * whole.eye_s, 1e-9);
-  EXPECT_NEAR(in_time(whole, 0.75 * whole.run_s, 0.5).hand_s, 0.5 * whole.hand_s, 1e-9);
-  EXPECT_GT(in_time(whole, 9 * whole.run_s, 0.9).eye_s, 0) << "each is measured at least";
-  EXPECT_LT(in_time(whole, 9 * whole.run_s, 0.9).eye_s, 0.1 * whole.eye_s);
+  const Effort& whole = select_effort(true, false);
+  EXPECT_EQ(reduce_if_late(whole, 0, 0).rendering_s, whole.rendering_s);
+  EXPECT_EQ(reduce_if_late(whole, 0.4 * whole.total_s, 0.5).rendering_s, whole.rendering_s) << "early";
+  EXPECT_NEAR(reduce_if_late(whole, 0.75 * whole.total_s, 0.5).rendering_s, 0.5 * whole.rendering_s, 1e-9);
+  EXPECT_NEAR(reduce_if_late(whole, 0.75 * whole.total_s, 0.5).haptics_s, 0.5 * whole.haptics_s, 1e-9);
+  EXPECT_GT(reduce_if_late(whole, 9 * whole.total_s, 0.9).rendering_s, 0) << "each is measured at least";
+  EXPECT_LT(reduce_if_late(whole, 9 * whole.total_s, 0.9).rendering_s, 0.1 * whole.rendering_s);
 }
 
 TEST(TradeoffTiming, RunsSettingsInTurns) {
   std::string order;
-  const auto times =
-      interleave({[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3);
+  const auto times = time_interleaved(
+      {[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3);
   ASSERT_TRUE(times);
   EXPECT_EQ(order, "abbaabba");  // the first round warms up
   EXPECT_EQ((*times)[1].median, 2);
   EXPECT_EQ((*times)[0].repeats, 3);
-  const Timing t = timing_of({5, 1, 4, 2, 3});
-  EXPECT_EQ(t.low, 2);
+  const Timing t = compute_timing({5, 1, 4, 2, 3});
+  EXPECT_EQ(t.lower_quartile, 2);
   EXPECT_EQ(t.median, 3);
-  EXPECT_EQ(t.high, 4);
-  EXPECT_FALSE(interleave({[]() -> Result<double> { return Error{"no"}; }}, 0, 3));
+  EXPECT_EQ(t.upper_quartile, 4);
+  EXPECT_FALSE(time_interleaved({[]() -> Result<double> { return Error{"no"}; }}, 0, 3));
 }
 
 TEST(TradeoffTiming, WhatAPictureNeedsAnewDoesNotCount) {
   render::FramePacket packet;
   packet.width = 64, packet.height = 48;
   const auto after = [&](const render::RenderSettings& before, const render::RenderSettings& now) {
-    return needs_others({before, 64, 48}, packet, now);
+    return needs_warmup({before, 64, 48}, packet, now);
   };
-  const render::RenderSettings exact = render::exact_rung(1), fast = render::fast_rung(1, 1, 0, -1);
-  EXPECT_TRUE(needs_others({}, packet, exact));
+  const render::RenderSettings exact = render::exact_level(1), fast = render::fast_level(1, 1, 0, -1);
+  EXPECT_TRUE(needs_warmup({}, packet, exact));
   EXPECT_FALSE(after(exact, exact));
-  EXPECT_FALSE(after(exact, render::exact_rung(0.25)));
-  EXPECT_FALSE(after(fast, render::fast_rung(2, 1, 0, -1)));
+  EXPECT_FALSE(after(exact, render::exact_level(0.25)));
+  EXPECT_FALSE(after(fast, render::fast_level(2, 1, 0, -1)));
   EXPECT_TRUE(after(exact, fast));
   EXPECT_TRUE(after(fast, exact));
-  EXPECT_TRUE(after(fast, render::fast_rung(1, 1, 0, -1, true)));
+  EXPECT_TRUE(after(fast, render::fast_level(1, 1, 0, -1, true)));
   render::RenderSettings wide = exact;
-  wide.texels = render::TexelFormat::r32f;
+  wide.texel_format = render::TexelFormat::r32f;
   EXPECT_TRUE(after(exact, wide));
   packet.width = 128;
   EXPECT_TRUE(after(exact, exact));
@@ -291,21 +293,21 @@ TEST(TradeoffTiming, WhatAPictureNeedsAnewDoesNotCount) {
 TEST(TradeoffReport, ReadsBackWhatItWrote) {
   Report report;
   report.source = "a \"scene\".json";
-  report.about = {{"processor", "x<y>"}};
-  report.left_out = {"The eye: none."};
+  report.metadata = {{"processor", "x<y>"}};
+  report.skipped = {"The eye: none."};
   Curve curve;
   curve.id = "hand-x";
-  curve.part = "hand";
+  curve.category = "hand";
   curve.title = "Q & A's";
   curve.error_name = "error";
   curve.time_name = "ns";
-  curve.more = {"b"};
-  curve.floor = 0.125;
+  curve.extra_columns = {"b"};
+  curve.discretization_error = 0.125;
   curve.points = {made(0.1, 3), made(1e-300, 4)};
   curve.points[0].setting = "one, \"1\"";
-  curve.points[0].write = "`a<b` in place of `c`";
-  for (Point& p : curve.points) p.more = {7};
-  choose(curve);
+  curve.points[0].config_text = "`a<b` in place of `c`";
+  for (Point& p : curve.points) p.extra_values = {7};
+  choose_setting(curve);
   report.curves = {curve};
   const test::TemporaryFolder folder;
   test::write_file(folder / "tradeoff.json", to_json(report));
@@ -341,9 +343,9 @@ TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
   const Table line = Table::read(folder / "out/hand-streamline-curve.csv");
   double linear = 0, rk4 = 1, selected = 1;
   for (std::size_t row = 0; row < line.rows(); ++row) {
-    if (line.word(row, "setting") == "linear") linear = line.number(row, "error");
-    if (line.word(row, "setting") == "rk4") rk4 = line.number(row, "error");
-    if (line.word(row, "setting") == "selected") selected = line.number(row, "error");
+    if (line.text(row, "setting") == "linear") linear = line.number(row, "error");
+    if (line.text(row, "setting") == "rk4") rk4 = line.number(row, "error");
+    if (line.text(row, "setting") == "selected") selected = line.number(row, "error");
   }
   EXPECT_GT(linear, 1e-5);
   EXPECT_LT(rk4, 1e-8);
@@ -374,7 +376,7 @@ TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
   for (const int k : {0, 1}) {
     const Table table = Table::read(folder / (k == 0 ? "out/hand-rate-force.csv" : "out/hand-rate-stability.csv"));
     for (std::size_t row = 0; row < table.rows(); ++row)
-      if (table.word(row, "chosen") == "1") chosen[k] = table.word(row, "setting");
+      if (table.text(row, "chosen") == "1") chosen[k] = table.text(row, "setting");
   }
   EXPECT_NE(chosen[0], "");
   EXPECT_EQ(chosen[0], chosen[1]);
@@ -439,7 +441,7 @@ TEST(TradeoffScene, BadInputIsOneLineAndNothingIsWritten) {
   test::write_file(folder / "bad.json", R"({"curves": 3})");
   const auto report_of = [](const std::string& id, const std::string& part, int times = 1) {
     Curve curve;
-    curve.part = part;
+    curve.category = part;
     Report report;
     for (int k = 0; k < times; ++k) report.curves.push_back(curve), report.curves.back().id = k > 0 ? id + std::to_string(k) : id;
     return to_json(report);

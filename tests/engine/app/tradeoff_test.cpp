@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace tradeoff_test {
@@ -45,7 +45,7 @@ TEST(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
   const Table drift = Table::read(out + "/figure2-drift.csv");
   std::map<std::string, std::map<double, double>> lap;
   for (std::size_t row = 0; row < drift.rows(); ++row) {
-    lap[drift.word(row, "method")][drift.number(row, "speed_m_per_s")] = drift.number(row, "drift_mm_first_lap");
+    lap[drift.text(row, "method")][drift.number(row, "speed_m_per_s")] = drift.number(row, "drift_mm_first_lap");
     EXPECT_LE(drift.number(row, "evaluations_max"), 257);
   }
   ASSERT_EQ(lap.size(), 8u);
@@ -63,7 +63,7 @@ TEST(Tradeoff, Figure2MeasuresTheDriftOfEveryMethod) {
 
   // the curve that is traced holds for five laps what it holds for one; the linear proxy spirals out
   for (std::size_t row = 0; row < drift.rows(); ++row) {
-    if (drift.word(row, "method") != "selected") continue;
+    if (drift.text(row, "method") != "selected") continue;
     EXPECT_NEAR(drift.number(row, "drift_mm_after_5_laps"), drift.number(row, "drift_mm_first_lap"), 1e-12);
   }
   const Table path = Table::read(out + "/figure2-path.csv");
@@ -88,7 +88,7 @@ TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
   ASSERT_EQ(table.rows(), 2u * 18 * 5);
   double most_off = 0, least_off = 1;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::string method = table.word(row, "method"), scene = table.word(row, "scene");
+    const std::string method = table.text(row, "method"), scene = table.text(row, "scene");
     const double angle = table.number(row, "angle_deg"), depth = table.number(row, "release_depth");
     const double off_curve = table.number(row, "off_curve_while_held"), at_depth = table.number(row, "off_curve_at_release_depth");
     const std::string where = scene + " " + method + " " + std::to_string(angle);

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "engine/app/render/video_writer.h"
-#include "render/image/picture.h"
-#include "tests/support/program.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace video_test {
@@ -45,17 +45,17 @@ bool has_ffmpeg() { return static_cast<bool>(app::check_video("a.mp4", {2, 2, 25
 int files_in(const std::string& folder) { return int(std::distance(std::filesystem::directory_iterator(folder), {})); }
 
 /// Frame `k` of a video as ffmpeg decodes it.
-render::Picture frame_of(const std::string& video, int k, const std::string& folder) {
+render::Image8 frame_of(const std::string& video, int k, const std::string& folder) {
   const std::string png = folder + "/frame.png";
   const auto run = test::run_program("/usr/bin/env", {"ffmpeg", "-v", "error", "-y", "-i", video, "-vf",
                                                       "select=eq(n\\," + std::to_string(k) + ")", "-frames:v", "1", png});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   auto picture = render::read_png(png);
   EXPECT_TRUE(picture);
-  return picture ? std::move(*picture) : render::Picture();
+  return picture ? std::move(*picture) : render::Image8();
 }
 
-double rms(const render::Picture& a, const render::Picture& b) {
+double rms(const render::Image8& a, const render::Image8& b) {
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
   double sum = 0;
   for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i) sum += std::pow(double(a.rgba[i]) - b.rgba[i], 2);
@@ -79,8 +79,8 @@ TEST(Video, FramesAreThePicturesOfTheSequence) {
     for (const int k : {0, 2}) {
       const auto truth = render::read_png(folder / ("p_" + std::to_string(k) + ".png"));
       ASSERT_TRUE(truth);
-      const render::Picture seen = frame_of(folder / name, k, folder.path());
-      const render::Picture other = *render::read_png(folder / ("p_" + std::to_string(3 - k) + ".png"));
+      const render::Image8 seen = frame_of(folder / name, k, folder.path());
+      const render::Image8 other = *render::read_png(folder / ("p_" + std::to_string(3 - k) + ".png"));
       // chroma at half resolution, quantisation, 256 colours of a .gif
       EXPECT_LE(rms(seen, *truth), 6) << name << " " << k;
       EXPECT_GT(rms(seen, other), 8) << name << " " << k;

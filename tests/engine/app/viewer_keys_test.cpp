@@ -2,8 +2,8 @@
 // one of its frames.
 #include <gtest/gtest.h>
 
+#include "tests/support/drive_window.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_keys_test {

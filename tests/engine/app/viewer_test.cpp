@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "render/image/picture.h"
+#include "render/image/image.h"
+#include "tests/support/drive_window.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_test {
@@ -41,17 +41,17 @@ class Viewer : public testing::Test {
     return exit_code("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1");
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
-  render::Picture picture(const std::string& name) {
+  render::Image8 picture(const std::string& name) {
     auto read = render::read_png(folder_ / name);
     EXPECT_TRUE(read) << log();
-    return read ? std::move(*read) : render::Picture();
+    return read ? std::move(*read) : render::Image8();
   }
 
   test::TemporaryFolder folder_;
   std::string scene_;
 };
 
-int differing(const render::Picture& a, const render::Picture& b) {
+int differing(const render::Image8& a, const render::Image8& b) {
   int count = 0;
   for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); i += 4)
     if (std::abs(a.rgba[i] - b.rgba[i]) + std::abs(a.rgba[i + 1] - b.rgba[i + 1]) + std::abs(a.rgba[i + 2] - b.rgba[i + 2]) > 40) ++count;
@@ -69,7 +69,7 @@ TEST_F(Viewer, WithoutADisplayItSaysSoInOneLine) {
 TEST_F(Viewer, DrawsTheSceneAndTheHand) {
   if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --frames 4 --screenshot " + (folder_ / "a.png")), 0) << log();
-  const render::Picture a = picture("a.png");
+  const render::Image8 a = picture("a.png");
   ASSERT_EQ(a.width, 320u);
   ASSERT_EQ(a.height, 240u);
   int red = 0, white = 0;
@@ -108,7 +108,7 @@ TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
 TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
   if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --stereo side-by-side --frames 2 --screenshot " + (folder_ / "pair.png")), 0) << log();
-  const render::Picture pair = picture("pair.png");
+  const render::Image8 pair = picture("pair.png");
   ASSERT_EQ(pair.width, 320u);
   ASSERT_EQ(pair.height, 240u);
   // both halves show the lines
@@ -147,7 +147,7 @@ TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
          << wait_for("compose.frag:2: ") << "xdotool key ctrl+q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
   EXPECT_NE(log().find("catena: " + compose + ":2: 'nonsense'"), std::string::npos) << log();
-  const render::Picture green = picture("green.png");
+  const render::Image8 green = picture("green.png");
   ASSERT_FALSE(green.rgba.empty());
   int others = 0;
   for (std::size_t i = 0; i < green.rgba.size(); i += 4) others += green.rgba[i] > 2 || green.rgba[i + 1] < 253 || green.rgba[i + 2] > 2;

@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "engine/base/json.h"
-#include "tests/engine/vtk/files.h"
-#include "tests/support/program.h"
+#include "tests/engine/io/vtk/files.h"
+#include "tests/support/drive_window.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace viewer_widget_test {
 
@@ -78,7 +78,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const test::Table table = test::Table::read(folder_ / "w.csv");
   std::set<std::string> modes;
-  for (std::size_t k = 0; k < table.rows(); ++k) modes.insert(table.word(k, "cut_mode"));
+  for (std::size_t k = 0; k < table.rows(); ++k) modes.insert(table.text(k, "cut_mode"));
   for (const char* mode : {"explore", "translate", "rotate", "turn"}) EXPECT_TRUE(modes.count(mode)) << mode;
 }
 

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "engine/app/viewer/viewer.h"
-#include "render/image/picture.h"
+#include "render/image/image.h"
+#include "tests/support/drive_window.h"
 #include "tests/support/support.h"
-#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_window_test {
@@ -56,17 +56,17 @@ class ViewerWindow : public testing::Test {
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
   bool is_there(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
-  render::Picture picture(const std::string& name) {
+  render::Image8 picture(const std::string& name) {
     auto read = render::read_png(folder_ / name);
     EXPECT_TRUE(read) << name << "\n" << log();
-    return read ? std::move(*read) : render::Picture();
+    return read ? std::move(*read) : render::Image8();
   }
 
   test::TemporaryFolder folder_;
   std::string scene_;
 };
 
-bool is_color(const render::Picture& p, std::uint32_t x, std::uint32_t y, int r, int g, int b) {
+bool is_color(const render::Image8& p, std::uint32_t x, std::uint32_t y, int r, int g, int b) {
   const std::uint8_t* at = p.pixel(x, y);
   return std::abs(at[0] - r) < 8 && std::abs(at[1] - g) < 8 && std::abs(at[2] - b) < 8;
 }
@@ -77,8 +77,8 @@ TEST_F(ViewerWindow, ThePictureLiesBesideThePanelsAndTabGivesItTheWindow) {
                   "keys Tab; sleep 0.5; keys F12; written flow-003.png\nkeys ctrl+q"),
             0)
       << log();
-  const render::Picture window = picture("flow-001.png"), beside = picture("flow-002.png"), alone = picture("flow-003.png"),
-                        end = picture("end.png");
+  const render::Image8 window = picture("flow-001.png"), beside = picture("flow-002.png"), alone = picture("flow-003.png"),
+                       end = picture("end.png");
   EXPECT_EQ(window.width, 900u);
   EXPECT_EQ(window.height, 600u);
   EXPECT_EQ(beside.width, 580u);
@@ -120,7 +120,7 @@ TEST_F(ViewerWindow, TheOpenDialogOpensWhatIsTypedAndAFailureLeavesTheScene) {
             0)
       << log();
   EXPECT_EQ(log().find("never titled"), std::string::npos) << log();
-  const render::Picture end = picture("end.png");
+  const render::Image8 end = picture("end.png");
   ASSERT_FALSE(end.rgba.empty());
   EXPECT_TRUE(is_color(end, 895, 100, 0, 0, 102));
 }
@@ -133,28 +133,28 @@ TEST_F(ViewerWindow, ResizedAgainAndAgainItFollows) {
                   "xdotool mousemove 600 300; keys shift+F12; written flow-001.png; keys ctrl+q"),
             0)
       << log();
-  const render::Picture window = picture("flow-001.png");
+  const render::Image8 window = picture("flow-001.png");
   EXPECT_EQ(window.width, 860u);
   EXPECT_EQ(window.height, 560u);
 }
 
 /// The child's half of the next test: a window in this process whose driver gives up four times, at different calls of a picture.
-TEST(ViewerLost, DISABLED_InAWindow) {
+TEST(ViewerDeviceLost, DISABLED_InAWindow) {
   ViewOptions options;
   options.source = std::getenv("CATENA_TEST_SCENE");
   options.width = 400;
   options.height = 300;
-  options.frames = 60;
-  options.hand.device = "mouse";
+  options.max_frames = 60;
+  options.haptic_options.device = "mouse";
   auto quality = parse_quality("draft");
   ASSERT_TRUE(quality);
   options.quality = *quality;
   const auto calls = std::make_shared<int>(0);
   const auto at = [](int call) { return call == 40 || call == 93 || call == 146 || call == 199; };
-  options.fail = [calls, at](render::vk::DriverCall call) {
+  options.inject_failure = [calls, at](render::vk::DriverCall call) {
     return call == render::vk::DriverCall::wait && at(++*calls) ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
   };
-  EXPECT_EQ(view(std::move(options)), 0);
+  EXPECT_EQ(run_viewer(std::move(options)), 0);
   EXPECT_GT(*calls, 199) << "otherwise the last one never came";
 }
 
@@ -162,7 +162,7 @@ TEST_F(ViewerWindow, ADeviceThatIsLostIsStartedAgain) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command =
       "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 " + test::on_display("640x480") + self +
-      " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
+      " --gtest_also_run_disabled_tests --gtest_filter=ViewerDeviceLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << log();
   EXPECT_NE(log().find("60 frames"), std::string::npos) << log();
   EXPECT_NE(log().find("lost and started again 4 times"), std::string::npos) << log();
@@ -173,7 +173,7 @@ TEST_F(ViewerWindow, WithoutADisplayTheScreenshotIsDrawnAllTheSame) {
                               " --size 200x150 --screenshot a.png > log 2>&1";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << log();
   EXPECT_NE(log().find("drawn without a window"), std::string::npos) << log();
-  const render::Picture a = picture("a.png");
+  const render::Image8 a = picture("a.png");
   EXPECT_EQ(a.width, 200u);
   EXPECT_EQ(a.height, 150u);
 }

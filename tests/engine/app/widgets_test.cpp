@@ -5,7 +5,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/vec.h"
-#include "tests/support/program.h"
+#include "tests/support/run_program.h"
 #include "tests/support/support.h"
 
 namespace widgets_test {
@@ -45,9 +45,9 @@ TEST_F(Widgets, ADragAlongXWithATremblingHandLeavesYAndZ) {
     EXPECT_EQ(table.number(k, "cut_z"), 0);
     EXPECT_EQ(table.number(k, "cut_nz"), 1);
   }
-  EXPECT_EQ(table.word(100, "cut_mode"), "explore");
-  EXPECT_EQ(table.word(700, "cut_mode"), "translate");
-  EXPECT_EQ(table.word(1290, "cut_mode"), "explore");
+  EXPECT_EQ(table.text(100, "cut_mode"), "explore");
+  EXPECT_EQ(table.text(700, "cut_mode"), "translate");
+  EXPECT_EQ(table.text(1290, "cut_mode"), "explore");
   // the plane across x lets go at `step`: from there on the widget goes as far as the hand
   EXPECT_EQ(table.number(360, "cut_x"), 0);
   EXPECT_NEAR(table.number(1200, "cut_x"), 0.6 - 0.1, 1e-12);
@@ -65,7 +65,7 @@ TEST_F(Widgets, ATurnAboutAnAxisKeepsTheAxis) {
   }
   const test::Table table = replay(path);
   const std::size_t last = table.rows() - 1;
-  ASSERT_EQ(table.word(last, "cut_mode"), "turn");
+  ASSERT_EQ(table.text(last, "cut_mode"), "turn");
   EXPECT_EQ(table.number(last, "cut_held"), 2) << "the plane across y";
   for (std::size_t k = 0; k <= last; ++k) EXPECT_NEAR(table.number(k, "cut_ny"), 0, 1e-12);
   // x goes to z, so z goes to -x

@@ -64,7 +64,7 @@ TEST(Csv, AnOrientationComesWholeAndIsAUnitQuaternion) {
   const auto plain = parse_probe_path("t,x,y,z\n0,1,2,3\n", "p.csv");
   ASSERT_TRUE(plain);
   EXPECT_FALSE((*plain)[0].has_orientation);
-  EXPECT_EQ((*plain)[0].orientation, kNoRotation);
+  EXPECT_EQ((*plain)[0].orientation, kIdentityRotation);
   expect_error(parse_probe_path("t,x,y,z,qw,qx,qz\n0,1,2,3,1,0,0\n", "p.csv"), {"p.csv:1:", "\"qy\" is missing", "qw,qx,qy,qz"});
   expect_error(parse_probe_path("t,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n1,1,2,3,0,0,0,0\n", "p.csv"),
                {"p.csv:3:", "length 0", "unit quaternion was expected"});

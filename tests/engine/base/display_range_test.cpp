@@ -47,7 +47,7 @@ TEST(DisplayRange, OutliersAndFillValuesAreLeftOut) {
       {with(spread(300, 0, 1e-41), 1, 1e20f), "0 .. 9.99967e-42 (1 value of 1e20 beyond)"},
       {with(spread(300, 1e19, 2e19), 1, -1e30f), "1e19 .. 2e19 (1 value of -1e30 beyond)"},
   };
-  for (const Case& c : cases) EXPECT_EQ(range_text(display_range(c.values)), c.text);
+  for (const Case& c : cases) EXPECT_EQ(format_range(display_range(c.values)), c.text);
 }
 
 TEST(DisplayRange, OrdinaryDataKeepTheirRange) {
@@ -84,16 +84,16 @@ TEST(DisplayRange, OrdinaryDataKeepTheirRange) {
                                             spread(300, 0, 1e-42)};
   for (const auto& values : all) {
     const DisplayRange range = display_range(values);
-    EXPECT_FALSE(range.is_cut()) << range_text(range);
+    EXPECT_FALSE(range.has_outliers()) << format_range(range);
     EXPECT_EQ(range.lo, values.empty() ? 0 : *std::ranges::min_element(values));
     EXPECT_EQ(range.hi, values.empty() ? 0 : *std::ranges::max_element(values));
   }
 }
 
 TEST(DisplayRange, ManyEqualValuesMayMeanMissingData) {
-  const std::string note = beyond_note(display_range(with(spread(700, 0, 1), 300, -9999.f)));
+  const std::string note = outlier_note(display_range(with(spread(700, 0, 1), 300, -9999.f)));
   EXPECT_NE(note.find("30 % of the values are exactly -9999: perhaps missing data"), std::string::npos) << note;
-  EXPECT_EQ(beyond_note(display_range(spread(700, 0, 1))), "");
+  EXPECT_EQ(outlier_note(display_range(spread(700, 0, 1))), "");
 }
 
 TEST(Numbers, ReadableAsPeopleWriteThem) {
@@ -111,7 +111,7 @@ TEST(Numbers, ReadableAsPeopleWriteThem) {
                                                   {2.5e-7, "2.5e-7"},
                                                   {1.4e-45f, "1.4013e-45"},
                                                   {HUGE_VAL, "inf"}};
-  for (const auto& [value, text] : cases) EXPECT_EQ(readable(value), text);
+  for (const auto& [value, text] : cases) EXPECT_EQ(format_readable(value), text);
 }
 
 }  // namespace display_range_test

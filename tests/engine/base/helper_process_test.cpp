@@ -26,13 +26,13 @@ std::string script(const TemporaryFolder& folder, const std::string& text) {
 TEST(HelperProcess, HasItsDescriptorsAndNothingElse) {
   TemporaryFolder folder;
   ::setenv("CATENA_SECRET", "told", 1);
-  const Descriptor other(::open("/dev/null", O_RDONLY));  // inherited by whoever does not close it
-  const Descriptor a(::open((folder / "a").c_str(), O_RDWR | O_CREAT, 0600)), b(::open((folder / "b").c_str(), O_RDWR | O_CREAT, 0600));
+  const FileDescriptor other(::open("/dev/null", O_RDONLY));  // inherited by whoever does not close it
+  const FileDescriptor a(::open((folder / "a").c_str(), O_RDWR | O_CREAT, 0600)), b(::open((folder / "b").c_str(), O_RDWR | O_CREAT, 0600));
   const int given[] = {a.get(), b.get()};
   auto helper = HelperProcess::start(script(folder, "ls /proc/self/fd >&3; env >&4; echo gone; exit 5\n"), given);
   ASSERT_TRUE(helper) << helper.error().message;
-  const HelperEnd end = helper->wait(30);
-  EXPECT_EQ(end.how, HelperEnd::How::exited);
+  const ProcessExit end = helper->wait(30);
+  EXPECT_EQ(end.cause, ProcessExit::Cause::exited);
   EXPECT_EQ(end.code, 5);
   // the script's own: 0 to 4, where ls looks, and where the shell keeps its script
   EXPECT_LE(test::read_file(folder / "a").size(), std::string("0\n1\n2\n3\n4\n10\n5\n").size());
@@ -43,12 +43,12 @@ TEST(HelperProcess, SaysHowItEnded) {
   TemporaryFolder folder;
   auto killed = HelperProcess::start(script(folder, "kill -SEGV $$\n"), {});
   ASSERT_TRUE(killed);
-  const HelperEnd end = killed->wait(30);
-  EXPECT_EQ(end.how, HelperEnd::How::killed);
+  const ProcessExit end = killed->wait(30);
+  EXPECT_EQ(end.cause, ProcessExit::Cause::killed);
   EXPECT_EQ(end.code, SIGSEGV);
   auto slow = HelperProcess::start(script(folder, "while :; do :; done\n"), {});
   ASSERT_TRUE(slow);
-  EXPECT_EQ(slow->wait(0.1).how, HelperEnd::How::too_long);
+  EXPECT_EQ(slow->wait(0.1).cause, ProcessExit::Cause::timed_out);
   const auto absent = HelperProcess::start(folder / "absent", {});
   ASSERT_FALSE(absent);
   EXPECT_NE(absent.error().message.find("cannot be started"), std::string::npos);
@@ -56,7 +56,7 @@ TEST(HelperProcess, SaysHowItEnded) {
 
 // before: "(Invalid argument), expected it beside the program", as if it were not there
 TEST(HelperProcess, TooFewDescriptorsAreALimitOfTheMachine) {
-  const Descriptor file(::open("/dev/null", O_RDONLY));
+  const FileDescriptor file(::open("/dev/null", O_RDONLY));
   const int given[] = {file.get()};
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -66,7 +66,7 @@ TEST(HelperProcess, TooFewDescriptorsAreALimitOfTheMachine) {
   const auto started = HelperProcess::start("/bin/true", given);
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   ASSERT_FALSE(started);
-  EXPECT_TRUE(started.error().machine);
+  EXPECT_TRUE(started.error().system_failure);
   EXPECT_EQ(started.error().message,
             "/bin/true: this part of Catena cannot be started: at most 32 files may be open at a time (ulimit -n), expected at least 128");
 }

@@ -91,23 +91,23 @@ TEST(Json, DepthIsLimited) {
 
 TEST(Json, UnknownKeysNameTheKnownOnes) {
   const Node root = object_of("{\"coupling\": {\"damping\": 1,\n \"stifness\": 2}}");
-  const auto outcome = only_keys(*root.find("coupling"), {"stiffness", "damping"});
+  const auto outcome = check_known_keys(*root.find("coupling"), {"stiffness", "damping"});
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().message,
             "scene.json:2: unknown key \"stifness\" in \"coupling\"; known: stiffness, damping (did you mean \"stiffness\"?)");
-  EXPECT_TRUE(only_keys(*root.find("coupling"), {"stifness", "damping"}));
+  EXPECT_TRUE(check_known_keys(*root.find("coupling"), {"stifness", "damping"}));
 }
 
 TEST(Json, MessagesStayOneLine) {
   const Node root = object_of("{\"a\\nb\": 1}");
-  expect_parts(only_keys(root, {"x"}).error().message, {"scene.json:1:", "a?b"});
+  expect_parts(check_known_keys(root, {"x"}).error().message, {"scene.json:1:", "a?b"});
 }
 
 TEST(Json, ReadersCheckKindAndRange) {
   const Node root =
       object_of("{\"n\": -1,\n\"s\": \"x\",\n\"v\": [1, 2],\n\"w\": [1, null, 3], \"ok\": [1, 2, 3], \"rows\": [[1, 2], [3]], \"i\": 2.5}");
   EXPECT_EQ(*require_number(root, "n"), -1);
-  expect_parts(require_number(root, "n", Range::not_negative).error().message, {"scene.json:1:", "\"n\" is -1", ">= 0 was expected"});
+  expect_parts(require_number(root, "n", NumberRange::non_negative).error().message, {"scene.json:1:", "\"n\" is -1", ">= 0 was expected"});
   expect_parts(get_number(root, "s", 0).error().message, {"scene.json:2:", "\"x\"", "finite number was expected"});
   expect_parts(require_number(root, "gone").error().message, {"scene.json:1:", "\"gone\" is missing", "expected"});
   EXPECT_EQ(*get_number(root, "gone", 7), 7);
@@ -149,7 +149,7 @@ TEST_F(JsonMemory, ManyValuesAreAskedForBeforeTheyAreParsed) {
 }
 
 TEST_F(JsonMemory, OrdinaryTextsAreParsedWhateverIsAllowed) {
-  const HeldMemory held(1000000);
+  const MemoryReservation held(1000000);
   std::string text = "{ // a comment, with [brackets], words: and \"strings\"\n";
   for (int i = 0; i < 200; ++i) text += "\"key" + std::to_string(i) + "\": [1, 2.5, {\"name\": \"a, [b] {c}\"}], /* [[[ */\n";
   EXPECT_EQ(error_of(text + "\"last\": null}"), "no error");

@@ -13,43 +13,43 @@ class MemoryLimit : public testing::Test {
 };
 
 TEST_F(MemoryLimit, WhatIsFreeWithoutALimit) {
-  const std::uint64_t allowed = allowed_memory();
+  const std::uint64_t allowed = available_memory();
   EXPECT_GT(allowed, 0u);
-  EXPECT_TRUE(ask_for_memory("it", 1));
-  EXPECT_FALSE(ask_for_memory("it", 1e18));
-  EXPECT_FALSE(ask_for_memory("it", std::numeric_limits<double>::infinity()));
-  EXPECT_FALSE(ask_for_memory("it", std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_TRUE(check_memory_available("it", 1));
+  EXPECT_FALSE(check_memory_available("it", 1e18));
+  EXPECT_FALSE(check_memory_available("it", std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(check_memory_available("it", std::numeric_limits<double>::quiet_NaN()));
 }
 
 TEST_F(MemoryLimit, ALimitLessWhatIsHeld) {
   set_memory_limit(1000000);
-  EXPECT_EQ(allowed_memory(), 1000000u);
+  EXPECT_EQ(available_memory(), 1000000u);
   {
-    HeldMemory held(400000);
-    EXPECT_EQ(allowed_memory(), 600000u);
-    HeldMemory moved(std::move(held));
-    EXPECT_EQ(allowed_memory(), 600000u);
-    moved = HeldMemory(1000001);
-    EXPECT_EQ(allowed_memory(), 0u);
+    MemoryReservation held(400000);
+    EXPECT_EQ(available_memory(), 600000u);
+    MemoryReservation moved(std::move(held));
+    EXPECT_EQ(available_memory(), 600000u);
+    moved = MemoryReservation(1000001);
+    EXPECT_EQ(available_memory(), 0u);
   }
-  EXPECT_EQ(allowed_memory(), 1000000u);
+  EXPECT_EQ(available_memory(), 1000000u);
 }
 
 TEST_F(MemoryLimit, TheSentence) {
   set_memory_limit(2000000);
-  const Outcome outcome = ask_for_memory("a.raw: the grid of 3 x 4 x 5 voxels", 2000001);
+  const Outcome outcome = check_memory_available("a.raw: the grid of 3 x 4 x 5 voxels", 2000001);
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().message,
             "a.raw: the grid of 3 x 4 x 5 voxels needs 3 MB of memory, expected at most 2 MB (--memory MB allows more)");
-  EXPECT_TRUE(ask_for_memory("it", 2000000));
+  EXPECT_TRUE(check_memory_available("it", 2000000));
 }
 
 TEST_F(MemoryLimit, SmallTextsAreNeverRefused) {
   set_memory_limit(1000000);
-  HeldMemory held(1000000);
-  EXPECT_FALSE(ask_for_memory("it", 1000));
-  EXPECT_TRUE(ask_for_text_memory("it", 1000000));
-  EXPECT_FALSE(ask_for_text_memory("it", 1000001));
+  MemoryReservation held(1000000);
+  EXPECT_FALSE(check_memory_available("it", 1000));
+  EXPECT_TRUE(check_text_memory_available("it", 1000000));
+  EXPECT_FALSE(check_text_memory_available("it", 1000001));
 }
 
 }  // namespace memory_limit_test

@@ -28,8 +28,8 @@ class OutputCheck : public testing::Test {
   }
   std::string at(const std::string& name) const { return folder_ / name; }
   bool same(const std::string& a, const std::string& b) const {
-    EXPECT_EQ(same_file(at(a), at(b)), same_file(at(b), at(a)));
-    return same_file(at(a), at(b));
+    EXPECT_EQ(is_same_file(at(a), at(b)), is_same_file(at(b), at(a)));
+    return is_same_file(at(a), at(b));
   }
   test::TemporaryFolder folder_;
 };
@@ -54,12 +54,12 @@ TEST_F(OutputCheck, SoAreNamesOfWhatIsNotThereYet) {
 TEST_F(OutputCheck, DevicesAndPipesAreNobodysOwn) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   EXPECT_FALSE(same("pipe", "pipe"));
-  EXPECT_FALSE(same_file("/dev/null", "/dev/null"));
+  EXPECT_FALSE(is_same_file("/dev/null", "/dev/null"));
   EXPECT_TRUE(check_outputs({{"-o", "/dev/null"}, {"--stats", "/dev/null"}}, {"/dev/null"}));
 }
 
 TEST_F(OutputCheck, SaysInOneLineWhatIsWrong) {
-  const auto why = [&](const std::vector<Output>& outputs) {
+  const auto why = [&](const std::vector<PlannedOutput>& outputs) {
     const Outcome done = check_outputs(outputs, {at("in.csv")});
     return done ? std::string("fine") : done.error().message;
   };

@@ -114,9 +114,9 @@ TEST(OutputFile, FoldersOfEndedProgramsGoWhoeverHasTheirNumberNow) {
   const std::string dead = make(ended_process(), "000000000001", 0), mine = make(::getpid(), "000000000002", 3600),
                     alive = make(::getppid(), "000000000003", 3600), held = make(::getppid(), "000000000004", 3600),
                     young = make(::getppid(), "000000000005", 0);
-  const auto lock = FolderLock::take(held);
+  const auto lock = FolderLock::acquire(held);
   ASSERT_TRUE(lock);
-  remove_stale_parts(folder / "tables");
+  remove_stale_temporaries(folder / "tables");
   for (const std::string& path : {dead, mine, alive}) EXPECT_FALSE(test::exists(path)) << path;
   for (const std::string& path : {held, young}) EXPECT_TRUE(test::exists(path + "/plot0.svg")) << path;
 }
@@ -181,7 +181,7 @@ TEST(OutputFile, AFullDiskLeavesTheOldFile) {
     const rlimit limit{1000, 1000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     const Outcome done = write_to(path, std::string(100000, 'x'));
-    ::_exit(!done && done.error().machine &&
+    ::_exit(!done && done.error().system_failure &&
                     done.error().message == path + ": cannot write: File too large (files may have at most 1000 bytes: ulimit -f)"
                 ? 0
                 : 1);

@@ -22,24 +22,24 @@ std::vector<Vec3> directions() {
 }
 
 TEST(Rotation, RotatesLikeItsMatrix) {
-  const Quat q = rotation_of({0.3, -1.1, 0.7});
+  const Quat q = rotation_from_vector({0.3, -1.1, 0.7});
   const Mat3 m = glm::mat3_cast(q);
   for (const Vec3& v : directions()) expect_near(rotate(q, v), m * v, 2e-15);
-  expect_near(rotate(rotation_of({0, 0, kPi / 2}), {1, 0, 0}), {0, 1, 0}, 1e-15);  // right-handed
+  expect_near(rotate(rotation_from_vector({0, 0, kPi / 2}), {1, 0, 0}), {0, 1, 0}, 1e-15);  // right-handed
 }
 
 TEST(Rotation, LogTakesBackExpFromNothingToHalfATurn) {
   for (const Vec3& axis : directions())
     for (const double angle : {1e-300, 1e-17, 1e-9, 1e-3, 0.5, 1.5, 3.0, kPi - 1e-3, kPi - 1e-9}) {
       const Vec3 v = axis * angle;
-      expect_near(rotation_vector(rotation_of(v)), v, 3e-15 * std::min(1.0, 2 * angle));
-      const Quat q = rotation_of(v);
+      expect_near(rotation_vector(rotation_from_vector(v)), v, 3e-15 * std::min(1.0, 2 * angle));
+      const Quat q = rotation_from_vector(v);
       expect_near(rotation_vector({-q.w, -q.x, -q.y, -q.z}), v, 3e-15 * std::min(1.0, 2 * angle));
     }
   // beyond half a turn: the shorter way back
-  expect_near(rotation_vector(rotation_of({0, 0, kPi + 0.25})), {0, 0, -(kPi - 0.25)}, 3e-15);
-  EXPECT_EQ(rotation_vector(kNoRotation), Vec3(0.0));
-  EXPECT_EQ(rotation_of(Vec3(0.0)), kNoRotation);
+  expect_near(rotation_vector(rotation_from_vector({0, 0, kPi + 0.25})), {0, 0, -(kPi - 0.25)}, 3e-15);
+  EXPECT_EQ(rotation_vector(kIdentityRotation), Vec3(0.0));
+  EXPECT_EQ(rotation_from_vector(Vec3(0.0)), kIdentityRotation);
 }
 
 TEST(Rotation, TheShortestArcTurnsOneOntoTheOther) {
@@ -70,11 +70,11 @@ TEST(Rotation, TheShortestArcIsAsGoodNearNothingAndNearHalfATurn) {
 
 TEST(Rotation, NothingUsableIsNoRotation) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  for (const Quat& q : {Quat(0, 0, 0, 0), Quat(nan, 0, 0, 0), Quat(1, inf, 0, 0)}) EXPECT_EQ(normalised(q), kNoRotation);
-  const Quat tiny = normalised({3e-320, 0, 4e-320, 0}), huge = normalised({3e307, 0, 4e307, 0});
+  for (const Quat& q : {Quat(0, 0, 0, 0), Quat(nan, 0, 0, 0), Quat(1, inf, 0, 0)}) EXPECT_EQ(normalized(q), kIdentityRotation);
+  const Quat tiny = normalized({3e-320, 0, 4e-320, 0}), huge = normalized({3e307, 0, 4e307, 0});
   EXPECT_NEAR(tiny.w, 0.6, 1e-3);  // denormals carry few digits
   EXPECT_NEAR(huge.y, 0.8, 1e-15);
-  EXPECT_EQ(rotation_of({inf, 0, 0}), kNoRotation);
+  EXPECT_EQ(rotation_from_vector({inf, 0, 0}), kIdentityRotation);
 }
 
 }  // namespace rotation_test

@@ -22,7 +22,7 @@ std::uint64_t peak_bytes() {
 }
 
 std::string why_not(const std::string& path, std::uint64_t most = kMaxTextBytes) {
-  const auto text = read_text(path, "a list", most);
+  const auto text = read_text_file(path, "a list", most);
   return text ? "read" : text.error().message;
 }
 
@@ -32,12 +32,12 @@ TEST(ReadText, ReadsRegularFilesAlsoThroughLinks) {
   text[1] = '\0';
   test::write_file(folder / "a", text);
   std::filesystem::create_symlink("a", folder / "link");
-  EXPECT_EQ(read_text(folder / "a", "a list").value(), text);
-  EXPECT_EQ(read_text(folder / "link", "a list").value(), text);
+  EXPECT_EQ(read_text_file(folder / "a", "a list").value(), text);
+  EXPECT_EQ(read_text_file(folder / "link", "a list").value(), text);
   test::write_file(folder / "empty", "");
-  EXPECT_EQ(read_text(folder / "empty", "a list").value(), "");
+  EXPECT_EQ(read_text_file(folder / "empty", "a list").value(), "");
   // a size of 0 is no promise
-  EXPECT_NE(read_text("/proc/self/status", "a list").value().find("Pid:"), std::string::npos);
+  EXPECT_NE(read_text_file("/proc/self/status", "a list").value().find("Pid:"), std::string::npos);
 }
 
 TEST(ReadText, WaitsForNoPipeDeviceSocketOrFolder) {

@@ -1,4 +1,4 @@
-#include "engine/field/analytic.h"
+#include "engine/field/analytic/analytic.h"
 
 #include <gtest/gtest.h>
 
@@ -158,9 +158,9 @@ TEST(AnalyticVectors, ReadAsLineFieldsTheyAreCoherent) {
 TEST(Analytic, SaysWhyAPlaceIsOutside) {
   Cursor c;
   const AnyField fibre = make_analytic("left-ventricle", {1, Vec3(1, 0, 0), "fibre"}).value();
-  EXPECT_EQ(fibre.vector->why_outside(Vec3(1.9, 1.9, 1.9), c), Reason::mask);
-  EXPECT_EQ(fibre.vector->why_outside(Vec3(std::nan("")), c), Reason::not_finite);
-  EXPECT_EQ(vector("circle")->why_outside(Vec3(50.0), c), Reason::none) << "a formula has no box";
+  EXPECT_EQ(fibre.vector->status_outside(Vec3(1.9, 1.9, 1.9), c), SampleStatus::masked);
+  EXPECT_EQ(fibre.vector->status_outside(Vec3(std::nan("")), c), SampleStatus::not_finite);
+  EXPECT_EQ(vector("circle")->status_outside(Vec3(50.0), c), SampleStatus::ok) << "a formula has no box";
 }
 
 TEST(Analytic, NothingBadComesOutOfBadPoints) {
@@ -186,7 +186,7 @@ TEST(Analytic, NamesDomainAndErrors) {
   EXPECT_EQ(analytic_names().size(), 19u);
   EXPECT_TRUE(is_analytic("lamb-oseen"));
   EXPECT_FALSE(is_analytic("Circle"));
-  for (const auto name : analytic_names()) EXPECT_DOUBLE_EQ(make_analytic(name).value().get()->length(), 4);
+  for (const auto name : analytic_names()) EXPECT_DOUBLE_EQ(make_analytic(name).value().get()->domain_length(), 4);
   EXPECT_EQ(analytic_parts("left-ventricle").size(), 3u);
   EXPECT_EQ(analytic_parts("circle"), std::vector<std::string_view>{"circle"});
   EXPECT_FALSE(make_analytic("spere"));

@@ -1,10 +1,10 @@
 /// Masks of cells beside masks of voxels: a cell is valid where both say so, in the grid and in what is made of it.
 #include <gtest/gtest.h>
 
-#include "engine/field/coarsen.h"
-#include "engine/field/level.h"
-#include "engine/field/load.h"
-#include "engine/field/magnitude.h"
+#include "engine/field/derived/box_downsample.h"
+#include "engine/field/derived/magnitude.h"
+#include "engine/io/volume/downsample.h"
+#include "engine/io/volume/load_field.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"
 
@@ -40,7 +40,7 @@ struct Made {
 void expect_cells(const Made& made, const ScalarGrid& grid) {
   EXPECT_TRUE(grid.has_cell_mask());
   std::vector<std::uint8_t> found(made.values.size());
-  grid.read_cell_valid({0, 0, 0}, made.n, found);
+  grid.read_cell_validity({0, 0, 0}, made.n, found);
   int wrong = 0;
   for (int z = 0; z < made.n.z; ++z)
     for (int y = 0; y < made.n.y; ++y)
@@ -66,7 +66,7 @@ TEST(CellMask, AVdbKeepsIt) {
   const auto again = load(request);
   ASSERT_TRUE(again) << again.error().message;
   expect_cells(made, *again->scalar->grid());
-  request.valid_grid = std::nullopt;
+  request.mask_grid = std::nullopt;
   EXPECT_FALSE(load(request)->scalar->grid()->has_mask());
 }
 
@@ -74,7 +74,7 @@ TEST(CellMask, LengthsOfVectorsHaveIt) {
   const Made made;
   std::vector<float> xyz;
   for (const float v : made.values) xyz.insert(xyz.end(), {v, 0, 0});
-  const auto lengths = magnitude_grid(*make_vector_grid("g", {}, made.n, xyz, made.valid, made.cells), "lengths");
+  const auto lengths = make_magnitude_grid(*make_vector_grid("g", {}, made.n, xyz, made.valid, made.cells), "lengths");
   ASSERT_TRUE(lengths) << lengths.error().message;
   expect_cells(made, **lengths);
 }
@@ -91,9 +91,9 @@ TEST(CellMask, CoarseCellsAreInvalidWhereHalfOfTheFineOnesAre) {
   }
   AnyField field;
   field.scalar = make_scalar_grid("g", {}, n, values, valid, cells);
-  const auto level = at_level("g", field, 1, false);
+  const auto level = downsample_to_level("g", field, 1, false);
   ASSERT_TRUE(level) << level.error().message;
-  const auto coarse = coarsen(*field.scalar->grid(), 2);
+  const auto coarse = box_downsample(*field.scalar->grid(), 2);
   ASSERT_TRUE(coarse) << coarse.error().message;
   for (const ScalarGrid* grid : {level->scalar->grid(), coarse->grid.get()}) {
     Cursor cursor;

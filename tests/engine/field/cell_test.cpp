@@ -11,7 +11,7 @@ using test::Random;
 
 ScalarCell random_cell(Random& random) {
   ScalarCell c;
-  for (double& v : c.corner) v = static_cast<float>(random.between(-4, 4));
+  for (double& v : c.corner) v = static_cast<float>(random.uniform(-4, 4));
   return c;
 }
 
@@ -41,7 +41,7 @@ TEST(ScalarCell, MixedSecondDerivativesAreDifferencesOfTheGradient) {
   for (int trial = 0; trial < 200; ++trial) {
     const ScalarCell c = random_cell(random);
     const Vec3 f = random.in_box(Vec3(0.0), Vec3(1.0));
-    const Vec3 m = c.mixed_second(f);
+    const Vec3 m = c.mixed_second_derivatives(f);
     const auto difference = [&](int along, int of) {
       Vec3 lo = f, hi = f;
       lo[along] = 0, hi[along] = 1;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/field/analytic.h"
+#include "engine/field/analytic/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
@@ -100,7 +100,7 @@ class Reference {
 };
 
 std::shared_ptr<const ScalarGrid> smooth(const std::shared_ptr<const ScalarGrid>& grid) {
-  auto made = grid->cubic();
+  auto made = grid->as_cubic();
   EXPECT_TRUE(made) << (made ? "" : made.error().message);
   return made ? *made : nullptr;
 }
@@ -117,7 +117,7 @@ TEST(CubicGrid, AgreesWithTheDefinitionEverywhereWithHolesAndUnderEveryMapping) 
   Block block = test::random_block({19, 11, 26}, 5);
   Random random(6);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
-  for (auto& v : valid) v = random.between(0, 1) < 0.96;
+  for (auto& v : valid) v = random.uniform(0, 1) < 0.96;
   block.values[1234] = std::nanf("");
   for (const bool masked : {false, true}) {
     const std::vector<std::uint8_t> mask = masked ? valid : std::vector<std::uint8_t>{};
@@ -131,7 +131,7 @@ TEST(CubicGrid, AgreesWithTheDefinitionEverywhereWithHolesAndUnderEveryMapping) 
         const Vec3 index = random.in_box(Vec3(-0.5), Vec3(18.5, 10.5, 25.5)), world = mapping.world_from_index(index);
         const ScalarSample s = grid->sample(world, cursor);
         ASSERT_EQ(s.inside, linear->sample(world, of_linear).inside) << "the domain is that of linear";
-        ASSERT_EQ(grid->why_outside(world, cursor), linear->why_outside(world, of_linear));
+        ASSERT_EQ(grid->status_outside(world, cursor), linear->status_outside(world, of_linear));
         if (!s.inside) continue;
         ++inside;
         ASSERT_NEAR(s.value, static_cast<double>(reference.at(mapping.index_from_world(world))), 1e-11);
@@ -144,7 +144,7 @@ TEST(CubicGrid, AgreesWithTheDefinitionEverywhereWithHolesAndUnderEveryMapping) 
 TEST(CubicGrid, VectorsAreThreeNumbers) {
   const Block block = test::random_block({9, 13, 8}, 8);
   const std::vector<float> xyz = vectors_of(block);
-  const auto grid = *make_vector_grid("v", {}, block.size, xyz)->cubic();
+  const auto grid = *make_vector_grid("v", {}, block.size, xyz)->as_cubic();
   Cursor cursor, other;
   Random random(3);
   for (std::size_t c = 0; c < 3; ++c) {

@@ -5,18 +5,18 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/field/load.h"
+#include "engine/io/volume/load_field.h"
 
 namespace catena::field::test {
 
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed * 2654435769u + 1) {}
-  double between(double lo, double hi) {
+  double uniform(double lo, double hi) {
     state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
     return lo + (hi - lo) * (static_cast<double>(state_ >> 11) * 0x1p-53);
   }
-  Vec3 in_box(const Vec3& lo, const Vec3& hi) { return {between(lo.x, hi.x), between(lo.y, hi.y), between(lo.z, hi.z)}; }
+  Vec3 in_box(const Vec3& lo, const Vec3& hi) { return {uniform(lo.x, hi.x), uniform(lo.y, hi.y), uniform(lo.z, hi.z)}; }
 
  private:
   std::uint64_t state_;
@@ -50,7 +50,7 @@ inline Block random_block(const Index3& size, std::uint64_t seed) {
   Random random(seed);
   Block b{size, {}};
   b.values.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
-  for (float& v : b.values) v = static_cast<float>(random.between(-3, 5));
+  for (float& v : b.values) v = static_cast<float>(random.uniform(-3, 5));
   return b;
 }
 

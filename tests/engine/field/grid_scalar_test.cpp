@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "engine/base/memory_limit.h"
-#include "engine/field/analytic.h"
+#include "engine/field/analytic/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
@@ -45,7 +45,7 @@ TEST(ScalarGrid, GradientIsACovector) {
       // well within a cell, so that the differences do not leave it
       const Vec3 f = random.in_box(Vec3(0.1), Vec3(0.9));
       const Vec3 index =
-          Vec3(static_cast<int>(random.between(0, 8)), static_cast<int>(random.between(0, 8)), static_cast<int>(random.between(0, 8))) + f;
+          Vec3(static_cast<int>(random.uniform(0, 8)), static_cast<int>(random.uniform(0, 8)), static_cast<int>(random.uniform(0, 8))) + f;
       const Vec3 p = mapping.world_from_index(index);
       const ScalarSample s = grid->sample(p, cursor);
       constexpr double h = 1e-4;
@@ -140,7 +140,7 @@ TEST(ScalarGrid, SamplingAllocatesNothing) {
   const Block block = test::random_block({40, 40, 40}, 14);
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
   Random random(15);
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   Cursor cursor;
   for (int trial = 0; trial < 500; ++trial) grid->sample(random.in_box(Vec3(-5.0), Vec3(45.0)), cursor);
   EXPECT_EQ(guard.count(), 0u);
@@ -151,8 +151,8 @@ TEST(ScalarGrid, CellsAreClampedAndHoldTheCorners) {
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);
   Cursor cursor;
   EXPECT_EQ(grid->cell({100, -5, 3}, cursor).base, (Index3{7, 0, 3}));
-  EXPECT_EQ(grid->base_of(Vec3(8.0, 9.0, 10.0)), (Index3{7, 8, 9}));
-  EXPECT_EQ(grid->base_of(Vec3(1e300, -1e300, std::nan(""))), (Index3{7, 0, 0}));
+  EXPECT_EQ(grid->cell_base(Vec3(8.0, 9.0, 10.0)), (Index3{7, 8, 9}));
+  EXPECT_EQ(grid->cell_base(Vec3(1e300, -1e300, std::nan(""))), (Index3{7, 0, 0}));
   for (int x = 0; x < 8; ++x) {
     const ScalarCell c = grid->cell({x, 6, 7}, cursor);
     ASSERT_TRUE(c.valid);
@@ -170,19 +170,19 @@ TEST(ScalarGrid, OneLayerHasNoDerivativeAcross) {
   EXPECT_NEAR(s.value, 0.5 * (0.75 * block.at(2, 3, 0) + 0.25 * block.at(3, 3, 0) + 0.75 * block.at(2, 4, 0) + 0.25 * block.at(3, 4, 0)),
               1e-6);
   EXPECT_FALSE(grid->sample(Vec3(2.25, 3.5, 0.1), cursor).inside);
-  EXPECT_EQ(grid->base_of(Vec3(2, 3, 5)).z, 0);
+  EXPECT_EQ(grid->cell_base(Vec3(2, 3, 5)).z, 0);
 }
 
 TEST(ScalarGridMask, ACellCountsOnlyWithEightValidCorners) {
   const Block block = test::random_block({21, 17, 13}, 18);
   Random random(19);
   std::vector<std::uint8_t> valid(block.values.size());
-  for (auto& v : valid) v = random.between(0, 1) < 0.93;
+  for (auto& v : valid) v = random.uniform(0, 1) < 0.93;
   const auto grid = make_scalar_grid("g", {}, block.size, block.values, valid);
   EXPECT_TRUE(grid->has_mask());
   const auto is_valid = [&](int x, int y, int z) { return valid[(static_cast<std::size_t>(z) * 17 + y) * 21 + x] != 0; };
   std::vector<std::uint8_t> cells(valid.size());
-  grid->read_cell_valid({0, 0, 0}, block.size, cells);
+  grid->read_cell_validity({0, 0, 0}, block.size, cells);
   Cursor cursor;
   int counted = 0;
   std::size_t n = 0;
@@ -236,7 +236,7 @@ TEST(ScalarGrid, NonFiniteVoxelsAreCountedAndTheirCellsInvalid) {
   EXPECT_TRUE(grid->cell({2, 2, 2}, cursor).valid);
   EXPECT_TRUE(grid->has_mask());
   std::vector<std::uint8_t> cells(1000);
-  grid->read_cell_valid({0, 0, 0}, block.size, cells);
+  grid->read_cell_validity({0, 0, 0}, block.size, cells);
   EXPECT_EQ(std::count(cells.begin(), cells.end(), 0), 1000 - 729 + 16);
 }
 
@@ -270,10 +270,10 @@ TEST(ScalarGrid, RunsOfOneValueAreConstantBlocks) {
   values[0] = 1;
   const auto grid = make_scalar_grid("g", {}, {72, 72, 72}, values);
   float value = 0;
-  EXPECT_FALSE(grid->constant_block({0, 0, 0}, value));
-  EXPECT_TRUE(grid->constant_block({8, 16, 0}, value));
+  EXPECT_FALSE(grid->is_constant_block({0, 0, 0}, value));
+  EXPECT_TRUE(grid->is_constant_block({8, 16, 0}, value));
   EXPECT_EQ(value, 2.5f);
-  EXPECT_TRUE(grid->constant_block({80, 0, 0}, value));
+  EXPECT_TRUE(grid->is_constant_block({80, 0, 0}, value));
   EXPECT_EQ(value, grid->background());
   EXPECT_EQ(grid->stats().active_voxels, 72u * 72 * 72);
   EXPECT_LT(grid->bytes(), 4u * 72 * 72 * 72 / 3);
@@ -283,8 +283,8 @@ TEST(Field, TheLengthIsTheLongestEdgeAndVersionsDiffer) {
   const std::vector<float> values(3 * 5 * 4, 1.f);
   const auto a = make_scalar_grid("g", Mapping::from_linear(Mat3(3, 0, 0, 0, 1, 0, 0, 0, 2), Vec3(0.0)), {3, 5, 4}, values);
   const auto b = make_scalar_grid("g", {}, {3, 5, 4}, values);
-  EXPECT_DOUBLE_EQ(a->length(), 6);
-  EXPECT_DOUBLE_EQ(b->length(), 4);
+  EXPECT_DOUBLE_EQ(a->domain_length(), 6);
+  EXPECT_DOUBLE_EQ(b->domain_length(), 4);
   EXPECT_NE(a->version(), b->version());
 }
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "engine/field/analytic.h"
+#include "engine/field/analytic/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
@@ -52,7 +52,7 @@ TEST(VectorGrid, LineFieldsSurviveSignFlips) {
   std::vector<float> xyz;
   Random random(6);
   for (int n = 0; n < 5 * 5 * 5; ++n) {
-    const double sign = random.between(-1, 1) < 0 ? -1 : 1;
+    const double sign = random.uniform(-1, 1) < 0 ? -1 : 1;
     for (int a = 0; a < 3; ++a) xyz.push_back(static_cast<float>(sign * unit[a]));
   }
   const auto grid = make_vector_grid("fibre", {}, {5, 5, 5}, xyz);
@@ -88,11 +88,11 @@ TEST(VectorGrid, SaysWhyAPlaceIsOutside) {
   xyz[0] = std::nanf("");
   const auto grid = make_vector_grid("v", {}, {4, 4, 4}, xyz, valid);
   Cursor cursor;
-  EXPECT_EQ(grid->why_outside(Vec3(1.5), cursor), Reason::none);
-  EXPECT_EQ(grid->why_outside(Vec3(2.5), cursor), Reason::mask);
-  EXPECT_EQ(grid->why_outside(Vec3(0.5), cursor), Reason::not_finite);
-  EXPECT_EQ(grid->why_outside(Vec3(1.5, 1.5, 3.1), cursor), Reason::box);
-  EXPECT_EQ(grid->why_outside(Vec3(std::nan("")), cursor), Reason::not_finite);
+  EXPECT_EQ(grid->status_outside(Vec3(1.5), cursor), SampleStatus::ok);
+  EXPECT_EQ(grid->status_outside(Vec3(2.5), cursor), SampleStatus::masked);
+  EXPECT_EQ(grid->status_outside(Vec3(0.5), cursor), SampleStatus::not_finite);
+  EXPECT_EQ(grid->status_outside(Vec3(1.5, 1.5, 3.1), cursor), SampleStatus::outside_box);
+  EXPECT_EQ(grid->status_outside(Vec3(std::nan("")), cursor), SampleStatus::not_finite);
 }
 
 TEST(VectorGrid, FarAndNonFinitePointsAreOutside) {

@@ -1,12 +1,12 @@
 /// Label maps: the nearest voxel's value, never a mix; surfaces of labels where they belong.
-#include "engine/field/label_surface.h"
+#include "engine/field/derived/label_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "engine/field/coarsen.h"
+#include "engine/field/derived/box_downsample.h"
 #include "tests/fuzz/mutate.h"
 
 namespace catena::field {
@@ -24,7 +24,7 @@ std::shared_ptr<const ScalarGrid> map_of(const Index3& n, const Label& label, co
   for (int z = 0; z < n.z; ++z)
     for (int y = 0; y < n.y; ++y)
       for (int x = 0; x < n.x; ++x) values.push_back(static_cast<float>(label(x, y, z)));
-  return make_scalar_grid("map", mapping, n, values)->interpolated(Interpolation::nearest);
+  return make_scalar_grid("map", mapping, n, values)->with_interpolation(Interpolation::nearest);
 }
 
 /// Neighbours whose mean is a label, too, and labels far apart.
@@ -51,7 +51,7 @@ TEST(Nearest, ARandomPlaceHasTheValueOfTheNearestVoxelCentreAndNoGradient) {
 
 TEST(Nearest, TheSameVoxelsAreReadInBothWays) {
   const auto nearest = map_of({4, 4, 4}, [](int x, int, int) { return x; }, {});
-  const auto linear = nearest->interpolated(Interpolation::linear);
+  const auto linear = nearest->with_interpolation(Interpolation::linear);
   Cursor a, b;
   EXPECT_EQ(nearest->sample({1.4, 1, 1}, a).value, 1);
   EXPECT_EQ(nearest->sample({1.5, 1, 1}, a).value, 2);
@@ -62,14 +62,14 @@ TEST(Nearest, TheSameVoxelsAreReadInBothWays) {
 TEST(Nearest, AtLessResolutionNoLabelIsInvented) {
   const auto map = map_of({37, 40, 33}, scattered);
   std::set<double> labels;
-  const auto fine = label_counts(*map);
+  const auto fine = count_labels(*map);
   ASSERT_TRUE(fine);
   for (const LabelCount& count : *fine) labels.insert(count.value);
   for (const int factor : {2, 4, 8}) {
-    const auto coarse = coarsen(*map, factor);
+    const auto coarse = box_downsample(*map, factor);
     ASSERT_TRUE(coarse) << coarse.error().message;
     EXPECT_EQ(coarse->grid->interpolation(), Interpolation::nearest);
-    const auto counts = label_counts(*coarse->grid);
+    const auto counts = count_labels(*coarse->grid);
     ASSERT_TRUE(counts);
     for (const LabelCount& count : *counts) EXPECT_TRUE(labels.contains(count.value)) << count.value;
   }
@@ -77,7 +77,7 @@ TEST(Nearest, AtLessResolutionNoLabelIsInvented) {
 
 TEST(LabelCounts, EveryValueItsVoxelsAndItsBox) {
   const auto map = map_of({20, 30, 40}, [](int x, int y, int z) { return x == 3 && y >= 4 && y <= 6 && z == 25 ? 9 : 0; });
-  const auto counts = label_counts(*map);
+  const auto counts = count_labels(*map);
   ASSERT_TRUE(counts && counts->size() == 2);
   EXPECT_EQ(counts->front().voxels, 20 * 30 * 40 - 3u);
   const LabelCount& nine = counts->back();
@@ -85,13 +85,13 @@ TEST(LabelCounts, EveryValueItsVoxelsAndItsBox) {
   EXPECT_EQ(nine.voxels, 3u);
   EXPECT_EQ(nine.lo, (Index3{3, 4, 25}));
   EXPECT_EQ(nine.hi, (Index3{3, 6, 25}));
-  EXPECT_FALSE(label_counts(*map_of({4, 4, 4}, [](int x, int, int) { return 0.5 * x; }))) << "no whole numbers";
+  EXPECT_FALSE(count_labels(*map_of({4, 4, 4}, [](int x, int, int) { return 0.5 * x; }))) << "no whole numbers";
 }
 
 /// Two labels that meet at x = 5.5: halfway between their voxel centres, wherever the map lies in the world.
 TEST(LabelSurface, LiesHalfwayBetweenTheVoxelCentresOfTwoLabels) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
-  const auto surface = label_surface(*map, *label_counts(*map), {17}, 0, "left");
+  const auto surface = make_label_surface(*map, *count_labels(*map), {17}, 0, "left");
   ASSERT_TRUE(surface) << surface.error().message;
   Cursor cursor;
   for (const double y : {1.0, 4.3, 7.9}) {
@@ -116,7 +116,7 @@ TEST(LabelSurface, LiesAtTheSamePlaceOfTheWorldAsAnotherGridSaysIt) {
     for (int y = 0; y < 24; ++y)
       for (int x = 0; x < 24; ++x) distances.push_back(static_cast<float>(dot(normal, other.world_from_index(Vec3(x, y, z)) - on)));
   const auto distance = make_scalar_grid("distance", other, {24, 24, 24}, distances);
-  const auto surface = label_surface(*map, *label_counts(*map), {17}, 0, "s");
+  const auto surface = make_label_surface(*map, *count_labels(*map), {17}, 0, "s");
   ASSERT_TRUE(surface);
   Cursor cursor, cursor2;
   for (const double y : {2.0, 4.7, 6.1}) {
@@ -133,7 +133,7 @@ TEST(LabelSurface, LiesAtTheSamePlaceOfTheWorldAsAnotherGridSaysIt) {
 
 TEST(LabelSurface, OfSeveralLabelsHasNoWallBetweenThemAndIsClosedWhereTheMapEnds) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
-  const auto both = label_surface(*map, *label_counts(*map), {17, 18}, 0, "both");
+  const auto both = make_label_surface(*map, *count_labels(*map), {17, 18}, 0, "both");
   ASSERT_TRUE(both);
   Cursor cursor;
   EXPECT_EQ((*both)->sample(map->mapping().world_from_index({5.5, 5, 5}), cursor).value, 1);
@@ -149,8 +149,8 @@ TEST(LabelSurface, SmoothedLeavesEveryVoxelCentreOnItsSide) {
     return (r < 9.3 && !hole) || sheet || line || dot ? 4 : 0;
   };
   const auto map = map_of({32, 32, 32}, label);
-  for (const double smooth : {0.4, kUsualSmooth, kMostSmooth}) {
-    const auto surface = label_surface(*map, *label_counts(*map), {4}, smooth, "s");
+  for (const double smooth : {0.4, kDefaultLabelSmoothing, kMaxLabelSmoothing}) {
+    const auto surface = make_label_surface(*map, *count_labels(*map), {4}, smooth, "s");
     ASSERT_TRUE(surface);
     Cursor cursor;
     for (int z = -1; z < 33; ++z)
@@ -169,7 +169,7 @@ TEST(LabelSurface, SmoothedIsNearerToABallThanItsVoxels) {
   const auto map = map_of({31, 31, 31}, ball, {});
   double worst[2] = {0, 0};
   for (const int k : {0, 1}) {
-    const auto surface = label_surface(*map, *label_counts(*map), {1}, k == 0 ? 0 : kUsualSmooth, "ball");
+    const auto surface = make_label_surface(*map, *count_labels(*map), {1}, k == 0 ? 0 : kDefaultLabelSmoothing, "ball");
     ASSERT_TRUE(surface);
     Cursor cursor;
     catena::test::Random random{5};
@@ -194,7 +194,7 @@ TEST(LabelSurface, SmoothedIsNearerToABallThanItsVoxels) {
 TEST(LabelSurface, IsSmallForASmallLabel) {
   const auto map =
       map_of({160, 160, 160}, [](int x, int y, int z) { return x > 70 && x < 75 && y > 70 && y < 75 && z > 70 && z < 75 ? 2 : 1; });
-  const auto surface = label_surface(*map, *label_counts(*map), {2}, kUsualSmooth, "s");
+  const auto surface = make_label_surface(*map, *count_labels(*map), {2}, kDefaultLabelSmoothing, "s");
   ASSERT_TRUE(surface);
   EXPECT_LT((*surface)->bytes(), 1u << 19) << "the map has 16 MB";
 }

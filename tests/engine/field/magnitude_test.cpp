@@ -1,24 +1,24 @@
-#include "engine/field/magnitude.h"
+#include "engine/field/derived/magnitude.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "engine/base/memory_limit.h"
-#include "engine/field/analytic.h"
+#include "engine/field/analytic/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
 namespace magnitude_test {
 
 TEST(Magnitude, OfFormulasOverTheirBox) {
-  EXPECT_DOUBLE_EQ(largest_magnitude(*make_analytic("circle")->vector), std::sqrt(8.0));
-  EXPECT_DOUBLE_EQ(largest_magnitude(*make_analytic("uniform", {.scale = 3, .part = {}})->vector), 3);
-  EXPECT_DOUBLE_EQ(largest_gradient(*make_analytic("linear")->scalar), std::sqrt(3.0));
-  EXPECT_EQ(largest_gradient(*make_analytic("constant")->scalar), 0);
+  EXPECT_DOUBLE_EQ(compute_max_magnitude(*make_analytic("circle")->vector), std::sqrt(8.0));
+  EXPECT_DOUBLE_EQ(compute_max_magnitude(*make_analytic("uniform", {.scale = 3, .part = {}})->vector), 3);
+  EXPECT_DOUBLE_EQ(compute_max_gradient(*make_analytic("linear")->scalar), std::sqrt(3.0));
+  EXPECT_EQ(compute_max_gradient(*make_analytic("constant")->scalar), 0);
   for (const double scale : {1e-300, 1e300}) {
-    EXPECT_NEAR(largest_magnitude(*make_analytic("circle", {.scale = scale, .part = {}})->vector) / scale, std::sqrt(8.0), 1e-14);
-    EXPECT_NEAR(largest_gradient(*make_analytic("linear", {.scale = scale, .part = {}})->scalar) / scale, std::sqrt(3.0), 1e-14);
+    EXPECT_NEAR(compute_max_magnitude(*make_analytic("circle", {.scale = scale, .part = {}})->vector) / scale, std::sqrt(8.0), 1e-14);
+    EXPECT_NEAR(compute_max_gradient(*make_analytic("linear", {.scale = scale, .part = {}})->scalar) / scale, std::sqrt(3.0), 1e-14);
   }
 }
 
@@ -38,9 +38,9 @@ TEST(Magnitude, OfGridsIsThatOfTheirCells) {
             e[a] = 0.25;
             g[a] = 2 * (block.trilinear(c + e) - block.trilinear(c - e));
           }
-          truth = std::max(truth, norm(mapping.world_gradient(g)));
+          truth = std::max(truth, norm(mapping.world_from_index_gradient(g)));
         }
-    EXPECT_NEAR(largest_gradient(*grid), truth, 1e-5 * truth);
+    EXPECT_NEAR(compute_max_gradient(*grid), truth, 1e-5 * truth);
   }
 }
 
@@ -48,20 +48,20 @@ TEST(Magnitude, SkipsWhatIsNotFinite) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> values{0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9};
   const auto grid = make_scalar_grid("g", Mapping{}, {6, 2, 2}, values);
-  EXPECT_DOUBLE_EQ(largest_gradient(*grid), 5);
+  EXPECT_DOUBLE_EQ(compute_max_gradient(*grid), 5);
   std::vector<float> xyz;
   for (const float v : values) xyz.insert(xyz.end(), {v, 0, 0});
-  EXPECT_DOUBLE_EQ(largest_magnitude(*make_vector_grid("v", Mapping{}, {6, 2, 2}, xyz)), 9);
+  EXPECT_DOUBLE_EQ(compute_max_magnitude(*make_vector_grid("v", Mapping{}, {6, 2, 2}, xyz)), 9);
 }
 
 TEST(Magnitude, OfAFlatGridIsZero) {
   const std::vector<float> values(27, 4.0F);
-  EXPECT_EQ(largest_gradient(*make_scalar_grid("g", Mapping{}, {3, 3, 3}, values)), 0);
+  EXPECT_EQ(compute_max_gradient(*make_scalar_grid("g", Mapping{}, {3, 3, 3}, values)), 0);
 }
 
 TEST(Magnitude, AsAGridIsTheLengthAtEachVoxel) {
   const std::vector<float> xyz{3, 4, 0, 0, 0, 2, 1, 2, 2, 0, -5, 12, 0, 0, 0, 6, 8, 0, 1, 0, 0, 0, 1, 0};
-  const auto made = magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "it");
+  const auto made = make_magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "it");
   ASSERT_TRUE(made) << made.error().message;
   std::vector<float> values(8);
   (*made)->read_block({0, 0, 0}, {2, 2, 2}, values);
@@ -71,7 +71,7 @@ TEST(Magnitude, AsAGridIsTheLengthAtEachVoxel) {
 // before: a bug was said, and the program aborted
 TEST(Magnitude, BeyondAllFloatsIsAnError) {
   const std::vector<float> xyz(24, 3e38F);
-  const auto made = magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "the magnitude of \"v\"");
+  const auto made = make_magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "the magnitude of \"v\"");
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().message,
             "the magnitude of \"v\" has no finite value in any active voxel; magnitudes that fit into 32-bit floats were expected");
@@ -80,7 +80,7 @@ TEST(Magnitude, BeyondAllFloatsIsAnError) {
 TEST(Magnitude, AsAGridAsksForItsMemory) {
   const auto grid = make_vector_grid("v", Mapping{}, {64, 64, 64}, std::vector<float>(3 * 64 * 64 * 64, 1.0F));
   set_memory_limit(900000);
-  const auto made = magnitude_grid(*grid, "it");
+  const auto made = make_magnitude_grid(*grid, "it");
   set_memory_limit(std::nullopt);
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().message.find("it needs 2 MB of memory, expected at most 0 MB"), std::string::npos) << made.error().message;

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "engine/base/memory_limit.h"
-#include "engine/field/analytic.h"
-#include "engine/field/coarsen.h"
-#include "engine/field/load.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/field/derived/box_downsample.h"
+#include "engine/io/volume/load_field.h"
 #include "tests/engine/field/field_helpers.h"
 #include "tests/support/support.h"
 
@@ -76,13 +76,13 @@ TEST_F(Memory, AFieldOnTooManyNodes) {
 /// What is loaded counts, and counts no more when it goes.
 TEST_F(Memory, WhatIsHeldCounts) {
   const test::Block block = test::random_block({128, 128, 64}, 1);
-  const std::uint64_t before = allowed_memory();
+  const std::uint64_t before = available_memory();
   {
     const auto grid = make_scalar_grid("g", {}, block.size, block.values);
-    EXPECT_LE(allowed_memory() + grid->bytes(), before);
+    EXPECT_LE(available_memory() + grid->bytes(), before);
     EXPECT_GE(grid->bytes(), block.values.size() * sizeof(float));
   }
-  EXPECT_EQ(allowed_memory(), before);
+  EXPECT_EQ(available_memory(), before);
 }
 
 }  // namespace memory_test

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "engine/field/load.h"
+#include "engine/io/volume/load_field.h"
 #include "tests/support/support.h"
 
 namespace catena::field {
@@ -36,7 +36,7 @@ TEST(RealData, Combustor) {
   const auto velocity = load_grid(path, "velocity").vector;
   EXPECT_NEAR(velocity->grid()->stats().max, 1519, 1);
   EXPECT_TRUE(velocity->grid()->has_mask());
-  EXPECT_NEAR(velocity->mapping().smallest_edge(), 0.18, 1e-3);
+  EXPECT_NEAR(velocity->mapping().min_voxel_edge(), 0.18, 1e-3);
   Cursor cursor;
   EXPECT_TRUE(velocity->sample(Vec3(1.6, -0.57, 27.09), cursor).inside);
 }
@@ -91,7 +91,7 @@ TEST(RealData, FibresHaveTheirHelixAngle) {
   CATENA_NEED(path, "ideal_lv_fibres.vdb");
   const auto fibre = load_grid(path, "fibre").vector;
   const auto depth = load_grid(path, "transmural").scalar;
-  const auto info = describe(path);
+  const auto info = describe_grids(path);
   ASSERT_TRUE(info);
   EXPECT_EQ(info->size(), 4u);
   Cursor cf, cd;
@@ -102,7 +102,7 @@ TEST(RealData, FibresHaveTheirHelixAngle) {
   for (int x = 0; x < 96; x += 3)
     for (int y = 0; y < 96; y += 3) {
       const Vec3 p = fibre->mapping().world_from_index(Vec3(x, y, 0.5 * (fibre->index_box().lo.z + fibre->index_box().hi.z)));
-      const VectorCell cell = grid.cell(grid.base_of(fibre->mapping().index_from_world(p)), cf);
+      const VectorCell cell = grid.cell(grid.cell_base(fibre->mapping().index_from_world(p)), cf);
       if (!cell.valid) continue;
       const Vec3 around = direction(Vec3(-(p.y - centre.y), p.x - centre.x, 0));
       const LineSample f = fibre->sample_line(p, cf);

@@ -3,7 +3,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/base/random.h"
-#include "engine/field/analytic.h"
+#include "engine/field/analytic/analytic.h"
 
 namespace vortices_test {
 
@@ -58,7 +58,7 @@ TEST(Vortices, FollowTheSeedAndTheCentre) {
   const Vec3 p(0.25, 0.5, -0.125), center(1, -2, 0.5);
   EXPECT_NE(at(*vortices(1, 3), p), at(*vortices(2, 3), p));
   EXPECT_EQ(at(*vortices(1, 3, center), p + center), at(*vortices(1, 3), p));
-  EXPECT_EQ(vortices(1, 3, center)->world_bounds().centre(), center);
+  EXPECT_EQ(vortices(1, 3, center)->world_bounds().center(), center);
   AnalyticParameters parameters;
   parameters.dimensions = 4;
   EXPECT_FALSE(make_analytic("vortices", parameters));

@@ -36,28 +36,28 @@ TEST(Annotations, EveryKeyIsRead) {
   const Annotations& all = scene->annotations;
   EXPECT_EQ(all.title, "A field");
   ASSERT_EQ(all.scalar_bars.size(), 4u);
-  EXPECT_TRUE(scene->world.has<Volume>(all.scalar_bars[0].shown));
+  EXPECT_TRUE(scene->entities.has<Volume>(all.scalar_bars[0].target));
   EXPECT_EQ(all.scalar_bars[0].title, "rho");
-  EXPECT_EQ(all.scalar_bars[0].side, PictureSide::left);
+  EXPECT_EQ(all.scalar_bars[0].side, ImageSide::left);
   EXPECT_EQ(all.scalar_bars[0].ticks, 9);
   EXPECT_EQ(all.scalar_bars[0].format, "%.2f kg");
-  EXPECT_TRUE(scene->world.has<StreamlineSet>(all.scalar_bars[1].shown));
-  EXPECT_EQ(all.scalar_bars[1].side, PictureSide::bottom);
+  EXPECT_TRUE(scene->entities.has<StreamlineSet>(all.scalar_bars[1].target));
+  EXPECT_EQ(all.scalar_bars[1].side, ImageSide::bottom);
   EXPECT_FALSE(all.scalar_bars[1].title);
-  EXPECT_EQ(all.scalar_bars[2].shown, all.scalar_bars[1].shown) << "the set that has colours";
-  EXPECT_EQ(all.scalar_bars[3].shown, all.scalar_bars[0].shown);
+  EXPECT_EQ(all.scalar_bars[2].target, all.scalar_bars[1].target) << "the set that has colours";
+  EXPECT_EQ(all.scalar_bars[3].target, all.scalar_bars[0].target);
   EXPECT_EQ(all.scalar_bars[3].title, "") << "no title, on purpose";
   ASSERT_EQ(all.labels.size(), 2u);
-  EXPECT_EQ(all.labels[0].at, Vec3(1, 2, 3));
+  EXPECT_EQ(all.labels[0].position, Vec3(1, 2, 3));
   EXPECT_EQ(all.labels[0].color->g, 0.5f);
   EXPECT_EQ(all.labels[0].size_pt, 20);
-  EXPECT_FALSE(all.labels[0].dot);
-  EXPECT_TRUE(all.labels[0].hidden_behind);
+  EXPECT_FALSE(all.labels[0].show_dot);
+  EXPECT_TRUE(all.labels[0].hide_when_occluded);
   EXPECT_FALSE(all.labels[1].color);
   ASSERT_TRUE(all.orientation_marker);
-  EXPECT_EQ(all.orientation_marker->corner, PictureCorner::top_right);
+  EXPECT_EQ(all.orientation_marker->corner, ImageCorner::top_right);
   EXPECT_EQ(all.orientation_marker->names[2], "S");
-  EXPECT_TRUE(all.status);
+  EXPECT_TRUE(all.show_status);
   EXPECT_EQ(all.font, "Liberation Sans");
   EXPECT_EQ(all.scale, 1.5);
   EXPECT_EQ(all.color->b, 0.0f);
@@ -67,11 +67,11 @@ TEST(Annotations, NothingIsWrittenUnlessAsked) {
   const auto scene = parse_scene(with(R"("orientation_marker": false)"), "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const Annotations& all = scene->annotations;
-  EXPECT_TRUE(all.scalar_bars.empty() && all.labels.empty() && all.title.empty() && !all.orientation_marker && !all.status);
-  const auto bar = first_scalar_bar(scene->world);
+  EXPECT_TRUE(all.scalar_bars.empty() && all.labels.empty() && all.title.empty() && !all.orientation_marker && !all.show_status);
+  const auto bar = first_scalar_bar(scene->entities);
   ASSERT_TRUE(bar);
-  EXPECT_TRUE(scene->world.has<Volume>(bar->shown));
-  EXPECT_FALSE(first_scalar_bar(World()));
+  EXPECT_TRUE(scene->entities.has<Volume>(bar->target));
+  EXPECT_FALSE(first_scalar_bar(EntityStore()));
 }
 
 TEST(Annotations, MistakesAreOneLine) {
@@ -108,12 +108,12 @@ TEST(Annotations, MistakesAreOneLine) {
 TEST(Annotations, TheCursorKeepsWhatEveryLinkSays) {
   auto scene = parse_scene("{}", "scene.json");
   ASSERT_TRUE(scene);
-  exchange::HapticState state;
+  HapticState state;
   state.link_count = 2;
-  state.links[1].status = exchange::Status::boundary;
+  state.links[1].status = LinkStatus::boundary;
   update_cursor(*scene, state);
   update_cursor(*scene, state);
-  EXPECT_EQ(scene->world.get<Cursor>(scene->cursor).statuses, (std::vector{exchange::Status::ok, exchange::Status::boundary}));
+  EXPECT_EQ(scene->entities.get<Cursor>(scene->cursor).statuses, (std::vector{LinkStatus::ok, LinkStatus::boundary}));
 }
 
 }  // namespace annotations_test

@@ -10,11 +10,11 @@ Result<Scene> parse(const std::string& clip) { return parse_scene("{\"fields\": 
 TEST(SceneClip, PlanesAndBoxesBecomePlanes) {
   const auto scene = parse(R"([{"plane": {"point": [1, 2, 3], "normal": [0, 0, -2]}}, {"box": {"lo": [0, 0, 0], "hi": [1, 2, 3]}}])");
   ASSERT_TRUE(scene);
-  ASSERT_EQ(scene->clip.size(), 7u);
-  EXPECT_EQ(scene->clip[0].normal, Vec3(0, 0, -2));
+  ASSERT_EQ(scene->clip_planes.size(), 7u);
+  EXPECT_EQ(scene->clip_planes[0].normal, Vec3(0, 0, -2));
   // every plane of the box keeps its middle and not what lies beyond
   for (std::size_t i = 1; i < 7; ++i) {
-    const ClipPlane& plane = scene->clip[i];
+    const ClipPlane& plane = scene->clip_planes[i];
     EXPECT_GT(dot(plane.normal, Vec3(0.5, 1, 1.5) - plane.point), 0);
     EXPECT_LT(dot(plane.normal, (i % 2 == 1 ? Vec3(-1, -1, -1) : Vec3(2, 3, 4)) - plane.point), 0);
   }

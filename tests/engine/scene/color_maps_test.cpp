@@ -84,7 +84,8 @@ TEST(ColorMaps, AreThePublishedOnes) {
         {255, 0.940015, 0.975158, 0.131326}}},
   };
   for (const auto& [name, entries] : maps)
-    for (const Published& entry : entries) EXPECT_LE(off(named_map(name, 0, 255), entry.at, entry), 1 / 255.0) << name << " " << entry.at;
+    for (const Published& entry : entries)
+      EXPECT_LE(off(make_color_map(name, 0, 255), entry.at, entry), 1 / 255.0) << name << " " << entry.at;
 }
 
 /// Eight of the 33 points of Moreland's own table, CoolWarmFloat33.csv.
@@ -92,14 +93,14 @@ TEST(ColorMaps, CoolWarmIsMorelands) {
   const Published points[] = {{0, 0.229806, 0.298718, 0.753683},  {5, 0.424370, 0.558148, 0.945620},  {11, 0.681291, 0.788965, 0.990363},
                               {16, 0.865395, 0.865410, 0.865396}, {21, 0.967328, 0.734133, 0.628752}, {27, 0.899046, 0.439559, 0.343230},
                               {31, 0.752535, 0.157246, 0.184115}, {32, 0.705673, 0.015556, 0.150233}};
-  for (const Published& point : points) EXPECT_LE(off(named_map("cool-warm", 0, 32), point.at, point), 0.3 / 255) << point.at;
+  for (const Published& point : points) EXPECT_LE(off(make_color_map("cool-warm", 0, 32), point.at, point), 0.3 / 255) << point.at;
 }
 
 TEST(ColorMaps, RiseFromTheLowestToTheHighestValue) {
   for (const std::string_view name : color_map_names())
     for (const auto& [lo, hi] : {std::pair{0.0, 1.0}, std::pair{-1024.0, 2986.0}, std::pair{1.0, std::nextafter(1.0, 2.0)},
                                  std::pair{1.0, 1 + 1e-14}, std::pair{-3e38, 3e38}, std::pair{0.0, 1e-45}}) {
-      const auto table = named_map(name, lo, hi), back = named_map(std::string(name) + "_r", lo, hi);
+      const auto table = make_color_map(name, lo, hi), back = make_color_map(std::string(name) + "_r", lo, hi);
       EXPECT_EQ(table.front().value, lo);
       EXPECT_EQ(table.back().value, hi);
       for (std::size_t i = 1; i < table.size(); ++i) ASSERT_GT(table[i].value, table[i - 1].value) << name << " " << lo << " " << hi;
@@ -113,13 +114,13 @@ TEST(ColorMaps, RiseFromTheLowestToTheHighestValue) {
 
 TEST(ColorMaps, ReversedIsTheMirrorImage) {
   for (const std::string_view name : color_map_names()) {
-    const auto table = named_map(name, 2, 4), back = named_map(std::string(name) + "_r", 2, 4);
+    const auto table = make_color_map(name, 2, 4), back = make_color_map(std::string(name) + "_r", 2, 4);
     for (double v = 2; v <= 4; v += 0.037) EXPECT_LT(norm(at(table, v) - at(back, 6 - v)), 1e-6) << name << " " << v;
   }
 }
 
 TEST(ColorMaps, OneValueHasTheMiddleColour) {
-  const auto table = named_map("viridis", 7, 7);
+  const auto table = make_color_map("viridis", 7, 7);
   ASSERT_EQ(table.size(), 1u);
   EXPECT_EQ(table[0].value, 7);
   EXPECT_NEAR(table[0].color.g, 0.5669, 2 / 255.0);
@@ -128,15 +129,15 @@ TEST(ColorMaps, OneValueHasTheMiddleColour) {
 TEST(ColorMaps, UnknownNamesAreToldApart) {
   EXPECT_TRUE(is_color_map("cividis") && is_color_map("cool-warm_r"));
   for (const char* name : {"", "_r", "Viridis", "viridis_r_r", "jet"}) EXPECT_FALSE(is_color_map(name)) << name;
-  EXPECT_NE(not_a_color_map("virdis").find("did you mean \"viridis\"?"), std::string::npos);
+  EXPECT_NE(unknown_color_map_message("virdis").find("did you mean \"viridis\"?"), std::string::npos);
 }
 
 TEST(ColorMaps, ATableComesBeforeAName) {
   const std::vector<ColorPoint> table = {{5, {1, 0, 0}}};
-  EXPECT_EQ(color_table(table, {"grey", {}}, 0, 1).size(), 1u);
-  EXPECT_EQ(color_table({}, {"grey", {}}, 2, 3).front().value, 2);
-  EXPECT_EQ(color_table({}, {"grey", {{-1, 1}}}, 2, 3).front().value, -1);
-  EXPECT_EQ(color_table({}, {}, 3, 2).back().value, 1) << "no values at all: 0 to 1";
+  EXPECT_EQ(make_color_table(table, {"grey", {}}, 0, 1).size(), 1u);
+  EXPECT_EQ(make_color_table({}, {"grey", {}}, 2, 3).front().value, 2);
+  EXPECT_EQ(make_color_table({}, {"grey", {{-1, 1}}}, 2, 3).front().value, -1);
+  EXPECT_EQ(make_color_table({}, {}, 3, 2).back().value, 1) << "no values at all: 0 to 1";
 }
 
 /// Colours at values by hand: a logarithm's decades are as long, symlog is odd and linear about 0.
@@ -149,7 +150,7 @@ TEST(ColorMaps, LieOnTheirScale) {
     return a.color.r + (value - a.value) / (b.value - a.value) * (b.color.r - a.color.r);
   };
   const NamedColors log{"grey", {{0.001, 1000}}, {Kind::log, 0}}, symlog{"grey", {{-100, 100}}, {Kind::symlog, 1}};
-  const auto decades = color_table({}, log, 0, 0), both = color_table({}, symlog, 0, 0);
+  const auto decades = make_color_table({}, log, 0, 0), both = make_color_table({}, symlog, 0, 0);
   for (int power = -3; power <= 3; ++power) EXPECT_NEAR(grey_at(decades, std::pow(10.0, power)), (power + 3) / 6.0, 1e-3) << power;
   EXPECT_NEAR(grey_at(decades, std::sqrt(10.0)), 3.5 / 6, 1e-3) << "between the points, too";
   const double far = 1 + std::log(100.0);
@@ -158,10 +159,10 @@ TEST(ColorMaps, LieOnTheirScale) {
     EXPECT_NEAR(grey_at(both, value), 0.5 + 0.5 * place / far, 1e-3) << value;
   // a table of values alike; without linear_below a thousandth of the greatest
   const std::vector<ColorPoint> rows{{0.01, {0, 0, 0}}, {100, {1, 0, 0}}};
-  EXPECT_NEAR(grey_at(color_table(rows, {"", {}, {Kind::log, 0}}, 0, 0), 1), 0.5, 1e-3);
+  EXPECT_NEAR(grey_at(make_color_table(rows, {"", {}, {Kind::log, 0}}, 0, 0), 1), 0.5, 1e-3);
   EXPECT_EQ(linear_below({Kind::symlog, 0}, -7, 2), 7e-3);
-  EXPECT_FALSE(mapping_problem({Kind::log, 0}, 0, "x").empty());
-  EXPECT_TRUE(mapping_problem({Kind::symlog, 0}, 0, "x").empty());
+  EXPECT_FALSE(mapping_error({Kind::log, 0}, 0, "x").empty());
+  EXPECT_TRUE(mapping_error({Kind::symlog, 0}, 0, "x").empty());
 }
 
 TEST(ColorSpaces, LabAndMshOfKnownColours) {
@@ -176,12 +177,12 @@ TEST(ColorSpaces, LabAndMshOfKnownColours) {
 
 TEST(ColorSpaces, HsvGoesTheShorterWayOnlyWhereItWraps) {
   // from red to blue through magenta, or through green, which does not pass red
-  EXPECT_LT(norm(between_colors(ColorSpace::hsv_wrap, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(1, 0, 1)), 1e-12);
-  EXPECT_LT(norm(between_colors(ColorSpace::hsv, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(0, 1, 0)), 1e-12);
-  EXPECT_LT(norm(between_colors(ColorSpace::hsv, {1, 0, 0}, {0, 1, 0}, 0.5) - Vec3(1, 1, 0)), 1e-12);
+  EXPECT_LT(norm(interpolate_colors(ColorSpace::hsv_wrap, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(1, 0, 1)), 1e-12);
+  EXPECT_LT(norm(interpolate_colors(ColorSpace::hsv, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(0, 1, 0)), 1e-12);
+  EXPECT_LT(norm(interpolate_colors(ColorSpace::hsv, {1, 0, 0}, {0, 1, 0}, 0.5) - Vec3(1, 1, 0)), 1e-12);
   for (const ColorSpace space : {ColorSpace::rgb, ColorSpace::hsv, ColorSpace::hsv_wrap, ColorSpace::lab, ColorSpace::diverging})
     for (const double t : {0.0, 1.0})
-      EXPECT_LT(norm(between_colors(space, {0.1, 0.8, 0.3}, {0.9, 0.2, 0.4}, t) - (t == 0 ? Vec3(0.1, 0.8, 0.3) : Vec3(0.9, 0.2, 0.4))),
+      EXPECT_LT(norm(interpolate_colors(space, {0.1, 0.8, 0.3}, {0.9, 0.2, 0.4}, t) - (t == 0 ? Vec3(0.1, 0.8, 0.3) : Vec3(0.9, 0.2, 0.4))),
                 1e-3);
 }
 

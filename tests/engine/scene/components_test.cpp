@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/scene/scene.h"
-#include "engine/scene/write_values.h"
+#include "engine/scene/to_json.h"
 
 namespace components_test {
 
@@ -25,8 +25,8 @@ Scene scene_of(const std::string& part) {
 template <class T>
 std::string written(const Scene& scene) {
   std::string text;
-  scene.world.each<T>([&](Entity, const T& item) {
-    if (text.empty()) text = text_of(scene, item);
+  scene.entities.each<T>([&](Entity, const T& item) {
+    if (text.empty()) text = to_json(scene, item);
   });
   return text;
 }

@@ -7,8 +7,8 @@
 
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
-#include "engine/field/load.h"
-#include "engine/scene/write_values.h"
+#include "engine/io/volume/load_field.h"
+#include "engine/scene/to_json.h"
 #include "tests/support/support.h"
 
 namespace catena::scene {
@@ -56,7 +56,7 @@ TEST(Document, OpensTheFileAsItIs) {
   EXPECT_EQ(document.text(), kText);
   EXPECT_EQ(document.path(), folder / "a.json");
   EXPECT_FALSE(document.is_modified() || document.can_undo() || document.can_redo());
-  EXPECT_EQ(document.undo_what() + document.redo_what(), "");
+  EXPECT_EQ(document.undo_label() + document.redo_label(), "");
   document.undo();
   document.redo();
   EXPECT_EQ(document.text(), kText);
@@ -76,12 +76,12 @@ TEST(Document, AnEditIsReadAndUndone) {
   EXPECT_EQ(document.text(), expected);
   const auto scene = document.read();
   ASSERT_TRUE(scene) << message_of(scene);
-  EXPECT_EQ(scene->world.count<Volume>(), 1u);
-  scene->world.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_EQ(surface.level, 0.5); });
-  EXPECT_EQ(document.undo_what(), "volume");
+  EXPECT_EQ(scene->entities.count<Volume>(), 1u);
+  scene->entities.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_EQ(surface.level, 0.5); });
+  EXPECT_EQ(document.undo_label(), "volume");
   document.undo();
-  EXPECT_EQ(document.undo_what(), "isolevel");
-  EXPECT_EQ(document.redo_what(), "volume");
+  EXPECT_EQ(document.undo_label(), "isolevel");
+  EXPECT_EQ(document.redo_label(), "volume");
   EXPECT_TRUE(document.is_modified());
   document.undo();
   EXPECT_EQ(document.text(), kText);
@@ -109,7 +109,7 @@ TEST(Document, ADragIsOneStep) {
   std::vector<std::string> levels;
   for (; document.can_undo(); document.undo()) {
     const auto root = json::parse(document.text(), "");
-    levels.push_back(text_of(json::find_value(*root, "/isosurfaces/0/level")->number));
+    levels.push_back(to_json(json::find_value(*root, "/isosurfaces/0/level")->number));
   }
   EXPECT_EQ(levels, (std::vector<std::string>{"1.6", "1.5", "0.9", "0.7"}));
   EXPECT_EQ(document.text(), kText);
@@ -163,18 +163,18 @@ TEST(Document, TheHistoryIsBounded) {
   for (int i = 0; i < 1050; ++i) expect_done(document.set("/isosurfaces/0/level", std::to_string(2 + i), "level"));
   std::size_t steps = 0;
   for (; document.can_undo(); document.undo()) ++steps;
-  EXPECT_EQ(steps, Document::kMaxSteps);
+  EXPECT_EQ(steps, Document::kMaxUndoSteps);
   EXPECT_NE(document.text().find("\"level\": 51}"), std::string::npos) << document.text();
   EXPECT_TRUE(document.is_modified());
 
-  Document large = open_text(folder, "{} //" + std::string(Document::kMaxBytes / 10, ' '));
+  Document large = open_text(folder, "{} //" + std::string(Document::kMaxHistoryBytes / 10, ' '));
   for (int i = 0; i < 15; ++i) expect_done(large.set("/jitter", i % 2 == 0 ? "true" : "false", "jitter"));
   for (steps = 0; large.can_undo(); large.undo()) ++steps;
   EXPECT_EQ(steps, 8u);  // nine texts of a tenth and some bytes
   EXPECT_TRUE(large.is_modified());
 
   // one text larger than all that is kept is still there
-  Document huge = open_text(folder, "{} //" + std::string(Document::kMaxBytes + 10, ' '));
+  Document huge = open_text(folder, "{} //" + std::string(Document::kMaxHistoryBytes + 10, ' '));
   expect_done(huge.set("/jitter", "true", "jitter"));
   EXPECT_NE(huge.text().find("jitter"), std::string::npos);
   EXPECT_FALSE(huge.can_undo());
@@ -227,7 +227,7 @@ void expect_same_files(const Document& a, const Document& b) {
                               "/volumes/0/transfer", "/isosurfaces/0/color_by/transfer"}) {
     const fs::path x = json::find_value(*old_root, pointer)->string, y = json::find_value(*new_root, pointer)->string;
     EXPECT_TRUE(y.is_relative()) << y;
-    EXPECT_TRUE(same_file(fs::path(a.path()).parent_path() / x, fs::path(b.path()).parent_path() / y)) << pointer << " " << y;
+    EXPECT_TRUE(is_same_file(fs::path(a.path()).parent_path() / x, fs::path(b.path()).parent_path() / y)) << pointer << " " << y;
   }
 }
 
@@ -300,8 +300,8 @@ TEST(Document, OverridesStayUntilTheyAreSaved) {
     int count = 0;
     if (!scene) ADD_FAILURE() << message_of(scene);
     if (scene)
-      scene->world.each<FieldSource>(
-          [&](Entity, const FieldSource& source) { count += source.file && same_file(source.file->path, b) ? 1 : 0; });
+      scene->entities.each<FieldSource>(
+          [&](Entity, const FieldSource& source) { count += source.file && is_same_file(source.file->path, b) ? 1 : 0; });
     return count;
   };
   EXPECT_EQ(files(document.read()), 5);
@@ -316,7 +316,7 @@ TEST(Document, OverridesStayUntilTheyAreSaved) {
   EXPECT_NE(document.text().find("\"wish\": {\"file\": \"" + b + "\"}"), std::string::npos) << document.text();
   Scene scene = *document.read();
   for (const char* name : {"analytic", "kept", "other", "added"})
-    EXPECT_TRUE(use_field(scene, name, {})) << message_of(use_field(scene, name, {}));
+    EXPECT_TRUE(resolve_field(scene, name, {})) << message_of(resolve_field(scene, name, {}));
   document.undo();
   EXPECT_EQ(files(document.read()), 5);
 }
@@ -333,7 +333,7 @@ TEST(Document, ADataFileIsTheSceneThatShowsIt) {
   auto read = document.read();
   ASSERT_TRUE(read) << message_of(read);
   Scene scene = std::move(*read);
-  const auto ball = use_drawn_field(scene, find_field(scene, "ball"), {});
+  const auto ball = resolve_rendered_field(scene, find_field(scene, "ball"), {});
   ASSERT_TRUE(ball) << message_of(ball);
   EXPECT_EQ(field::load_counters().grids, before.grids + 1);  // once for all
   const auto bare = scene_for_file(folder / "a b\"c.vdb");
@@ -341,9 +341,9 @@ TEST(Document, ADataFileIsTheSceneThatShowsIt) {
   EXPECT_EQ(bare->path, folder / "a b\"c.vdb");
   const auto tables = [](const Scene& s) {
     std::string text;
-    s.world.each<Volume>(
-        [&](Entity, const Volume& v) { text += text_of(v.transfer.colors) + text_of(v.transfer.extinctions) + text_of(v.shade); });
-    text += text_of(s.background);
+    s.entities.each<Volume>(
+        [&](Entity, const Volume& v) { text += to_json(v.transfer.colors) + to_json(v.transfer.extinctions) + to_json(v.shaded); });
+    text += to_json(s.background);
     return text;
   };
   EXPECT_GT(tables(scene).size(), 500u);
@@ -362,14 +362,14 @@ TEST(Document, TheNameOfAMapLeavesABareVolumesOpacity) {
   ASSERT_TRUE(plain && named) << message_of(named);
   const auto transfer = [](const Scene& s) {
     TransferFunction found;
-    s.world.each<Volume>([&](Entity, const Volume& v) { found = v.transfer; });
+    s.entities.each<Volume>([&](Entity, const Volume& v) { found = v.transfer; });
     return found;
   };
   const TransferFunction a = transfer(*plain), b = transfer(*named);
-  EXPECT_EQ(text_of(a.extinctions), text_of(b.extinctions));
+  EXPECT_EQ(to_json(a.extinctions), to_json(b.extinctions));
   EXPECT_EQ(a.colors.front().value, b.colors.front().value);
   EXPECT_EQ(a.colors.back().value, b.colors.back().value);
-  EXPECT_NE(text_of(a.colors), text_of(b.colors));
+  EXPECT_NE(to_json(a.colors), to_json(b.colors));
 }
 
 TEST(Document, AMeshFileAndAFlow) {
@@ -378,13 +378,13 @@ TEST(Document, AMeshFileAndAFlow) {
   Document document = open(folder / "q.obj");
   EXPECT_EQ(document.text(), "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": \"q.obj\"}],\n  \"background\": [0.13, 0.15, 0.18]\n}\n");
   Scene scene = *document.read();
-  scene.world.each<MeshSource>([](Entity, const MeshSource& source) { EXPECT_NE(source.loaded, nullptr); });
+  scene.entities.each<MeshSource>([](Entity, const MeshSource& source) { EXPECT_NE(source.loaded, nullptr); });
   const auto swirl = *field::make_analytic("circle");
   expect_done(field::write_vdb(folder / "f.vdb", {{{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)}, "Flow 2"}}));
   const auto bare = scene_for_file(folder / "f.vdb", {}, {"viridis", std::array<double, 2>{0, 1.5}});
   ASSERT_TRUE(bare) << message_of(bare);
   EXPECT_TRUE(find_field(*bare, "flow_2"));
-  bare->world.each<StreamlineSet>([](Entity, const StreamlineSet& set) {
+  bare->entities.each<StreamlineSet>([](Entity, const StreamlineSet& set) {
     ASSERT_TRUE(set.color_by);
     EXPECT_EQ(set.color_by->named.map, "viridis");
     EXPECT_EQ((*set.color_by->named.range)[1], 1.5);
@@ -395,7 +395,7 @@ TEST(Document, AMeshFileAndAFlow) {
 
 // ---- the scenes of the house ----
 
-class EveryScene : public testing::TestWithParam<std::string> {};
+class SceneDocumentRoundTrip : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
@@ -405,14 +405,14 @@ std::vector<std::string> scene_names() {
   std::sort(names.begin(), names.end());
   return names;
 }
-INSTANTIATE_TEST_SUITE_P(Document, EveryScene, testing::ValuesIn(scene_names()), [](const auto& parameter) {
+INSTANTIATE_TEST_SUITE_P(Document, SceneDocumentRoundTrip, testing::ValuesIn(scene_names()), [](const auto& parameter) {
   std::string name = parameter.param;
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == '-' || c == '/'; }, '_');
   return name;
 });
 
-TEST_P(EveryScene, IsEditedUndoneAndSaved) {
+TEST_P(SceneDocumentRoundTrip, IsEditedUndoneAndSaved) {
   if (GetParam().starts_with("data/") && test::shared_data("combustor_cfd.vdb").empty()) GTEST_SKIP() << "no shared data";
   const std::string path = test::source_dir() + "/assets/scenes/" + GetParam() + ".json", text = test::read_file(path);
   Document document = open(path);
@@ -420,12 +420,12 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   const auto root = json::parse(text, path);
   Camera camera;
   camera.position = {0.1, 1.0 / 3, -4};
-  std::vector<std::pair<std::string, std::string>> edits{{"/camera", text_of(camera)},
-                                                         {"/background", text_of(Color{0.1f, 0.2f, 0.3f})},
+  std::vector<std::pair<std::string, std::string>> edits{{"/camera", to_json(camera)},
+                                                         {"/background", to_json(Color{0.1f, 0.2f, 0.3f})},
                                                          {"/fog/most", "0.25"},
                                                          {"/quality", "\"draft\""},
                                                          {"/labels/-", R"({"at": [0, 0, 0], "text": "here"})"},
-                                                         {"/clip/-", text_of(ClipPlane{{{0.0, 0.0, 0.0}, {0.0, 0.6, 0.8}}})}};
+                                                         {"/clip/-", to_json(ClipPlane{{{0.0, 0.0, 0.0}, {0.0, 0.6, 0.8}}})}};
   for (const char* list : {"volumes", "isosurfaces", "streamlines", "slices", "meshes"})
     if (const json::Node* items = root->find(list))
       for (std::size_t i = 0; i < items->items.size(); ++i)
@@ -433,7 +433,7 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   for (const auto& [pointer, value] : edits) {
     const std::string before = document.text();
     const json::Node* stated = json::find_value(*root, pointer);
-    if (stated != nullptr && json::same_value(*stated, *json::parse(value, ""))) continue;
+    if (stated != nullptr && json::is_equal_value(*stated, *json::parse(value, ""))) continue;
     const Outcome set = document.set(pointer, value, "edit");
     ASSERT_TRUE(set) << pointer << " " << message_of(set);
     const auto now = json::parse(document.text(), "");
@@ -461,16 +461,16 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   const auto here = read_scene(path), there = moved.read();
   ASSERT_TRUE(here && there) << message_of(there);
   std::vector<std::string> files;
-  here->world.each<FieldSource>([&](Entity, const FieldSource& s) { files.push_back(s.file ? s.file->path : s.analytic); });
-  here->world.each<MeshSource>([&](Entity, const MeshSource& s) { files.push_back(s.path); });
+  here->entities.each<FieldSource>([&](Entity, const FieldSource& s) { files.push_back(s.file ? s.file->path : s.analytic); });
+  here->entities.each<MeshSource>([&](Entity, const MeshSource& s) { files.push_back(s.path); });
   std::size_t i = 0;
   const auto same = [&](const std::string& file) {
     ASSERT_LT(i, files.size());
-    EXPECT_TRUE(file == files[i] || same_file(file, files[i])) << file << " " << files[i];
+    EXPECT_TRUE(file == files[i] || is_same_file(file, files[i])) << file << " " << files[i];
     ++i;
   };
-  there->world.each<FieldSource>([&](Entity, const FieldSource& s) { same(s.file ? s.file->path : s.analytic); });
-  there->world.each<MeshSource>([&](Entity, const MeshSource& s) { same(s.path); });
+  there->entities.each<FieldSource>([&](Entity, const FieldSource& s) { same(s.file ? s.file->path : s.analytic); });
+  there->entities.each<MeshSource>([&](Entity, const MeshSource& s) { same(s.path); });
   EXPECT_EQ(i, files.size());
 }
 
@@ -480,23 +480,23 @@ TEST(Document, WhatIsOnTheDiskIsComparedAndTakenOver) {
                     theirs = R"({"fields": {"b": {"analytic": "saddle"}}})";
   test::write_file(path, mine);
   Document document = open(path);
-  EXPECT_EQ(document.on_disk(), Document::OnDisk::as_known);
+  EXPECT_EQ(document.disk_state(), Document::DiskState::unchanged);
   test::write_file(path, theirs);
-  EXPECT_EQ(document.on_disk(), Document::OnDisk::changed);
-  expect_done(document.take_from_disk());
+  EXPECT_EQ(document.disk_state(), Document::DiskState::changed);
+  expect_done(document.reload_from_disk());
   EXPECT_EQ(document.text(), theirs);
   EXPECT_FALSE(document.is_modified());
-  EXPECT_EQ(document.on_disk(), Document::OnDisk::as_known);
+  EXPECT_EQ(document.disk_state(), Document::DiskState::unchanged);
   document.undo();
   EXPECT_EQ(document.text(), mine);
   EXPECT_TRUE(document.is_modified());
   test::write_file(path, "{");
-  EXPECT_FALSE(document.take_from_disk());
+  EXPECT_FALSE(document.reload_from_disk());
   EXPECT_EQ(document.text(), mine) << "all stays";
   std::filesystem::remove(path);
-  EXPECT_EQ(document.on_disk(), Document::OnDisk::gone);
+  EXPECT_EQ(document.disk_state(), Document::DiskState::missing);
   std::filesystem::create_directory(path);
-  EXPECT_EQ(document.on_disk(), Document::OnDisk::no_file);
+  EXPECT_EQ(document.disk_state(), Document::DiskState::not_a_file);
 }
 
 }  // namespace document_test

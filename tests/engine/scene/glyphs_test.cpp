@@ -1,9 +1,9 @@
 // "glyphs": every key, what is written reads back, wrong ones name their line.
 #include <gtest/gtest.h>
 
-#include "engine/scene/hidden.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/write_values.h"
+#include "engine/scene/to_json.h"
+#include "engine/scene/visibility.h"
 #include "tests/support/support.h"
 
 namespace catena::scene {
@@ -37,39 +37,39 @@ TEST_F(Glyphs, EveryKeyIsRead) {
   ASSERT_TRUE(scene) << scene.error().message;
   std::vector<GlyphSet> sets;
   std::vector<Entity> owners;
-  scene->world.each<GlyphSet>([&](Entity e, const GlyphSet& set) {
+  scene->entities.each<GlyphSet>([&](Entity e, const GlyphSet& set) {
     sets.push_back(set);
     owners.push_back(e);
   });
   ASSERT_EQ(sets.size(), 6u);
-  EXPECT_EQ(sets[0].on, GlyphSet::On::box);
+  EXPECT_EQ(sets[0].support, GlyphSet::Support::box);
   EXPECT_EQ(sets[0].box->hi, Vec3(1, 2, 3));
   EXPECT_EQ(sets[0].spacing, 0.25);
-  EXPECT_TRUE(sets[0].constant);
+  EXPECT_TRUE(sets[0].constant_length);
   EXPECT_EQ(sets[0].length, 0.5);
-  EXPECT_EQ(sets[0].full_speed, 2);
+  EXPECT_EQ(sets[0].reference_speed, 2);
   EXPECT_EQ(sets[0].min_speed, 0.1);
   EXPECT_EQ(sets[0].radius, 0.02);
-  EXPECT_EQ(sets[0].at, GlyphSet::At::tail);
+  EXPECT_EQ(sets[0].anchor, GlyphSet::Anchor::tail);
   EXPECT_EQ(sets[0].color.g, 0);
   EXPECT_FALSE(sets[0].clipped);
-  EXPECT_TRUE(is_hidden(scene->world, owners[0]));
-  EXPECT_EQ(sets[1].on, GlyphSet::On::slice);
-  EXPECT_EQ(scene->world.get<Slice>(sets[1].base).point.x, 0);
-  EXPECT_TRUE(sets[1].line);
-  EXPECT_EQ(sets[1].color_by->what, ColorBy::What::speed);
-  EXPECT_EQ(sets[2].on, GlyphSet::On::plane);
+  EXPECT_TRUE(is_hidden(scene->entities, owners[0]));
+  EXPECT_EQ(sets[1].support, GlyphSet::Support::slice);
+  EXPECT_EQ(scene->entities.get<Slice>(sets[1].support_entity).point.x, 0);
+  EXPECT_TRUE(sets[1].is_line_field);
+  EXPECT_EQ(sets[1].color_by->source, ColorBy::Source::speed);
+  EXPECT_EQ(sets[2].support, GlyphSet::Support::plane);
   EXPECT_EQ(sets[2].point, Vec3(0, 0, 1));
   EXPECT_NEAR(sets[2].normal.y, 1, 1e-12);
-  EXPECT_EQ(sets[2].color_by->what, ColorBy::What::field);
-  EXPECT_EQ(sets[3].on, GlyphSet::On::isosurface);
-  EXPECT_EQ(sets[3].at, GlyphSet::At::head);
-  EXPECT_EQ(sets[4].base, find_mesh(*scene, "m")) << "felt, not drawn";
+  EXPECT_EQ(sets[2].color_by->source, ColorBy::Source::field);
+  EXPECT_EQ(sets[3].support, GlyphSet::Support::isosurface);
+  EXPECT_EQ(sets[3].anchor, GlyphSet::Anchor::head);
+  EXPECT_EQ(sets[4].support_entity, find_mesh(*scene, "m")) << "felt, not drawn";
   // what is not said: the domain, by magnitude, in the middle, clipped
-  EXPECT_EQ(sets[5].on, GlyphSet::On::box);
-  EXPECT_FALSE(sets[5].box || sets[5].constant || sets[5].color_by);
+  EXPECT_EQ(sets[5].support, GlyphSet::Support::box);
+  EXPECT_FALSE(sets[5].box || sets[5].constant_length || sets[5].color_by);
   EXPECT_EQ(sets[5].spacing, 0);
-  EXPECT_EQ(sets[5].at, GlyphSet::At::center);
+  EXPECT_EQ(sets[5].anchor, GlyphSet::Anchor::center);
   EXPECT_TRUE(sets[5].clipped);
 }
 
@@ -83,7 +83,7 @@ TEST_F(Glyphs, WhatIsWrittenReadsBack) {
         R"({"field": "v", "on": {"isosurface": 0}, "color_by": {"field": "s"}})", R"({"field": "v", "on": {"mesh": "m"}})"}) {
     const auto scene = parse("[" + item + "]");
     ASSERT_TRUE(scene) << scene.error().message;
-    scene->world.each<GlyphSet>([&](Entity, const GlyphSet& set) { EXPECT_EQ(text_of(*scene, set), item); });
+    scene->entities.each<GlyphSet>([&](Entity, const GlyphSet& set) { EXPECT_EQ(to_json(*scene, set), item); });
   }
 }
 
@@ -130,7 +130,7 @@ TEST_F(Glyphs, AScalarBarNamesThem) {
   const auto scene = parse(sets, R"(, "scalar_bars": [{"glyphs": 0}, {"field": "v"}])");
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_EQ(scene->annotations.scalar_bars.size(), 2u);
-  for (const ScalarBar& bar : scene->annotations.scalar_bars) EXPECT_TRUE(scene->world.has<GlyphSet>(bar.shown));
+  for (const ScalarBar& bar : scene->annotations.scalar_bars) EXPECT_TRUE(scene->entities.has<GlyphSet>(bar.target));
   const auto one_color = parse(sets, R"(, "scalar_bars": [{"glyphs": 1}])");
   ASSERT_FALSE(one_color);
   EXPECT_NE(one_color.error().message.find("these glyphs have one colour"), std::string::npos) << one_color.error().message;

@@ -77,19 +77,19 @@ TEST(LabelTables, OfTwoRowsTheFirstCountsAndNamesAreCutAndPrintable) {
 
 TEST(LabelTables, TheOneBesideAMapIsFoundAndItsColorsToo) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(label_table_beside(folder / "a.nii.gz"), "");
+  EXPECT_EQ(find_label_table(folder / "a.nii.gz"), "");
   std::string lut(768, '\0');
   lut[1] = '\xff';
   test::write_file(folder / "a.nii.lut", lut);
-  EXPECT_EQ(label_table_beside(folder / "a.nii.gz"), "") << "colours alone are no table";
+  EXPECT_EQ(find_label_table(folder / "a.nii.gz"), "") << "colours alone are no table";
   test::write_file(folder / "a.nii.txt", "1 one\n2 two\n");
-  EXPECT_EQ(label_table_beside(folder / "a.nii.gz"), folder / "a.nii.txt");
+  EXPECT_EQ(find_label_table(folder / "a.nii.gz"), folder / "a.nii.txt");
   const auto table = read_label_table(folder / "a.nii.txt");
   ASSERT_TRUE(table);
   EXPECT_EQ((*table)[0].color, (Color{1, 0, 0}));
   EXPECT_FALSE((*table)[1].color) << "black is none";
   test::write_file(folder / "b.csv", "index,name\n1,x\n");
-  for (const char* map : {"b.vdb", "b.nrrd", "b.MHA", "b.nii"}) EXPECT_EQ(label_table_beside(folder / map), folder / "b.csv") << map;
+  for (const char* map : {"b.vdb", "b.nrrd", "b.MHA", "b.nii"}) EXPECT_EQ(find_label_table(folder / map), folder / "b.csv") << map;
 }
 
 TEST(LabelTables, OfADebianPackage) {

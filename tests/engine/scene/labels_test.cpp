@@ -8,8 +8,8 @@
 
 #include "engine/scene/document.h"
 #include "engine/scene/label_palette.h"
-#include "engine/scene/named_files.h"
 #include "engine/scene/prepare.h"
+#include "engine/scene/referenced_files.h"
 #include "tests/support/support.h"
 
 namespace catena::scene {
@@ -51,7 +51,7 @@ TEST_F(LabelScene, AFieldIsLinearUnlessItSaysOtherwiseOrHasLabels) {
         {", \"interpolation\": \"linear\", \"labels\": {\"values\": [3], \"names\": [\"a\"]}", field::Interpolation::linear}}) {
     auto scene = read(field, "}}");
     ASSERT_TRUE(scene) << scene.error().message;
-    const auto loaded = use_field(*scene, "m", {});
+    const auto loaded = resolve_field(*scene, "m", {});
     ASSERT_TRUE(loaded) << loaded.error().message;
     EXPECT_EQ(loaded->scalar->interpolation(), wanted) << field;
     const bool mixed = wanted == field::Interpolation::linear && *field != '\0';
@@ -82,7 +82,7 @@ TEST_F(LabelScene, AFileThatSaysSoIsNotReadByCellsWithoutAWord) {
                                     {"}, \"left\": {\"label\": 3, \"of\": \"a\"}", 0u}}) {
     auto scene = parse_scene(std::string("{\"fields\": {\"a\": {\"file\": \"a.nii\"") + more + "}}", folder_ / "s.json");
     ASSERT_TRUE(scene) << scene.error().message;
-    const auto loaded = use_field(*scene, "a", {});
+    const auto loaded = resolve_field(*scene, "a", {});
     ASSERT_TRUE(loaded) << loaded.error().message;
     ASSERT_EQ(scene->notes.size(), notes) << more << (notes == 0 ? scene->notes[0] : "");
     if (notes > 0) {
@@ -94,16 +94,16 @@ TEST_F(LabelScene, AFileThatSaysSoIsNotReadByCellsWithoutAWord) {
 TEST_F(LabelScene, NamesAndColoursComeFromTheTable) {
   auto scene = read(kTable, "}}");
   ASSERT_TRUE(scene);
-  ASSERT_TRUE(use_field(*scene, "m", {}));
-  const LabelMap* map = labels_of(*scene, find_field(*scene, "m"));
+  ASSERT_TRUE(resolve_field(*scene, "m", {}));
+  const LabelMap* map = find_label_map(*scene, find_field(*scene, "m"));
   ASSERT_NE(map, nullptr);
   ASSERT_EQ(map->labels.size(), 2u);
-  EXPECT_EQ(label_words(*map, 3), "left (3)");
-  EXPECT_EQ(label_words(*map, 0), "no label");
-  EXPECT_EQ(label_words(*map, 5), "5");
+  EXPECT_EQ(describe_label(*map, 3), "left (3)");
+  EXPECT_EQ(describe_label(*map, 0), "no label");
+  EXPECT_EQ(describe_label(*map, 5), "5");
   EXPECT_EQ(map->labels[1].color, (Color{1, 0, 0}));
-  EXPECT_EQ(map->labels[0].voxels, 5 * 256u);
-  EXPECT_EQ(scene->files.size(), 2u) << "the table is a file that the scene names";
+  EXPECT_EQ(map->labels[0].voxel_count, 5 * 256u);
+  EXPECT_EQ(scene->referenced_files.size(), 2u) << "the table is a file that the scene names";
 }
 
 TEST_F(LabelScene, ALabelIsAFieldByNumberNameOrTogether) {
@@ -116,7 +116,7 @@ TEST_F(LabelScene, ALabelIsAFieldByNumberNameOrTogether) {
   ASSERT_TRUE(prepared) << prepared.error().message;
   field::Cursor cursor;
   const auto at = [&](const char* name, const Vec3& p) {
-    return drawn_field(*scene, find_field(*scene, name)).scalar->sample(p, cursor).value;
+    return rendered_field(*scene, find_field(*scene, name)).scalar->sample(p, cursor).value;
   };
   EXPECT_NEAR(at("a", {4.5, 8, 8}), 0.5, 1e-12);
   EXPECT_NEAR(at("d", {4.5, 8, 8}), 0.5, 1e-12);
@@ -124,12 +124,12 @@ TEST_F(LabelScene, ALabelIsAFieldByNumberNameOrTogether) {
   EXPECT_GT(at("b", {10, 2, 8}), 0.9);
   EXPECT_LT(at("b", {2, 2, 8}), 0.1);
   EXPECT_GT(at("c", {4.5, 2, 8}), 0.9);
-  EXPECT_EQ(label_name(*scene, "a"), "left");
-  EXPECT_EQ(label_name(*scene, "b"), "right");
-  EXPECT_EQ(label_name(*scene, "c"), "");
+  EXPECT_EQ(surface_label_name(*scene, "a"), "left");
+  EXPECT_EQ(surface_label_name(*scene, "b"), "right");
+  EXPECT_EQ(surface_label_name(*scene, "c"), "");
   for (const char* name : {"a", "b", "c", "d"}) {
-    const FieldSource& source = scene->world.get<FieldSource>(find_field(*scene, name));
-    EXPECT_EQ(source.loaded.get(), source.drawn.get()) << "what is felt is what is drawn";
+    const FieldSource& source = scene->entities.get<FieldSource>(find_field(*scene, name));
+    EXPECT_EQ(source.loaded.get(), source.rendered.get()) << "what is felt is what is drawn";
   }
 }
 
@@ -154,8 +154,8 @@ TEST_F(LabelScene, AFieldCanBeAPartOfItsFile) {
   ASSERT_TRUE(scene) << scene.error().message;
   Scene& shown = *scene;
   ASSERT_TRUE(prepare(shown));
-  const FieldSource& source = shown.world.get<FieldSource>(find_field(shown, "m"));
-  EXPECT_EQ(source.loaded.get(), source.drawn.get()) << "what is felt is what is drawn";
+  const FieldSource& source = shown.entities.get<FieldSource>(find_field(shown, "m"));
+  EXPECT_EQ(source.loaded.get(), source.rendered.get()) << "what is felt is what is drawn";
   EXPECT_EQ(source.loaded.get()->index_box().hi - source.loaded.get()->index_box().lo, Vec3(6, 7, 7));
   EXPECT_NE(refused(", \"crop\": {\"lo\": [0, 0, 0], \"hi\": [4, 0, 4]}", "}}").find("\"hi\" is not above \"lo\""), std::string::npos);
   EXPECT_NE(refused(", \"crop\": {\"lo\": [0, 0, 0]}", "}}").find("hi"), std::string::npos);
@@ -169,20 +169,20 @@ TEST_F(LabelScene, AnEditKeepsWhatWasMadeWhileTheLabelsStay) {
   auto old = read(kTable, more), fresh = read(kTable, more);
   ASSERT_TRUE(old && fresh);
   ASSERT_TRUE(prepare(*old));
-  carry_over(*old, *fresh);
-  const auto grid = [](Scene& scene) { return scene.world.get<FieldSource>(find_field(scene, "a")).loaded.get(); };
+  transfer_state(*old, *fresh);
+  const auto grid = [](Scene& scene) { return scene.entities.get<FieldSource>(find_field(scene, "a")).loaded.get(); };
   EXPECT_EQ(grid(*old), grid(*fresh));
   auto other = read(kTable, ", \"a\": {\"label\": 70, \"of\": \"m\"}}}");
   ASSERT_TRUE(other);
-  carry_over(*fresh, *other);
+  transfer_state(*fresh, *other);
   EXPECT_EQ(grid(*other), nullptr);
-  EXPECT_NE(other->world.get<FieldSource>(find_field(*other, "m")).labels, nullptr);
+  EXPECT_NE(other->entities.get<FieldSource>(find_field(*other, "m")).labels, nullptr);
 }
 
 TEST_F(LabelScene, MovedElsewhereTheTableIsStillFound) {
   std::filesystem::create_directory(folder_ / "sub");
-  const auto moved = moved_text("{\"fields\": {\"m\": {\"file\": \"m.raw\", \"labels\": {\"file\": \"m.txt\"}}}}", folder_ / "s.json",
-                                folder_ / "sub/s.json", {});
+  const auto moved = relocate_text("{\"fields\": {\"m\": {\"file\": \"m.raw\", \"labels\": {\"file\": \"m.txt\"}}}}", folder_ / "s.json",
+                                   folder_ / "sub/s.json", {});
   ASSERT_TRUE(moved);
   EXPECT_NE(moved->find("../m.txt"), std::string::npos) << *moved;
 }
@@ -219,11 +219,11 @@ TEST_F(LabelScene, AColourFollowsTheTableAndNotWhatElseTheMapHolds) {
   const std::string names = R"(, "labels": {"values": [1, 3, 50, 70], "names": ["a", "b", "c", "d"]})";
   auto scene = read(names, "}}"), bare = read(", \"interpolation\": \"nearest\"", "}}");
   ASSERT_TRUE(scene && bare);
-  for (Scene* one : {&*scene, &*bare}) ASSERT_TRUE(use_field(*one, "m", {}));
-  const LabelMap* map = labels_of(*scene, find_field(*scene, "m"));
+  for (Scene* one : {&*scene, &*bare}) ASSERT_TRUE(resolve_field(*one, "m", {}));
+  const LabelMap* map = find_label_map(*scene, find_field(*scene, "m"));
   EXPECT_EQ(map->find(3)->color, palette_color(1));
   EXPECT_EQ(map->find(70)->color, palette_color(3));
-  map = labels_of(*bare, find_field(*bare, "m"));
+  map = find_label_map(*bare, find_field(*bare, "m"));
   EXPECT_EQ(map->find(3)->color, palette_color(0));
   EXPECT_EQ(map->find(70)->color, palette_color(1));
 }

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "engine/scene/auto_transfer.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/transfer.h"
 #include "tests/support/support.h"
 
 namespace catena::scene {
@@ -23,7 +23,7 @@ class ReadTransfer : public testing::Test {
     const auto scene = volume(keys);
     EXPECT_TRUE(scene) << scene.error().message;
     TransferFunction transfer;
-    if (scene) scene->world.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
+    if (scene) scene->entities.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
     return transfer;
   }
   /// The same out of a file.
@@ -86,15 +86,15 @@ TEST_F(ReadTransfer, MappingsAreReadAndWrittenAndALogarithmNeedsValuesAboveZero)
 TEST_F(ReadTransfer, AutomaticOpacityFollowsTheMapping) {
   auto scene = volume("\"color\": \"grey\", \"range\": [0.1, 10], \"mapping\": \"log\"");
   ASSERT_TRUE(scene);
-  ASSERT_TRUE(use_drawn_field(*scene, find_field(*scene, "ball"), {}));
-  scene->world.each<Volume>([](Entity, const Volume& v) {
+  ASSERT_TRUE(resolve_rendered_field(*scene, find_field(*scene, "ball"), {}));
+  scene->entities.each<Volume>([](Entity, const Volume& v) {
     const auto& rows = v.transfer.extinctions;
     ASSERT_GT(rows.size(), 8u);
     EXPECT_NEAR(rows[rows.size() / 2].value, 1, 1e-6) << "halfway by the logarithm";
   });
   scene = volume("\"color\": \"grey\",\n\"mapping\": \"log\"");
   ASSERT_TRUE(scene);
-  const auto refused = use_drawn_field(*scene, find_field(*scene, "ball"), {});
+  const auto refused = resolve_rendered_field(*scene, find_field(*scene, "ball"), {});
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("s.json:3: "), std::string::npos) << refused.error().message;
   EXPECT_NE(refused.error().message.find("begins at"), std::string::npos) << refused.error().message;
@@ -176,7 +176,7 @@ TEST_F(ReadTransfer, ParaViewsSpacesBecomeLinearPieces) {
     return "[{\"ColorSpace\": \"" + space + "\", \"RGBPoints\": [" + points + "]}]";
   };
   const auto colors = file_of(map("Diverging", "0, 0.2298, 0.2987, 0.7537, 1, 0.8654, 0.8654, 0.8654, 2, 0.7057, 0.0156, 0.1502")).colors;
-  const auto table = named_map("cool-warm", 0, 2);
+  const auto table = make_color_map("cool-warm", 0, 2);
   ASSERT_GT(colors.size(), 60u);
   for (const ColorPoint& point : colors) {
     const auto near = std::min_element(table.begin(), table.end(), [&](const auto& a, const auto& b) {
@@ -238,7 +238,7 @@ TEST_F(ReadTransfer, LinesTakeTheSameKeys) {
     const auto scene = lines(keys);
     EXPECT_TRUE(scene) << scene.error().message;
     ColorBy result;
-    if (scene) scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { result = *set.color_by; });
+    if (scene) scene->entities.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { result = *set.color_by; });
     return result;
   };
   EXPECT_EQ(by("\"color_by\": \"speed\", \"color\": \"plasma\"").named.map, "plasma");
@@ -263,10 +263,10 @@ TEST_F(ReadTransfer, AMapLiesOverTheValuesOrTheRange) {
   const auto drawn = [&](const std::string& keys) {
     auto scene = volume(keys);
     EXPECT_TRUE(scene) << scene.error().message;
-    const auto any = use_drawn_field(*scene, find_field(*scene, "ball"), {});
+    const auto any = resolve_rendered_field(*scene, find_field(*scene, "ball"), {});
     EXPECT_TRUE(any) << any.error().message;
     TransferFunction transfer;
-    scene->world.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
+    scene->entities.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
     return transfer;
   };
   const TransferFunction all = drawn("\"color\": \"viridis\"");

@@ -17,7 +17,7 @@ Result<Scene> parse_widget(const std::string& item) { return parse("\"widgets\":
 
 Widget only_widget(const Scene& scene) {
   Widget found;
-  scene.world.each<Widget>([&](Entity, const Widget& w) { found = w; });
+  scene.entities.each<Widget>([&](Entity, const Widget& w) { found = w; });
   return found;
 }
 
@@ -28,17 +28,17 @@ TEST(ReadWidgets, ACuttingPlaneWithAllItsKeys) {
   const Widget w = only_widget(*scene);
   EXPECT_EQ(w.spec.kind, Kind::cutting_plane);
   EXPECT_EQ(w.spec.pose.points[0], Vec3(1, 2, 3));
-  EXPECT_LT(norm(normal_of(w.spec.pose) - Vec3(0, 0, -1)), 1e-15);
+  EXPECT_LT(norm(plane_normal(w.spec.pose) - Vec3(0, 0, -1)), 1e-15);
   EXPECT_EQ(w.spec.radius, 0.5);
   EXPECT_EQ(w.spec.snap, 0.1);
   EXPECT_EQ(w.spec.release, 0.2);
-  EXPECT_EQ(w.spec.near, 0.3);
+  EXPECT_EQ(w.spec.grab_distance, 0.3);
   EXPECT_EQ(w.spec.step, 0.4);
-  EXPECT_EQ(w.spec.turning, widget::Turning::axis);
-  EXPECT_TRUE(w.spec.touch);
+  EXPECT_EQ(w.spec.rotation, widget::RotationMode::axis);
+  EXPECT_TRUE(w.spec.rotate_on_contact);
   EXPECT_EQ(w.spec.button, 32);
   EXPECT_EQ(w.color.g, 0.5f);
-  EXPECT_EQ(w.state.pose, w.spec.pose) << "where it is before a hand has touched it";
+  EXPECT_EQ(w.report.pose, w.spec.pose) << "where it is before a hand has touched it";
   EXPECT_TRUE(find_widget(*scene, "cut"));
   EXPECT_FALSE(find_widget(*scene, "cu"));
   EXPECT_FALSE(find_field(*scene, "cut")) << "widgets have names of their own";
@@ -55,7 +55,7 @@ TEST(ReadWidgets, AnOrientationThatIsUnitKeepsItsBits) {
   EXPECT_NEAR(q.w * q.w + q.y * q.y, 1, 1e-15);
   const auto flat = parse_widget(R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]})");
   ASSERT_TRUE(flat);
-  EXPECT_EQ(only_widget(*flat).spec.pose.orientation, kNoRotation);
+  EXPECT_EQ(only_widget(*flat).spec.pose.orientation, kIdentityRotation);
 }
 
 TEST(ReadWidgets, TheOtherKinds) {
@@ -64,12 +64,12 @@ TEST(ReadWidgets, TheOtherKinds) {
       {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 2, 3]},
       {"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [0, 1, 0], "along": ["curve"]}])");
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto get = [&](const char* name) { return scene->world.get<Widget>(find_widget(*scene, name)); };
+  const auto get = [&](const char* name) { return scene->entities.get<Widget>(find_widget(*scene, name)); };
   EXPECT_EQ(get("s").spec.pose.points[0], Vec3(1, 2, 3));
   EXPECT_EQ(get("r").spec.pose.points[1], Vec3(1, 0, 0));
   EXPECT_EQ(get("l").field, find_field(*scene, "s"));
   EXPECT_EQ(get("b").spec.pose.points[1], Vec3(1, 2, 3));
-  EXPECT_EQ(get("u").along, std::vector<std::string>{"curve"});
+  EXPECT_EQ(get("u").along_links, std::vector<std::string>{"curve"});
 }
 
 TEST(ReadWidgets, FollowersTakeTheStatedPoseAtOnce) {
@@ -78,18 +78,18 @@ TEST(ReadWidgets, FollowersTakeTheStatedPoseAtOnce) {
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut", "side": "behind"}, {"widget": "b"}],
     "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])");
   ASSERT_TRUE(scene) << scene.error().message;
-  scene->world.each<Slice>([&](Entity, const Slice& slice) {
+  scene->entities.each<Slice>([&](Entity, const Slice& slice) {
     EXPECT_EQ(slice.point, Vec3(1, 0, 0));
     EXPECT_LT(norm(slice.normal - Vec3(1, 0, 0)), 1e-15);
   });
-  ASSERT_EQ(scene->clip.size(), 7u);
-  EXPECT_LT(norm(scene->clip[0].normal - Vec3(-1, 0, 0)), 1e-15);
+  ASSERT_EQ(scene->clip_planes.size(), 7u);
+  EXPECT_LT(norm(scene->clip_planes[0].normal - Vec3(-1, 0, 0)), 1e-15);
   // the box keeps its inside: the planes are those of a fixed one
   for (std::size_t i = 1; i < 7; ++i) {
-    EXPECT_GT(dot(scene->clip[i].normal, Vec3(0.5, 1, 1.5) - scene->clip[i].point), 0);
-    EXPECT_LT(dot(scene->clip[i].normal, (i % 2 == 1 ? Vec3(-1, -1, -1) : Vec3(2, 3, 4)) - scene->clip[i].point), 0);
+    EXPECT_GT(dot(scene->clip_planes[i].normal, Vec3(0.5, 1, 1.5) - scene->clip_planes[i].point), 0);
+    EXPECT_LT(dot(scene->clip_planes[i].normal, (i % 2 == 1 ? Vec3(-1, -1, -1) : Vec3(2, 3, 4)) - scene->clip_planes[i].point), 0);
   }
-  scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
+  scene->entities.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
     ASSERT_EQ(set.seeds.points.size(), 3u);
     EXPECT_EQ(set.seeds.points[1], Vec3(0.5, 0, 0));
   });

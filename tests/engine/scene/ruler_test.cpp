@@ -10,7 +10,7 @@
 namespace catena::scene {
 namespace ruler_test {
 
-using How = RulerMeasure::How;
+using How = RulerMeasure::PathKind;
 constexpr double kPi = std::numbers::pi;
 
 /// A scene of one ruler along the links that `chain` holds.
@@ -27,8 +27,8 @@ Scene scene_with(const std::string& chain, const std::string& along) {
 
 RulerMeasure measured(Scene& scene, const Vec3& from, const Vec3& to) {
   const Entity ruler = find_widget(scene, "u");
-  EXPECT_TRUE(set_widget_pose(scene, ruler, {{from, to}, kNoRotation}));
-  const auto measure = use_ruler(scene, ruler);
+  EXPECT_TRUE(set_widget_pose(scene, ruler, {{from, to}, kIdentityRotation}));
+  const auto measure = resolve_ruler(scene, ruler);
   EXPECT_TRUE(measure) << (measure ? "" : measure.error().message);
   return measure ? *measure : RulerMeasure{};
 }
@@ -39,7 +39,7 @@ const std::string kSkin = R"({"name": "skin", "type": "isosurface", "field": "s"
 TEST(Ruler, AloneItIsStraight) {
   Scene scene = scene_with("", "");
   const RulerMeasure measure = measured(scene, {1, 2, 3}, {1, 5, 7});
-  EXPECT_EQ(measure.how, How::straight);
+  EXPECT_EQ(measure.path_kind, How::straight);
   EXPECT_EQ(measure.length, 5);
   EXPECT_EQ(measure.points, (std::vector<Vec3>{{1, 2, 3}, {1, 5, 7}}));
   EXPECT_TRUE(measure.note.empty());
@@ -52,7 +52,7 @@ TEST(Ruler, AlongAClosedLineTheShorterWay) {
   };
   const auto expect = [&](double from, double to, double degrees) {
     const RulerMeasure measure = measured(scene, at(from, 1.1), at(to, 0.8));
-    EXPECT_EQ(measure.how, How::streamline);
+    EXPECT_EQ(measure.path_kind, How::streamline);
     EXPECT_NEAR(measure.length, degrees * kPi / 180, 1e-8) << from << " " << to;
     ASSERT_GE(measure.points.size(), 2u);
     EXPECT_LT(norm(measure.points.front() - at(from)), 1e-8) << "from the first end";
@@ -75,20 +75,21 @@ TEST(Ruler, AlongAClosedLineTheShorterWay) {
 
 TEST(Ruler, AlongAnOpenLineAndAMovingSeed) {
   Scene scene = scene_with(R"({"name": "curve", "type": "streamline", "field": "u", "seed": [0, 0, 0]})", "\"curve\"");
-  const Vec3 t = direction((*use_curve(scene, {use_field(scene, find_field(scene, "u"), {})->vector.get()}, {0, 0, 0}, {}))->knots()[0].t);
+  const Vec3 t = direction(
+      (*resolve_streamline(scene, {resolve_field(scene, find_field(scene, "u"), {})->vector.get()}, {0, 0, 0}, {}))->knots()[0].t);
   const RulerMeasure measure = measured(scene, -0.5 * t, 1.5 * t);
-  EXPECT_EQ(measure.how, How::streamline);
+  EXPECT_EQ(measure.path_kind, How::streamline);
   EXPECT_NEAR(measure.length, 2, 1e-9);
 
   Scene moving = scene_with(R"({"name": "curve", "type": "streamline", "field": "v", "seed": {"widget": "p"}})", "\"curve\"");
   EXPECT_NEAR(measured(moving, {1, 0, 0}, {0, 1, 0}).length, 0.5 * kPi, 1e-8);
-  ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0.5, 0, 0), Vec3(0)}, kNoRotation}));
-  EXPECT_NEAR(use_ruler(moving, find_widget(moving, "u"))->length, 0.25 * kPi, 1e-8);
+  ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0.5, 0, 0), Vec3(0)}, kIdentityRotation}));
+  EXPECT_NEAR(resolve_ruler(moving, find_widget(moving, "u"))->length, 0.25 * kPi, 1e-8);
   // a seed that starts nothing: said, and straight
-  ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0), Vec3(0)}, kNoRotation}));
-  const auto none = use_ruler(moving, find_widget(moving, "u"));
+  ASSERT_TRUE(set_widget_pose(moving, find_widget(moving, "p"), {{Vec3(0), Vec3(0)}, kIdentityRotation}));
+  const auto none = resolve_ruler(moving, find_widget(moving, "u"));
   ASSERT_TRUE(none);
-  EXPECT_EQ(none->how, How::straight);
+  EXPECT_EQ(none->path_kind, How::straight);
   EXPECT_NE(none->note.find("zero there"), std::string::npos) << none->note;
 }
 
@@ -100,7 +101,7 @@ TEST(Ruler, AlongASphereTheGreatCircle) {
     const Vec3 a = direction({any(engine), any(engine), any(engine)}), b = direction({any(engine), any(engine), any(engine)});
     const double arc = std::atan2(norm(cross(a, b)), dot(a, b));
     const RulerMeasure measure = measured(scene, 1.05 * a, 0.9 * b);
-    EXPECT_EQ(measure.how, How::isosurface);
+    EXPECT_EQ(measure.path_kind, How::isosurface);
     EXPECT_NEAR(measure.length, arc, 1e-3 * arc);
     for (const Vec3& p : measure.points) EXPECT_NEAR(norm(p), 1, 1e-6);
   }
@@ -112,36 +113,36 @@ TEST(Ruler, AlongASphereTheGreatCircle) {
 TEST(Ruler, TheLevelMayFollowAWidget) {
   Scene scene = scene_with(R"({"name": "skin", "type": "isosurface", "field": "s", "level": {"widget": "l"}})", "\"skin\"");
   EXPECT_NEAR(measured(scene, {1, 0, 0}, {0, 1, 0}).length, 0.5 * kPi, 2e-3);
-  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "l"), {{Vec3(0.5, 0, 0), Vec3(0)}, kNoRotation}));
-  EXPECT_NEAR(use_ruler(scene, find_widget(scene, "u"))->length, 0.25 * kPi, 1e-3);
+  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "l"), {{Vec3(0.5, 0, 0), Vec3(0)}, kIdentityRotation}));
+  EXPECT_NEAR(resolve_ruler(scene, find_widget(scene, "u"))->length, 0.25 * kPi, 1e-3);
 }
 
 TEST(Ruler, OfSeveralLinksTheLineCounts) {
   Scene scene = scene_with(kSkin + ", " + kCurve, "\"skin\", \"curve\"");
-  EXPECT_EQ(measured(scene, {1, 0, 0}, {0, 1, 0}).how, How::streamline);
+  EXPECT_EQ(measured(scene, {1, 0, 0}, {0, 1, 0}).path_kind, How::streamline);
 }
 
 TEST(Ruler, WhatItCannotGoAlongIsSaid) {
   Scene plane = scene_with(R"({"name": "flat", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]})", "\"flat\"");
   RulerMeasure measure = measured(plane, {0, 0, 0}, {3, 4, 0});
-  EXPECT_EQ(measure.how, How::straight);
+  EXPECT_EQ(measure.path_kind, How::straight);
   EXPECT_EQ(measure.length, 5);
   EXPECT_FALSE(measure.note.empty());
   Scene probe = scene_with(R"({"name": "curve", "type": "streamline", "field": "v"})", "\"curve\"");
   measure = measured(probe, {0, 0, 0}, {3, 4, 0});
-  EXPECT_EQ(measure.how, How::straight);
+  EXPECT_EQ(measure.path_kind, How::straight);
   EXPECT_NE(measure.note.find("has a seed, a level or a mesh"), std::string::npos) << measure.note;
   // an end in the middle of the ball, where no direction leads to the surface
   Scene ball = scene_with(kSkin, "\"skin\"");
   measure = measured(ball, {0, 0, 0}, {1, 0, 0});
-  EXPECT_EQ(measure.how, How::straight);
+  EXPECT_EQ(measure.path_kind, How::straight);
   EXPECT_FALSE(measure.note.empty());
 }
 
 TEST(Ruler, MeasuredOnceUntilAnEndMoves) {
   Scene scene = scene_with(kSkin, "\"skin\"");
   const RulerMeasure first = measured(scene, {1, 0, 0}, {0, 1, 0});
-  EXPECT_EQ(use_ruler(scene, find_widget(scene, "u"))->points, first.points);
+  EXPECT_EQ(resolve_ruler(scene, find_widget(scene, "u"))->points, first.points);
   EXPECT_NE(measured(scene, {1, 0, 0}, {0, 0, 1}).points, first.points);
 }
 

@@ -46,33 +46,33 @@ TEST(SceneFile, ReadsTheWholeExample) {
   })",
                                  "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(scene->world.count<FieldSource>(), 4u);
-  const FieldSource& wall = scene->world.get<FieldSource>(find_field(*scene, "wall"));
+  EXPECT_EQ(scene->entities.count<FieldSource>(), 4u);
+  const FieldSource& wall = scene->entities.get<FieldSource>(find_field(*scene, "wall"));
   EXPECT_EQ(wall.parameters.part, "fibre");
-  EXPECT_EQ(scene->world.get<FieldSource>(find_field(*scene, "wind")).parameters.direction, Vec3(0, 0, 1));
-  EXPECT_EQ(scene->world.get<FieldSource>(find_field(*scene, "density")).resolution, 16);
+  EXPECT_EQ(scene->entities.get<FieldSource>(find_field(*scene, "wind")).parameters.direction, Vec3(0, 0, 1));
+  EXPECT_EQ(scene->entities.get<FieldSource>(find_field(*scene, "density")).resolution, 16);
   std::vector<std::string> links;
-  scene->world.each<Link>([&](Entity, const Link& link) { links.push_back(link.name + ":" + link.type); });
+  scene->entities.each<Link>([&](Entity, const Link& link) { links.push_back(link.name + ":" + link.type); });
   EXPECT_EQ(links, (std::vector<std::string>{"curve:streamline", "surface:isosurface"}));
   EXPECT_EQ(scene->coupling.stiffness_n_per_m, 400);
   EXPECT_EQ(scene->coupling.ramp_s, 0.1);
-  EXPECT_TRUE(scene->workspace.given);
+  EXPECT_TRUE(scene->workspace.is_explicit);
   EXPECT_LT(norm(scene->workspace.rotation * Vec3(1, 0, 0) - Vec3(0, 1, 0)), 1e-15);
-  EXPECT_TRUE(scene->camera.given);
+  EXPECT_TRUE(scene->camera.is_explicit);
   EXPECT_EQ(scene->camera.fovy_deg, 35);
-  scene->world.each<Volume>([&](Entity, const Volume& v) {
+  scene->entities.each<Volume>([&](Entity, const Volume& v) {
     EXPECT_EQ(v.transfer.colors.size(), 2u);
     ASSERT_EQ(v.transfer.opacities.size(), 2u);
     EXPECT_EQ(v.transfer.opacities[1].alpha, 0.1);
     EXPECT_EQ(v.transfer.opacity_unit, 0.18);
-    EXPECT_TRUE(v.shade);
+    EXPECT_TRUE(v.shaded);
   });
-  scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& s) {
+  scene->entities.each<StreamlineSet>([&](Entity, const StreamlineSet& s) {
     EXPECT_EQ(s.seeds.points.size(), 2u);
-    EXPECT_TRUE(s.line);
+    EXPECT_TRUE(s.is_line_field);
     EXPECT_EQ(s.length, 3);
   });
-  EXPECT_TRUE(scene->world.get<Cursor>(scene->cursor).visible);
+  EXPECT_TRUE(scene->entities.get<Cursor>(scene->cursor).visible);
   EXPECT_EQ(scene->quality, "error=2");
   EXPECT_EQ(scene->background.color.b, 1.0f);
 }
@@ -119,12 +119,12 @@ TEST(SceneFile, FilesResolveBesideTheScene) {
       "\"b\": {\"file\": \"b.raw\", \"shape\": [4, 5, 6], \"spacing\": [1, 2, 3], \"origin\": [0, 0, -1], \"type\": \"uint16\"}}}");
   const auto scene = read_scene(folder / "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto& a = scene->world.get<FieldSource>(find_field(*scene, "a")).file;
+  const auto& a = scene->entities.get<FieldSource>(find_field(*scene, "a")).file;
   EXPECT_EQ(a->path, folder / "a.vdb");
   EXPECT_EQ(a->grid, "density");
-  EXPECT_FALSE(a->valid_grid.has_value());
-  EXPECT_TRUE(scene->world.get<FieldSource>(find_field(*scene, "c")).file->valid_required);
-  const auto& raw = scene->world.get<FieldSource>(find_field(*scene, "b")).file->raw;
+  EXPECT_FALSE(a->mask_grid.has_value());
+  EXPECT_TRUE(scene->entities.get<FieldSource>(find_field(*scene, "c")).file->mask_required);
+  const auto& raw = scene->entities.get<FieldSource>(find_field(*scene, "b")).file->raw;
   ASSERT_TRUE(raw.has_value());
   EXPECT_EQ(raw->shape, (field::Index3{4, 5, 6}));
   EXPECT_EQ(raw->spacing, Vec3(1, 2, 3));
@@ -161,11 +161,11 @@ TEST(SceneFile, Overrides) {
   const std::string text = "{\"fields\": {\"a\": {\"file\": \"missing.vdb\", \"grid\": \"density\"}}}";
   const auto scene = parse_scene(text, "scene.json", {{"a", folder / "new.vdb", ""}, {"b", folder / "new.vdb", "speed"}});
   ASSERT_TRUE(scene) << scene.error().message;
-  const FieldSource& a = scene->world.get<FieldSource>(find_field(*scene, "a"));
+  const FieldSource& a = scene->entities.get<FieldSource>(find_field(*scene, "a"));
   EXPECT_EQ(a.file->path, folder / "new.vdb");
   EXPECT_EQ(a.file->grid, "density");
-  EXPECT_TRUE(a.grid_is_a_wish);
-  EXPECT_EQ(scene->world.get<FieldSource>(find_field(*scene, "b")).file->grid, "speed");
+  EXPECT_TRUE(a.grid_is_optional);
+  EXPECT_EQ(scene->entities.get<FieldSource>(find_field(*scene, "b")).file->grid, "speed");
   EXPECT_EQ(error_of("{}", {{"a", "gone.vdb", ""}}),
             "--field a=gone.vdb: file \"gone.vdb\" does not exist; a data file (.vdb, .nii, .vti, .vtu, .nrrd, .npy, ..; catena info "
             "--formats lists all) was expected");
@@ -209,7 +209,7 @@ TEST(SceneFile, Workspaces) {
   const auto scene = parse_scene(with("\"workspace\": {\"rotation\": [0, -1, 0, 1, 0, 0, 0, 0, 1]}"), "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->workspace.rotation * Vec3(1, 0, 0), Vec3(0, 1, 0));
-  EXPECT_FALSE(scene->workspace.given);
+  EXPECT_FALSE(scene->workspace.is_explicit);
 }
 
 TEST(SceneFile, TransferFunctions) {
@@ -222,7 +222,7 @@ TEST(SceneFile, TransferFunctions) {
   expect_error(volume("\"opacity\": [[0, -0.1]]"), 3, {"0 <= a <= 1 was expected"});
   const auto opaque = parse_scene(volume("\"opacity\": [[0, 0], [1, 1]]"), "scene.json");
   ASSERT_TRUE(opaque);
-  opaque->world.each<Volume>(
+  opaque->entities.each<Volume>(
       [](Entity, const Volume& v) { EXPECT_EQ(v.transfer.opacities.back().alpha, TransferFunction::OpacityPoint::kMaxAlpha); });
   expect_error(volume("\"opacity\": [[1, 0], [0, 0]]"), 3, {"strictly rising values were expected"});
   expect_error(volume("\"opacity\": [[1, 0]], \"opacity_unit\": 0"), 3, {"\"opacity_unit\" is 0", "> 0 was expected"});

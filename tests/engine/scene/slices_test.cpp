@@ -18,12 +18,12 @@ TEST(SceneSlices, EveryKeyIsRead) {
     {"field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.2}}])");
   ASSERT_TRUE(scene) << scene.error().message;
   std::vector<Slice> slices;
-  scene->world.each<Slice>([&](Entity, const Slice& slice) { slices.push_back(slice); });
+  scene->entities.each<Slice>([&](Entity, const Slice& slice) { slices.push_back(slice); });
   ASSERT_EQ(slices.size(), 3u);
   EXPECT_EQ(slices[0].point, Vec3(1, 2, 3));
   EXPECT_EQ(slices[0].normal, Vec3(0, 1, -2));
-  EXPECT_EQ(slices[0].shown.named.map, "inferno");
-  EXPECT_EQ(slices[0].shown.named.range->at(1), 2);
+  EXPECT_EQ(slices[0].color_by.named.map, "inferno");
+  EXPECT_EQ(slices[0].color_by.named.range->at(1), 2);
   EXPECT_EQ(slices[0].opacity, 0.25);
   EXPECT_TRUE(slices[0].lit);
   EXPECT_FALSE(slices[0].clipped);
@@ -32,7 +32,7 @@ TEST(SceneSlices, EveryKeyIsRead) {
   EXPECT_EQ(slices[0].contours->width, 2.5);
   EXPECT_EQ(slices[1].point, Vec3(0, -0.5, 0));
   EXPECT_EQ(slices[1].normal, Vec3(0, 1, 0));
-  EXPECT_EQ(slices[1].shown.colors.size(), 2u);
+  EXPECT_EQ(slices[1].color_by.colors.size(), 2u);
   EXPECT_EQ(slices[1].contours->count, 7);
   // what is not said: opaque, unlit, clipped, lines of one pixel
   EXPECT_EQ(slices[2].opacity, 1);
@@ -79,17 +79,17 @@ TEST(SceneMeshes, LooksAreReadAndChecked) {
   };
   const auto scene = mesh(R"(, "opacity": 0.5, "shading": "smooth", "edges": true, "color_by": "s", "color": "plasma", "range": [0, 2])");
   ASSERT_TRUE(scene) << scene.error().message;
-  scene->world.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
+  scene->entities.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
     EXPECT_EQ(surface.opacity, 0.5);
-    EXPECT_TRUE(surface.smooth && surface.edges);
+    EXPECT_TRUE(surface.smooth_shading && surface.show_edges);
     ASSERT_TRUE(surface.color_by);
     EXPECT_EQ(surface.color_by->named.map, "plasma");
   });
   const auto plain = mesh("");
   ASSERT_TRUE(plain);
-  plain->world.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
+  plain->entities.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
     EXPECT_EQ(surface.opacity, 1);
-    EXPECT_FALSE(surface.smooth || surface.edges || surface.color_by);
+    EXPECT_FALSE(surface.smooth_shading || surface.show_edges || surface.color_by);
   });
   for (const auto& [keys, expected] : {std::pair{R"(, "opacity": -0.1)", "opacity"},
                                        {R"(, "opacity": 1.1)", "a number from 0 to 1 was expected"},

@@ -13,29 +13,29 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(Stereo, EveryWordIsRead) {
-  for (int i = 0; i < kStereoModes; ++i) {
+  for (int i = 0; i < kStereoModeCount; ++i) {
     const auto mode = static_cast<StereoMode>(i);
-    EXPECT_EQ(stereo_mode(stereo_word(mode)), mode);
-    const auto scene = parse_scene("{\"stereo\": {\"mode\": \"" + std::string(stereo_word(mode)) + "\"}}", "scene.json");
+    EXPECT_EQ(parse_stereo_mode(to_string(mode)), mode);
+    const auto scene = parse_scene("{\"stereo\": {\"mode\": \"" + std::string(to_string(mode)) + "\"}}", "scene.json");
     ASSERT_TRUE(scene) << scene.error().message;
     EXPECT_EQ(scene->stereo.mode, mode);
-    EXPECT_NE(stereo_words().find(stereo_word(mode)), std::string::npos);
+    EXPECT_NE(stereo_mode_names().find(to_string(mode)), std::string::npos);
   }
-  EXPECT_FALSE(stereo_mode("both"));
+  EXPECT_FALSE(parse_stereo_mode("both"));
 }
 
 TEST(Stereo, KeysAndDefaults) {
   const auto plain = parse_scene("{}", "scene.json");
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->stereo.mode, StereoMode::mono);
-  EXPECT_FALSE(plain->stereo.separation || plain->stereo.zero_parallax || plain->stereo.swap);
+  EXPECT_FALSE(plain->stereo.separation || plain->stereo.zero_parallax || plain->stereo.swap_eyes);
   const auto scene = parse_scene(
       R"({"stereo": {"mode": "side-by-side", "separation": 0.25, "zero_parallax": 4, "views": 5, "swap": true}})", "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->stereo.separation, 0.25);
   EXPECT_EQ(scene->stereo.zero_parallax, 4);
-  EXPECT_EQ(scene->stereo.views, 5);
-  EXPECT_TRUE(scene->stereo.swap);
+  EXPECT_EQ(scene->stereo.view_count, 5);
+  EXPECT_TRUE(scene->stereo.swap_eyes);
 }
 
 TEST(Stereo, WrongKeysAreErrorsWithTheirLine) {

@@ -10,11 +10,11 @@ TEST(SceneUnits, FieldsAndLengthsHaveTheWordsThatTheSceneStates) {
     "fields": {"v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}}})",
                                  "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(unit_length(*scene), "mm");
+  EXPECT_EQ(length_unit(*scene), "mm");
   EXPECT_EQ(unit_of(*scene, find_field(*scene, "v")), "m/s");
   EXPECT_EQ(unit_of(*scene, find_field(*scene, "d")), "");
-  EXPECT_EQ(after_number("m/s"), " m/s");
-  EXPECT_EQ(after_number(""), "");
+  EXPECT_EQ(unit_suffix("m/s"), " m/s");
+  EXPECT_EQ(unit_suffix(""), "");
 }
 
 TEST(SceneUnits, WhatIsNoWordIsSaidWithItsLine) {

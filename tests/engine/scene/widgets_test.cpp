@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "engine/scene/lines.h"
 #include "engine/scene/prepare.h"
+#include "engine/scene/streamlines.h"
 
 namespace catena::scene {
 namespace widgets_test {
@@ -20,17 +20,17 @@ Scene parsed(const std::string& rest) {
   return scene ? std::move(*scene) : Scene{};
 }
 
-Widget& get(Scene& scene, const char* name) { return scene.world.get<Widget>(find_widget(scene, name)); }
+Widget& get(Scene& scene, const char* name) { return scene.entities.get<Widget>(find_widget(scene, name)); }
 
 /// The state in which every widget is where it is now.
-exchange::HapticState state_of(Scene& scene) {
-  exchange::HapticState state;
-  scene.world.each<Widget>([&](Entity, Widget& w) { state.widgets[static_cast<std::size_t>(state.widget_count++)] = w.state; });
+HapticState state_of(Scene& scene) {
+  HapticState state;
+  scene.entities.each<Widget>([&](Entity, Widget& w) { state.widgets[static_cast<std::size_t>(state.widget_count++)] = w.report; });
   return state;
 }
 
 WidgetChanges driven(Scene& scene) {
-  auto changes = drive_widgets(scene);
+  auto changes = propagate_widgets(scene);
   EXPECT_TRUE(changes) << (changes ? "" : changes.error().message);
   return changes ? *changes : WidgetChanges{};
 }
@@ -38,14 +38,14 @@ WidgetChanges driven(Scene& scene) {
 template <class T>
 T& only(Scene& scene) {
   T* found = nullptr;
-  scene.world.each<T>([&](Entity, T& item) { found = &item; });
+  scene.entities.each<T>([&](Entity, T& item) { found = &item; });
   return *found;
 }
 
 template <class T>
 Entity only_entity(Scene& scene) {
   Entity found;
-  scene.world.each<T>([&](Entity e, T&) { found = e; });
+  scene.entities.each<T>([&](Entity e, T&) { found = e; });
   return found;
 }
 
@@ -55,7 +55,7 @@ const std::string kSeed = R"({"name": "p", "type": "seed", "position": [1, 0, 0]
 TEST(Widgets, SizesFollowWhatIsDrawn) {
   const auto spec_of = [](const std::string& rest, const char* name) {
     Scene scene = parsed(rest);
-    const auto spec = use_widget(scene, find_widget(scene, name));
+    const auto spec = resolve_widget(scene, find_widget(scene, name));
     EXPECT_TRUE(spec) << (spec ? "" : spec.error().message);
     return spec ? *spec : widget::Spec{};
   };
@@ -64,30 +64,30 @@ TEST(Widgets, SizesFollowWhatIsDrawn) {
   EXPECT_DOUBLE_EQ(alone.radius, 0.48);
   EXPECT_DOUBLE_EQ(alone.snap, 0.08);
   EXPECT_DOUBLE_EQ(alone.release, 0.2);
-  EXPECT_DOUBLE_EQ(alone.near, 0.08);
+  EXPECT_DOUBLE_EQ(alone.grab_distance, 0.08);
   EXPECT_DOUBLE_EQ(alone.step, 0.08);
   const widget::Spec handle = spec_of("\"widgets\": [" + kSeed + "]", "p");
   EXPECT_DOUBLE_EQ(handle.radius, 0.048);
-  EXPECT_DOUBLE_EQ(handle.near, 0.12);
+  EXPECT_DOUBLE_EQ(handle.grab_distance, 0.12);
   EXPECT_DOUBLE_EQ(handle.step, 0.08);
   // a file's domain: ten times as long
   Scene scene = parsed("\"widgets\": [" + kCut + R"(, "near": 0.5}], "volumes": [{"field": "s"}])");
   const Entity s = find_field(scene, "s");
-  const auto grid = field::try_sample_on_grid(*use_field(scene, s, {}), 5, -20, 20);
+  const auto grid = field::try_sample_on_grid(*resolve_field(scene, s, {}), 5, -20, 20);
   ASSERT_TRUE(grid);
-  scene.world.get<FieldSource>(s).loaded = *grid;
-  const auto large = use_widget(scene, find_widget(scene, "cut"));
+  scene.entities.get<FieldSource>(s).loaded = *grid;
+  const auto large = resolve_widget(scene, find_widget(scene, "cut"));
   ASSERT_TRUE(large) << large.error().message;
   EXPECT_EQ(large->length, 40);
   EXPECT_DOUBLE_EQ(large->radius, 4.8);
-  EXPECT_EQ(large->near, 0.5) << "stated";
+  EXPECT_EQ(large->grab_distance, 0.5) << "stated";
 }
 
 TEST(Widgets, ReleaseStaysBeyondSnapWhereOneIsStated) {
   Scene scene =
       parsed("\"widgets\": [" + kCut + R"(, "snap": 3}, {"name": "b", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 0, 0],
     "release": 0.01}])");
-  const auto a = use_widget(scene, find_widget(scene, "cut")), b = use_widget(scene, find_widget(scene, "b"));
+  const auto a = resolve_widget(scene, find_widget(scene, "cut")), b = resolve_widget(scene, find_widget(scene, "b"));
   ASSERT_TRUE(a && b);
   EXPECT_DOUBLE_EQ(a->release, 7.5);
   EXPECT_DOUBLE_EQ(b->snap, 0.004);
@@ -95,14 +95,14 @@ TEST(Widgets, ReleaseStaysBeyondSnapWhereOneIsStated) {
 
 TEST(Widgets, AnIsolevelHasTheFieldsValue) {
   Scene scene = parsed(R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [0.3, 0, 0.4]}])");
-  const auto spec = use_widget(scene, find_widget(scene, "l"));
+  const auto spec = resolve_widget(scene, find_widget(scene, "l"));
   ASSERT_TRUE(spec) << spec.error().message;
   EXPECT_TRUE(spec->field);
-  EXPECT_DOUBLE_EQ(get(scene, "l").state.value, 0.5);
+  EXPECT_DOUBLE_EQ(get(scene, "l").report.value, 0.5);
   for (const auto& [item, expected] :
        {std::pair{R"({"name": "l", "type": "isolevel", "field": "v", "position": [0, 0, 0]})", "a scalar field was expected"}}) {
     Scene wrong = parsed("\n\"widgets\": [" + std::string(item) + "]");
-    const auto failed = use_widget(wrong, find_widget(wrong, "l"));
+    const auto failed = resolve_widget(wrong, find_widget(wrong, "l"));
     ASSERT_FALSE(failed);
     EXPECT_NE(failed.error().message.find(expected), std::string::npos) << failed.error().message;
     EXPECT_EQ(failed.error().message.find("s.json:2: "), 0u) << failed.error().message;
@@ -114,8 +114,8 @@ TEST(Widgets, AnIsolevelStandsWithinItsField) {
       "\n"
       R"("widgets": [{"name": "l", "type": "isolevel", "field": "s", "position": [5, 0, 0]}])");
   const Entity s = find_field(scene, "s");
-  scene.world.get<FieldSource>(s).loaded = *field::try_sample_on_grid(*use_field(scene, s, {}), 5, -1, 1);
-  const auto spec = use_widget(scene, find_widget(scene, "l"));
+  scene.entities.get<FieldSource>(s).loaded = *field::try_sample_on_grid(*resolve_field(scene, s, {}), 5, -1, 1);
+  const auto spec = resolve_widget(scene, find_widget(scene, "l"));
   ASSERT_FALSE(spec);
   EXPECT_NE(spec.error().message.find("outside the domain"), std::string::npos) << spec.error().message;
   EXPECT_EQ(spec.error().message.find("s.json:2: "), 0u) << spec.error().message;
@@ -123,30 +123,30 @@ TEST(Widgets, AnIsolevelStandsWithinItsField) {
 
 TEST(Widgets, ReportsAreTakenOver) {
   Scene scene = parsed("\"widgets\": [" + kCut + "}, " + kSeed + "]");
-  exchange::HapticState state = state_of(scene);
+  HapticState state = state_of(scene);
   EXPECT_FALSE(update_widgets(scene, state)) << "nothing new";
   state.widgets[1].pose.points[0] = {1, 2, 3};
   state.widgets[1].mode = widget::Mode::drag;
-  state.widgets[1].held = 6;
+  state.widgets[1].active_planes = 6;
   EXPECT_TRUE(update_widgets(scene, state));
-  EXPECT_EQ(get(scene, "p").state.pose.points[0], Vec3(1, 2, 3));
-  EXPECT_EQ(get(scene, "p").state.mode, widget::Mode::drag);
-  EXPECT_EQ(get(scene, "p").state.held, 6);
+  EXPECT_EQ(get(scene, "p").report.pose.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(get(scene, "p").report.mode, widget::Mode::drag);
+  EXPECT_EQ(get(scene, "p").report.active_planes, 6);
   EXPECT_EQ(get(scene, "p").spec.pose.points[0], Vec3(1, 0, 0)) << "as stated";
   // a mode alone is taken over, too
-  state.widgets[1].mode = widget::Mode::away;
+  state.widgets[1].mode = widget::Mode::idle;
   EXPECT_FALSE(update_widgets(scene, state));
-  EXPECT_EQ(get(scene, "p").state.mode, widget::Mode::away);
+  EXPECT_EQ(get(scene, "p").report.mode, widget::Mode::idle);
 }
 
 TEST(Widgets, ReportsThatCannotBeMeantAreIgnored) {
   Scene scene = parsed("\"widgets\": [" + kSeed + "]");
-  const widget::Report before = get(scene, "p").state;
+  const widget::Report before = get(scene, "p").report;
   const auto ignored = [&](auto&& change) {
-    exchange::HapticState state = state_of(scene);
+    HapticState state = state_of(scene);
     state.widgets[0].pose.points[0].z = 1;
     change(state);
-    return !update_widgets(scene, state) && get(scene, "p").state.pose == before.pose;
+    return !update_widgets(scene, state) && get(scene, "p").report.pose == before.pose;
   };
   EXPECT_TRUE(ignored([](auto& s) { s.widgets[0].pose.points[0].x = kNaN; }));
   EXPECT_TRUE(ignored([](auto& s) { s.widgets[0].pose.orientation.y = kNaN; }));
@@ -160,23 +160,23 @@ TEST(Widgets, ReportsThatCannotBeMeantAreIgnored) {
 
 TEST(Widgets, APoseThatIsSetOutlivesOlderReports) {
   Scene scene = parsed("\"widgets\": [" + kSeed + R"(, {"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 1, 1]}])");
-  exchange::HapticState old = state_of(scene);
+  HapticState old = state_of(scene);
   old.widgets[0].pose.points[0] = {9, 9, 9};
   const Entity p = find_widget(scene, "p");
-  ASSERT_TRUE(set_widget_pose(scene, p, {{Vec3(2, 0, 0), Vec3(kNaN)}, kNoRotation})) << "what the kind does not read does not count";
+  ASSERT_TRUE(set_widget_pose(scene, p, {{Vec3(2, 0, 0), Vec3(kNaN)}, kIdentityRotation})) << "what the kind does not read does not count";
   EXPECT_EQ(get(scene, "p").spec.revision, 1u);
   EXPECT_EQ(get(scene, "p").spec.pose.points[0], Vec3(2, 0, 0));
   EXPECT_FALSE(update_widgets(scene, old)) << "of the tick that has not yet heard of it";
-  EXPECT_EQ(get(scene, "p").state.pose.points[0], Vec3(2, 0, 0));
-  exchange::HapticState fresh = old;
+  EXPECT_EQ(get(scene, "p").report.pose.points[0], Vec3(2, 0, 0));
+  HapticState fresh = old;
   fresh.widgets[0].revision = 1;
   EXPECT_TRUE(update_widgets(scene, fresh));
-  EXPECT_EQ(get(scene, "p").state.pose.points[0], Vec3(9, 9, 9));
+  EXPECT_EQ(get(scene, "p").report.pose.points[0], Vec3(9, 9, 9));
   // refused, and nothing changes
-  EXPECT_FALSE(set_widget_pose(scene, p, {{Vec3(kNaN), Vec3(0)}, kNoRotation}));
+  EXPECT_FALSE(set_widget_pose(scene, p, {{Vec3(kNaN), Vec3(0)}, kIdentityRotation}));
   EXPECT_EQ(get(scene, "p").spec.revision, 1u);
-  EXPECT_FALSE(set_widget_pose(scene, find_widget(scene, "b"), {{Vec3(0), Vec3(1, 0, 1)}, kNoRotation}));
-  EXPECT_TRUE(set_widget_pose(scene, find_widget(scene, "b"), {{Vec3(0), Vec3(1, 2, 1)}, kNoRotation}));
+  EXPECT_FALSE(set_widget_pose(scene, find_widget(scene, "b"), {{Vec3(0), Vec3(1, 0, 1)}, kIdentityRotation}));
+  EXPECT_TRUE(set_widget_pose(scene, find_widget(scene, "b"), {{Vec3(0), Vec3(1, 2, 1)}, kIdentityRotation}));
 }
 
 TEST(Widgets, SlicesAndClipsFollow) {
@@ -184,8 +184,8 @@ TEST(Widgets, SlicesAndClipsFollow) {
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut"}, {"widget": "b"}])");
   driven(scene);
   EXPECT_FALSE(driven(scene).any()) << "nothing moved";
-  exchange::HapticState state = state_of(scene);
-  state.widgets[0].pose = {{Vec3(0.1, 0.2, 0.3), Vec3(0)}, rotation_of({0.5 * 3.14159265358979323846, 0, 0})};
+  HapticState state = state_of(scene);
+  state.widgets[0].pose = {{Vec3(0.1, 0.2, 0.3), Vec3(0)}, rotation_from_vector({0.5 * 3.14159265358979323846, 0, 0})};
   ASSERT_TRUE(update_widgets(scene, state));
   WidgetChanges changes = driven(scene);
   EXPECT_TRUE(changes.slices && changes.clip);
@@ -193,15 +193,15 @@ TEST(Widgets, SlicesAndClipsFollow) {
   const Slice& slice = only<Slice>(scene);
   EXPECT_EQ(slice.point, Vec3(0.1, 0.2, 0.3));
   EXPECT_LT(norm(slice.normal - Vec3(0, -1, 0)), 1e-15) << "a quarter turn about x carries z to -y";
-  EXPECT_EQ(scene.clip[0].point, slice.point);
-  EXPECT_EQ(scene.clip[0].normal, slice.normal);
-  EXPECT_EQ(scene.clip[1].point, Vec3(-1, -1, -1)) << "the box has not moved";
+  EXPECT_EQ(scene.clip_planes[0].point, slice.point);
+  EXPECT_EQ(scene.clip_planes[0].normal, slice.normal);
+  EXPECT_EQ(scene.clip_planes[1].point, Vec3(-1, -1, -1)) << "the box has not moved";
   state.widgets[1].pose.points[1].x = 0.5;
   ASSERT_TRUE(update_widgets(scene, state));
   changes = driven(scene);
   EXPECT_TRUE(changes.clip && !changes.slices);
-  EXPECT_EQ(scene.clip[2].point.x, 0.5);
-  EXPECT_EQ(scene.clip[2].normal, Vec3(-1, 0, 0));
+  EXPECT_EQ(scene.clip_planes[2].point.x, 0.5);
+  EXPECT_EQ(scene.clip_planes[2].normal, Vec3(-1, 0, 0));
 }
 
 TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
@@ -209,7 +209,7 @@ TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
     "isosurfaces": [{"field": "s", "level": {"widget": "l"}}])");
   EXPECT_TRUE(driven(scene).levels);
   EXPECT_EQ(only<Isosurface>(scene).level, 0.5);
-  exchange::HapticState state = state_of(scene);
+  HapticState state = state_of(scene);
   state.widgets[0].value = 0.75;
   state.widgets[0].pose.points[0] = {0.75, 0, 0};
   ASSERT_TRUE(update_widgets(scene, state));
@@ -219,12 +219,12 @@ TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
   state.widgets[0].value = 99;
   ASSERT_TRUE(update_widgets(scene, state));
   driven(scene);
-  const auto grid = use_drawn_field(scene, find_field(scene, "s"), {});
+  const auto grid = resolve_rendered_field(scene, find_field(scene, "s"), {});
   ASSERT_TRUE(grid);
   EXPECT_EQ(only<Isosurface>(scene).level, grid->scalar->max_value());
   EXPECT_TRUE(check_level(*grid->scalar, only<Isosurface>(scene).level, {}));
   // set from a panel, the value follows the place
-  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "l"), {{Vec3(0, 0.25, 0), Vec3(0)}, kNoRotation}));
+  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "l"), {{Vec3(0, 0.25, 0), Vec3(0)}, kIdentityRotation}));
   EXPECT_TRUE(driven(scene).levels);
   EXPECT_EQ(only<Isosurface>(scene).level, 0.25);
 }
@@ -232,10 +232,10 @@ TEST(Widgets, LevelsFollowWithinTheFieldsValues) {
 TEST(Widgets, LinksThatNameOneAreToldOf) {
   Scene scene = parsed("\"widgets\": [" + kCut + "}, " + kSeed + R"(],
     "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": {"widget": "p"}}])");
-  EXPECT_TRUE(is_felt(scene, find_widget(scene, "p")));
-  EXPECT_FALSE(is_felt(scene, find_widget(scene, "cut")));
+  EXPECT_TRUE(has_haptic_link(scene, find_widget(scene, "p")));
+  EXPECT_FALSE(has_haptic_link(scene, find_widget(scene, "cut")));
   EXPECT_FALSE(driven(scene).links) << "the program is made of the pose as stated";
-  exchange::HapticState state = state_of(scene);
+  HapticState state = state_of(scene);
   state.widgets[0].pose.points[0].x = 0.1;
   ASSERT_TRUE(update_widgets(scene, state));
   EXPECT_FALSE(driven(scene).links) << "no link names the plane";
@@ -249,20 +249,20 @@ TEST(Widgets, LinesFollowTheirSeeds) {
   Scene scene = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}}])");
   driven(scene);
   const Entity set = only_entity<StreamlineSet>(scene);
-  const auto first = use_lines(scene, set), again = use_lines(scene, set);
+  const auto first = resolve_lines(scene, set), again = resolve_lines(scene, set);
   ASSERT_TRUE(first && again);
   ASSERT_EQ(first->size(), 1u);
   EXPECT_EQ(*first, *again) << "traced once";
-  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "p"), {{Vec3(0.5, 0, 0), Vec3(0)}, kNoRotation}));
+  ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "p"), {{Vec3(0.5, 0, 0), Vec3(0)}, kIdentityRotation}));
   EXPECT_TRUE(driven(scene).seeds);
-  const auto moved = use_lines(scene, set);
+  const auto moved = resolve_lines(scene, set);
   ASSERT_TRUE(moved);
   ASSERT_EQ(moved->size(), 1u);
   EXPECT_NE(moved->front(), first->front());
   EXPECT_NEAR(moved->front()->period(), 3.14159265358979, 1e-6) << "the circle through the seed";
   // what is felt is what is seen
-  const field::AnyField v = *use_field(scene, find_field(scene, "v"), {});
-  EXPECT_EQ(*use_curve(scene, {v.vector.get()}, {0.5, 0, 0}, {}), moved->front());
+  const field::AnyField v = *resolve_field(scene, find_field(scene, "v"), {});
+  EXPECT_EQ(*resolve_streamline(scene, {v.vector.get()}, {0.5, 0, 0}, {}), moved->front());
 }
 
 TEST(Widgets, SeedsThatStartNothingAreLeftOut) {
@@ -270,7 +270,7 @@ TEST(Widgets, SeedsThatStartNothingAreLeftOut) {
   Scene scene = parsed(R"("widgets": [{"name": "r", "type": "rake", "from": [-1, 0, 0], "to": [1, 0, 0]},)" + kSeed + R"(],
     "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])");
   driven(scene);
-  const auto rake = use_lines(scene, only_entity<StreamlineSet>(scene));
+  const auto rake = resolve_lines(scene, only_entity<StreamlineSet>(scene));
   ASSERT_TRUE(rake) << rake.error().message;
   EXPECT_EQ(rake->size(), 2u);
 
@@ -279,18 +279,18 @@ TEST(Widgets, SeedsThatStartNothingAreLeftOut) {
     Scene grid = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}, "tolerance": )" +
                         tolerance + "}]");
     const Entity v = find_field(grid, "v");
-    grid.world.get<FieldSource>(v).loaded = *field::try_sample_on_grid(*use_field(grid, v, {}), 9, -2, 2);
+    grid.entities.get<FieldSource>(v).loaded = *field::try_sample_on_grid(*resolve_field(grid, v, {}), 9, -2, 2);
     driven(grid);
     const Entity set = only_entity<StreamlineSet>(grid);
-    EXPECT_EQ(use_lines(grid, set)->size(), 1u);
-    ASSERT_TRUE(set_widget_pose(grid, find_widget(grid, "p"), {{Vec3(7, 0, 0), Vec3(0)}, kNoRotation}));
+    EXPECT_EQ(resolve_lines(grid, set)->size(), 1u);
+    ASSERT_TRUE(set_widget_pose(grid, find_widget(grid, "p"), {{Vec3(7, 0, 0), Vec3(0)}, kIdentityRotation}));
     driven(grid);
-    const auto out = use_lines(grid, set);
+    const auto out = resolve_lines(grid, set);
     ASSERT_TRUE(out) << out.error().message;
     EXPECT_TRUE(out->empty());
-    ASSERT_TRUE(set_widget_pose(grid, find_widget(grid, "p"), {{Vec3(0, 1, 0), Vec3(0)}, kNoRotation}));
+    ASSERT_TRUE(set_widget_pose(grid, find_widget(grid, "p"), {{Vec3(0, 1, 0), Vec3(0)}, kIdentityRotation}));
     driven(grid);
-    EXPECT_EQ(use_lines(grid, set)->size(), 1u) << "and back";
+    EXPECT_EQ(resolve_lines(grid, set)->size(), 1u) << "and back";
   }
 }
 
@@ -298,24 +298,24 @@ TEST(Widgets, CurvesOfMovingSeedsAreLetGo) {
   Scene scene = parsed("\"widgets\": [" + kSeed + R"(], "streamlines": [{"field": "v", "seeds": {"widget": "p"}},
     {"field": "v", "seeds": [[0.3, 0, 0], [0.4, 0, 0]]}])");
   std::vector<Entity> sets;
-  scene.world.each<StreamlineSet>([&](Entity e, StreamlineSet&) { sets.push_back(e); });
+  scene.entities.each<StreamlineSet>([&](Entity e, StreamlineSet&) { sets.push_back(e); });
   driven(scene);
-  const auto fixed = use_lines(scene, sets[1]);
+  const auto fixed = resolve_lines(scene, sets[1]);
   ASSERT_TRUE(fixed);
-  const field::AnyField v = *use_field(scene, find_field(scene, "v"), {});
-  const auto felt = *use_curve(scene, {v.vector.get()}, {0.7, 0, 0}, {});
+  const field::AnyField v = *resolve_field(scene, find_field(scene, "v"), {});
+  const auto felt = *resolve_streamline(scene, {v.vector.get()}, {0.7, 0, 0}, {});
   for (int i = 0; i < 500; ++i) {
-    ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "p"), {{Vec3(0.5 + 0.001 * i, 0, 0), Vec3(0)}, kNoRotation}));
+    ASSERT_TRUE(set_widget_pose(scene, find_widget(scene, "p"), {{Vec3(0.5 + 0.001 * i, 0, 0), Vec3(0)}, kIdentityRotation}));
     driven(scene);
-    ASSERT_TRUE(use_lines(scene, sets[0]));
-    ASSERT_LE(scene.curves.size(), 4u) << "two fixed ones, the felt one, the moving one";
+    ASSERT_TRUE(resolve_lines(scene, sets[0]));
+    ASSERT_LE(scene.traced_curves.size(), 4u) << "two fixed ones, the felt one, the moving one";
   }
-  EXPECT_EQ(*use_lines(scene, sets[1]), *fixed);
-  EXPECT_EQ(*use_curve(scene, {v.vector.get()}, {0.7, 0, 0}, {}), felt) << "what a link holds stays";
+  EXPECT_EQ(*resolve_lines(scene, sets[1]), *fixed);
+  EXPECT_EQ(*resolve_streamline(scene, {v.vector.get()}, {0.7, 0, 0}, {}), felt) << "what a link holds stays";
   // a link whose seed moves, with nothing drawn
   for (int i = 0; i < 500; ++i) {
-    ASSERT_TRUE(use_curve(scene, {v.vector.get()}, {0.1 + 0.001 * i, 0.2, 0}, {}));
-    ASSERT_LE(scene.curves.size(), 64u);
+    ASSERT_TRUE(resolve_streamline(scene, {v.vector.get()}, {0.1 + 0.001 * i, 0.2, 0}, {}));
+    ASSERT_LE(scene.traced_curves.size(), 64u);
   }
 }
 
@@ -323,7 +323,7 @@ TEST(Widgets, FixedSeedsKeepTheirErrors) {
   Scene scene = parsed(
       "\n"
       R"("streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0, 0, 0]]}])");
-  const auto lines = use_lines(scene, only_entity<StreamlineSet>(scene));
+  const auto lines = resolve_lines(scene, only_entity<StreamlineSet>(scene));
   ASSERT_FALSE(lines);
   EXPECT_EQ(lines.error().message.find("s.json:2: "), 0u) << lines.error().message;
 }

@@ -3,35 +3,35 @@
 
 #include "engine/scene/scene.h"
 #include "engine/study/trial_scene.h"
-#include "haptics/extract/extract.h"
-#include "tests/engine/study/study_rig.h"
+#include "haptics/build/build_program.h"
+#include "tests/engine/study/study_fixture.h"
 
 namespace read_study_test {
 
 using namespace catena;
-using study_rig::small_text;
+using study_rig::small_study_text;
 
 TEST(ReadStudy, ThePapersDesign) {
-  const study::Study& study = study_rig::paper();
+  const study::Study& study = study_rig::paper_study();
   ASSERT_EQ(study.tasks.size(), 4u);
   ASSERT_EQ(study.conditions.size(), 2u);
   EXPECT_EQ(study.conditions[0].name, "iso");
   EXPECT_EQ(study.subjects * static_cast<int>(study.tasks.size() * study.conditions.size()) * study.trials, 1600);
   int rejected_at_s = 0;
   for (const study::Task& task : study.tasks) {
-    EXPECT_EQ(task.limits.ends_s, 30);
-    EXPECT_EQ(task.limits.told_s, 10);
+    EXPECT_EQ(task.limits.timeout_s, 30);
+    EXPECT_EQ(task.limits.announced_limit_s, 10);
     EXPECT_EQ(task.limits.reject_error_mm, task.dimensions == 2 ? 30 : 100);
     EXPECT_EQ(task.rules.path_mm, 100);
     rejected_at_s += static_cast<int>(task.limits.reject_time_s);
-    EXPECT_NEAR(task.mm(task.world(37)), 37, 1e-12);
+    EXPECT_NEAR(task.mm_from_world(task.world_from_mm(37)), 37, 1e-12);
   }
   EXPECT_EQ(rejected_at_s, 10 + 15 + 12 + 17);
   EXPECT_EQ(study.tasks[0].target, study::Target::circle);
   EXPECT_EQ(study.tasks[2].target, study::Target::plane);
-  EXPECT_EQ(study.tasks[0].view, Vec3(0, 0, -1));
+  EXPECT_EQ(study.tasks[0].view_direction, Vec3(0, 0, -1));
   // the speed's spread as it was measured, split over subjects and trials
-  EXPECT_NEAR(std::hypot(study.model.speed_spread_subject, study.model.speed_spread_trial), 0.45, 1e-12);
+  EXPECT_NEAR(std::hypot(study.human_model.speed_spread_subject, study.human_model.speed_spread_trial), 0.45, 1e-12);
 }
 
 struct Mistake {
@@ -60,7 +60,7 @@ TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
       {R"("training": 1,)", R"("training": 1, "questionnaire": [{"name": "q"}],)", "\"question\""},
   };
   for (const Mistake& mistake : mistakes) {
-    const auto read = study::parse_study(small_text(mistake.from, mistake.to), "small.json");
+    const auto read = study::parse_study(small_study_text(mistake.from, mistake.to), "small.json");
     ASSERT_FALSE(read) << mistake.to;
     const std::string& said = read.error().message;
     EXPECT_NE(said.find(mistake.says), std::string::npos) << mistake.to << "\n" << said;
@@ -72,14 +72,14 @@ TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
 /// A mistake in a template or a chain shows when a trial is made: it is told with the line of the study file.
 TEST(ReadStudy, MistakesOfScenesAndChainsHaveTheLineOfTheStudyFile) {
   const auto said = [](const char* from, const char* to, int condition) -> std::string {
-    const study::Study study = study::parse_study(small_text(from, to), "small.json").value();
+    const study::Study study = study::parse_study(small_study_text(from, to), "small.json").value();
     study::Trial trial;
     trial.condition = condition;
     study::Stimulus stimulus;
     stimulus.path = {Vec3(0.0), Vec3(1.0)};
-    auto scene = scene::parse_scene(study::trial_scene(study, trial, stimulus), study.path);
+    auto scene = scene::parse_scene(study::make_trial_scene(study, trial, stimulus), study.path);
     if (!scene) return scene.error().message;
-    const auto program = haptics::extract_program(*scene);
+    const auto program = haptics::build_program(*scene);
     return program ? "" : program.error().message;
   };
   EXPECT_EQ(said(R"("training": 1)", R"("training": 1)", 1), "");
@@ -115,11 +115,11 @@ TEST(ReadStudy, AChainMayStandBeforeTheTasksAndCommentsAnywhere) {
                                  .value();
   study::Stimulus stimulus;
   stimulus.end = Vec3(1, 2, 3);
-  const std::string text = study::trial_scene(study, {}, stimulus);
+  const std::string text = study::make_trial_scene(study, {}, stimulus);
   EXPECT_NE(text.find(R"("position": [1, 2, 3])"), std::string::npos) << text;
   auto scene = scene::parse_scene(text, study.path);
   ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_EQ(haptics::extract_program(*scene).value()->links.size(), 1u);
+  EXPECT_EQ(haptics::build_program(*scene).value()->links.size(), 1u);
 }
 
 }  // namespace read_study_test

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/study/session.h"
-#include "tests/engine/study/study_rig.h"
+#include "tests/engine/study/study_fixture.h"
 
 namespace session_test {
 
@@ -23,7 +23,7 @@ TEST(Session, TasksAreALatinSquareBalancedForWhatComesBefore) {
     const int rows = count % 2 == 0 ? count : 2 * count;
     std::map<std::pair<int, int>, int> at_place, follows;
     for (int row = 0; row < rows; ++row) {
-      const std::vector<int> order = study::latin_row(count, row);
+      const std::vector<int> order = study::latin_square_row(count, row);
       ASSERT_EQ(order.size(), static_cast<std::size_t>(count));
       for (int i = 0; i < count; ++i) {
         ++at_place[{i, order[static_cast<std::size_t>(i)]}];
@@ -40,7 +40,7 @@ TEST(Session, TasksAreALatinSquareBalancedForWhatComesBefore) {
 TEST(Session, TwentyFourSubjectsDoEveryTaskAtEveryPlaceEquallyOften) {
   std::map<std::pair<std::size_t, int>, int> at_place;
   for (int subject = 1; subject <= 24; ++subject) {
-    const std::vector<int> order = order_of(study::session_of(study_rig::paper(), subject));
+    const std::vector<int> order = order_of(study::make_session(study_rig::paper_study(), subject));
     ASSERT_EQ(order.size(), 4u) << "a task is one block";
     for (std::size_t i = 0; i < order.size(); ++i) ++at_place[{i, order[i]}];
   }
@@ -49,11 +49,11 @@ TEST(Session, TwentyFourSubjectsDoEveryTaskAtEveryPlaceEquallyOften) {
 }
 
 TEST(Session, ConditionsAreInterleavedOnTheSameStimuli) {
-  const study::Study& study = study_rig::paper();
+  const study::Study& study = study_rig::paper_study();
   std::set<int> seeds;
   int changes = 0, neighbours = 0, first_of_pair[2] = {0, 0};
   for (int subject = 1; subject <= 24; ++subject) {
-    const std::vector<study::Trial> session = study::session_of(study, subject);
+    const std::vector<study::Trial> session = study::make_session(study, subject);
     ASSERT_EQ(session.size(), 4u * 2u * 12u);
     std::map<int, int> counted;
     std::map<std::tuple<int, int>, std::vector<study::Trial>> pairs;
@@ -91,14 +91,14 @@ TEST(Session, ConditionsAreInterleavedOnTheSameStimuli) {
 }
 
 TEST(Session, FollowsFromTheSubjectsNumberAndTheStudysSeed) {
-  const study::Study& study = study_rig::paper();
-  EXPECT_EQ(study::session_of(study, 7), study::session_of(study, 7));
-  EXPECT_NE(study::session_of(study, 7), study::session_of(study, 11));
+  const study::Study& study = study_rig::paper_study();
+  EXPECT_EQ(study::make_session(study, 7), study::make_session(study, 7));
+  EXPECT_NE(study::make_session(study, 7), study::make_session(study, 11));
   study::Study other = study;
   other.seed += 1;
-  EXPECT_NE(study::session_of(study, 7)[0].seed, study::session_of(other, 7)[0].seed);
+  EXPECT_NE(study::make_session(study, 7)[0].seed, study::make_session(other, 7)[0].seed);
   // written down: another machine draws the same
-  EXPECT_EQ(study::session_of(study, 1)[0].seed, 936779463);
+  EXPECT_EQ(study::make_session(study, 1)[0].seed, 936779463);
 }
 
 }  // namespace session_test

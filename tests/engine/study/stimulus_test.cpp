@@ -7,7 +7,7 @@
 #include "engine/scene/scene.h"
 #include "engine/study/session.h"
 #include "engine/study/trial_scene.h"
-#include "tests/engine/study/study_rig.h"
+#include "tests/engine/study/study_fixture.h"
 
 namespace stimulus_test {
 
@@ -17,8 +17,8 @@ constexpr int kSeeds = 200;
 constexpr std::size_t kFine = 1500;  ///< steps, three times as fine as the path that is made
 
 field::AnyField field_of(const study::Task& task, int seed) {
-  auto scene = scene::parse_scene(study::field_scene(study_rig::paper(), task, seed), "field.json");
-  return scene::use_field(*scene, task.field, task.where).value();
+  auto scene = scene::parse_scene(study::make_field_scene(study_rig::paper_study(), task, seed), "field.json");
+  return scene::resolve_field(*scene, task.field, task.where).value();
 }
 
 /// By arc length, at a fixed step; `way` 1 downstream, -1 upstream.
@@ -49,19 +49,19 @@ double distance_to(const std::vector<Vec3>& line, const Vec3& p) {
 const std::vector<study::Stimulus>& stimuli(std::size_t task) {
   static std::array<std::vector<study::Stimulus>, 4> made;
   if (made[task].empty()) {
-    study::StimulusMaker maker(study_rig::paper());
-    for (int seed = 0; seed < kSeeds; ++seed) made[task].push_back(maker.make(static_cast<int>(task), 1000 * seed).value());
+    study::StimulusGenerator maker(study_rig::paper_study());
+    for (int seed = 0; seed < kSeeds; ++seed) made[task].push_back(maker.generate(static_cast<int>(task), 1000 * seed).value());
   }
   return made[task];
 }
 
-class Rules : public testing::TestWithParam<std::size_t> {
+class StimulusGeneration : public testing::TestWithParam<std::size_t> {
  protected:
-  const study::Task& task() const { return study_rig::paper().tasks[GetParam()]; }
+  const study::Task& task() const { return study_rig::paper_study().tasks[GetParam()]; }
 };
 
-TEST_P(Rules, EveryPathIsAStreamlineOfTheSameLength) {
-  const double length = task().world(100);
+TEST_P(StimulusGeneration, EveryPathIsAStreamlineOfTheSameLength) {
+  const double length = task().world_from_mm(100);
   for (const study::Stimulus& s : stimuli(GetParam())) {
     const field::AnyField field = field_of(task(), s.seed);
     const std::vector<Vec3> path = walk(*field.vector, s.start, length, 512);
@@ -75,26 +75,26 @@ TEST_P(Rules, EveryPathIsAStreamlineOfTheSameLength) {
       // the circle through three places
       const Vec3 a = path[i - 4] - path[i], b = path[i + 4] - path[i];
       const double bend = 2 * norm(cross(a, b)) / (norm(a) * norm(b) * norm(b - a));
-      ASSERT_LT(bend * task().world(task().rules.bend_mm), 1.02) << s.seed << " at " << i;
+      ASSERT_LT(bend * task().world_from_mm(task().rules.min_curvature_radius_mm), 1.02) << s.seed << " at " << i;
     }
     EXPECT_LE(max_abs(s.start), 1 + 1e-12) << "in the middle half of the box";
   }
 }
 
-TEST_P(Rules, TheStartIsNotOnAGlobalStreamline) {
+TEST_P(StimulusGeneration, TheStartIsNotOnAGlobalStreamline) {
   for (std::size_t k = 0; k < kSeeds; k += 4) {
     const study::Stimulus& s = stimuli(GetParam())[k];
     const field::AnyField field = field_of(task(), s.seed);
-    EXPECT_EQ(s.lines.size(), static_cast<std::size_t>(task().rules.lines));
-    for (const Vec3& seed : s.lines)
+    EXPECT_EQ(s.context_points.size(), static_cast<std::size_t>(task().rules.context_streamlines));
+    for (const Vec3& seed : s.context_points)
       for (const double way : {1.0, -1.0}) {
-        const double off = distance_to(walk(*field.vector, seed, s.line_length, 150, way), s.start);
-        ASSERT_GT(task().mm(off), task().rules.clearance_mm - 0.05) << s.seed;
+        const double off = distance_to(walk(*field.vector, seed, s.context_length, 150, way), s.start);
+        ASSERT_GT(task().mm_from_world(off), task().rules.clearance_mm - 0.05) << s.seed;
       }
   }
 }
 
-class AdvectionRules : public Rules {};
+class AdvectionRules : public StimulusGeneration {};
 
 TEST_P(AdvectionRules, ATargetIsMetAtThePathsEndFirstAndNotTooFlat) {
   const double crossing = std::sin(task().rules.crossing_deg * std::numbers::pi / 180);
@@ -114,12 +114,12 @@ TEST_P(AdvectionRules, ATargetIsMetAtThePathsEndFirstAndNotTooFlat) {
   }
 }
 
-TEST_P(Rules, PathsLieInThePicturePlaneOrMostlyAlongIt) {
+TEST_P(StimulusGeneration, PathsLieInThePicturePlaneOrMostlyAlongIt) {
   for (const study::Stimulus& s : stimuli(GetParam())) {
     double seen = 0;
     for (std::size_t i = 1; i < s.path.size(); ++i) {
       const Vec3 way = s.path[i] - s.path[i - 1];
-      const double depth = dot(way, task().view);
+      const double depth = dot(way, task().view_direction);
       ASSERT_TRUE(task().dimensions == 3 || std::fabs(s.path[i].z) < 1e-12);
       seen += std::sqrt(std::max(0.0, dot(way, way) - depth * depth));
     }
@@ -127,21 +127,21 @@ TEST_P(Rules, PathsLieInThePicturePlaneOrMostlyAlongIt) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<std::size_t>& of) { return study_rig::paper().tasks[of.param].name; }
-INSTANTIATE_TEST_SUITE_P(Tasks, Rules, testing::Values(0, 1, 2, 3), name_of);
+std::string name_of(const testing::TestParamInfo<std::size_t>& of) { return study_rig::paper_study().tasks[of.param].name; }
+INSTANTIATE_TEST_SUITE_P(Tasks, StimulusGeneration, testing::Values(0, 1, 2, 3), name_of);
 INSTANTIATE_TEST_SUITE_P(Tasks, AdvectionRules, testing::Values(0, 2), name_of);
 
 /// The share of the path that a line hides, by the angle between two rays from the eye.
 double hidden(const study::Task& task, const study::Stimulus& s, const std::vector<std::vector<Vec3>>& lines) {
   int behind = 0, all = 0;
   for (std::size_t i = 0; i < s.path.size(); i += 16, ++all) {
-    const Vec3 to_path = s.path[i] - task.eye;
+    const Vec3 to_path = s.path[i] - task.camera_position;
     bool is_hidden = false;
     for (const auto& line : lines)
       for (const Vec3& q : line) {
-        const Vec3 to_line = q - task.eye;
+        const Vec3 to_line = q - task.camera_position;
         const double off = norm(cross(direction(to_path), to_line));
-        is_hidden = is_hidden || (norm(to_line) < norm(to_path) - 0.06 && off < task.world(1.5));
+        is_hidden = is_hidden || (norm(to_line) < norm(to_path) - 0.06 && off < task.world_from_mm(1.5));
       }
     behind += is_hidden;
   }
@@ -149,49 +149,49 @@ double hidden(const study::Task& task, const study::Stimulus& s, const std::vect
 }
 
 TEST(Stimulus, LessIsHiddenWhereMoreStartsAreTried) {
-  study::Study study = study_rig::paper();
+  study::Study study = study_rig::paper_study();
   const study::Task& task = study.tasks[3];
   study::Study hasty = study;
   hasty.tasks[3].rules.candidates = 8;  // enough for a start, not for a choice
-  study::StimulusMaker careful_maker(study), hasty_maker(hasty);
+  study::StimulusGenerator careful_maker(study), hasty_maker(hasty);
   double careful_sum = 0, hasty_sum = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    const auto careful = careful_maker.make(3, 50 * seed), quick = hasty_maker.make(3, 50 * seed);
+    const auto careful = careful_maker.generate(3, 50 * seed), quick = hasty_maker.generate(3, 50 * seed);
     ASSERT_TRUE(careful && quick);
     const field::AnyField field = field_of(task, careful->seed);
     std::vector<std::vector<Vec3>> lines;
-    for (const Vec3& place : careful->lines)
-      for (const double way : {1.0, -1.0}) lines.push_back(walk(*field.vector, place, careful->line_length, 150, way));
-    EXPECT_NEAR(careful->hidden, hidden(task, *careful, lines), 0.1) << careful->seed;
-    careful_sum += careful->hidden;
-    hasty_sum += quick->hidden;
-    EXPECT_TRUE(careful->seed != quick->seed || careful->hidden <= quick->hidden) << careful->seed;
+    for (const Vec3& place : careful->context_points)
+      for (const double way : {1.0, -1.0}) lines.push_back(walk(*field.vector, place, careful->context_length, 150, way));
+    EXPECT_NEAR(careful->occluded_share, hidden(task, *careful, lines), 0.1) << careful->seed;
+    careful_sum += careful->occluded_share;
+    hasty_sum += quick->occluded_share;
+    EXPECT_TRUE(careful->seed != quick->seed || careful->occluded_share <= quick->occluded_share) << careful->seed;
   }
   EXPECT_LT(careful_sum, 0.5 * hasty_sum + 1e-9);
 }
 
 TEST(Stimulus, IsTheSameAgainAndFollowsTheSeed) {
-  study::StimulusMaker maker(study_rig::paper()), other(study_rig::paper());
-  const auto a = maker.make(2, 5), b = maker.make(2, 6), again = other.make(2, 5);
+  study::StimulusGenerator maker(study_rig::paper_study()), other(study_rig::paper_study());
+  const auto a = maker.generate(2, 5), b = maker.generate(2, 6), again = other.generate(2, 5);
   EXPECT_EQ(a->path, again->path);
   EXPECT_NE(a->start, b->start);
 }
 
 TEST(Stimulus, RulesThatNothingMeetsAreAnErrorWithTheirLine) {
   const study::Study study =
-      study::parse_study(study_rig::small_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "node")"),
-                         "small.json")
+      study::parse_study(
+          study_rig::small_study_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "node")"), "small.json")
           .value();
   study::Study long_path = study;
   long_path.tasks[0].rules.path_mm = 1000;
-  const auto made = study::StimulusMaker(long_path).make(0, 1);
+  const auto made = study::StimulusGenerator(long_path).generate(0, 1);
   ASSERT_FALSE(made);
   EXPECT_TRUE(made.error().message.starts_with("small.json:4: task \"trace\": no start")) << made.error().message;
-  const study::Study scalar =
-      study::parse_study(study_rig::small_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "sphere")"),
-                         "small.json")
-          .value();
-  EXPECT_NE(study::StimulusMaker(scalar).make(0, 1).error().message.find("scalar"), std::string::npos);
+  const study::Study scalar = study::parse_study(study_rig::small_study_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")",
+                                                                             R"("analytic": "sphere")"),
+                                                 "small.json")
+                                  .value();
+  EXPECT_NE(study::StimulusGenerator(scalar).generate(0, 1).error().message.find("scalar"), std::string::npos);
 }
 
 }  // namespace stimulus_test

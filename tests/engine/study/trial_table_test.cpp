@@ -3,23 +3,23 @@
 
 #include <filesystem>
 
-#include "engine/study/departures.h"
+#include "engine/study/protocol_deviations.h"
 #include "engine/study/trial_table.h"
-#include "tests/engine/study/study_rig.h"
+#include "tests/engine/study/study_fixture.h"
 
 namespace trial_table_test {
 
 using namespace catena;
 
-study::Row row(int subject, int index) {
-  study::Row r;
+study::TrialRow row(int subject, int index) {
+  study::TrialRow r;
   r.subject = subject;
   r.index = index;
   r.task = "trace";
   r.kind = "tracing";
   r.condition = "free";
   r.seed = 1 << 29;
-  r.by_target = index % 2 == 0;
+  r.reached_target = index % 2 == 0;
   r.time_s = 1.0 / 3;
   r.error_mm = 0.1 + index;
   r.end_mm = Vec3(1e-300, -2.5, 1e17);
@@ -27,14 +27,14 @@ study::Row row(int subject, int index) {
 }
 
 TEST(TrialTable, RowsReadBackToTheBit) {
-  const std::string text = study::table_header() + study::row_text(row(1, 0)) + study::row_text(row(1, 1));
+  const std::string text = study::table_header() + study::format_row(row(1, 0)) + study::format_row(row(1, 1));
   const auto rows = study::parse_rows(text, "t.csv");
   ASSERT_TRUE(rows) << rows.error().message;
-  EXPECT_EQ(*rows, (std::vector<study::Row>{row(1, 0), row(1, 1)}));
+  EXPECT_EQ(*rows, (std::vector<study::TrialRow>{row(1, 0), row(1, 1)}));
 }
 
 TEST(TrialTable, FaultsAreToldWithTheirLine) {
-  const std::string header = study::table_header(), good = study::row_text(row(1, 0));
+  const std::string header = study::table_header(), good = study::format_row(row(1, 0));
   const auto said = [](const std::string& text) {
     const auto rows = study::parse_rows(text, "t.csv");
     return rows ? std::string() : rows.error().message;
@@ -50,7 +50,7 @@ TEST(TrialTable, FaultsAreToldWithTheirLine) {
 TEST(TrialTable, EveryTornEndCostsTheLastLineAtMost) {
   const test::TemporaryFolder folder;
   const study::Study study = study_rig::small();
-  const auto data = study::DataFolder::open(folder / "d", study, study::Who::people);
+  const auto data = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
   ASSERT_TRUE(data);
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(data->append(row(4, i)));
   const std::string path = study::subject_file(folder / "d", 4), whole = test::read_file(path);
@@ -74,40 +74,40 @@ TEST(TrialTable, EveryTornEndCostsTheLastLineAtMost) {
   EXPECT_EQ(lines, 3u);
 }
 
-TEST(Departures, AreTheRowsThatTheDesignDoesNotHave) {
+TEST(ProtocolDeviations, AreTheRowsThatTheDesignDoesNotHave) {
   const study::Study study = study_rig::small();
-  std::vector<study::Row> rows;
+  std::vector<study::TrialRow> rows;
   for (const int subject : {1, 2, 3})
-    for (const study::Trial& trial : study::session_of(study, subject)) rows.push_back(study::row_of(study, trial, {}));
-  EXPECT_EQ(study::departures(study, rows), std::vector<std::string>{});
-  std::vector<study::Row> trained = rows;
-  std::erase_if(trained, [](const study::Row& r) { return r.training; });
-  EXPECT_EQ(study::departures(study, trained), std::vector<std::string>{}) << "a model does not train";
+    for (const study::Trial& trial : study::make_session(study, subject)) rows.push_back(study::make_row(study, trial, {}));
+  EXPECT_EQ(study::find_protocol_deviations(study, rows), std::vector<std::string>{});
+  std::vector<study::TrialRow> trained = rows;
+  std::erase_if(trained, [](const study::TrialRow& r) { return r.training; });
+  EXPECT_EQ(study::find_protocol_deviations(study, trained), std::vector<std::string>{}) << "a model does not train";
   rows.pop_back();
   rows[0].seed += 1;
   rows[1].condition = "other";
-  const std::vector<std::string> lines = study::departures(study, rows);
+  const std::vector<std::string> lines = study::find_protocol_deviations(study, rows);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_TRUE(lines[0].starts_with("subject 1, trial 0: seed is ")) << lines[0];
   EXPECT_TRUE(lines[1].starts_with("subject 1, trial 1: condition is other, by the design ")) << lines[1];
   EXPECT_TRUE(lines[2].starts_with("subject 3: ")) << lines[2];
-  for (study::Row& r : rows) r.block = 9;
-  EXPECT_TRUE(study::departures(study, rows)[3].starts_with("subject 1: so ")) << "a few, the rest counted";
+  for (study::TrialRow& r : rows) r.block = 9;
+  EXPECT_TRUE(study::find_protocol_deviations(study, rows)[3].starts_with("subject 1: so ")) << "a few, the rest counted";
 }
 
 TEST(TrialTable, AFolderHoldsOneStudy) {
   const test::TemporaryFolder folder;
   const study::Study study = study_rig::small();
   {
-    const auto first = study::DataFolder::open(folder / "d", study, study::Who::people);
+    const auto first = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
     ASSERT_TRUE(first);
-    const auto second = study::DataFolder::open(folder / "d", study, study::Who::people);
+    const auto second = study::DataFolder::open(folder / "d", study, study::ParticipantKind::people);
     ASSERT_FALSE(second) << "two at a time";
     EXPECT_NE(second.error().message.find("another session writes to it"), std::string::npos);
   }
   EXPECT_EQ(test::read_file(folder / "d/study.json"), study.text) << "verbatim";
-  const study::Study other = study::parse_study(study_rig::small_text("small", "other"), "other.json").value();
-  const auto refused = study::DataFolder::open(folder / "d", other, study::Who::people);
+  const study::Study other = study::parse_study(study_rig::small_study_text("small", "other"), "other.json").value();
+  const auto refused = study::DataFolder::open(folder / "d", other, study::ParticipantKind::people);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("another study"), std::string::npos);
   EXPECT_EQ(test::read_file(folder / "d/study.json"), study.text);
@@ -116,17 +116,17 @@ TEST(TrialTable, AFolderHoldsOneStudy) {
 TEST(TrialTable, PeopleAndModelsNeverShareAFolder) {
   const test::TemporaryFolder folder;
   const study::Study study = study_rig::small();
-  using study::Who;
+  using study::ParticipantKind;
   {
-    const auto people = study::DataFolder::open(folder / "p", study, Who::people);
+    const auto people = study::DataFolder::open(folder / "p", study, ParticipantKind::people);
     ASSERT_TRUE(people && people->append(row(1, 0)));
-    const auto model = study::DataFolder::open(folder / "m", study, Who::model);
+    const auto model = study::DataFolder::open(folder / "m", study, ParticipantKind::model);
     ASSERT_TRUE(model && model->append(row(1, 0)));
   }
   EXPECT_FALSE(study::is_simulated(folder / "p"));
   EXPECT_TRUE(study::is_simulated(folder / "m"));
-  const auto model = study::DataFolder::open(folder / "p", study, Who::model),
-             people = study::DataFolder::open(folder / "m", study, Who::people);
+  const auto model = study::DataFolder::open(folder / "p", study, ParticipantKind::model),
+             people = study::DataFolder::open(folder / "m", study, ParticipantKind::people);
   ASSERT_FALSE(model);
   EXPECT_NE(model.error().message.find("holds trials that people did"), std::string::npos);
   ASSERT_FALSE(people);
@@ -136,50 +136,50 @@ TEST(TrialTable, PeopleAndModelsNeverShareAFolder) {
 
 TEST(TrialTable, FilesThatAreNotASubjectsAreToldOrRefused) {
   const test::TemporaryFolder folder;
-  const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::Who::people);
+  const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::ParticipantKind::people);
   ASSERT_TRUE(data && data->append(row(1, 0)) && data->append(row(2, 0)));
   const std::string subjects = folder / "d/subjects/";
   test::write_file(subjects + "001 (copy).csv", "");
   test::write_file(subjects + "0004.csv", "");
   test::write_file(subjects + "003.csv", "");
-  auto table = study::read_table(folder / "d");
+  auto table = study::read_trial_table(folder / "d");
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows.size(), 2u);
   EXPECT_EQ(table->notes.size(), 3u);
   std::filesystem::rename(subjects + "002.csv", subjects + "003.csv");
-  const auto other = study::read_table(folder / "d");
+  const auto other = study::read_trial_table(folder / "d");
   ASSERT_FALSE(other);
   EXPECT_TRUE(other.error().message.ends_with("003.csv:2: is a trial of subject 2; of 3 was expected")) << other.error().message;
   std::filesystem::remove(subjects + "003.csv");
   std::filesystem::create_symlink("nowhere.csv", subjects + "003.csv");
-  EXPECT_FALSE(study::read_table(folder / "d")) << "a link that leads nowhere";
+  EXPECT_FALSE(study::read_trial_table(folder / "d")) << "a link that leads nowhere";
 }
 
 TEST(TrialTable, IsReadFromAllSubjectsAndFromTheTableAlone) {
   const test::TemporaryFolder folder;
-  const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::Who::people);
+  const auto data = study::DataFolder::open(folder / "d", study_rig::small(), study::ParticipantKind::people);
   ASSERT_TRUE(data);
   for (const int subject : {2, 1, 1000, 11}) ASSERT_TRUE(data->append(row(subject, 0)));
-  const auto loose = study::read_table(folder / "d");
+  const auto loose = study::read_trial_table(folder / "d");
   ASSERT_TRUE(loose);
   EXPECT_EQ(loose->rows.size(), 4u);
   EXPECT_EQ(loose->rows.back().subject, 1000) << "by number, not by name";
   ASSERT_TRUE(data->write_table());
-  EXPECT_TRUE(study::read_table(folder / "d")->notes.empty());
+  EXPECT_TRUE(study::read_trial_table(folder / "d")->notes.empty());
   // a session that came later counts before its rows are in the table, and one that is torn does not hinder
   ASSERT_TRUE(data->append(row(11, 1)));
   const std::string torn = test::read_file(study::subject_file(folder / "d", 1)) + "1,1,tra";
   test::write_file(study::subject_file(folder / "d", 1), torn);
-  const auto newer = study::read_table(folder / "d");
+  const auto newer = study::read_trial_table(folder / "d");
   ASSERT_TRUE(newer);
   EXPECT_EQ(newer->notes.size(), 2u) << "torn, and another table";
   EXPECT_EQ(newer->rows.size(), 5u);
   EXPECT_EQ(test::read_file(study::subject_file(folder / "d", 1)), torn) << "who reads writes nothing";
   std::filesystem::remove_all(folder / "d/subjects");
-  const auto table = study::read_table(folder / "d");
+  const auto table = study::read_trial_table(folder / "d");
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows, loose->rows);
-  EXPECT_FALSE(study::read_table(folder / "nothing"));
+  EXPECT_FALSE(study::read_trial_table(folder / "nothing"));
 }
 
 }  // namespace trial_table_test

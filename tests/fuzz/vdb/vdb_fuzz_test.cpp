@@ -10,17 +10,17 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/memory_limit.h"
-#include "engine/field/load.h"
+#include "engine/io/volume/load_field.h"
 #include "tests/fuzz/mutate_bytes.h"
-#include "tests/fuzz/vdb/corpus.h"
+#include "tests/fuzz/vdb/vdb_corpus.h"
 #include "tests/support/support.h"
 
 namespace catena::field {
 namespace vdb_fuzz_test {
 
 using catena::test::Random;
-using catena::test::Specimen;
 using catena::test::TemporaryFolder;
+using catena::test::VdbFile;
 
 std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
   const char* text = std::getenv(variable);
@@ -69,7 +69,7 @@ void use(const AnyField& field, Random& random) {
     else
       field.vector->sample(world, cursor);
   }
-  EXPECT_TRUE(std::isfinite(field.get()->length()) && field.get()->length() >= 0) << "0: of one voxel";
+  EXPECT_TRUE(std::isfinite(field.get()->domain_length()) && field.get()->domain_length() >= 0) << "0: of one voxel";
 }
 
 /// One input through `load` and `describe`, or only the first.
@@ -87,7 +87,7 @@ void feed(const std::string& path, const std::string& bytes, bool describe_too, 
     expect_sentence(field.error().message, path, tally);
   }
   if (describe_too)
-    if (const auto grids = describe(path); !grids) expect_sentence(grids.error().message, path, tally);
+    if (const auto grids = describe_grids(path); !grids) expect_sentence(grids.error().message, path, tally);
   tally.longest_s = std::max(tally.longest_s, 1e-9 * static_cast<double>(now_ns() - start));
   ++tally.inputs;
 }
@@ -103,7 +103,7 @@ class VdbFuzz : public testing::Test {
 
 TEST_F(VdbFuzz, TheCorpusIsSound) {
   Random random{1};
-  for (const Specimen& specimen : catena::test::vdb_corpus()) {
+  for (const VdbFile& specimen : catena::test::vdb_corpus()) {
     feed(folder_ / "sound.vdb", specimen.bytes, true, random, tally_);
     EXPECT_EQ(tally_.ends["loaded"], tally_.inputs) << specimen.name << ": " << tally_.last;
   }
@@ -112,7 +112,7 @@ TEST_F(VdbFuzz, TheCorpusIsSound) {
 TEST_F(VdbFuzz, OneChangedByteOfACompressedFile) {
   Random random{2};
   const std::uint64_t stride = number_of("CATENA_FUZZ_STRIDE", 397);
-  for (const Specimen& specimen : catena::test::vdb_corpus()) {
+  for (const VdbFile& specimen : catena::test::vdb_corpus()) {
     if (specimen.name != "blosc" && specimen.name != "half-blosc") continue;
     for (std::size_t at = 0; at < specimen.bytes.size() && !HasFailure(); at += stride) {
       std::string bytes = specimen.bytes;
@@ -125,19 +125,19 @@ TEST_F(VdbFuzz, OneChangedByteOfACompressedFile) {
 }
 
 TEST_F(VdbFuzz, Mutations) {
-  catena::test::Inputs inputs(100, 1);
+  catena::test::FuzzInputs inputs(100, 1);
   Random& random = inputs.random;
   const char* keep = std::getenv("CATENA_FUZZ_KEEP");
-  const std::vector<Specimen> corpus = catena::test::vdb_corpus();
+  const std::vector<VdbFile> corpus = catena::test::vdb_corpus();
   while (inputs.next() && !HasFailure()) {
-    const Specimen& specimen = corpus[random.below(corpus.size())];
+    const VdbFile& specimen = corpus[random.below(corpus.size())];
     // half of the changes fall into the head and the tree's upper levels, where sizes are
     const std::size_t end = random.below(2) == 0 ? std::min<std::size_t>(specimen.bytes.size(), 1200) : specimen.bytes.size();
     const std::string bytes = catena::test::mutate_bytes(specimen.bytes, random, 3, 0, end);
     const std::string path = keep ? fmt::format("{}/{}.vdb", keep, inputs.count()) : folder_ / "mutated.vdb";
     feed(path, bytes, inputs.count() % 4 == 0, random, tally_);
   }
-  if (inputs.is_long()) tally_.print();
+  if (inputs.is_long_run()) tally_.print();
   EXPECT_GT(tally_.ends["loaded"], 0);
   EXPECT_LT(tally_.ends["loaded"], tally_.inputs);
 }
@@ -145,7 +145,7 @@ TEST_F(VdbFuzz, Mutations) {
 /// The number of the root's tiles, wherever it is: without a bound OpenVDB reads billions of them beyond the file's end.
 TEST_F(VdbFuzz, AFalseNumberOfTilesIsOneSentence) {
   Random random{3};
-  const std::string whole = catena::test::vdb_bytes({catena::test::bump<openvdb::FloatGrid>("density", 3)}, 0);
+  const std::string whole = catena::test::vdb_bytes({catena::test::make_bump_grid<openvdb::FloatGrid>("density", 3)}, 0);
   // one buffer, the background (0), the number of tiles (0) and of children (4)
   const std::string counts("\1\0\0\0\0\0\0\0\0\0\0\0\4\0\0\0", 16);
   const std::size_t at = whole.find(counts);

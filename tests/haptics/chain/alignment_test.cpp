@@ -19,14 +19,14 @@ using namespace catena::haptics;
 
 constexpr double kPi = 3.14159265358979323846;
 
-const test::Axis& constraint_of(const Link& link) { return static_cast<const test::Axis&>(*link.constraint); }
+const test::AxisConstraint& constraint_of(const Link& link) { return static_cast<const test::AxisConstraint&>(*link.constraint); }
 using test::axis_link;
 
 struct Hand {
-  Program program;
+  HapticProgram program;
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   void step(double t, const Quat& q, std::uint32_t buttons = 0, const Vec3& p = Vec3(0.0)) {
     tick(program, {t, p, buttons, q}, state, scratch, out);
   }
@@ -37,8 +37,9 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
 }
 
 std::vector<Quat> orientations() {
-  std::vector<Quat> out = {kNoRotation};
-  for (int k = 1; k < 40; ++k) out.push_back(rotation_of(Vec3(std::sin(1.7 * k), std::cos(2.3 * k), std::sin(0.9 * k + 1)) * (0.08 * k)));
+  std::vector<Quat> out = {kIdentityRotation};
+  for (int k = 1; k < 40; ++k)
+    out.push_back(rotation_from_vector(Vec3(std::sin(1.7 * k), std::cos(2.3 * k), std::sin(0.9 * k + 1)) * (0.08 * k)));
   return out;
 }
 
@@ -57,7 +58,7 @@ TEST(Alignment, TheToolsAxisEndsOnTheNormalAndTheTorqueIsKappaTimesTheAngle) {
         const double angle = std::atan2(norm(cross(before, goal)), dot(before, goal));
         expect_near(run.out.torque_nm, direction(cross(before, goal)) * (0.7 * angle), 1e-12);
         expect_near(run.out.links[0].torque_nm, run.out.torque_nm, 0);
-        EXPECT_EQ(run.out.links[0].status, Status::ok);
+        EXPECT_EQ(run.out.links[0].status, LinkStatus::ok);
       }
 }
 
@@ -66,7 +67,7 @@ TEST(Alignment, RotationalProxiesAreAChain) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 0.5, Align::Sign::same, {0, 0, 1}),
                        axis_link("b", {0, 1, 0}, 0.25, Align::Sign::same, {1, 0, 0}), test::hold_height("c", 0)};
-  const Quat q = rotation_of({0.2, 0.4, -0.3});
+  const Quat q = rotation_from_vector({0.2, 0.4, -0.3});
   run.step(0, q);
   const Quat q1 = run.out.links[0].orientation, q2 = run.out.links[1].orientation;
   expect_near(rotate(q1, {0, 0, 1}), {1, 0, 0}, 1e-12);
@@ -77,7 +78,7 @@ TEST(Alignment, RotationalProxiesAreAChain) {
 }
 
 TEST(Alignment, ItTurnsWithTheWorld) {
-  const Quat r = rotation_of({0.5, -1.2, 0.8});
+  const Quat r = rotation_from_vector({0.5, -1.2, 0.8});
   const Vec3 normal = direction({1, 2, 3});
   for (const Quat& q : orientations()) {
     Hand a, b;
@@ -96,11 +97,11 @@ TEST(Alignment, TheSpringGivesBackWhatItTook) {
     run.program.links = {axis_link("a", {0.2, -0.1, 1}, 0.7, sign)};
     const int n = 20000;
     double work = 0;
-    Quat last = kNoRotation;
+    Quat last = kIdentityRotation;
     Vec3 last_torque(0.0);
     for (int k = 0; k <= n; ++k) {
       const double u = 2 * kPi * k / n;
-      const Quat q = rotation_of(Vec3(far * std::sin(u), 0.8 * std::sin(2 * u), std::cos(u) - 1));
+      const Quat q = rotation_from_vector(Vec3(far * std::sin(u), 0.8 * std::sin(2 * u), std::cos(u) - 1));
       run.step(1e-3 * k, q);
       if (k > 0) work += 0.5 * dot(run.out.torque_nm + last_torque, rotation_vector(q * glm::conjugate(last)));
       last = q;
@@ -122,7 +123,7 @@ TEST(Alignment, ThroughHalfATurnTheTorqueStaysBounded) {
     const double most = sign == Align::Sign::either ? kPi / 2 : kPi;
     double largest = 0;
     for (int k = -1000; k <= 1000; ++k) {
-      run.step(1e-3 * (k + 1000), rotation_of({kPi + 1e-6 * k, 0, 0}));
+      run.step(1e-3 * (k + 1000), rotation_from_vector({kPi + 1e-6 * k, 0, 0}));
       ASSERT_TRUE(is_finite(run.out.torque_nm));
       ASSERT_LE(norm(run.out.torque_nm), most + 1e-12);
       largest = std::max(largest, norm(run.out.torque_nm));
@@ -139,14 +140,14 @@ TEST(Alignment, ThroughHalfATurnTheTorqueStaysBounded) {
 TEST(Alignment, WhereTheLinkDoesNotHoldTheToolIsFree) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1)};
-  const Quat q = rotation_of({0.2, 0.4, -0.3});
-  for (const Status status : {Status::free, Status::released, Status::no_surface}) {
-    constraint_of(run.program.links[0]).now = status;
+  const Quat q = rotation_from_vector({0.2, 0.4, -0.3});
+  for (const LinkStatus status : {LinkStatus::free, LinkStatus::released, LinkStatus::no_surface}) {
+    constraint_of(run.program.links[0]).reported_status = status;
     run.step(0, q);
     EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
     EXPECT_EQ(run.out.links[0].orientation, q);
   }
-  constraint_of(run.program.links[0]).now = Status::ok;
+  constraint_of(run.program.links[0]).reported_status = LinkStatus::ok;
   run.step(0, q);
   EXPECT_GT(norm(run.out.torque_nm), 0.1);
 }
@@ -154,22 +155,22 @@ TEST(Alignment, WhereTheLinkDoesNotHoldTheToolIsFree) {
 TEST(Alignment, TheAxisIsCountedAndAtTheCapTheLastOneIsKept) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same, {0, 0, 1}, Primitive::Kind::plane, 3)};
-  run.step(0, kNoRotation);
+  run.step(0, kIdentityRotation);
   EXPECT_EQ(run.out.links[0].evaluations, 3);
-  constraint_of(run.program.links[0]).spent = kEvaluationCap;
-  run.step(1e-3, kNoRotation);
-  EXPECT_EQ(run.out.links[0].evaluations, kEvaluationCap);
+  constraint_of(run.program.links[0]).evaluations_per_tick = kMaxEvaluations;
+  run.step(1e-3, kIdentityRotation);
+  EXPECT_EQ(run.out.links[0].evaluations, kMaxEvaluations);
   EXPECT_NEAR(norm(run.out.torque_nm), kPi / 2, 1e-12);
 }
 
 TEST(Alignment, WeightsRiseAndWhatASwitchTakesAwayFades) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same)};
-  run.program.links[0].on.button = 1;
+  run.program.links[0].active_when.button = 1;
   run.program.coupling.ramp_s = 0.01;
   double last = 0;
   for (int k = 0; k < 60; ++k) {
-    run.step(1e-3 * k, kNoRotation, k >= 10 && k < 30 ? 1 : 0);
+    run.step(1e-3 * k, kIdentityRotation, k >= 10 && k < 30 ? 1 : 0);
     const double now = norm(run.out.torque_nm);
     EXPECT_LE(std::fabs(now - last), kPi / 2 * 0.1 + 1e-12) << k;
     if (k == 14) {
@@ -192,14 +193,14 @@ TEST(Alignment, AProgramThatNoLongerAlignsFadesToo) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same)};
   run.program.coupling.ramp_s = 0.01;
-  for (int k = 0; k < 5; ++k) run.step(1e-3 * k, kNoRotation);
-  Program next = run.program;
+  for (int k = 0; k < 5; ++k) run.step(1e-3 * k, kIdentityRotation);
+  HapticProgram next = run.program;
   next.links.clear();
-  rebind(run.program, next, run.state, run.scratch);
+  rebind_program(run.program, next, run.state, run.scratch);
   run.program = next;
   double last = kPi / 2;
   for (int k = 5; k < 30; ++k) {
-    run.step(1e-3 * k, kNoRotation);
+    run.step(1e-3 * k, kIdentityRotation);
     EXPECT_LE(last - norm(run.out.torque_nm), kPi / 2 * 0.1 + 1e-12);
     last = norm(run.out.torque_nm);
   }
@@ -210,29 +211,29 @@ TEST(Alignment, TheDevicesLimitCapsTheStiffness) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 5, Align::Sign::same)};
   run.program.limits.max_rotational_stiffness_nm_per_rad = 0.4;
-  run.step(0, kNoRotation);
+  run.step(0, kIdentityRotation);
   EXPECT_NEAR(norm(run.out.torque_nm), 0.4 * kPi / 2, 1e-12);
 }
 
 TEST(Alignment, DampingActsAgainstTheTurning) {
   Hand run;
   run.program.coupling.rotational_damping_nms_per_rad = 2e-3;
-  run.step(0, kNoRotation);
+  run.step(0, kIdentityRotation);
   EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
-  run.step(1e-3, rotation_of({0, 0.01, 0}));
+  run.step(1e-3, rotation_from_vector({0, 0.01, 0}));
   expect_near(run.out.torque_nm, {0, -2e-3 * 0.01 / 1e-3, 0}, 1e-15);
-  run.step(2e-3, rotation_of({0, 0.01, 0}));
+  run.step(2e-3, rotation_from_vector({0, 0.01, 0}));
   expect_near(run.out.torque_nm, Vec3(0.0), 1e-15);
 }
 
 TEST(Alignment, AnOrientationThatIsNoNumberIsABadProbe) {
   Hand run;
   run.program.links = {axis_link("a", {1, 0, 0}, 1)};
-  run.step(0, rotation_of({0.3, 0, 0}));
+  run.step(0, rotation_from_vector({0.3, 0, 0}));
   run.step(1e-3, Quat(std::numeric_limits<double>::quiet_NaN(), 0, 0, 0));
   EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
   EXPECT_EQ(run.out.links[0].torque_nm, Vec3(0.0));
-  EXPECT_EQ(run.out.links[0].status, Status::bad_probe);
+  EXPECT_EQ(run.out.links[0].status, LinkStatus::bad_probe);
   run.step(2e-3, Quat(0, 0, 0, 0));  // nothing usable is no rotation
   EXPECT_TRUE(is_finite(run.out.torque_nm));
 }
@@ -241,10 +242,10 @@ TEST(Alignment, ForcesAndProxiesDoNotKnowOfIt) {
   const auto hash_of = [](bool aligns, bool turns) {
     Hand run;
     run.program.links = {test::hold_height("a", 1), axis_link("b", {1, 0, 0}, 1)};
-    run.program.links[1].align.on = aligns;
+    run.program.links[1].align.enabled = aligns;
     StateHash hash;
     for (int k = 0; k < 100; ++k) {
-      run.step(1e-3 * k, turns ? rotation_of({0.01 * k, 0.2, 0}) : kNoRotation, 0, {0.01 * k, 0, 0.3});
+      run.step(1e-3 * k, turns ? rotation_from_vector({0.01 * k, 0.2, 0}) : kIdentityRotation, 0, {0.01 * k, 0, 0.3});
       hash.add(run.out);
       if (!aligns && run.out.torque_nm != Vec3(0.0)) return std::uint64_t{0};
     }
@@ -260,11 +261,11 @@ TEST(Alignment, AllocatesNothingAndRepeatsToTheBit) {
   for (Hand* run : {&a, &b}) {
     run->program.links = {axis_link("a", {1, 0, 2}, 1), axis_link("b", {0, 1, 0}, 1, Align::Sign::same, {1, 0, 0}, Primitive::Kind::line)};
     run->program.coupling.rotational_damping_nms_per_rad = 1e-3;
-    run->step(0, kNoRotation);
+    run->step(0, kIdentityRotation);
   }
   for (int k = 1; k < 200; ++k) {
-    const Quat q = rotation_of({0.1 * k, 0.03 * k, -0.02 * k});
-    const AllocationGuard guard;
+    const Quat q = rotation_from_vector({0.1 * k, 0.03 * k, -0.02 * k});
+    const AllocationCounter guard;
     a.step(1e-3 * k, q);
     ASSERT_EQ(guard.count(), 0u);
     b.step(1e-3 * k, q);

@@ -5,7 +5,7 @@
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "haptics/chain/tick.h"
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace baseline_test {
@@ -30,10 +30,10 @@ struct Hand {
     t += 1e-3;
     return out.links[0].proxy;
   }
-  Program program;
+  HapticProgram program;
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   double t = 0;
 };
 
@@ -56,21 +56,21 @@ ConstraintPtr circle(double radius, const std::string& more = "") {
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << text(a) << " " << text(b); }
 
-TEST(Span, ShortestWayOntoAllAndWhatIsLeftFree) {
+TEST(PrimitiveSpan, ShortestWayOntoAllAndWhatIsLeftFree) {
   Random random(5);
   for (int i = 0; i < 1000; ++i) {
     const Primitive a{Primitive::Kind::plane, random.box(1), random.unit()}, b{Primitive::Kind::plane, random.box(1), random.unit()};
     const Vec3 from = random.box(2), axis = cross(a.axis, b.axis);
     if (norm(axis) < 0.1) continue;
-    Span span;
+    ConstrainedSubspace span;
     span.add(a, from);
     span.add(b, from);
-    const Vec3 p = from + span.move();
+    const Vec3 p = from + span.shortest_step();
     EXPECT_LE(distance_to(a, p) + distance_to(b, p), 1e-13);
-    EXPECT_NEAR(dot(axis, span.move()), 0, 1e-13);
-    EXPECT_LE(norm(span.across(axis) - axis), 1e-13);
+    EXPECT_NEAR(dot(axis, span.shortest_step()), 0, 1e-13);
+    EXPECT_LE(norm(span.project_free(axis) - axis), 1e-13);
     span.add({Primitive::Kind::line, random.box(1), random.unit()}, p);
-    EXPECT_EQ(span.across(Vec3(1, 2, 3)), Vec3(0.0));
+    EXPECT_EQ(span.project_free(Vec3(1, 2, 3)), Vec3(0.0));
   }
 }
 
@@ -85,8 +85,8 @@ TEST(Pipe, MeetsTwoPlanesAtTheNearestPointOfTheirLine) {
     hand.add(plane(o, m));
     const Vec3 x = random.box(2);
     expect_near(hand.at(x), o + along * dot(along, x - o), 1e-10);
-    EXPECT_EQ(hand.out.links[0].status, Status::ok);
-    EXPECT_TRUE(same_bits(hand.out.links[0].proxy, hand.out.links[1].proxy));
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
+    EXPECT_TRUE(bitwise_equal(hand.out.links[0].proxy, hand.out.links[1].proxy));
     expect_near(hand.out.force_n, 500.0 * (hand.out.links[0].proxy - x), 1e-9);
   }
 }
@@ -107,7 +107,7 @@ TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
       hand.add(line({0.5 * std::cos(a), 0, 0.5 * std::sin(a)}, {std::cos(a), 0, std::sin(a)}, more));
       hand.add(plane({0, 0, 0}, {0, 0, 1}));
       expect_near(hand.at({-0.03 * std::cos(a), 0.01, -0.03 * std::sin(a)}), Vec3(0.0), 1e-10 / std::sin(a));
-      EXPECT_EQ(hand.out.links[1].status, Status::ok) << degrees;
+      EXPECT_EQ(hand.out.links[1].status, LinkStatus::ok) << degrees;
     }
   }
 }
@@ -119,15 +119,15 @@ TEST(Pipe, MeetsCurvedConstraints) {
   hand.add(build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.8, 0, 0.3]})", fields));
   hand.add(plane({0.4, 0, 0}, {1, 0, 0}));
   expect_near(hand.at({0.5, 0.7, 0.2}), {0.4, std::sqrt(0.64 - 0.16), 0.3}, 1e-9);
-  EXPECT_EQ(hand.out.links[0].status, Status::ok);
-  for (const auto& sphere : {analytic("sphere"), sampled("sphere", 64)}) {
+  EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
+  for (const auto& sphere : {analytic_field("sphere"), sampled_field("sphere", 64)}) {
     Hand two(CouplingMethod::pipe);
     two.add(isosurface(sphere, 1));
     two.add(plane({0, 0, 0.6}, {0, 0, 1}));
     const Vec3 p = two.at({1, 0.5, 0.9});
     EXPECT_NEAR(p.z, 0.6, 1e-10);
     EXPECT_NEAR(norm(p), 1, sphere->is_grid() ? 1e-3 : 1e-10);
-    EXPECT_EQ(two.out.links[0].status, Status::ok);
+    EXPECT_EQ(two.out.links[0].status, LinkStatus::ok);
     EXPECT_LE(two.out.links[0].residual, 4e-11);
   }
 }
@@ -137,10 +137,10 @@ TEST(Pipe, HoldsOnTheEdgeOfTwoFreeSides) {
   hand.add(plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")")).one_sided = true;
   hand.add(plane({0, 0, 0}, {0, 1, 0}, R"(, "free": "above")")).one_sided = true;
   expect_near(hand.at({0.25, -0.5, -0.125}), {0.25, 0, 0}, 0);
-  EXPECT_EQ(hand.out.links[0].status, Status::ok);
-  EXPECT_EQ(hand.out.links[1].status, Status::ok);
+  EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::ok);
   expect_near(hand.at({0.25, 0.5, -0.125}), {0.25, 0.5, 0}, 0);
-  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::free);
   expect_near(hand.at({0.25, 0.5, 0.5}), {0.25, 0.5, 0.5}, 0);
 }
 
@@ -149,7 +149,7 @@ TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   hand.add(plane({0, 0, 1}, {0, 0, 1}));
   const Vec3 p = hand.at({0, 0, 3});
-  EXPECT_EQ(hand.out.links[0].status, Status::budget);
+  EXPECT_EQ(hand.out.links[0].status, LinkStatus::budget);
   EXPECT_TRUE(is_finite(p));
 }
 
@@ -162,19 +162,19 @@ TEST(Pipe, ReleasesByTheStretchOfTheOneProxyNotByTheDepth) {
   floor.one_sided = true;
   const auto along = [&](double s) { return Vec3(s * std::cos(a), 0, s * std::sin(a)); };
   expect_near(hand.at(along(0.1)), along(0.1), 1e-10);
-  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::free);
   EXPECT_EQ(hand.out.links[1].force_n, Vec3(0.0));
   expect_near(hand.at(along(-0.049)), Vec3(0.0), 1e-10);
-  EXPECT_EQ(hand.out.links[1].status, Status::ok);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::ok);
   EXPECT_TRUE(hand.out.links[1].active);
   expect_near(hand.at(along(-0.051)), along(-0.051), 1e-10);  // in the tick that reaches it, at half that depth
-  EXPECT_EQ(hand.out.links[1].status, Status::released);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::released);
   EXPECT_FALSE(hand.out.links[1].active);
   EXPECT_TRUE(hand.out.links[0].active);
   hand.at(along(-0.001));  // near is not enough for one side
-  EXPECT_EQ(hand.out.links[1].status, Status::released);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::released);
   hand.at(along(0.01));
-  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  EXPECT_EQ(hand.out.links[1].status, LinkStatus::free);
   EXPECT_TRUE(hand.out.links[1].active);
   expect_near(hand.at(along(-0.02)), Vec3(0.0), 1e-10);
 }
@@ -204,7 +204,7 @@ TEST(Balance, OfAnyPrimitivesIsTheMinimumOfTheEnergy) {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
     const Vec3 n = random.unit(), m = random.unit(), t = random.unit(), o = random.box(1), q = random.box(1), x = random.box(2);
-    const double k[] = {random.in(1, 1000), random.in(1, 1000), random.in(1, 1000)};
+    const double k[] = {random.uniform(1, 1000), random.uniform(1, 1000), random.uniform(1, 1000)};
     Hand hand(CouplingMethod::balance);
     hand.add(plane(o, n), k[0]);
     hand.add(plane(q, m), k[1]);
@@ -234,7 +234,7 @@ TEST(Closest, IsTheNearestOfTwoLines) {
   expect_near(hand.at({0.3, 0.1, 0.9}), {0, 0.1, 1}, 1e-12);
   EXPECT_EQ(hand.out.links[0].force_n, Vec3(0.0));
   EXPECT_NE(hand.out.links[1].force_n, Vec3(0.0));
-  EXPECT_TRUE(same_bits(hand.out.links[0].proxy, hand.out.links[1].proxy));
+  EXPECT_TRUE(bitwise_equal(hand.out.links[0].proxy, hand.out.links[1].proxy));
 }
 
 TEST(Linear, MovesAlongWhatThePrimitivesLeaveFree) {
@@ -266,7 +266,7 @@ TEST(Linear, DriftsOffACircleAsTheFollowModeDoes) {
 
 TEST(Linear, DriftsOffASphere) {
   Hand hand(CouplingMethod::linear);
-  hand.add(isosurface(analytic("sphere"), 1));
+  hand.add(isosurface(analytic_field("sphere"), 1));
   double worst = 0;
   for (int k = 0; k <= 100; ++k) worst = std::max(worst, std::fabs(norm(hand.at({std::cos(0.01 * k), std::sin(0.01 * k), 0.1})) - 1));
   EXPECT_GT(worst, 1e-4);
@@ -278,31 +278,31 @@ TEST(Baseline, TwoSidedLinksTakeHoldAgainNearOrAcross) {
     Hand hand(combination);
     hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6).release = 0.25;
     hand.at({0, 0, 0.2});
-    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
     expect_near(hand.at({0, 0, 0.3}), {0, 0, 0.3}, 0);
-    EXPECT_EQ(hand.out.links[0].status, Status::released);
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::released);
     hand.at({0, 0, 0.026});
-    EXPECT_EQ(hand.out.links[0].status, Status::released);
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::released);
     expect_near(hand.at({0, 0, 0.024}), Vec3(0.0), 2e-5);
-    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
     hand.at({0, 0, 0.3});
     expect_near(hand.at({0, 0, -0.1}), Vec3(0.0), 1e-4);
-    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
   }
 }
 
 TEST(Baseline, FreeSidesAreFree) {
   for (const CouplingMethod combination : kAll) {
     for (const ConstraintPtr& floor :
-         {plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"), isosurface(analytic("plane"), 0, R"(, "free": "above")")}) {
+         {plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"), isosurface(analytic_field("plane"), 0, R"(, "free": "above")")}) {
       Hand hand(combination);
       hand.add(floor, 1e6).one_sided = true;
-      EXPECT_TRUE(same_bits(hand.at({0.1, 0.2, 0.3}), Vec3(0.1, 0.2, 0.3)));
-      EXPECT_EQ(hand.out.links[0].status, Status::free);
+      EXPECT_TRUE(bitwise_equal(hand.at({0.1, 0.2, 0.3}), Vec3(0.1, 0.2, 0.3)));
+      EXPECT_EQ(hand.out.links[0].status, LinkStatus::free);
       EXPECT_EQ(hand.out.force_n, Vec3(0.0));
       expect_near(hand.at({0.1, 0.2, -0.3}), {0.1, 0.2, 0}, 2e-4);  // within the tick that crosses
-      EXPECT_EQ(hand.out.links[0].status, Status::ok);
-      EXPECT_TRUE(same_bits(hand.at({0.1, 0.2, 1e-9}), Vec3(0.1, 0.2, 1e-9)));
+      EXPECT_EQ(hand.out.links[0].status, LinkStatus::ok);
+      EXPECT_TRUE(bitwise_equal(hand.at({0.1, 0.2, 1e-9}), Vec3(0.1, 0.2, 1e-9)));
     }
   }
 }
@@ -311,13 +311,13 @@ TEST(Baseline, SwitchedLinksJoinAndLeave) {
   for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6);
-    hand.add(plane({0, 0, 0}, {0, 1, 0}), 1e6).on.button = 1;
+    hand.add(plane({0, 0, 0}, {0, 1, 0}), 1e6).active_when.button = 1;
     const bool nearest = combination == CouplingMethod::closest;
     expect_near(hand.at({1, 2, 3}), {1, 2, 0}, 2e-3);
     expect_near(hand.at({1, 2, 3}, 1), {1, 0, nearest ? 3.0 : 0.0}, 2e-3);
     expect_near(hand.at({1, 2, 3}, 0), {1, 2, 0}, 2e-3);
     EXPECT_FALSE(hand.out.links[1].active);
-    EXPECT_TRUE(same_bits(hand.out.links[0].proxy, hand.out.links[1].proxy));
+    EXPECT_TRUE(bitwise_equal(hand.out.links[0].proxy, hand.out.links[1].proxy));
   }
 }
 
@@ -325,7 +325,7 @@ TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
   Hand hand(CouplingMethod::pipe);
   hand.program.coupling.ramp_s = 0.02;
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
-  hand.add(plane({0, 0, 0}, {0, 1, 0})).on.button = 1;
+  hand.add(plane({0, 0, 0}, {0, 1, 0})).active_when.button = 1;
   hand.at({0, 0.01, 0.01});
   Vec3 last = hand.out.force_n;
   for (int k = 0; k < 60; ++k) {
@@ -339,17 +339,19 @@ TEST(Baseline, ARestingProbeRests) {
   for (const CouplingMethod combination : {CouplingMethod::pipe, CouplingMethod::closest}) {
     Hand hand(combination);
     hand.add(line({0.2, 0.1, 0}, {1, 0.4, 0.2}, R"(, "method": "rkf34")"));
-    hand.add(isosurface(sampled("sphere", 32), 0.9));
-    hand.add(plane({0.1, 0, 0}, {1, 0.3, 0})).on.button = 1;
+    hand.add(isosurface(sampled_field("sphere", 32), 0.9));
+    hand.add(plane({0.1, 0, 0}, {1, 0.3, 0})).active_when.button = 1;
     Random random(3);
     int budget = 0;
     for (int i = 0; i < 100; ++i) {
       const Vec3 x = random.box(1);
       Vec3 p = hand.at(x);
-      const auto out_of_budget = [&] { return hand.out.links[0].status == Status::budget || hand.out.links[1].status == Status::budget; };
+      const auto out_of_budget = [&] {
+        return hand.out.links[0].status == LinkStatus::budget || hand.out.links[1].status == LinkStatus::budget;
+      };
       for (int k = 0; k < 4 && out_of_budget(); ++k) p = hand.at(x);
       if (out_of_budget() && ++budget > 0) continue;
-      for (int k = 0; k < 3; ++k) EXPECT_TRUE(same_bits(hand.at(x), p)) << static_cast<int>(combination) << " " << i;
+      for (int k = 0; k < 3; ++k) EXPECT_TRUE(bitwise_equal(hand.at(x), p)) << static_cast<int>(combination) << " " << i;
     }
     EXPECT_LE(budget, 5);
   }
@@ -360,32 +362,32 @@ TEST(Baseline, StaysFiniteBoundedAndAllocatesNothing) {
   for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.add(circle(0.7, R"(, "method": "rkf34")"));
-    Link& shell = hand.add(isosurface(sampled("sphere", 32), 0.8, R"(, "free": "above")"));
+    Link& shell = hand.add(isosurface(sampled_field("sphere", 32), 0.8, R"(, "free": "above")"));
     shell.one_sided = true;
     shell.release = 0.3;
     hand.add(plane({0.1, 0, 0}, {1, 0.3, 0})).release = 0.5;
-    hand.add(line({0, 0, 0.2}, {1, 1, 1})).on.button = 2;
-    hand.add(point({0, 0, 0})).on.button = 3;
+    hand.add(line({0, 0, 0.2}, {1, 1, 1})).active_when.button = 2;
+    hand.add(point({0, 0, 0})).active_when.button = 3;
     hand.program.coupling.damping_ns_per_m = 1;
     hand.program.coupling.max_force_n = 8;
     Random random(7);
     for (int i = 0; i < 3000; ++i) {
       Vec3 x = random.box(1);
       if (i % 3 == 0) x = {wild[random.engine() % 11], -wild[random.engine() % 11], wild[random.engine() % 11]};
-      const AllocationGuard guard;
+      const AllocationCounter guard;
       hand.at(x, static_cast<std::uint32_t>(random.engine() & 7));
       ASSERT_EQ(guard.count(), 0u);
       for (const auto& link : {hand.out.links[0], hand.out.links[1], hand.out.links[2], hand.out.links[3], hand.out.links[4]}) {
         ASSERT_TRUE(is_finite(link.proxy)) << static_cast<int>(combination) << " " << i;
-        ASSERT_LE(link.evaluations, kEvaluationCap);
+        ASSERT_LE(link.evaluations, kMaxEvaluations);
       }
       ASSERT_TRUE(is_finite(hand.out.force_n));
       ASSERT_LE(norm(hand.out.force_n), 8 * (1 + 1e-12));
     }
     const Vec3 before = hand.out.links[0].proxy;
     hand.at({std::numeric_limits<double>::quiet_NaN(), 0, 0});
-    EXPECT_TRUE(same_bits(hand.out.links[0].proxy, before));
-    EXPECT_EQ(hand.out.links[0].status, Status::bad_probe);
+    EXPECT_TRUE(bitwise_equal(hand.out.links[0].proxy, before));
+    EXPECT_EQ(hand.out.links[0].status, LinkStatus::bad_probe);
     EXPECT_EQ(hand.out.force_n, Vec3(0.0));
   }
 }

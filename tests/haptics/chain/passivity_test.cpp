@@ -14,13 +14,13 @@ using test::hold_height;
 
 struct Hand {
   Hand() { program.coupling.max_force_n = 1e9; }
-  Program program;
+  HapticProgram program;
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   int ticks = 0;
-  const exchange::HapticState& to(const Vec3& p, std::uint32_t buttons = 0, Condition condition = Condition::normal) {
-    tick(program, {1e-3 * ticks++, p, buttons, kNoRotation, condition}, state, scratch, out);
+  const HapticState& to(const Vec3& p, std::uint32_t buttons = 0, TickCondition condition = TickCondition::normal) {
+    tick(program, {1e-3 * ticks++, p, buttons, kIdentityRotation, condition}, state, scratch, out);
     return out;
   }
 };
@@ -53,7 +53,7 @@ TEST(Passivity, ASpringBooksTheHalfSquareOfEachStep) {
   for (int k = 1; k <= 20; ++k) {
     hand.to({0, 0, -1e-3 * (k <= 10 ? k : 20 - k)});
     expected += 0.5 * 500 * 1e-6;
-    ASSERT_NEAR(hand.out.links[0].booked_j, expected, 1e-15) << k;
+    ASSERT_NEAR(hand.out.links[0].accounted_j, expected, 1e-15) << k;
     ASSERT_NEAR(hand.out.energy_j, hand.out.links[0].energy_j(1) - expected, 1e-15) << k;
   }
   // a device that takes as much by itself: nothing is missing
@@ -70,15 +70,15 @@ TEST(Passivity, ASpringBooksTheHalfSquareOfEachStep) {
 TEST(Passivity, WeightsThatRiseAreGrantedAsTheyRise) {
   Hand hand;
   hand.program.links = {hold_height("a", 0.01, 500)};
-  hand.program.links[0].on.button = 1;
+  hand.program.links[0].active_when.button = 1;
   hand.program.coupling.ramp_s = 0.01;
   hand.program.coupling.max_force_n = 1e9;
   hand.to(Vec3(0.0));
   hand.to(Vec3(0.0));
   for (int k = 1; k <= 10; ++k) {
     hand.to(Vec3(0.0), 1);
-    ASSERT_NEAR(hand.state.passivity.granted_j, 0.1 * k * 0.5 * 500 * 1e-4, 1e-12) << k;
-    ASSERT_NEAR(hand.out.energy_j, hand.state.passivity.granted_j, 1e-12) << k;
+    ASSERT_NEAR(hand.state.passivity.exempt_j, 0.1 * k * 0.5 * 500 * 1e-4, 1e-12) << k;
+    ASSERT_NEAR(hand.out.energy_j, hand.state.passivity.exempt_j, 1e-12) << k;
   }
 }
 
@@ -86,13 +86,13 @@ TEST(Passivity, ALostDeviceBooksNothingAndBeginsAnew) {
   Hand hand;
   hand.program.links = {hold_height("a", 0.01, 500)};
   hand.to(Vec3(0.0));
-  const double booked = hand.out.links[0].booked_j;
+  const double booked = hand.out.links[0].accounted_j;
   EXPECT_NEAR(booked, 0.5 * 500 * 1e-4, 1e-15);
-  hand.to({9, 9, 9}, 0, Condition::no_device);
+  hand.to({9, 9, 9}, 0, TickCondition::no_device);
   EXPECT_EQ(hand.out.force_n, Vec3(0.0));
   EXPECT_EQ(hand.out.energy_j, 0);
   hand.to({0, 0, -0.01});
-  EXPECT_NEAR(hand.out.links[0].booked_j, 4 * booked, 1e-14) << "no work was done on the way";
+  EXPECT_NEAR(hand.out.links[0].accounted_j, 4 * booked, 1e-14) << "no work was done on the way";
   EXPECT_NEAR(hand.out.energy_j, 4 * booked, 1e-14);
 }
 
@@ -102,15 +102,15 @@ TEST(Passivity, TheLedgerOfAKeptLinkGoesOnUnderANewProgram) {
   hand.to(Vec3(0.0));
   hand.to({0, 0, -0.01});
   hand.to({0, 0, -0.02});
-  const double booked = hand.out.links[0].booked_j;
-  Program next = hand.program;
+  const double booked = hand.out.links[0].accounted_j;
+  HapticProgram next = hand.program;
   next.links.insert(next.links.begin(), hold_height("new", 0, 500));
-  rebind(hand.program, next, hand.state, hand.scratch);
+  rebind_program(hand.program, next, hand.state, hand.scratch);
   hand.program = next;
   hand.to({0, 0, -0.02});
   // what is stored is with the new link now, which holds first; what the old one has given stays its own
-  EXPECT_NEAR(hand.out.links[1].booked_j, booked - 0.5 * 500 * 4e-4, 1e-14);
-  EXPECT_NEAR(hand.out.links[0].booked_j, 0.5 * 500 * 4e-4, 1e-14);
+  EXPECT_NEAR(hand.out.links[1].accounted_j, booked - 0.5 * 500 * 4e-4, 1e-14);
+  EXPECT_NEAR(hand.out.links[0].accounted_j, 0.5 * 500 * 4e-4, 1e-14);
 }
 
 TEST(Passivity, ASpringBeyondTheForceLimitStoresWhatItCanGiveBack) {
@@ -125,13 +125,13 @@ TEST(Passivity, ASpringBeyondTheForceLimitStoresWhatItCanGiveBack) {
 TEST(Passivity, PlacesTooLargeForADoubleLeaveNoNaN) {
   Hand hand;
   hand.program.links = {hold_height("a", 0, 500)};
-  hand.program.limits.passivity = true;
+  hand.program.limits.passivity_control = true;
   hand.program.limits.damping_ns_per_m = 0.5;
   for (const double z : {0.0, 1e200, -1e200, 1e308, 0.0, 1e-3, 2e-3}) {
     hand.to({0, 0, z});
     ASSERT_TRUE(is_finite(hand.out.force_n)) << z;
     ASSERT_TRUE(std::isfinite(hand.out.energy_j) && std::isfinite(hand.out.dissipated_j)) << z;
-    ASSERT_TRUE(std::isfinite(hand.out.links[0].booked_j)) << z;
+    ASSERT_TRUE(std::isfinite(hand.out.links[0].accounted_j)) << z;
   }
 }
 

@@ -6,27 +6,27 @@
 #include <random>
 
 #include "engine/base/memory_limit.h"
-#include "tests/haptics/chain/order_links.h"
+#include "tests/haptics/chain/plane_links.h"
 
 namespace catena::haptics {
 namespace ramp_test {
 
-using catena::test::ChainHand;
+using catena::test::ChainDriver;
 using catena::test::hold_plane;
 
 const Vec3 kProbe(0.3, 0.4, 0.5);
 constexpr double kMost = 40, kRamp = 0.02;
 
-Program ordered() {
-  Program program = catena::test::order_program(kRamp);
+HapticProgram ordered() {
+  HapticProgram program = catena::test::make_order_program(kRamp);
   program.coupling.max_force_n = kMost;
   return program;
 }
 
 /// K of all links, and more.
-double stiffness(const Program& program) {
+double stiffness(const HapticProgram& program) {
   double sum = 0;
-  for (const Link& link : program.links) sum += link.stiffness_n_per_m.most() * program.metres_per_unit;
+  for (const Link& link : program.links) sum += link.stiffness_n_per_m.max() * program.meters_per_unit;
   return sum;
 }
 
@@ -37,7 +37,7 @@ TEST(Ramp, KeepsItsBoundForAnySteps) {
   Vec3 before(0.0);
   for (int i = 0; i < 100000; ++i) {
     const double moved = i % 3 == 0 ? 0 : std::fabs(part(random)), fall = i % 5 == 0 ? 0 : 0.1 * std::fabs(part(random));
-    const Vec3 now = i % 7 < 3 ? ramp.last : Vec3(part(random), part(random), part(random)) * (i % 2 ? 10.0 : 0.1);
+    const Vec3 now = i % 7 < 3 ? ramp.last_force : Vec3(part(random), part(random), part(random)) * (i % 2 ? 10.0 : 0.1);
     const Vec3 sent = now + step_ramp(ramp, now, moved, fall);
     ASSERT_LE(norm(sent - before), moved + fall + 1e-13) << i;
     before = sent;
@@ -45,12 +45,12 @@ TEST(Ramp, KeepsItsBoundForAnySteps) {
 }
 
 TEST(Ramp, ALinkAloneFollowsItsWeightUpAndTheRampDown) {
-  Program program;
+  HapticProgram program;
   program.links = {hold_plane("a", {0, 0, 1}, 0, 100)};
-  program.links[0].on.button = 1;
+  program.links[0].active_when.button = 1;
   program.coupling.ramp_s = kRamp;
   program.coupling.max_force_n = 50;
-  ChainHand hand(program);
+  ChainDriver hand(program);
   hand.step(kProbe);
   for (int n = 1; n <= 30; ++n) EXPECT_NEAR(hand.step(kProbe, 1).z, -50 * std::min(1.0, n / 20.0), 1e-12) << n;
   for (int n = 1; n <= 30; ++n) EXPECT_NEAR(hand.step(kProbe, 0).z, -50 * std::max(0.0, 1 - n / 20.0), 1e-12) << n;
@@ -58,7 +58,7 @@ TEST(Ramp, ALinkAloneFollowsItsWeightUpAndTheRampDown) {
 }
 
 TEST(Ramp, WithoutOneAllIsAtOnce) {
-  ChainHand ramped(catena::test::order_program(0)), fresh(catena::test::order_program(0));
+  ChainDriver ramped(catena::test::make_order_program(0)), fresh(catena::test::make_order_program(0));
   for (const std::uint32_t buttons : {0u, 1u, 3u, 7u, 4u, 8u, 0u, 2u, 12u}) {
     ramped.step(kProbe, buttons);
     fresh.state = ChainState{};
@@ -70,7 +70,7 @@ TEST(Ramp, WithoutOneAllIsAtOnce) {
 TEST(Ramp, HoweverLinksAreSwitchedOrderedMovedAndLost) {
   for (const double rate : {100.0, 1000.0, 8000.0}) {
     std::mt19937_64 random(11);
-    ChainHand hand(ordered());
+    ChainDriver hand(ordered());
     const double fall = kMost / (rate * kRamp), k = stiffness(hand.program);
     Vec3 at = kProbe;
     hand.step(at, 0, 1 / rate);
@@ -103,7 +103,7 @@ TEST(Ramp, HoweverLinksAreSwitchedOrderedMovedAndLost) {
 TEST(Ramp, AfterItTheForceIsThatOfTheNewOrder) {
   for (const std::uint32_t from : {0u, 1u, 3u, 7u, 8u})
     for (const std::uint32_t to : {0u, 2u, 3u, 4u, 7u, 12u, 8u}) {
-      ChainHand hand(ordered()), fresh(ordered());
+      ChainDriver hand(ordered()), fresh(ordered());
       for (int i = 0; i < 5; ++i) hand.step(kProbe, from);
       for (int i = 0; i < 45; ++i) hand.step(kProbe, to);
       fresh.step(kProbe, to);
@@ -112,29 +112,29 @@ TEST(Ramp, AfterItTheForceIsThatOfTheNewOrder) {
 }
 
 TEST(Ramp, WhenAProgramReplacesAnother) {
-  const Program first = ordered();
-  std::vector<std::function<void(Program&)>> changes{
-      [](Program& p) { p.links.erase(p.links.begin()), p.modes.clear(); },
-      [](Program& p) { p.links.clear(), p.modes.clear(); },
-      [](Program& p) { std::swap(p.links[0], p.links[2]); },
-      [](Program& p) {
+  const HapticProgram first = ordered();
+  std::vector<std::function<void(HapticProgram&)>> changes{
+      [](HapticProgram& p) { p.links.erase(p.links.begin()), p.modes.clear(); },
+      [](HapticProgram& p) { p.links.clear(), p.modes.clear(); },
+      [](HapticProgram& p) { std::swap(p.links[0], p.links[2]); },
+      [](HapticProgram& p) {
         p.links[0] = hold_plane("new", {0, 1, 1}, 0.2, 200);
       },
-      [](Program& p) {
+      [](HapticProgram& p) {
         p.links.insert(p.links.begin() + 1, hold_plane("more", {0, 1, 1}, 0.2, 200)), p.modes.clear();
       },
-      [](Program& p) { p.links[2].stiffness_n_per_m = 400; },
-      [](Program& p) { p.metres_per_unit = 3; },
-      [](Program& p) { p.coupling.method = CouplingMethod::closest; },
+      [](HapticProgram& p) { p.links[2].stiffness_n_per_m = 400; },
+      [](HapticProgram& p) { p.meters_per_unit = 3; },
+      [](HapticProgram& p) { p.coupling.method = CouplingMethod::closest; },
   };
   for (std::size_t c = 0; c < changes.size(); ++c)
     for (const std::uint32_t buttons : {0u, 1u, 3u, 4u}) {
-      ChainHand hand(first);
+      ChainDriver hand(first);
       for (int i = 0; i < 30; ++i) hand.step(kProbe, buttons);
-      Program next = first;
+      HapticProgram next = first;
       changes[c](next);
       hand.replace(next);
-      ChainHand fresh(next);
+      ChainDriver fresh(next);
       for (int i = 0; i < 45; ++i) fresh.step(kProbe, buttons);
       for (int i = 0; i < 45; ++i) {
         const Vec3 before = hand.out.force_n;
@@ -146,9 +146,9 @@ TEST(Ramp, WhenAProgramReplacesAnother) {
 }
 
 TEST(Ramp, TheSameBitsAgainAndNoAllocation) {
-  ChainHand a(ordered()), b(ordered());
+  ChainDriver a(ordered()), b(ordered());
   std::mt19937_64 random(12);
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   for (int i = 0; i < 3000; ++i) {
     const auto buttons = static_cast<std::uint32_t>(random() % 16);
     const Vec3 probe = kProbe * (1 + 0.1 * static_cast<double>(random() % 100) / 100);
@@ -160,14 +160,14 @@ TEST(Ramp, TheSameBitsAgainAndNoAllocation) {
 }
 
 TEST(Ramp, ForcesBeyondDoublesLeaveNothingBehind) {
-  ChainHand hand(ordered());
+  ChainDriver hand(ordered());
   hand.step({1e308, -1e308, 1e308}, 3);
   hand.step({1e308, -1e308, 1e308}, 4);
   for (int i = 0; i < 45; ++i) {
     hand.step(kProbe, 0);
     ASSERT_TRUE(is_finite(hand.out.force_n)) << i;
   }
-  ChainHand fresh(ordered());
+  ChainDriver fresh(ordered());
   fresh.step(kProbe, 0);
   EXPECT_LE(norm(hand.out.force_n - fresh.out.force_n), 1e-10);
 }

@@ -1,30 +1,30 @@
 #include "haptics/chain/switching.h"
 
-#include "tests/haptics/chain/order_links.h"
+#include "tests/haptics/chain/plane_links.h"
 
 namespace catena::haptics {
 namespace switching_test {
 
-using test::ChainHand;
+using test::ChainDriver;
 using test::hold_plane;
 
-std::string word(const Order& order) {
+std::string word(const LinkOrder& order) {
   std::string out;
   for (int k = 0; k < order.count; ++k) out += static_cast<char>('a' + order.links[static_cast<std::size_t>(k)]);
   return out;
 }
 
-Program with(const Switch& on) {
-  Program program;
+HapticProgram with(const ActivationSwitch& on) {
+  HapticProgram program;
   program.links = {hold_plane("a", {0, 0, 1}, 0)};
-  program.links[0].on = on;
+  program.links[0].active_when = on;
   return program;
 }
 
 TEST(Switching, WithoutSwitchesAllLinksRunAsListed) {
-  Program program = test::order_program(0);
+  HapticProgram program = test::make_order_program(0);
   program.modes.clear();
-  for (Link& link : program.links) link.on = {};
+  for (Link& link : program.links) link.active_when = {};
   SwitchState state;
   EXPECT_EQ(word(step_switches(program, 0, 0, state)), "abcd");
   EXPECT_EQ(step_switches(program, ~0u, 99, state).mode, -1);
@@ -34,7 +34,7 @@ TEST(Switching, WithoutSwitchesAllLinksRunAsListed) {
 
 TEST(Switching, AButtonHoldsAndEveryOneOfThem32Works) {
   for (int button = 1; button <= 32; ++button) {
-    const Program program = with({.button = button});
+    const HapticProgram program = with({.button = button});
     SwitchState state;
     const std::uint32_t bit = 1u << (button - 1);
     EXPECT_EQ(step_switches(program, ~bit, 0, state).count, 0);
@@ -45,7 +45,7 @@ TEST(Switching, AButtonHoldsAndEveryOneOfThem32Works) {
 }
 
 TEST(Switching, AToggleTurnsOverOnEachPressAlone) {
-  const Program program = with({.button = 2, .toggle = true});
+  const HapticProgram program = with({.button = 2, .toggle = true});
   SwitchState state;
   const std::pair<std::uint32_t, int> steps[] = {{0, 0}, {2, 1}, {2, 1}, {3, 1}, {1, 1}, {0, 1},
                                                  {2, 0}, {2, 0}, {0, 0}, {1, 0}, {3, 1}, {0, 1}};
@@ -53,26 +53,26 @@ TEST(Switching, AToggleTurnsOverOnEachPressAlone) {
 }
 
 TEST(Switching, AForceSwitchesWithHysteresis) {
-  const Program program = with({.force_above_n = 3, .force_below_n = 1});
+  const HapticProgram program = with({.force_above_n = 3, .force_below_n = 1});
   SwitchState state;
   const std::pair<double, int> steps[] = {{0, 0}, {3, 0}, {3.001, 1}, {2, 1}, {1.001, 1}, {1, 0}, {2.9, 0}, {8, 1}, {0, 0}};
   for (const auto& [force, on] : steps) EXPECT_EQ(step_switches(program, 0, force, state).count, on) << force;
-  const Program same = with({.force_above_n = 3, .force_below_n = 3});
+  const HapticProgram same = with({.force_above_n = 3, .force_below_n = 3});
   SwitchState other;
   EXPECT_EQ(step_switches(same, 0, 3.1, other).count, 1);
   EXPECT_EQ(step_switches(same, 0, 3, other).count, 0);
 }
 
 TEST(Switching, ModesOrderTheLinksAndTheFirstOneWins) {
-  const Program program = test::order_program(0);
+  const HapticProgram program = test::make_order_program(0);
   SwitchState state;
   EXPECT_EQ(word(step_switches(program, 0, 0, state)), "ac");
   EXPECT_EQ(word(step_switches(program, 3, 0, state)), "abcd");
-  const Order turned = step_switches(program, 4 + 3, 0, state);
+  const LinkOrder turned = step_switches(program, 4 + 3, 0, state);
   EXPECT_EQ(word(turned), "dcba");
   EXPECT_EQ(turned.mode, 0);
   EXPECT_EQ(word(step_switches(program, 4, 0, state)), "ca") << "a link's own switch still counts";
-  const Order few = step_switches(program, 8 + 3, 0, state);
+  const LinkOrder few = step_switches(program, 8 + 3, 0, state);
   EXPECT_EQ(word(few), "ca");
   EXPECT_EQ(few.mode, 1);
   EXPECT_EQ(step_switches(program, 8 + 4, 0, state).mode, 0);
@@ -80,9 +80,9 @@ TEST(Switching, ModesOrderTheLinksAndTheFirstOneWins) {
 }
 
 TEST(Switching, AModeByForceAndAModeByToggle) {
-  Program program = test::order_program(0);
-  program.modes[0].on = {.force_above_n = 2, .force_below_n = 1};
-  program.modes[1].on = {.button = 4, .toggle = true};
+  HapticProgram program = test::make_order_program(0);
+  program.modes[0].active_when = {.force_above_n = 2, .force_below_n = 1};
+  program.modes[1].active_when = {.button = 4, .toggle = true};
   SwitchState state;
   EXPECT_EQ(step_switches(program, 0, 2.5, state).mode, 0);
   EXPECT_EQ(step_switches(program, 8, 1.5, state).mode, 0);
@@ -91,8 +91,8 @@ TEST(Switching, AModeByForceAndAModeByToggle) {
 }
 
 TEST(Switching, EightLinksAndEightModes) {
-  Program program;
-  for (int i = 0; i < exchange::kMaxSceneLinks; ++i)
+  HapticProgram program;
+  for (int i = 0; i < kMaxSceneLinks; ++i)
     program.links.push_back(hold_plane(std::string(1, static_cast<char>('a' + i)), {0, 1, i + 1.0}, 0));
   for (int m = 0; m < kMaxModes; ++m) program.modes.push_back({"m" + std::to_string(m), {7 - m, m}, {.button = m + 1}});
   program.modes[4].links = {7, 6, 5, 4, 3, 2, 1, 0};
@@ -103,8 +103,8 @@ TEST(Switching, EightLinksAndEightModes) {
 }
 
 TEST(Switching, TheChainRunsInTheModesOrder) {
-  Program program = test::order_program(0);
-  ChainHand hand(program);
+  HapticProgram program = test::make_order_program(0);
+  ChainDriver hand(program);
   const Vec3 probe(0.3, 0.4, 0.5);
   hand.step(probe, 3 + 4);
   EXPECT_EQ(hand.out.mode, 0);
@@ -125,15 +125,15 @@ TEST(Switching, TheChainRunsInTheModesOrder) {
 }
 
 TEST(Switching, RebindKeepsTogglesAndModesOfTheSameName) {
-  Program program = test::order_program(0);
-  program.links[1].on = {.button = 1, .toggle = true};
-  program.modes[1].on = {.button = 4, .toggle = true};
-  ChainHand hand(program);
+  HapticProgram program = test::make_order_program(0);
+  program.links[1].active_when = {.button = 1, .toggle = true};
+  program.modes[1].active_when = {.button = 4, .toggle = true};
+  ChainDriver hand(program);
   const Vec3 probe(0.3, 0.4, 0.5);
   hand.step(probe, 1);
   hand.step(probe, 8);
   EXPECT_EQ(hand.out.mode, 1);
-  Program next = program;
+  HapticProgram next = program;
   std::swap(next.links[0], next.links[1]);
   std::swap(next.modes[0], next.modes[1]);
   for (Mode& mode : next.modes)

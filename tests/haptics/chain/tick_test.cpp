@@ -16,17 +16,17 @@ using namespace catena::haptics;
 using test::hold_height;
 
 struct Hand {
-  Program program;
+  HapticProgram program;
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   void step(double t, const Vec3& p, std::uint32_t buttons = 0) { tick(program, {t, p, buttons}, state, scratch, out); }
 };
 
 TEST(Tick, EqualStiffnessTelescopesToTheLastProxy) {
   Hand run;
   run.program.links = {hold_height("a", 1), hold_height("b", 3), hold_height("c", 2)};
-  run.program.metres_per_unit = 0.5;
+  run.program.meters_per_unit = 0.5;
   run.program.coupling.max_force_n = 1e9;
   run.step(0, {0.25, 0.5, 0});
   EXPECT_DOUBLE_EQ(run.out.force_n.z, 500 * 0.5 * 2.0);
@@ -47,7 +47,7 @@ TEST(Tick, DampingUsesTheTimeBetweenSamplesAndIsZeroAtTickZero) {
   Hand run;
   run.program.coupling.damping_ns_per_m = 2;
   run.program.coupling.max_force_n = 1e9;
-  run.program.metres_per_unit = 0.1;
+  run.program.meters_per_unit = 0.1;
   run.step(1.0, {0, 0, 0});
   EXPECT_EQ(run.out.force_n, Vec3(0.0));
   run.step(1.5, {3, 0, 0});
@@ -57,7 +57,7 @@ TEST(Tick, DampingUsesTheTimeBetweenSamplesAndIsZeroAtTickZero) {
 TEST(Tick, AClockThatGoesBackStandsStill) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
-  run.program.links[0].on.button = 1;
+  run.program.links[0].active_when.button = 1;
   run.program.coupling.ramp_s = 0.02;
   run.program.coupling.damping_ns_per_m = 2;
   run.step(0, {0, 0, 0});
@@ -74,7 +74,7 @@ TEST(Tick, AClockThatGoesBackStandsStill) {
 TEST(Tick, WhatItTellsOfALinkIsFiniteForEveryProbe) {
   Hand run;
   run.program.links = {hold_height("a", 1), hold_height("b", -1.7e308)};
-  run.program.links[1].on.button = 1;
+  run.program.links[1].active_when.button = 1;
   run.program.coupling.ramp_s = 0.02;
   const double most = std::numeric_limits<double>::max();
   int k = 0;
@@ -82,7 +82,7 @@ TEST(Tick, WhatItTellsOfALinkIsFiniteForEveryProbe) {
     for (const std::uint32_t buttons : {0u, 1u, 1u}) {
       run.step(0.001 * k++, {0, 0, z}, buttons);
       for (int i = 0; i < run.out.link_count; ++i) {
-        const exchange::LinkReport& link = run.out.links[static_cast<std::size_t>(i)];
+        const LinkReport& link = run.out.links[static_cast<std::size_t>(i)];
         EXPECT_TRUE(is_finite(link.force_n)) << z;
         EXPECT_TRUE(std::isfinite(link.gap) && std::isfinite(link.energy_j(1))) << z;
       }
@@ -127,17 +127,17 @@ TEST(Tick, BadProbeHoldsProxiesAndGivesNoForce) {
     run.step(0.001, {0, bad, 0});
     EXPECT_EQ(run.out.links[0].proxy, held);
     EXPECT_EQ(run.out.force_n, Vec3(0.0));
-    EXPECT_EQ(run.out.links[0].status, Status::bad_probe);
+    EXPECT_EQ(run.out.links[0].status, LinkStatus::bad_probe);
     EXPECT_EQ(run.out.links[0].evaluations, 0);
   }
   run.step(0.002, {0.5, 0, 0});
-  EXPECT_EQ(run.out.links[0].status, Status::ok);
+  EXPECT_EQ(run.out.links[0].status, LinkStatus::ok);
 }
 
 TEST(Tick, ASwitchedOffLinkPassesItsProbeThroughBitForBit) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
-  run.program.links[0].on.button = 2;
+  run.program.links[0].active_when.button = 2;
   run.program.coupling.ramp_s = 0.004;
   run.program.coupling.max_force_n = 1e9;
   const Vec3 probe{0.1, -0.2, 0.3};
@@ -159,7 +159,7 @@ TEST(Tick, ASwitchedOffLinkPassesItsProbeThroughBitForBit) {
 TEST(Tick, TimeThatRunsBackCountsAsNone) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
-  run.program.links[0].on.button = 1;
+  run.program.links[0].active_when.button = 1;
   run.program.coupling.ramp_s = 0.25;
   run.program.coupling.damping_ns_per_m = 5;
   run.program.coupling.max_force_n = 1e9;
@@ -175,7 +175,7 @@ TEST(Tick, TimeThatRunsBackCountsAsNone) {
 TEST(Tick, ALinkCanWaitForAForce) {
   Hand run;
   run.program.links = {hold_height("a", 1, 5), hold_height("b", 2, 5)};
-  run.program.links[1].on.force_above_n = 3;
+  run.program.links[1].active_when.force_above_n = 3;
   run.step(0, {0, 0, 0.9});
   EXPECT_FALSE(run.out.links[1].active);
   run.step(1, {0, 0, 0});  // 5 N
@@ -187,19 +187,19 @@ TEST(Tick, ALinkCanWaitForAForce) {
 TEST(Tick, AllocatesNothing) {
   Hand run;
   run.program.links = {hold_height("a", 1), hold_height("b", 2)};
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   for (int k = 0; k < 1000; ++k) run.step(0.001 * k, {0.001 * k, 0, 0});
   EXPECT_EQ(guard.count(), 0u);
-  const AllocationGuard control;
+  const AllocationCounter control;
   const auto escaped = std::make_unique<std::array<int, 100>>();
   EXPECT_NE(escaped.get(), nullptr);
   EXPECT_EQ(control.count(), 1u) << "the counter itself must work";
 }
 
 TEST(Tick, StateHashSeesEveryBit) {
-  exchange::HapticState a;
+  HapticState a;
   a.link_count = 1;
-  exchange::HapticState b = a;
+  HapticState b = a;
   b.links[0].proxy.z = -0.0;
   StateHash hash_a, hash_b;
   hash_a.add(a);
@@ -211,10 +211,10 @@ TEST(Rebind, KeepsTheStateOfTheSameConstraintUnderTheSameName) {
   Hand run;
   run.program.links = {hold_height("a", 1), hold_height("b", 2)};
   run.step(0, {0, 0, 0});
-  Program next = run.program;
+  HapticProgram next = run.program;
   std::swap(next.links[0], next.links[1]);
   next.links[1].constraint = std::make_shared<test::HoldHeight>(5.0);
-  rebind(run.program, next, run.state, run.scratch);
+  rebind_program(run.program, next, run.state, run.scratch);
   EXPECT_TRUE(run.state.links[0].started);
   EXPECT_EQ(run.state.links[0].proxy.z, 2);
   EXPECT_FALSE(run.state.links[1].started);

@@ -3,18 +3,18 @@
 
 #include "engine/base/memory_limit.h"
 #include "haptics/chain/state_hash.h"
-#include "tests/haptics/chain/order_links.h"
-#include "tests/haptics/chain/widget_hand.h"
+#include "tests/haptics/chain/plane_links.h"
+#include "tests/haptics/chain/widget_probe.h"
 
 namespace catena::haptics {
 namespace widget_force_test {
 
-using test::widget_program;
-using test::widget_spec;
-using test::WidgetHand;
+using test::make_widget_program;
+using test::make_widget_spec;
+using test::WidgetProbe;
 using widget::Kind;
+using widget::RotationMode;
 using widget::Spec;
-using widget::Turning;
 
 struct Step {
   Vec3 to;
@@ -45,16 +45,16 @@ struct Jumps {
 };
 
 // What a tick may change: the rule of ramp.h, K from above.
-double allowed(const WidgetHand& hand, double ramp_step, double move) {
+double allowed(const WidgetProbe& hand, double ramp_step, double move) {
   return ramp_step * hand.program.coupling.max_force_n + 8 * 500 * move;
 }
 
-void drive(WidgetHand& hand, const std::vector<Step>& script, double speed, double dt, double ramp_s, Jumps& out) {
+void drive(WidgetProbe& hand, const std::vector<Step>& script, double speed, double dt, double ramp_s, Jumps& out) {
   const double move = speed * dt;
   Vec3 before = hand.out.force_n;
-  Order order = hand.state.order;
+  LinkOrder order = hand.state.order;
   for (const Step& step : script) {
-    const Vec3 from = hand.at;
+    const Vec3 from = hand.position;
     const int n = std::max(1, static_cast<int>(std::ceil(norm(step.to - from) / move)));
     for (int i = 1; i <= n + 60; ++i) {  // and rests a while
       hand.step(i >= n ? step.to : from + (step.to - from) * (static_cast<double>(i) / n), step.buttons, dt);
@@ -71,15 +71,15 @@ void drive(WidgetHand& hand, const std::vector<Step>& script, double speed, doub
 std::vector<Link> scene_links() { return {test::hold_plane("a", {0.2, 1, 0}, 0.1, 300), test::hold_plane("b", {1, 0, 0.3}, -0.2, 400)}; }
 
 TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
-  for (const Turning turning : {Turning::any, Turning::free, Turning::axis})
+  for (const RotationMode turning : {RotationMode::any, RotationMode::free, RotationMode::axis})
     for (const bool touch : {false, true})
       for (const bool with_links : {false, true}) {
         std::vector<double> most;
         for (const double dt : {1e-3, 2.5e-4, 6.25e-5}) {
-          Spec spec = widget_spec(Kind::cutting_plane);
-          spec.turning = turning;
-          spec.touch = touch;
-          WidgetHand hand(widget_program({spec}, with_links ? scene_links() : std::vector<Link>{}, 0.05));
+          Spec spec = make_widget_spec(Kind::cutting_plane);
+          spec.rotation = turning;
+          spec.rotate_on_contact = touch;
+          WidgetProbe hand(make_widget_program({spec}, with_links ? scene_links() : std::vector<Link>{}, 0.05));
           hand.step({1, 0, 0.5});
           Jumps jumps;
           drive(hand, plane_script(), 2, dt, 0.05, jumps);
@@ -94,7 +94,7 @@ TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
 }
 
 TEST(WidgetForce, WithoutTheRampItJumps) {
-  WidgetHand hand(widget_program({widget_spec(Kind::cutting_plane)}, scene_links(), 0));
+  WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links(), 0));
   hand.step({1, 0, 0.5});
   Jumps jumps;
   drive(hand, plane_script(), 2, 1e-3, 0.05, jumps);
@@ -103,11 +103,11 @@ TEST(WidgetForce, WithoutTheRampItJumps) {
 }
 
 TEST(WidgetForce, NoTransitionOfHandlesMakesTheForceJump) {
-  std::vector<Spec> specs{widget_spec(Kind::seed, {1, 0, 0}), widget_spec(Kind::rake, {0, 1, 0}, {0, 1, 1}),
-                          widget_spec(Kind::box, {-1, -0.5, -0.4}, {-0.5, 0.5, 0.6})};
+  std::vector<Spec> specs{make_widget_spec(Kind::seed, {1, 0, 0}), make_widget_spec(Kind::rake, {0, 1, 0}, {0, 1, 1}),
+                          make_widget_spec(Kind::box, {-1, -0.5, -0.4}, {-0.5, 0.5, 0.6})};
   std::vector<double> most;
   for (const double dt : {1e-3, 2.5e-4}) {
-    WidgetHand hand(widget_program(specs, scene_links(), 0.05));
+    WidgetProbe hand(make_widget_program(specs, scene_links(), 0.05));
     hand.step({1, 0, 0.5});
     Jumps jumps;
     drive(hand, handles_script(), 2, dt, 0.05, jumps);
@@ -120,13 +120,13 @@ TEST(WidgetForce, NoTransitionOfHandlesMakesTheForceJump) {
 
 // explore's plane z goes through the centre, translate's through the probe: one link, another shape
 TEST(WidgetForce, ALinkOnAnotherShapeStartsAnewAndItsOldForceFades) {
-  WidgetHand hand(widget_program({widget_spec(Kind::cutting_plane)}, {}, 0.1));
+  WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, {}, 0.1));
   hand.step({1, 0, 0.5});
   hand.step({1, 0, 0.05});
   for (int k = 0; k < 150; ++k) hand.step({1, 0, 0.1});
   EXPECT_NEAR(hand.out.force_n.z, -50, 1e-9);
   hand.step({1, 0, 0.1}, 1);
-  EXPECT_EQ(hand.order(), "widget_x widget_y widget_z");
+  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
   EXPECT_NEAR(hand.out.force_n.z, -50 + 5, 1e-9) << "max_force in 0.1 s";
   EXPECT_NEAR(hand.out.links[2].weight, 0.01, 1e-12);
   for (int k = 2; k <= 10; ++k) {
@@ -138,34 +138,35 @@ TEST(WidgetForce, ALinkOnAnotherShapeStartsAnewAndItsOldForceFades) {
 }
 
 TEST(WidgetForce, WhileOneIsGrabbedTheScenesLinksAreOff) {
-  WidgetHand hand(widget_program({widget_spec(Kind::cutting_plane)}, scene_links()));
+  WidgetProbe hand(make_widget_program({make_widget_spec(Kind::cutting_plane)}, scene_links()));
   hand.step({1, 0, 0});
-  EXPECT_EQ(hand.order(), "a b widget_z");
+  EXPECT_EQ(hand.link_order(), "a b widget_z");
   hand.step({1, 0, 0}, 1);
-  EXPECT_EQ(hand.order(), "widget_x widget_y widget_z");
+  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
   EXPECT_FALSE(hand.out.links[0].active);
   EXPECT_EQ(hand.out.links[0].proxy, Vec3(1, 0, 0));
   hand.step({1, 0, 0}, 0);
-  EXPECT_EQ(hand.order(), "a b widget_z");
+  EXPECT_EQ(hand.link_order(), "a b widget_z");
 }
 
-Program everything(double ramp_s) {
-  Spec free = widget_spec(Kind::cutting_plane, {-0.4, 0.2, 0.1});
-  free.turning = Turning::free;
-  free.touch = true;
+HapticProgram everything(double ramp_s) {
+  Spec free = make_widget_spec(Kind::cutting_plane, {-0.4, 0.2, 0.1});
+  free.rotation = RotationMode::free;
+  free.rotate_on_contact = true;
   free.button = 2;
   free.pose.orientation = test::kTilted;
-  return widget_program({widget_spec(Kind::cutting_plane, {0.2, 0, 0}), free, widget_spec(Kind::seed, {0.5, 0.5, 0.5}),
-                         widget_spec(Kind::rake, {-1, 0, 0}, {-0.5, 0.5, 0.5}), widget_spec(Kind::box, {-0.5, -0.5, -0.5}, {0.5, 0.4, 0.3}),
-                         widget_spec(Kind::ruler, {0, -0.5, 0}, {0.4, -0.5, 0.6})},
-                        scene_links(), ramp_s);
+  return make_widget_program(
+      {make_widget_spec(Kind::cutting_plane, {0.2, 0, 0}), free, make_widget_spec(Kind::seed, {0.5, 0.5, 0.5}),
+       make_widget_spec(Kind::rake, {-1, 0, 0}, {-0.5, 0.5, 0.5}), make_widget_spec(Kind::box, {-0.5, -0.5, -0.5}, {0.5, 0.4, 0.3}),
+       make_widget_spec(Kind::ruler, {0, -0.5, 0}, {0.4, -0.5, 0.6})},
+      scene_links(), ramp_s);
 }
 
 // 1e5 ticks of any button and any probe, places far away and none at all among them.
 std::uint64_t hostile(std::uint64_t seed, int ticks) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> anywhere(-1.2, 1.2), unit(0, 1);
-  WidgetHand hand(everything(0.02));
+  WidgetProbe hand(everything(0.02));
   Vec3 at(0.0);
   std::uint32_t buttons = 0;
   StateHash hash;
@@ -184,15 +185,15 @@ std::uint64_t hostile(std::uint64_t seed, int ticks) {
     EXPECT_TRUE(is_finite(hand.out.force_n)) << k;
     int engaged = 0;
     for (std::size_t i = 0; i < hand.program.widgets.size(); ++i) {
-      const exchange::WidgetReport& w = hand.out.widgets[i];
+      const WidgetReport& w = hand.out.widgets[i];
       EXPECT_TRUE(is_finite(w.pose.points[0]) && is_finite(w.pose.points[1])) << k;
       const Quat& q = w.pose.orientation;
       EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, 1e-14) << k;
-      engaged += w.mode != exchange::WidgetMode::away;
+      engaged += w.mode != WidgetMode::idle;
       grabbed += widget::is_grabbed(w.mode);
     }
     EXPECT_LE(engaged, 1) << k;
-    const exchange::WidgetPose& box = hand.out.widgets[4].pose;
+    const WidgetPose& box = hand.out.widgets[4].pose;
     for (int a = 0; a < 3; ++a) EXPECT_LE(box.points[0][a], box.points[1][a]) << k;
     if (testing::Test::HasFailure()) return 0;
   }
@@ -207,13 +208,13 @@ TEST(WidgetForce, HostileTicksStayFiniteUnitAndInOrderAndRepeat) {
 }
 
 TEST(WidgetForce, ATickAllocatesNothing) {
-  WidgetHand hand(everything(0.02));
+  WidgetProbe hand(everything(0.02));
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> anywhere(-1, 1);
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   for (int k = 0; k < 5000; ++k) {
-    if (k % 50 == 0) hand.at = {anywhere(random), anywhere(random), anywhere(random)};
-    hand.step(hand.at + Vec3(anywhere(random), anywhere(random), anywhere(random)) * 0.02, static_cast<std::uint32_t>(random() & 3));
+    if (k % 50 == 0) hand.position = {anywhere(random), anywhere(random), anywhere(random)};
+    hand.step(hand.position + Vec3(anywhere(random), anywhere(random), anywhere(random)) * 0.02, static_cast<std::uint32_t>(random() & 3));
   }
   EXPECT_EQ(guard.count(), 0u);
 }

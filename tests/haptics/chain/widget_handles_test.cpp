@@ -1,68 +1,68 @@
 // Seed, rake, box, isolevel and ruler by scripted paths, against closed forms.
-#include "tests/haptics/chain/order_links.h"
-#include "tests/haptics/chain/widget_hand.h"
+#include "tests/haptics/chain/plane_links.h"
+#include "tests/haptics/chain/widget_probe.h"
 
 namespace catena::haptics {
 namespace widget_handles_test {
 
-using test::off;
-using test::widget_program;
-using test::widget_spec;
-using test::WidgetHand;
+using test::distance_between;
+using test::make_widget_program;
+using test::make_widget_spec;
+using test::WidgetProbe;
 using widget::Kind;
 using widget::Spec;
 
 constexpr double kStep = 0.08;
 
 /// Hovers over a handle and takes it.
-void take(WidgetHand& hand, const Vec3& at) {
+void take(WidgetProbe& hand, const Vec3& at) {
   hand.step(at);
-  ASSERT_EQ(hand.mode(), "hover");
+  ASSERT_EQ(hand.mode_name(), "hover");
   hand.step(at, 1);
-  ASSERT_EQ(hand.mode(), "drag");
+  ASSERT_EQ(hand.mode_name(), "drag");
 }
 
 TEST(WidgetHandles, AHandleDrawsTheProbeAndIsDraggedWithThePlanes) {
   const Vec3 at(0.3, -0.2, 0.1);
-  WidgetHand hand({widget_spec(Kind::seed, at)});
+  WidgetProbe hand({make_widget_spec(Kind::seed, at)});
   hand.step({1, 0, 0});
-  EXPECT_EQ(hand.mode(), "away");
+  EXPECT_EQ(hand.mode_name(), "away");
   EXPECT_EQ(hand.report().handle, -1);
   hand.step(at + Vec3(0.05, 0.03, 0));
-  EXPECT_EQ(hand.mode(), "hover");
+  EXPECT_EQ(hand.mode_name(), "hover");
   EXPECT_EQ(hand.report().handle, 0);
-  EXPECT_EQ(hand.order(), "widget_sphere");
+  EXPECT_EQ(hand.link_order(), "widget_sphere");
   EXPECT_EQ(hand.out.links[3].proxy, at);
-  EXPECT_LE(off(hand.out.force_n, Vec3(0.05, 0.03, 0) * -500.0), 1e-12);
+  EXPECT_LE(distance_between(hand.out.force_n, Vec3(0.05, 0.03, 0) * -500.0), 1e-12);
   const Vec3 grab = at + Vec3(0.05, 0.03, 0);
   hand.step(grab, 1);
-  EXPECT_EQ(hand.order(), "widget_x widget_y widget_z");
-  EXPECT_EQ(hand.place(), at);
+  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
+  EXPECT_EQ(hand.widget_position(), at);
   for (int k = 1; k <= 100; ++k) {
     const double u = 0.01 * k;
     hand.step(grab + Vec3(-u, 0.9 * kStep, -0.9 * kStep), 1);
-    ASSERT_EQ(hand.place().y, at.y);
-    ASSERT_EQ(hand.place().z, at.z);
-    ASSERT_NEAR(hand.place().x, at.x - (u > kStep ? u - kStep : 0), 1e-15);
+    ASSERT_EQ(hand.widget_position().y, at.y);
+    ASSERT_EQ(hand.widget_position().z, at.z);
+    ASSERT_NEAR(hand.widget_position().x, at.x - (u > kStep ? u - kStep : 0), 1e-15);
   }
   hand.step(grab + Vec3(0.4, 0.5, -0.6), 1);
-  EXPECT_LE(off(hand.place(), at + Vec3(0.4 - kStep, 0.5 - kStep, -0.6 + kStep)), 1e-15);
-  const Vec3 left = hand.place();
+  EXPECT_LE(distance_between(hand.widget_position(), at + Vec3(0.4 - kStep, 0.5 - kStep, -0.6 + kStep)), 1e-15);
+  const Vec3 left = hand.widget_position();
   hand.step(grab + Vec3(0.4, 0.5, -0.6), 0);
-  EXPECT_EQ(hand.place(), left);
+  EXPECT_EQ(hand.widget_position(), left);
 }
 
 TEST(WidgetHandles, TheEndsAndTheMiddleOfARake) {
   const Vec3 from(0, 0, 0), to(1, 0, 0.5), move(0.3, 0.01, -0.4), moved(0.3 - kStep, 0, -0.4 + kStep);
   for (int handle = 0; handle < 3; ++handle) {
-    WidgetHand hand({widget_spec(Kind::rake, from, to)});
+    WidgetProbe hand({make_widget_spec(Kind::rake, from, to)});
     const Vec3 at = handle == 0 ? from : handle == 1 ? to : (from + to) * 0.5;
     take(hand, at);
     EXPECT_EQ(hand.report().handle, handle);
-    hand.go(at + move, 1);
+    hand.move_to(at + move, 1);
     const auto& points = hand.report().pose.points;
-    EXPECT_LE(off(points[0], handle == 1 ? from : from + moved), 1e-15);
-    EXPECT_LE(off(points[1], handle == 0 ? to : to + moved), 1e-15);
+    EXPECT_LE(distance_between(points[0], handle == 1 ? from : from + moved), 1e-15);
+    EXPECT_LE(distance_between(points[1], handle == 0 ? to : to + moved), 1e-15);
     EXPECT_EQ(points[0].y, 0);
     EXPECT_EQ(points[1].y, 0);
     hand.step(at + move, 0);
@@ -76,12 +76,12 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
     const double out = face % 2 == 0 ? -1 : 1;
-    WidgetHand hand({widget_spec(Kind::box, lo, hi)});
+    WidgetProbe hand({make_widget_spec(Kind::box, lo, hi)});
     Vec3 at = (lo + hi) * 0.5;
     at[axis] = face % 2 == 0 ? lo[axis] : hi[axis];
     take(hand, at);
     EXPECT_EQ(hand.report().handle, face);
-    EXPECT_EQ(hand.report().held, 7 & ~(1 << axis));
+    EXPECT_EQ(hand.report().active_planes, 7 & ~(1 << axis));
     const auto drag = [&](double by) {
       Vec3 probe = at + Vec3(0.3, -0.2, 0.25);  // aside: the planes hold, however far
       probe[axis] = at[axis] + by;
@@ -101,18 +101,18 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
 
 TEST(WidgetHandles, TheCentreOfABoxMovesItWhole) {
   const Vec3 lo(-0.5, -0.4, -0.3), hi(0.5, 0.4, 0.7);
-  WidgetHand hand({widget_spec(Kind::box, lo, hi)});
+  WidgetProbe hand({make_widget_spec(Kind::box, lo, hi)});
   take(hand, (lo + hi) * 0.5);
   EXPECT_EQ(hand.report().handle, 6);
-  hand.go((lo + hi) * 0.5 + Vec3(0, 0.5, 0), 1);
-  EXPECT_LE(off(hand.report().pose.points[0], lo + Vec3(0, 0.5 - kStep, 0)), 1e-15);
-  EXPECT_LE(off(hand.report().pose.points[1], hi + Vec3(0, 0.5 - kStep, 0)), 1e-15);
+  hand.move_to((lo + hi) * 0.5 + Vec3(0, 0.5, 0), 1);
+  EXPECT_LE(distance_between(hand.report().pose.points[0], lo + Vec3(0, 0.5 - kStep, 0)), 1e-15);
+  EXPECT_LE(distance_between(hand.report().pose.points[1], hi + Vec3(0, 0.5 - kStep, 0)), 1e-15);
 }
 
 TEST(WidgetHandles, AThinBoxIsNotMadeThicker) {
-  WidgetHand hand({widget_spec(Kind::box, {0, -1, -1}, {0.01, 1, 1})});
+  WidgetProbe hand({make_widget_spec(Kind::box, {0, -1, -1}, {0.01, 1, 1})});
   hand.step({0.11, 0, 0});
-  ASSERT_EQ(hand.mode(), "hover");
+  ASSERT_EQ(hand.mode_name(), "hover");
   ASSERT_EQ(hand.report().handle, 1);
   hand.step({0.11, 0, 0}, 1);
   EXPECT_EQ(hand.report().pose.points[1].x, 0.01);
@@ -137,22 +137,22 @@ class Bowl final : public field::ScalarField {
 
 TEST(WidgetHandles, AnIsolevelMovesAlongTheGradientAndTellsTheValue) {
   const Vec3 at(0.3, -0.2, 0.1), a(1, 2, -0.5);
-  Spec spec = widget_spec(Kind::isolevel, at);
+  Spec spec = make_widget_spec(Kind::isolevel, at);
   spec.field = std::make_shared<Bowl>(a, 0.7);
   const auto value = [&](const Vec3& x) { return dot(a, x) + 0.35 * dot(x, x); };
-  WidgetHand hand({spec});
+  WidgetProbe hand({spec});
   hand.step({1, 1, 1});
   EXPECT_EQ(hand.report().value, value(at));
   take(hand, at + Vec3(0.02, 0.01, 0));
-  EXPECT_EQ(hand.report().held, 3);
-  EXPECT_EQ(hand.order(), "widget_x widget_y");
-  EXPECT_EQ(hand.place(), at);
+  EXPECT_EQ(hand.report().active_planes, 3);
+  EXPECT_EQ(hand.link_order(), "widget_x widget_y");
+  EXPECT_EQ(hand.widget_position(), at);
   const Vec3 n = direction(a + at * 0.7), aside = direction(cross(n, {0, 0, 1}));
   for (int k = -50; k <= 50; ++k) {
     const double u = 0.01 * k;
     hand.step(at + Vec3(0.02, 0.01, 0) + n * u + aside * (0.3 * u), 1);
-    ASSERT_LE(off(hand.place(), at + n * u), 1e-14) << k;
-    ASSERT_EQ(hand.report().value, value(hand.place()));
+    ASSERT_LE(distance_between(hand.widget_position(), at + n * u), 1e-14) << k;
+    ASSERT_EQ(hand.report().value, value(hand.widget_position()));
   }
   // out of the field the last value stays
   const double last = hand.report().value;
@@ -161,31 +161,31 @@ TEST(WidgetHandles, AnIsolevelMovesAlongTheGradientAndTellsTheValue) {
 }
 
 TEST(WidgetHandles, AnIsolevelWithoutAGradientMovesAsASeed) {
-  Spec spec = widget_spec(Kind::isolevel, {0.3, -0.2, 0.1});
+  Spec spec = make_widget_spec(Kind::isolevel, {0.3, -0.2, 0.1});
   spec.field = std::make_shared<Bowl>(Vec3(0.0), 0);
-  WidgetHand hand({spec});
+  WidgetProbe hand({spec});
   take(hand, {0.3, -0.2, 0.1});
-  EXPECT_EQ(hand.report().held, 7);
+  EXPECT_EQ(hand.report().active_planes, 7);
   hand.step({0.3, 0.3, 0.1}, 1);
-  EXPECT_LE(off(hand.place(), {0.3, 0.3 - kStep, 0.1}), 1e-15);
+  EXPECT_LE(distance_between(hand.widget_position(), {0.3, 0.3 - kStep, 0.1}), 1e-15);
 }
 
 TEST(WidgetHandles, ARulersEndKeepsToTheLinksThatItGoesAlong) {
-  Spec spec = widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
-  spec.along = {1, 0};
-  WidgetHand hand(widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9), test::hold_plane("b", {0.3, 1, 0.1}, -0.2)}));
+  Spec spec = make_widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
+  spec.along_links = {1, 0};
+  WidgetProbe hand(make_widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9), test::hold_plane("b", {0.3, 1, 0.1}, -0.2)}));
   take(hand, {1, 0, 0});
   EXPECT_EQ(hand.report().handle, 1);
-  EXPECT_EQ(hand.order(), "b a");
+  EXPECT_EQ(hand.link_order(), "b a");
   for (int k = 0; k < 20; ++k) {
     hand.step({1, 0.1 * k, 0.05 * k}, 1);
     ASSERT_EQ(hand.report().pose.points[1], hand.out.links[0].proxy);
     ASSERT_EQ(hand.report().pose.points[0], Vec3(0.0));
   }
   // a link that is switched off is none of them
-  hand.program.links[0].on.button = 5;
+  hand.program.links[0].active_when.button = 5;
   hand.step({1, 0, 0}, 1);
-  EXPECT_EQ(hand.order(), "b");
+  EXPECT_EQ(hand.link_order(), "b");
   EXPECT_EQ(hand.report().pose.points[1], hand.out.links[1].proxy);
   // the whole is moved freely
   hand.step({9, 9, 9});
@@ -193,124 +193,124 @@ TEST(WidgetHandles, ARulersEndKeepsToTheLinksThatItGoesAlong) {
   const Vec3 middle = (points[0] + points[1]) * 0.5;
   take(hand, middle);
   EXPECT_EQ(hand.report().handle, 2);
-  EXPECT_EQ(hand.order(), "widget_x widget_y widget_z");
+  EXPECT_EQ(hand.link_order(), "widget_x widget_y widget_z");
 }
 
 // ---- a probe that is lost, programs that take over ----
 
 TEST(WidgetGrab, IsHeldWhileThereIsNoProbeAndGoesOnWithoutAJump) {
-  for (const Condition condition : {Condition::normal, Condition::no_device, Condition::watchdog}) {
-    WidgetHand hand({widget_spec(Kind::cutting_plane)});
+  for (const TickCondition condition : {TickCondition::normal, TickCondition::no_device, TickCondition::watchdog}) {
+    WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
     hand.step({1, 0, 0.01});
     hand.step({1, 0, 0.01}, 1);
     hand.step({1.3, 0, 0.01}, 1);
     const auto before = hand.report();
-    const double lost = condition == Condition::normal ? NAN : 0;
+    const double lost = condition == TickCondition::normal ? NAN : 0;
     for (int k = 0; k < 5; ++k) {
       hand.t += 1e-3;
-      tick(hand.program, {hand.t, Vec3(lost), k % 2 ? 1u : 0u, kNoRotation, condition}, hand.state, hand.scratch, hand.out);
+      tick(hand.program, {hand.t, Vec3(lost), k % 2 ? 1u : 0u, kIdentityRotation, condition}, hand.state, hand.scratch, hand.out);
       ASSERT_EQ(hand.report().pose, before.pose);
-      ASSERT_EQ(hand.mode(), "translate");
+      ASSERT_EQ(hand.mode_name(), "translate");
       ASSERT_EQ(hand.out.force_n, Vec3(0.0));
     }
     // it is back somewhere else, the button down: as if the hand had been carried there
     hand.step({-2, 1, 3}, 1);
-    EXPECT_EQ(hand.mode(), "translate");
-    EXPECT_LE(off(hand.place(), before.pose.points[0]), 1e-15);
+    EXPECT_EQ(hand.mode_name(), "translate");
+    EXPECT_LE(distance_between(hand.widget_position(), before.pose.points[0]), 1e-15);
     hand.step(Vec3(-2, 1, 3) + Vec3(0.2, 0, 0), 1);
-    EXPECT_LE(off(hand.place(), before.pose.points[0] + Vec3(0.2, 0, 0)), 1e-14);
+    EXPECT_LE(distance_between(hand.widget_position(), before.pose.points[0] + Vec3(0.2, 0, 0)), 1e-14);
   }
 }
 
 TEST(WidgetGrab, IsLetGoWhereTheProbeComesBackWithoutTheButton) {
-  WidgetHand hand({widget_spec(Kind::cutting_plane)});
+  WidgetProbe hand({make_widget_spec(Kind::cutting_plane)});
   hand.step({1, 0, 0.01});
   hand.step({1, 0, 0.01}, 1);
   hand.step({1.3, 0, 0.01}, 1);
-  const Vec3 before = hand.place();
+  const Vec3 before = hand.widget_position();
   hand.step({NAN, 0, 0}, 1);
   hand.step({-2, 1, 0}, 0);
-  EXPECT_EQ(hand.mode(), "explore");
-  EXPECT_EQ(hand.place(), before);
+  EXPECT_EQ(hand.mode_name(), "explore");
+  EXPECT_EQ(hand.widget_position(), before);
   // a press while nobody looked is none
   hand.step({NAN, 0, 0}, 0);
   hand.step({-2, 1, 0}, 1);
-  EXPECT_EQ(hand.mode(), "explore");
+  EXPECT_EQ(hand.mode_name(), "explore");
 }
 
 TEST(WidgetGrab, ATurnGoesOnWithoutAJump) {
-  for (const widget::Turning turning : {widget::Turning::free, widget::Turning::axis}) {
-    Spec spec = widget_spec(Kind::cutting_plane);
-    spec.turning = turning;
-    WidgetHand hand({spec});
+  for (const widget::RotationMode turning : {widget::RotationMode::free, widget::RotationMode::axis}) {
+    Spec spec = make_widget_spec(Kind::cutting_plane);
+    spec.rotation = turning;
+    WidgetProbe hand({spec});
     hand.step({0.4, 0.26, 0});
     hand.step({0.4, 0.26, 0}, 1);
     hand.step({0.3, 0.4, 0}, 1);
     const Quat before = hand.report().pose.orientation;
-    EXPECT_GT(off(rotate(before, {1, 0, 0}), {1, 0, 0}), 0.1);
+    EXPECT_GT(distance_between(rotate(before, {1, 0, 0}), {1, 0, 0}), 0.1);
     hand.step({NAN, 0, 0}, 1);
     hand.step({-0.4, 0.2, 0}, 1);
-    EXPECT_EQ(hand.mode(), "turn");
-    EXPECT_LE(norm(rotation_vector(normalised(hand.report().pose.orientation * glm::conjugate(before)))), 1e-15);
+    EXPECT_EQ(hand.mode_name(), "turn");
+    EXPECT_LE(norm(rotation_vector(normalized(hand.report().pose.orientation * glm::conjugate(before)))), 1e-15);
     hand.step({-0.2, -0.4, 0}, 1);
-    EXPECT_NEAR(norm(rotation_vector(normalised(hand.report().pose.orientation * glm::conjugate(before)))), std::acos(0.0), 1e-12);
+    EXPECT_NEAR(norm(rotation_vector(normalized(hand.report().pose.orientation * glm::conjugate(before)))), std::acos(0.0), 1e-12);
   }
 }
 
 TEST(WidgetGrab, ARulersEndOnLinksIsLetGo) {
-  Spec spec = widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
-  spec.along = {0};
-  WidgetHand hand(widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9)}));
+  Spec spec = make_widget_spec(Kind::ruler, {0, 0, 0}, {1, 0, 0});
+  spec.along_links = {0};
+  WidgetProbe hand(make_widget_program({spec}, {test::hold_plane("a", {1, 0.2, 0}, 0.9)}));
   take(hand, {1, 0, 0});
   const auto before = hand.report().pose;
   hand.step({NAN, 0, 0}, 1);
   hand.step({-2, 1, 3}, 1);
-  EXPECT_EQ(hand.mode(), "away");
+  EXPECT_EQ(hand.mode_name(), "away");
   EXPECT_EQ(hand.report().pose, before);
 }
 
 TEST(WidgetRebind, KeepsWhatTheHandMadeUnlessThePoseWasSetSince) {
-  WidgetHand hand(widget_program({widget_spec(Kind::seed, {5, 5, 5}), widget_spec(Kind::cutting_plane)}, {}, 0.05));
+  WidgetProbe hand(make_widget_program({make_widget_spec(Kind::seed, {5, 5, 5}), make_widget_spec(Kind::cutting_plane)}, {}, 0.05));
   hand.step({1, 0, 0.01});
   hand.step({1, 0, 0.01}, 1);
   hand.step({1.3, 0, 0.01}, 1);
   const auto before = hand.report(1);
   // another order of widgets, another link before theirs: by name
-  Program next =
-      widget_program({widget_spec(Kind::cutting_plane), widget_spec(Kind::seed, {7, 7, 7})}, {test::hold_plane("a", {0, 1, 0}, 0)}, 0.05);
+  HapticProgram next = make_widget_program({make_widget_spec(Kind::cutting_plane), make_widget_spec(Kind::seed, {7, 7, 7})},
+                                           {test::hold_plane("a", {0, 1, 0}, 0)}, 0.05);
   next.widget_names = {"w1", "w0"};
   hand.replace(next);
   hand.step({1.3, 0, 0.01}, 1);
-  EXPECT_EQ(hand.mode(0), "translate");
+  EXPECT_EQ(hand.mode_name(0), "translate");
   EXPECT_EQ(hand.report(0).pose, before.pose);
-  EXPECT_EQ(hand.place(1), Vec3(5, 5, 5)) << "the revision is the same";
-  EXPECT_EQ(hand.order(), "widget_y widget_z");
+  EXPECT_EQ(hand.widget_position(1), Vec3(5, 5, 5)) << "the revision is the same";
+  EXPECT_EQ(hand.link_order(), "widget_y widget_z");
   // set from outside
   next.widgets[0].revision = 1;
   next.widgets[0].pose.points[0] = {0.5, 0.5, 3};
   hand.replace(next);
   hand.step({1.3, 0, 0.01}, 1);
-  EXPECT_EQ(hand.mode(0), "away");
-  EXPECT_EQ(hand.place(0), Vec3(0.5, 0.5, 3));
+  EXPECT_EQ(hand.mode_name(0), "away");
+  EXPECT_EQ(hand.widget_position(0), Vec3(0.5, 0.5, 3));
   EXPECT_EQ(hand.report(0).revision, 1u);
   // an older one does not win again
   next.widgets[0].revision = 0;
   next.widgets[0].pose.points[0] = {9, 9, 9};
   hand.replace(next);
   hand.step({1.3, 0, 0.01}, 1);
-  EXPECT_EQ(hand.place(0), Vec3(0.5, 0.5, 3));
+  EXPECT_EQ(hand.widget_position(0), Vec3(0.5, 0.5, 3));
   // another kind of the same name is another widget
-  next.widgets[0] = widget_spec(Kind::seed, {2, 2, 2});
+  next.widgets[0] = make_widget_spec(Kind::seed, {2, 2, 2});
   hand.replace(next);
   hand.step({1.3, 0, 0.01}, 1);
-  EXPECT_EQ(hand.place(0), Vec3(2, 2, 2));
+  EXPECT_EQ(hand.widget_position(0), Vec3(2, 2, 2));
 }
 
 TEST(WidgetRebind, ReportsThePosesBeforeThereIsAProbe) {
-  WidgetHand hand({widget_spec(Kind::seed, {1, 2, 3})});
+  WidgetProbe hand({make_widget_spec(Kind::seed, {1, 2, 3})});
   hand.step({NAN, 0, 0});
   EXPECT_EQ(hand.out.widget_count, 1);
-  EXPECT_EQ(hand.place(), Vec3(1, 2, 3));
+  EXPECT_EQ(hand.widget_position(), Vec3(1, 2, 3));
 }
 
 }  // namespace widget_handles_test

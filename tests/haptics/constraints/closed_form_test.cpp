@@ -1,5 +1,5 @@
 // What all closed forms share: hostile probes, hostile sizes, a proxy on its feature to round-off, energy, primitives.
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace closed_form_test {
@@ -26,14 +26,14 @@ ConstraintPtr make(const Kind& kind, const std::string& more = "") {
 /// Any finite number: all magnitudes, both signs, zeros and denormals.
 double hostile(Random& random) {
   static const double some[] = {0.0, -0.0, 5e-324, -5e-324, 2e-308, 1e-160, 1e-16, 0.5, 1, -1, 1e16, 1e154, 1e160, 1e300, -1e300};
-  const double pick = random.in(0, 1);
-  if (pick < 0.4) return some[static_cast<std::size_t>(random.in(0, 15))];
-  if (pick < 0.7) return random.in(-3, 3);
-  const double exponent = random.in(-320, 300);
-  return (random.in(0, 1) < 0.5 ? -1 : 1) * std::pow(10.0, exponent);
+  const double pick = random.uniform(0, 1);
+  if (pick < 0.4) return some[static_cast<std::size_t>(random.uniform(0, 15))];
+  if (pick < 0.7) return random.uniform(-3, 3);
+  const double exponent = random.uniform(-320, 300);
+  return (random.uniform(0, 1) < 0.5 ? -1 : 1) * std::pow(10.0, exponent);
 }
 
-TEST(ClosedForms, HostileProbesGiveAFeaturePointToRoundOff) {
+TEST(ClosedFormProjections, HostileProbesGiveAFeaturePointToRoundOff) {
   for (const Kind& kind : kKinds) {
     Random random(17);
     Rig rig(make(kind));
@@ -41,16 +41,16 @@ TEST(ClosedForms, HostileProbesGiveAFeaturePointToRoundOff) {
       const Vec3 probe(hostile(random), hostile(random), hostile(random));
       rig.tick(probe);
       ASSERT_TRUE(is_finite(rig.state.proxy)) << kind.type << " " << i;
-      ASSERT_EQ(rig.state.status, Status::ok) << kind.type << " " << i;
+      ASSERT_EQ(rig.state.status, LinkStatus::ok) << kind.type << " " << i;
       ASSERT_LE(rig.state.residual, 1e-15 * std::max(1.0, norm(rig.state.proxy))) << kind.type << " " << i;
       ASSERT_EQ(rig.state.evaluations, 0);
       const Vec3 proxy = rig.state.proxy;
-      ASSERT_TRUE(same_bits(rig.tick(probe).proxy, proxy)) << kind.type << " " << i;
+      ASSERT_TRUE(bitwise_equal(rig.tick(probe).proxy, proxy)) << kind.type << " " << i;
     }
   }
 }
 
-TEST(ClosedForms, HostileProbesOfReleasingAndOneSidedLinks) {
+TEST(ClosedFormProjections, HostileProbesOfReleasingAndOneSidedLinks) {
   for (const Kind& kind : kKinds) {
     for (const char* more : {R"(, "release": 0.4)", R"(, "free": "above")", R"(, "free": "below", "release": 1e100)"}) {
       const bool surface = kind.type == std::string("plane") || kind.type == std::string("sphere") || kind.type == std::string("box");
@@ -61,16 +61,16 @@ TEST(ClosedForms, HostileProbesOfReleasingAndOneSidedLinks) {
         const Vec3 probe(hostile(random), hostile(random), hostile(random));
         rig.tick(probe);
         ASSERT_TRUE(is_finite(rig.state.proxy)) << kind.type << more << " " << i;
-        if (rig.state.status != Status::ok) {
-          ASSERT_TRUE(rig.state.status == Status::free || rig.state.status == Status::released);
-          ASSERT_TRUE(same_bits(rig.state.proxy, probe)) << kind.type << more << " " << i;
+        if (rig.state.status != LinkStatus::ok) {
+          ASSERT_TRUE(rig.state.status == LinkStatus::free || rig.state.status == LinkStatus::released);
+          ASSERT_TRUE(bitwise_equal(rig.state.proxy, probe)) << kind.type << more << " " << i;
         }
       }
     }
   }
 }
 
-TEST(ClosedForms, ASmallLoopStoresNoEnergy) {
+TEST(ClosedFormProjections, ASmallLoopStoresNoEnergy) {
   for (const Kind& kind : kKinds) {
     Random random(19);
     Rig rig(make(kind));
@@ -87,7 +87,7 @@ TEST(ClosedForms, ASmallLoopStoresNoEnergy) {
   }
 }
 
-TEST(ClosedForms, ThePrimitiveTouchesTheProxyAndHoldsTheProbeThere) {
+TEST(ClosedFormProjections, ThePrimitiveTouchesTheProxyAndHoldsTheProbeThere) {
   for (const Kind& kind : kKinds) {
     Random random(20);
     Rig rig(make(kind));

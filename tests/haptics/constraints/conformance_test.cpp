@@ -8,7 +8,7 @@ namespace conformance_test {
 
 TEST(ConformanceTable, EveryRegisteredTypeHasExamples) {
   const auto table = examples();
-  for (const ConstraintType& type : registry()) EXPECT_TRUE(table.contains(std::string(type.type))) << type.type;
+  for (const ConstraintType& type : constraint_types()) EXPECT_TRUE(table.contains(std::string(type.type))) << type.type;
 }
 
 /// A hand's path with rests and pushes, then jumps, singular points, and places far outside.
@@ -46,21 +46,22 @@ class Conformance : public testing::TestWithParam<Example> {
 TEST_P(Conformance, FiniteBoundedAndWithoutAllocation) {
   Rig rig(constraint_);
   const auto& path = probes();
-  AllocationGuard guard;
+  AllocationCounter guard;
   for (std::size_t i = 0; i < path.size(); ++i) {
     rig.tick(path[i]);
     const LinkState& s = rig.state;
     ASSERT_TRUE(is_finite(s.proxy)) << "tick " << i;
     ASSERT_TRUE(std::isfinite(s.residual)) << "tick " << i;
     ASSERT_GE(s.evaluations, 0);
-    ASSERT_LE(s.evaluations, kEvaluationCap) << "tick " << i;
-    ASSERT_LE(s.work(), kWorkCap) << "tick " << i;
-    const bool passes = s.released || s.status == Status::free || s.status == Status::released || s.status == Status::no_surface;
+    ASSERT_LE(s.evaluations, kMaxEvaluations) << "tick " << i;
+    ASSERT_LE(s.work(), kMaxWork) << "tick " << i;
+    const bool passes =
+        s.released || s.status == LinkStatus::free || s.status == LinkStatus::released || s.status == LinkStatus::no_surface;
     if (passes) {
-      ASSERT_TRUE(same_bits(s.proxy, path[i])) << "tick " << i;
+      ASSERT_TRUE(bitwise_equal(s.proxy, path[i])) << "tick " << i;
     }
-    ASSERT_EQ(s.released, s.status == Status::released) << "tick " << i;
-    ASSERT_NE(s.status, Status::bad_probe);
+    ASSERT_EQ(s.released, s.status == LinkStatus::released) << "tick " << i;
+    ASSERT_NE(s.status, LinkStatus::bad_probe);
     ASSERT_TRUE(constraint_->is_sane(s)) << "tick " << i;
   }
   EXPECT_EQ(guard.count(), 0u);
@@ -73,8 +74,8 @@ TEST_P(Conformance, WorkIsBoundedUnderTeleports) {
   for (int i = 0; i < 2000; ++i) {
     const double half = i % 3 == 0 ? 0.3 : i % 3 == 1 ? 2 : 6;
     rig.tick(random.box(half));
-    ASSERT_LE(rig.state.work(), kWorkCap) << "tick " << i;
-    ASSERT_LE(rig.state.evaluations, kEvaluationCap) << "tick " << i;
+    ASSERT_LE(rig.state.work(), kMaxWork) << "tick " << i;
+    ASSERT_LE(rig.state.evaluations, kMaxEvaluations) << "tick " << i;
   }
 }
 
@@ -89,9 +90,9 @@ TEST_P(Conformance, LetsGoWhenTheHandLeaves) {
     // away, at a hand's speed, to far outside everything
     const Vec3 away = direction(probe) * 0.05;
     for (int i = 0; i < 400; ++i) rig.tick(probe = probe + away);
-    for (int i = 0; i < 60 && rig.state.status == Status::budget; ++i) rig.tick(probe);
+    for (int i = 0; i < 60 && rig.state.status == LinkStatus::budget; ++i) rig.tick(probe);
     // a formula may have a sheet wherever the hand goes
-    EXPECT_TRUE(same_bits(rig.state.proxy, probe) || norm(rig.state.proxy - probe) < 0.5)
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe) || norm(rig.state.proxy - probe) < 0.5)
         << "run " << run << " " << static_cast<int>(rig.state.status);
   }
 }
@@ -105,13 +106,13 @@ TEST_P(Conformance, RestsWhenTheProbeRests) {
     // as many ticks as a walk out of budget may need, one after that in which a link lets go, then nothing moves
     rig.tick(path[i]);
     rig.tick(path[i]);
-    for (int k = 0; k < 20 && (rig.state.status == Status::budget || rig.state.released); ++k) rig.tick(path[i]);
-    if (rig.state.status == Status::budget) continue;  // a walk of 1e300 lengths
+    for (int k = 0; k < 20 && (rig.state.status == LinkStatus::budget || rig.state.released); ++k) rig.tick(path[i]);
+    if (rig.state.status == LinkStatus::budget) continue;  // a walk of 1e300 lengths
     const Vec3 rest = rig.state.proxy;
-    const Status status = rig.state.status;
+    const LinkStatus status = rig.state.status;
     for (int k = 0; k < 5; ++k) {
       rig.tick(path[i]);
-      ASSERT_TRUE(same_bits(rig.state.proxy, rest)) << "probe " << i << " status " << exchange::status_word(status);
+      ASSERT_TRUE(bitwise_equal(rig.state.proxy, rest)) << "probe " << i << " status " << to_string(status);
       ASSERT_EQ(rig.state.status, status) << "probe " << i;
     }
   }
@@ -128,7 +129,7 @@ TEST_P(Conformance, TheSameBitsAgain) {
     fresh_scratch.tick(probe);
     used_scratch.tick(probe);
     for (const Rig* other : {&second, &fresh_scratch, &used_scratch}) {
-      ASSERT_TRUE(same_bits(first.state.proxy, other->state.proxy));
+      ASSERT_TRUE(bitwise_equal(first.state.proxy, other->state.proxy));
       ASSERT_EQ(first.state.status, other->state.status);
       ASSERT_EQ(first.state.released, other->state.released);
       ASSERT_EQ(first.state.evaluations, other->state.evaluations);

@@ -3,13 +3,13 @@
 namespace catena::haptics::tests {
 namespace curves_test {
 
-using catena::test::curves_of;
+using catena::test::make_curve_set;
 using catena::test::Polylines;
 
 /// The closest point of a line's pieces as the file has them.
 double distance_to(const curves::CurveSet& set, std::size_t line, const Vec3& x) {
   double least = 1e300;
-  for (std::uint32_t k = set.first[line]; k + 1 < set.first[line + 1]; ++k) {
+  for (std::uint32_t k = set.line_offsets[line]; k + 1 < set.line_offsets[line + 1]; ++k) {
     const Vec3 a(set.points[k]), d = Vec3(set.points[k + 1]) - a;
     least = std::min(least, norm(x - a - d * std::clamp(dot(x - a, d) / dot(d, d), 0.0, 1.0)));
   }
@@ -17,27 +17,27 @@ double distance_to(const curves::CurveSet& set, std::size_t line, const Vec3& x)
 }
 double distance_to(const curves::CurveSet& set, const Vec3& x) {
   double least = 1e300;
-  for (std::size_t k = 0; k < set.lines(); ++k) least = std::min(least, distance_to(set, k, x));
+  for (std::size_t k = 0; k < set.line_count(); ++k) least = std::min(least, distance_to(set, k, x));
   return least;
 }
 
 Fields fields_with(const Polylines& lines) {
   Fields made;
-  made.curves["fibres"] = curves_of(lines);
+  made.curves["fibres"] = make_curve_set(lines);
   return made;
 }
 
 TEST(CurvesLink, StartsAtTheClosestPlaceOfAllLines) {
   Random random(1);
   for (const int lines : {1, 2, 9, 300}) {
-    const Fields fields = fields_with(random_fibres(lines, 1 + lines % 7 * 5 + 3, 0.05));
+    const Fields fields = fields_with(random_fibers(lines, 1 + lines % 7 * 5 + 3, 0.05));
     const curves::CurveSet& set = *fields.curves.at("fibres");
     const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres"})", fields);
     for (int i = 0; i < 60; ++i) {
       Rig rig(made);
       const Vec3 probe = random.box(1.5);
       rig.tick(probe);
-      ASSERT_EQ(rig.state.status, Status::ok);
+      ASSERT_EQ(rig.state.status, LinkStatus::ok);
       ASSERT_NEAR(norm(probe - rig.state.proxy), distance_to(set, probe), 1e-14) << lines;
     }
   }
@@ -45,7 +45,7 @@ TEST(CurvesLink, StartsAtTheClosestPlaceOfAllLines) {
 
 TEST(CurvesLink, OneLineAlone) {
   Random random(2);
-  const Fields fields = fields_with(random_fibres(40, 30, 0.05));
+  const Fields fields = fields_with(random_fibers(40, 30, 0.05));
   const curves::CurveSet& set = *fields.curves.at("fibres");
   for (const std::size_t line : {std::size_t{0}, std::size_t{17}, std::size_t{39}}) {
     const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres", "line": )" + std::to_string(line) + "}", fields);
@@ -85,7 +85,7 @@ TEST(CurvesLink, FollowsTheLineThatItHolds) {
 
 // what one tick may take, and the closest place after a few, in a tractogram of 10^5 fibres
 TEST(CurvesLink, AHundredThousandFibresWithinTheWorkOfATick) {
-  const Fields fields = fields_with(random_fibres(100000, 20, 0.01));
+  const Fields fields = fields_with(random_fibers(100000, 20, 0.01));
   const curves::CurveSet& set = *fields.curves.at("fibres");
   const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres", "snap": 0.05, "release": 0.06})", fields);
   Random random(3);
@@ -97,10 +97,10 @@ TEST(CurvesLink, AHundredThousandFibresWithinTheWorkOfATick) {
       rig.tick(from + way * (0.01 * k));
       most = std::max(most, rig.state.work());
       held += rig.state.released ? 0 : 1;
-      waited += rig.state.status == Status::budget ? 1 : 0;
+      waited += rig.state.status == LinkStatus::budget ? 1 : 0;
     }
   }
-  EXPECT_LE(most, kWorkCap);
+  EXPECT_LE(most, kMaxWork);
   EXPECT_GT(held, 2000);
   EXPECT_LT(waited, 400) << "a search is mostly through in its first ticks";
   for (int i = 0; i < 20; ++i) {
@@ -108,14 +108,14 @@ TEST(CurvesLink, AHundredThousandFibresWithinTheWorkOfATick) {
     const Vec3 probe = random.box(1);
     int ticks = 0;
     do fresh.tick(probe);
-    while (fresh.state.status == Status::budget && ++ticks < 50);
+    while (fresh.state.status == LinkStatus::budget && ++ticks < 50);
     EXPECT_LT(ticks, 8);
     EXPECT_NEAR(norm(probe - fresh.state.proxy), distance_to(set, probe), 1e-14);
   }
 }
 
 TEST(CurvesLink, TwoLinksShareOneTree) {
-  const Fields fields = fields_with(random_fibres(100, 20, 0.01));
+  const Fields fields = fields_with(random_fibers(100, 20, 0.01));
   const std::string text = R"({"name": "a", "type": "curves", "curves": "fibres"})";
   const auto one = build(text, fields);
   const long held = fields.curves.at("fibres").use_count();
@@ -124,7 +124,7 @@ TEST(CurvesLink, TwoLinksShareOneTree) {
 }
 
 TEST(CurvesLink, RefusesWithPlaceAndExpectation) {
-  const Fields fields = fields_with(random_fibres(3, 20, 0.01));
+  const Fields fields = fields_with(random_fibers(3, 20, 0.01));
   const auto message = [&](const std::string& keys) {
     const auto made = try_build(R"({"name": "a", "type": "curves")" + keys + "}", fields);
     return made ? std::string() : made.error().message;

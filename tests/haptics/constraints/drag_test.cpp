@@ -17,17 +17,17 @@ TEST(Drag, SticksToTheBitAndSlidesAtTheThreshold) {
     Random random(4);
     Vec3 probe = random.box(size);
     rig.tick(probe);
-    EXPECT_TRUE(same_bits(rig.state.proxy, probe));  // starts at the incoming probe
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe));  // starts at the incoming probe
     int stuck = 0, slid = 0;
     for (int i = 0; i < 5000; ++i) {
       const Vec3 before = rig.state.proxy;
       probe = probe + random.unit() * (0.01 * size);
       rig.tick(probe);
-      EXPECT_EQ(rig.state.status, Status::ok);
+      EXPECT_EQ(rig.state.status, LinkStatus::ok);
       EXPECT_EQ(rig.state.limit, tau);
       EXPECT_EQ(rig.state.evaluations, 0);
       if (norm(probe - before) <= tau) {
-        ASSERT_TRUE(same_bits(rig.state.proxy, before));
+        ASSERT_TRUE(bitwise_equal(rig.state.proxy, before));
         ++stuck;
       } else {
         ASSERT_NEAR(norm(probe - rig.state.proxy), tau, 1e-15 * std::max(norm(probe), tau));
@@ -48,7 +48,7 @@ TEST(Drag, IsTheSameInAllDirections) {
     rig.tick(Vec3(0.0));
     const Vec3 way = random.unit();
     rig.tick(way * 0.0999999);
-    EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.0)));
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.0)));
     rig.tick(way * 0.3);
     EXPECT_LE(norm(rig.state.proxy - way * 0.2), 1e-16);
   }
@@ -60,7 +60,7 @@ TEST(Drag, NoThresholdIsNoDrag) {
   for (int i = 0; i < 100; ++i) {
     const Vec3 probe = random.box(3);
     rig.tick(probe);
-    EXPECT_TRUE(same_bits(rig.state.proxy, probe));
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe));
   }
 }
 
@@ -68,7 +68,7 @@ TEST(Drag, NoThresholdIsNoDrag) {
 TEST(Drag, TakesTheWorkOfALoop) {
   constexpr double kTau = 0.02, kAmplitude = 0.1, kStiffness = 400;
   constexpr int kLoop = 20000;
-  Program program;
+  HapticProgram program;
   program.coupling.max_force_n = 1e9;
   Link link;
   link.name = "a";
@@ -78,7 +78,7 @@ TEST(Drag, TakesTheWorkOfALoop) {
   const Vec3 way = direction(Vec3(1, -2, 0.5));
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   double work = 0;
   Vec3 last_probe(0.0), last_force(0.0);
   for (int k = 0; k <= 2 * kLoop; ++k) {
@@ -95,7 +95,7 @@ TEST(Drag, TakesTheWorkOfALoop) {
 
 TEST(Drag, TheThresholdMayFollowAField) {
   Fields fields;
-  fields.named["r"].scalar = analytic("sphere");
+  fields.named["r"].scalar = analytic_field("sphere");
   Rig rig(build(drag(R"({"field": "r", "map": [[0, 0.1], [2, 0.3]]})"), fields));
   rig.tick({1, 0, 0});
   EXPECT_EQ(rig.state.limit, 0.2);
@@ -112,28 +112,28 @@ TEST(Drag, OnASurface) {
     field::ScalarFieldPtr field;
     double level;
   };
-  const std::vector<Case> cases{{"sphere", analytic("sphere"), 1},
-                                {"torus", analytic("torus"), 0.4},
-                                {"sphere 32^3", sampled("sphere", 32), 1},
-                                {"torus 64^3", sampled("torus", 64), 0.4}};
+  const std::vector<Case> cases{{"sphere", analytic_field("sphere"), 1},
+                                {"torus", analytic_field("torus"), 0.4},
+                                {"sphere 32^3", sampled_field("sphere", 32), 1},
+                                {"torus 64^3", sampled_field("torus", 64), 0.4}};
   for (const Case& c : cases) {
     Fields fields;
     fields.named["s"].scalar = c.field;
     Rig rig(build(drag("0.03", ", \"surface\": \"s\", \"level\": " + std::to_string(c.level)), fields));
-    const std::vector<Vec3> path = walk_on(c.field, c.level, {1, 0.1, 0.2}, 0.004, 20000, 7);
+    const std::vector<Vec3> path = walk_on_surface(c.field, c.level, {1, 0.1, 0.2}, 0.004, 20000, 7);
     ASSERT_GT(path.size(), 15000u);
-    Spread evaluations;
+    Quantiles evaluations;
     double worst_level = 0, worst_gap = 0;
     int stuck = 0, off = 0, lost = 0;
     for (const Vec3& probe : path) {
       const Vec3 before = rig.state.proxy;
       rig.tick(probe);
       evaluations.add(rig.state.evaluations);
-      lost += rig.state.status != Status::ok;
-      if (rig.state.status != Status::ok) continue;
+      lost += rig.state.status != LinkStatus::ok;
+      if (rig.state.status != LinkStatus::ok) continue;
       worst_level = std::max(worst_level, off_level(*c.field, c.level, rig.state.proxy));
       if (norm(probe - before) <= 0.03) {
-        ASSERT_TRUE(same_bits(rig.state.proxy, before));
+        ASSERT_TRUE(bitwise_equal(rig.state.proxy, before));
         ++stuck;
       } else if (&probe != &path.front()) {
         const double error = std::fabs(norm(probe - rig.state.proxy) - 0.03);
@@ -142,7 +142,8 @@ TEST(Drag, OnASurface) {
       }
     }
     std::printf("%-12s off level %.1e, gap - tau %.1e (%d of %zu over 1e-12), stuck %d, lost %d, evaluations %d %d %d\n", c.name,
-                worst_level, worst_gap, off, path.size(), stuck, lost, evaluations.at(0.5), evaluations.at(0.99), evaluations.at(1));
+                worst_level, worst_gap, off, path.size(), stuck, lost, evaluations.at_quantile(0.5), evaluations.at_quantile(0.99),
+                evaluations.at_quantile(1));
     EXPECT_EQ(lost, 0);
     EXPECT_GT(stuck, 500);
     EXPECT_LE(worst_level, 4e-12);
@@ -152,32 +153,33 @@ TEST(Drag, OnASurface) {
 
 TEST(Drag, OffTheSurfaceThereIsNoFriction) {
   Fields fields;
-  fields.named["s"].scalar = analytic("sphere");
+  fields.named["s"].scalar = analytic_field("sphere");
   Rig rig(build(drag("0.2", R"(, "surface": "s", "level": 1)"), fields));
-  EXPECT_EQ(rig.tick({0, 0, 1.2}).status, Status::free);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0, 1.2)));
-  EXPECT_EQ(rig.tick({0, 0, 1}).status, Status::ok);
-  EXPECT_EQ(rig.tick({0.1, 0, std::sqrt(0.99)}).status, Status::ok);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0, 1)));  // stuck
-  EXPECT_EQ(rig.tick({0.1, 0, 1.1}).status, Status::free);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, 0, 1.1)));
-  EXPECT_EQ(rig.tick({0, 0.6, 0.8}).status, Status::ok);  // from where it comes down
+  EXPECT_EQ(rig.tick({0, 0, 1.2}).status, LinkStatus::free);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, 1.2)));
+  EXPECT_EQ(rig.tick({0, 0, 1}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({0.1, 0, std::sqrt(0.99)}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, 1)));  // stuck
+  EXPECT_EQ(rig.tick({0.1, 0, 1.1}).status, LinkStatus::free);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0, 1.1)));
+  EXPECT_EQ(rig.tick({0, 0.6, 0.8}).status, LinkStatus::ok);  // from where it comes down
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0.6, 0.8)), 1e-15);
 }
 
 // two spheres: from one to the other there is no surface to slide on
 TEST(Drag, AJumpToAnotherSheetStartsAnewThere) {
-  const auto two = grid_of(field::Mapping::from_linear(Mat3(0.1), Vec3(-2.0)), {41, 41, 41},
-                           [](const Vec3& p) { return std::min(norm(p - Vec3(1, 0, 0)), norm(p + Vec3(1, 0, 0))); });
+  const auto two = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.1), Vec3(-2.0)), {41, 41, 41},
+                                      [](const Vec3& p) { return std::min(norm(p - Vec3(1, 0, 0)), norm(p + Vec3(1, 0, 0))); });
   Fields fields;
   fields.named["s"].scalar = two;
-  const Vec3 left = walk_on(two, 0.5, {-1.5, 0.1, 0}, 0.001, 2, 1).back(), right = walk_on(two, 0.5, {1.5, 0.1, 0}, 0.001, 2, 1).back();
+  const Vec3 left = walk_on_surface(two, 0.5, {-1.5, 0.1, 0}, 0.001, 2, 1).back(),
+             right = walk_on_surface(two, 0.5, {1.5, 0.1, 0}, 0.001, 2, 1).back();
   Rig rig(build(drag("0.8", R"(, "surface": "s", "level": 0.5)"), fields));
   rig.tick(left);
   rig.tick(right);
   EXPECT_TRUE(is_finite(rig.state.proxy));
-  if (rig.state.status == Status::no_surface) {
-    EXPECT_TRUE(same_bits(rig.state.proxy, right));
+  if (rig.state.status == LinkStatus::no_surface) {
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, right));
   } else {
     EXPECT_LE(norm(right - rig.state.proxy), norm(right - left));
     EXPECT_LE(off_level(*two, 0.5, rig.state.proxy), 4e-9);
@@ -186,7 +188,7 @@ TEST(Drag, AJumpToAnotherSheetStartsAnewThere) {
 
 TEST(Drag, RefusesBadKeys) {
   Fields fields;
-  fields.named["s"].scalar = analytic("sphere");
+  fields.named["s"].scalar = analytic_field("sphere");
   fields.named["v"].vector = field::make_analytic("circle")->vector;
   const auto refused = [&](const std::string& text, const std::string& what) {
     const auto made = try_build(text, fields);

@@ -2,9 +2,9 @@
 // gradient of an energy. The work is a trapezoid rule over the parameter of the loop, refined until half the step changes it by less than
 // 1e-10 of K gap^2; gap is the hand's largest distance from the last proxy. Prints the table of pairs.
 #include "haptics/chain/tick.h"
-#include "haptics/constraints/rules/link_keys.h"
-#include "tests/engine/flow/fields.h"
-#include "tests/haptics/constraints/rig.h"
+#include "haptics/constraints/common/link_schema.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace energy_test {
@@ -14,10 +14,11 @@ constexpr double kStiffness = 100;
 Fields fields() {
   Fields made;
   made.proxy_tolerance = 1e-10;  // a conservative chain's
-  for (const char* name : {"sphere", "torus"}) made.named[name].scalar = analytic(name);
+  for (const char* name : {"sphere", "torus"}) made.named[name].scalar = analytic_field(name);
   for (const char* name : {"circle", "helix"}) made.named[name].vector = field::make_analytic(name)->vector;
-  made.named["torus_grid"].scalar = sampled("torus", 33);
-  made.named["slope"].scalar = grid_of(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9}, [](const Vec3& p) { return p.x; });
+  made.named["torus_grid"].scalar = sampled_field("torus", 33);
+  made.named["slope"].scalar =
+      sample_scalar_grid(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9}, [](const Vec3& p) { return p.x; });
   return made;
 }
 
@@ -44,7 +45,7 @@ struct Result {
 
 Result work_of(const std::vector<std::string>& links, CouplingForce force, const Loop& loop, int most = 1 << 14) {
   static const Fields all = fields();
-  Program program;
+  HapticProgram program;
   for (const std::string& text : links) {
     Link link;
     link.name = "l" + std::to_string(program.links.size());
@@ -59,20 +60,20 @@ Result work_of(const std::vector<std::string>& links, CouplingForce force, const
   for (int n = 64; n <= most; n *= 2) {
     ChainState state;
     ChainScratch scratch;
-    exchange::HapticState out;
+    HapticState out;
     double gap = 0, work = 0, t = 0, left = 0;
     // one lap to arrive, and one that counts
     for (int k = 0; k <= 2 * n; ++k) {
       const Vec3 next = loop.at(static_cast<double>(k % n) / n);
       tick(program, {t += 1e-3, next, 0}, state, scratch, out);
-      if (k == n) left = out.left_out_j;
+      if (k == n) left = out.omitted_work_j;
       if (k > n) {
         work += dot(out.force_n, loop.velocity(static_cast<double>(k % n) / n)) / n;
         gap = std::max(gap, norm(out.links[program.links.size() - 1].proxy - next));
       }
     }
     const double unit = kStiffness * gap * gap;
-    result = {work / unit, (out.left_out_j - left) / unit, n > 64 && std::fabs(work - before) <= 1e-10 * unit};
+    result = {work / unit, (out.omitted_work_j - left) / unit, n > 64 && std::fabs(work - before) <= 1e-10 * unit};
     if (result.converged) break;
     before = work;
   }
@@ -182,10 +183,10 @@ TEST(Energy, OfContactsThatComeAndGoAndOfCells) {
 TEST(Energy, OfAStiffnessThatFollowsAField) {
   static const Fields all = fields();
   auto node = json::parse(R"({"k": {"field": "slope", "map": [[-2, 50], [2, 300]]}})", "s.json");
-  const auto map = get_parameter(*node, "k", 0.0, json::Range::not_negative, all.context());
+  const auto map = get_parameter(*node, "k", 0.0, json::NumberRange::non_negative, all.context());
   ASSERT_TRUE(map);
   for (const CouplingForce force : {CouplingForce::paper, CouplingForce::conservative}) {
-    Program program;
+    HapticProgram program;
     Link link;
     link.name = "a";
     link.constraint = build(R"({"name": "a", )" + plane({0, 0, 1}) + "}");
@@ -195,7 +196,7 @@ TEST(Energy, OfAStiffnessThatFollowsAField) {
     program.coupling.max_force_n = 1e9;
     ChainState state;
     ChainScratch scratch;
-    exchange::HapticState out;
+    HapticState out;
     const Loop loop{Vec3(0.1, 0, 0.3), Vec3(0.3, 0, 0), Vec3(0, 0, 0.2), Vec3(0.0)};
     double work = 0, t = 0;
     Vec3 x(0.0), f(0.0);

@@ -4,8 +4,8 @@
 #include <limits>
 #include "tests/support/curve_files.h"
 
-#include "tests/engine/flow/fields.h"
-#include "tests/haptics/constraints/rig.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::haptics::tests {
@@ -25,7 +25,7 @@ inline std::string zigzag(int points) {
 }
 
 /// Lines that go astray through the box -1..1, each begun anywhere in it.
-inline catena::test::Polylines random_fibres(int lines, int points, double step) {
+inline catena::test::Polylines random_fibers(int lines, int points, double step) {
   Random random(17);
   catena::test::Polylines all(static_cast<std::size_t>(lines));
   for (auto& line : all) {
@@ -149,57 +149,60 @@ inline std::map<std::string, std::vector<std::string>> examples() {
 inline const Fields& fields() {
   static const Fields all = [] {
     Fields made;
-    for (const char* name : {"sphere", "torus", "gaussian", "tanh", "marschner-lobb", "constant"}) made.named[name].scalar = analytic(name);
+    for (const char* name : {"sphere", "torus", "gaussian", "tanh", "marschner-lobb", "constant"})
+      made.named[name].scalar = analytic_field(name);
     for (const char* name : {"circle", "saddle", "hill", "helix", "rankine", "lamb-oseen"})
       made.named[name].vector = field::make_analytic(name)->vector;
-    made.named["sphere_grid"].scalar = sampled("sphere", 25);
-    made.named["torus_grid"].scalar = sampled("torus", 33);
+    made.named["sphere_grid"].scalar = sampled_field("sphere", 25);
+    made.named["torus_grid"].scalar = sampled_field("torus", 33);
     made.named["circle_grid"].vector = field::sample_on_grid(*made.named["circle"].vector, 24, -2, 2);
     Mat3 boxes(0.0);
     boxes[0] = Vec3(0.1, 0.02, 0);
     boxes[1] = Vec3(-0.05, 0.25, 0);
     boxes[2] = Vec3(0, 0.03, 0.4);
     made.named["boxes_grid"].scalar =
-        grid_of(field::Mapping::from_linear(boxes, Vec3(-1.2, -1.8, -2)), {30, 15, 10}, [](const Vec3& p) { return norm(p); });
+        sample_scalar_grid(field::Mapping::from_linear(boxes, Vec3(-1.2, -1.8, -2)), {30, 15, 10}, [](const Vec3& p) { return norm(p); });
     Random random(99);
-    made.named["noise_grid"].scalar =
-        grid_of(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) { return random.in(-1, 1); });
-    made.named["broken_grid"].scalar = grid_of(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) {
-      const double v = random.in(0, 1);
-      return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
-    });
+    made.named["noise_grid"].scalar = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21},
+                                                         [&](const Vec3&) { return random.uniform(-1, 1); });
+    made.named["broken_grid"].scalar =
+        sample_scalar_grid(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) {
+          const double v = random.uniform(0, 1);
+          return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
+        });
     std::vector<float> vectors;
     for (int i = 0; i < 3 * 21 * 21 * 21; ++i) {
-      const double v = random.in(-1, 1);
+      const double v = random.uniform(-1, 1);
       vectors.push_back(std::fabs(v) < 0.01 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(v));
     }
     made.named["broken_vectors"].vector =
         field::make_vector_grid("made", field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, vectors);
     const auto nodes = field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0));
-    made.named["noise_vectors"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3&) { return random.box(1); });
-    made.named["broken_circle"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3& p) {
-      return random.in(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
+    made.named["noise_vectors"].vector = catena::test::sample_vector_grid(nodes, {21, 21, 21}, [&](const Vec3&) { return random.box(1); });
+    made.named["broken_circle"].vector = catena::test::sample_vector_grid(nodes, {21, 21, 21}, [&](const Vec3& p) {
+      return random.uniform(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
     });
     // the same voxels in cubic cells
     for (const auto& [cubic, linear] :
          {std::pair{"cubic_sphere", "sphere_grid"}, {"cubic_noise", "noise_grid"}, {"cubic_broken", "broken_grid"}})
-      made.named[cubic].scalar = made.named[linear].scalar->grid()->cubic().value();
+      made.named[cubic].scalar = made.named[linear].scalar->grid()->as_cubic().value();
     for (const auto& [cubic, linear] : {std::pair{"cubic_circle", "circle_grid"}, {"cubic_vectors", "broken_vectors"}})
-      made.named[cubic].vector = made.named[linear].vector->grid()->cubic().value();
-    made.meshes["box"] = catena::test::mesh_of(catena::test::box_soup());
-    made.meshes["sheet"] = catena::test::mesh_of(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
-    made.meshes["sphere"] = catena::test::mesh_of(catena::test::sphere_soup(12));
-    made.meshes["plate"] = catena::test::mesh_of(catena::test::box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
+      made.named[cubic].vector = made.named[linear].vector->grid()->as_cubic().value();
+    made.meshes["box"] = catena::test::make_mesh_from(catena::test::box_soup());
+    made.meshes["sheet"] =
+        catena::test::make_mesh_from(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
+    made.meshes["sphere"] = catena::test::make_mesh_from(catena::test::sphere_soup(12));
+    made.meshes["plate"] = catena::test::make_mesh_from(catena::test::box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
     // three leaves at one spine, one of them turned over
-    mesh::Soup book;
+    mesh::TriangleSoup book;
     catena::test::add_quad(book, {0, -1, 0}, {1, -1, 0.2}, {1, 1, 0.2}, {0, 1, 0});
     catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
     catena::test::add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
-    made.meshes["book"] = catena::test::mesh_of(std::move(book));
+    made.meshes["book"] = catena::test::make_mesh_from(std::move(book));
     made.points["cloud"] = point_cloud(2000);
     made.points["one"] = point_cloud(1);
-    made.curves["fibres"] = catena::test::curves_of(random_fibres(200, 60, 0.1));
-    made.curves["two"] = catena::test::curves_of({{{-1, 0, 0}, {1, 0, 0}}, {{0, 1e-12, -1}, {0, 0, 1}}});
+    made.curves["fibres"] = catena::test::make_curve_set(random_fibers(200, 60, 0.1));
+    made.curves["two"] = catena::test::make_curve_set({{{-1, 0, 0}, {1, 0, 0}}, {{0, 1e-12, -1}, {0, 0, 1}}});
     return made;
   }();
   return all;
@@ -213,7 +216,7 @@ inline void PrintTo(const Example& e, std::ostream* out) { *out << e.type << " {
 inline std::vector<Example> all_examples() {
   std::vector<Example> out;
   const auto table = examples();
-  for (const ConstraintType& type : registry()) {
+  for (const ConstraintType& type : constraint_types()) {
     const auto it = table.find(std::string(type.type));
     if (it == table.end()) continue;
     for (const std::string& body : it->second) out.push_back({it->first, body});

@@ -1,13 +1,13 @@
 /// A hand that stays on a surface, for the friction links: the proxies of an isosurface link along a random walk.
 #pragma once
-#include "haptics/constraints/isosurface/level.h"
-#include "tests/haptics/constraints/rig.h"
+#include "haptics/constraints/isosurface/level_set_field.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 
 /// `step`: of the hand, world units a tick. Starts near `from`.
-inline std::vector<Vec3> walk_on(const field::ScalarFieldPtr& surface, double level, const Vec3& from, double step, int ticks,
-                                 std::uint64_t seed) {
+inline std::vector<Vec3> walk_on_surface(const field::ScalarFieldPtr& surface, double level, const Vec3& from, double step, int ticks,
+                                         std::uint64_t seed) {
   Rig rig(isosurface(surface, level));
   Random random(seed);
   std::vector<Vec3> path;
@@ -17,8 +17,8 @@ inline std::vector<Vec3> walk_on(const field::ScalarFieldPtr& surface, double le
     rig.tick(hand + v);
     // the hand goes along with the surface, a little above it
     hand = rig.state.proxy;
-    if (rig.state.status == Status::ok) path.push_back(hand);
-    if (rig.state.status != Status::ok) v = -v;
+    if (rig.state.status == LinkStatus::ok) path.push_back(hand);
+    if (rig.state.status != LinkStatus::ok) v = -v;
   }
   return path;
 }

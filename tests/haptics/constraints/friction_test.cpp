@@ -1,4 +1,4 @@
-#include "engine/flow/curve.h"
+#include "engine/geometry/flow/curve.h"
 #include "tests/haptics/constraints/friction_fixture.h"
 
 namespace catena::haptics::tests {
@@ -45,7 +45,7 @@ TEST(Friction, IsFreeAlongAndSticksAcross) {
   EXPECT_LE(norm(rig.state.proxy - way * 0.2), 1e-9);
   const Vec3 before = rig.state.proxy;
   rig.tick(before + across * 0.0999);
-  EXPECT_TRUE(same_bits(rig.state.proxy, before));
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, before));
   rig.tick(before + across * 0.25);
   EXPECT_LE(norm(rig.state.proxy - (before + across * 0.15)), 1e-12);
   EXPECT_EQ(rig.state.limit, 0.1);
@@ -60,17 +60,17 @@ TEST(Friction, KeepsBothConditionsOnAWalk) {
     Vec3 probe(0.5, 0.3, 0.2), velocity = random.unit() * 0.002;
     double worst_gap = 0, worst_along = 0;
     int slid = 0, over = 0, budget = 0, loose = 0;
-    Spread evaluations;
+    Quantiles evaluations;
     for (int i = 0; i < 20000; ++i) {
       velocity = direction(velocity + random.unit() * 0.0004) * 0.002;
       if (norm(probe + velocity) > 1.2) velocity = -velocity;
       probe = probe + velocity;
       rig.tick(probe);
-      budget += rig.state.status == Status::budget;
+      budget += rig.state.status == LinkStatus::budget;
       evaluations.add(rig.state.evaluations);
       field::Cursor cursor;
       const Vec3 e = probe - rig.state.proxy, d = direction(v->sample(rig.state.proxy, cursor).value);
-      if (rig.state.status == Status::ok) worst_along = std::max(worst_along, std::fabs(dot(e, d)));
+      if (rig.state.status == LinkStatus::ok) worst_along = std::max(worst_along, std::fabs(dot(e, d)));
       loose += std::fabs(dot(e, d)) > 1e-7;
       const double error = norm(e) - 0.03;
       over += error > 1e-12;
@@ -80,7 +80,7 @@ TEST(Friction, KeepsBothConditionsOnAWalk) {
       }
     }
     std::printf("%-7s slid %d, | |e| - tau | %.1e, over %d, |e.d| %.1e, loose %d, budget %d, evaluations %d %d %d\n", name, slid, worst_gap,
-                over, worst_along, loose, budget, evaluations.at(0.5), evaluations.at(0.99), evaluations.at(1));
+                over, worst_along, loose, budget, evaluations.at_quantile(0.5), evaluations.at_quantile(0.99), evaluations.at_quantile(1));
     EXPECT_GT(slid, 1000);
     EXPECT_EQ(over, 0);
     EXPECT_LE(budget, 4);  // where the line turns about within tau
@@ -98,7 +98,7 @@ TEST(Friction, DriftOfALap) {
   };
   const double low = std::sqrt(1 - 0.05 * 0.05);
   for (const Case& c : {Case{"plane", 0.05, 0, ""}, Case{"sphere", 0.05, low, kOnS + "1"}}) {
-    Rig rig(build(friction(1, c.more), fields_of(vectors("circle"), analytic("sphere"))));
+    Rig rig(build(friction(1, c.more), fields_of(vectors("circle"), analytic_field("sphere"))));
     const int ticks = static_cast<int>(2 * kPi * c.radius / 0.2 * 1000);
     double drift = 0, behind = 0;
     for (int k = 0; k <= ticks; ++k) {
@@ -107,7 +107,7 @@ TEST(Friction, DriftOfALap) {
       const double r = k == 0 ? c.radius : c.radius * (1 + 0.2 * std::sin(3 * a));
       const double z = c.height > 0 ? std::sqrt(1 - r * r) : 0;
       rig.tick({r * std::cos(a), r * std::sin(a), z});
-      ASSERT_EQ(rig.state.status, Status::ok) << k;
+      ASSERT_EQ(rig.state.status, LinkStatus::ok) << k;
       const Vec3& p = rig.state.proxy;
       drift = std::max(drift, std::fabs(std::sqrt(p.x * p.x + p.y * p.y) - c.radius) + std::fabs(p.z - c.height));
       behind = std::max(behind, norm(Vec3(p.x, p.y, 0) - Vec3(std::cos(a), std::sin(a), 0) * c.radius));
@@ -137,12 +137,12 @@ TEST(Friction, WithoutADirectionItIsDrag) {
   const auto nothing = std::make_shared<Formula>([](const Vec3&) { return Vec3(0.0); });
   const auto radial = std::make_shared<Formula>([](const Vec3& p) { return p; });
   const auto nan = std::make_shared<Formula>([](const Vec3&) { return Vec3(std::nan("")); });
-  const auto sphere = analytic("sphere");
-  const std::vector<Vec3> path = walk_on(sphere, 1, {1, 0.1, 0.2}, 0.003, 4000, 9);
+  const auto sphere = analytic_field("sphere");
+  const std::vector<Vec3> path = walk_on_surface(sphere, 1, {1, 0.1, 0.2}, 0.003, 4000, 9);
   const struct {
     field::VectorFieldPtr v;
-    Status status;
-  } cases[] = {{nothing, Status::ok}, {radial, Status::ok}, {nan, Status::critical}};
+    LinkStatus status;
+  } cases[] = {{nothing, LinkStatus::ok}, {radial, LinkStatus::ok}, {nan, LinkStatus::critical}};
   for (const auto& c : cases) {
     Rig rig(build(friction(0.02, kOnS + "1"), fields_of(c.v, sphere)));
     Rig drag(build(R"({"name": "a", "type": "drag", "threshold": 0.02, "surface": "s", "level": 1})", fields_of(c.v, sphere)));
@@ -213,7 +213,7 @@ TEST(Friction, LineFieldsHaveNoSign) {
       for (int x = 0; x < n; ++x) {
         const Vec3 p(-2 + 0.1 * x, -2 + 0.1 * y, -2 + 0.1 * z);
         const Vec3 v = direction(Vec3(-p.y, p.x, 0.3));
-        const double sign = random.in(-1, 1) < 0 ? -1 : 1;
+        const double sign = random.uniform(-1, 1) < 0 ? -1 : 1;
         for (int a = 0; a < 3; ++a) plain.push_back(static_cast<float>(v[a])), flipped.push_back(static_cast<float>(sign * v[a]));
       }
   const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-2.0));
@@ -237,7 +237,7 @@ TEST(Friction, LineFieldsHaveNoSign) {
 
 // on a surface: the tangential part of the field leads, all on the level
 TEST(Friction, FollowsTheTangentialFieldOnASurface) {
-  const auto sphere = analytic("sphere");
+  const auto sphere = analytic_field("sphere");
   const auto tilted = std::make_shared<Formula>([](const Vec3& p) { return Vec3(-p.y, p.x, 0) + p * 3.0; });
   Rig rig(build(friction(0.4, kOnS + "1"), fields_of(tilted, sphere)));
   // parallels of the sphere, whatever the normal part
@@ -245,7 +245,7 @@ TEST(Friction, FollowsTheTangentialFieldOnASurface) {
   for (int k = 0; k <= 5000; ++k) {
     const double a = 2 * kPi * k / 5000, up = z + 0.2 * std::sin(5 * a);
     rig.tick(Vec3(std::sqrt(1 - up * up) * std::cos(a), std::sqrt(1 - up * up) * std::sin(a), up));
-    ASSERT_EQ(rig.state.status, Status::ok);
+    ASSERT_EQ(rig.state.status, LinkStatus::ok);
     ASSERT_NEAR(rig.state.proxy.z, z, 1e-7);
     ASSERT_NEAR(norm(rig.state.proxy), 1, 1e-11);
     ASSERT_LE(norm(rig.state.proxy - Vec3(r * std::cos(a), r * std::sin(a), z)), 1e-6);
@@ -265,10 +265,10 @@ TEST(Friction, TheLineEndsWhereTheFieldDoes) {
   Rig rig(build(friction(5), fields_of(field::make_vector_grid("v", mapping, {n, n, n}, v, valid))));
   rig.tick({0, 0.1, 0.1});
   for (double x = 0; x < 1.5; x += 0.01) rig.tick({x, 0.1, 0.1});
-  EXPECT_EQ(rig.state.status, Status::boundary);
+  EXPECT_EQ(rig.state.status, LinkStatus::boundary);
   EXPECT_NEAR(rig.state.proxy.x, 1, 1e-3);
   rig.tick({0.5, 0.1, 0.1});
-  EXPECT_EQ(rig.state.status, Status::ok);
+  EXPECT_EQ(rig.state.status, LinkStatus::ok);
   EXPECT_NEAR(rig.state.proxy.x, 0.5, 1e-8);
 }
 
@@ -276,10 +276,11 @@ TEST(Friction, TheLineEndsWhereTheFieldDoes) {
 // a corner that is the closest point. Before, the rounds ran out with a third of the threshold left along the line, and it was OK.
 TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
   Random random(3);
-  const auto bumps = grid_of(field::Mapping::from_linear(Mat3(2.0 / 19), Vec3(-1.0)), {20, 20, 20},
-                             [](const Vec3& p) { return norm(p) + 0.12 * std::sin(6 * p.x) * std::sin(5 * p.y + 1) * std::sin(7 * p.z); });
+  const auto bumps = sample_scalar_grid(field::Mapping::from_linear(Mat3(2.0 / 19), Vec3(-1.0)), {20, 20, 20}, [](const Vec3& p) {
+    return norm(p) + 0.12 * std::sin(6 * p.x) * std::sin(5 * p.y + 1) * std::sin(7 * p.z);
+  });
   const auto v = vectors("abc");
-  const double length = bumps->length();
+  const double length = bumps->domain_length();
   Rig surface(isosurface(bumps, 0.65));
   Rig rig(build(friction(0.06, kOnS + "0.65"), fields_of(v, bumps)));
   Vec3 probe(0.6, 0.1, 0.2), velocity = random.unit();
@@ -290,8 +291,8 @@ TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
     probe = probe + velocity * 5e-4;
     surface.tick(probe);
     rig.tick(surface.state.proxy);
-    waits += rig.state.status == Status::budget;
-    if (rig.state.status != Status::ok) continue;
+    waits += rig.state.status == LinkStatus::budget;
+    if (rig.state.status != LinkStatus::ok) continue;
     ++ok;
     const auto tangent = [&](const Vec3& p) {
       field::Cursor at_v, at_s;
@@ -311,7 +312,7 @@ TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
 }
 
 TEST(Friction, RefusesBadKeys) {
-  const Fields fields = fields_of(vectors("circle"), analytic("sphere"));
+  const Fields fields = fields_of(vectors("circle"), analytic_field("sphere"));
   const auto refused = [&](const std::string& text, const std::string& what) {
     const auto made = try_build(text, fields);
     ASSERT_FALSE(made) << text;

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace gradient_force_test {
@@ -15,31 +15,33 @@ ConstraintPtr pull(field::ScalarFieldPtr f, const std::string& towards, const st
 
 TEST(GradientForce, IsProportionalToTheGradient) {
   // s = |x|^2 on a grid: |grad s| = 2 |x|, largest in the outermost cells' centres
-  const auto f = grid_of(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3& p) { return dot(p, p); });
+  const auto f =
+      sample_scalar_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3& p) { return dot(p, p); });
   Rig high(pull(f, "high")), low(pull(f, "low"));
   const double largest = 2 * norm(Vec3(2 - 0.0625));
   Random random(1);
   for (int i = 0; i < 300; ++i) {
     // at a cell's centre the trilinear gradient is the formula's
-    const Vec3 index(std::floor(random.in(0, 32)) + 0.5, std::floor(random.in(0, 32)) + 0.5, std::floor(random.in(0, 32)) + 0.5);
+    const Vec3 index(std::floor(random.uniform(0, 32)) + 0.5, std::floor(random.uniform(0, 32)) + 0.5,
+                     std::floor(random.uniform(0, 32)) + 0.5);
     const Vec3 x = Vec3(-2.0) + 0.125 * index, shift = 0.2 * 2.0 * x / largest;
     high.tick(x);
     low.tick(x);
     EXPECT_LE(norm(high.state.proxy - x - shift), 1e-6);
     EXPECT_LE(norm(low.state.proxy - x + shift), 1e-6);
-    EXPECT_EQ(high.state.status, Status::ok);
+    EXPECT_EQ(high.state.status, LinkStatus::ok);
     EXPECT_EQ(high.state.evaluations, 1);
     EXPECT_LE(norm(high.state.proxy - x), 0.2 * (1 + 1e-12));
   }
 }
 
 TEST(GradientForce, TheScaleOfTheFieldDoesNotMatter) {
-  Rig one(pull(analytic("gaussian"), "high"));
+  Rig one(pull(analytic_field("gaussian"), "high"));
   Random random(2);
   std::vector<Vec3> path;
   for (int i = 0; i < 100; ++i) path.push_back(random.box(2));
   for (const double scale : {1e-300, 1e-150, 1e150, 1e300}) {
-    Rig other(pull(analytic("gaussian", scale), "high"));
+    Rig other(pull(analytic_field("gaussian", scale), "high"));
     for (const Vec3& x : path) {
       one.tick(x);
       other.tick(x);
@@ -50,31 +52,31 @@ TEST(GradientForce, TheScaleOfTheFieldDoesNotMatter) {
 }
 
 TEST(GradientForce, IsFreeOutsideTheDomainAndIdleOnAPlateau) {
-  Rig grid(pull(sampled("sphere", 17), "high"));
-  EXPECT_EQ(grid.tick({1, 0.1, 0}).status, Status::ok);
+  Rig grid(pull(sampled_field("sphere", 17), "high"));
+  EXPECT_EQ(grid.tick({1, 0.1, 0}).status, LinkStatus::ok);
   EXPECT_GT(norm(grid.state.proxy - Vec3(1, 0.1, 0)), 0.1);
   for (const Vec3& out : {Vec3(2.001, 0, 0), Vec3(1e300, 0, -0.0), Vec3(0, -5, 0)}) {
-    EXPECT_EQ(grid.tick(out).status, Status::free);
-    EXPECT_TRUE(same_bits(grid.state.proxy, out));
+    EXPECT_EQ(grid.tick(out).status, LinkStatus::free);
+    EXPECT_TRUE(bitwise_equal(grid.state.proxy, out));
   }
-  Rig flat(pull(analytic("constant"), "high"));
-  EXPECT_EQ(flat.tick({-0.0, 0.5, 0}).status, Status::ok);
-  EXPECT_TRUE(same_bits(flat.state.proxy, Vec3(-0.0, 0.5, 0)));
+  Rig flat(pull(analytic_field("constant"), "high"));
+  EXPECT_EQ(flat.tick({-0.0, 0.5, 0}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(flat.state.proxy, Vec3(-0.0, 0.5, 0)));
 }
 
 TEST(GradientForce, VoxelsThatAreNotFiniteAreFree) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto f =
-      grid_of(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9}, [&](const Vec3& p) { return norm(p) < 0.1 ? nan : p.x; });
+  const auto f = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9},
+                                    [&](const Vec3& p) { return norm(p) < 0.1 ? nan : p.x; });
   Rig rig(pull(f, "low"));
-  EXPECT_EQ(rig.tick({0.2, 0.2, 0.2}).status, Status::free);
-  EXPECT_EQ(rig.tick({1.2, 0.2, 0.2}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0.2, 0.2, 0.2}).status, LinkStatus::free);
+  EXPECT_EQ(rig.tick({1.2, 0.2, 0.2}).status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(1.0, 0.2, 0.2)), 1e-6);
 }
 
 TEST(GradientForce, RefusesBadKeys) {
   Fields fields;
-  fields.named["f"].scalar = analytic("sphere");
+  fields.named["f"].scalar = analytic_field("sphere");
   fields.named["v"].vector = field::make_analytic("circle")->vector;
   const auto fails = [&](const std::string& keys, const char* part) {
     const auto made = try_build("{\"name\": \"a\", \"type\": \"gradient_force\",\n" + keys + "}", fields);

@@ -1,12 +1,12 @@
 // Isosurfaces of cubic grids in the hand: the closest point, its normal, and the walls of the domain. Judged by the field's own samples,
 // by closed forms (the cubic repeats planes and paraboloids exactly) and beside linear cells.
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace isosurface_cubic_test {
 
 std::shared_ptr<const field::ScalarGrid> cubic_of(const std::shared_ptr<const field::ScalarGrid>& grid) {
-  auto made = grid->cubic();
+  auto made = grid->as_cubic();
   EXPECT_TRUE(made) << (made ? "" : made.error().message);
   return *made;
 }
@@ -21,17 +21,17 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name << " " << c.reso
 class CubicIsosurface : public testing::TestWithParam<Case> {
  protected:
   std::shared_ptr<const field::ScalarGrid> make() const {
-    const auto sampled = tests::sampled(GetParam().name, GetParam().resolution);
+    const auto sampled = tests::sampled_field(GetParam().name, GetParam().resolution);
     return cubic_of(std::dynamic_pointer_cast<const field::ScalarGrid>(sampled));
   }
   /// Counts a place that is not on the level, or not the closest nearby.
   void count(const field::ScalarField& field, const Vec3& probe, const LinkState& state) {
-    const Judged j = judge(field, GetParam().level, probe, state.proxy);
+    const SurfaceCheck j = check_on_surface(field, GetParam().level, probe, state.proxy);
     ++runs;
     worst_off = std::max(worst_off, j.off_level);
-    bad += state.status != Status::ok || !(j.off_level <= 1e-9) || !(j.tangential <= 1e-6);
-    EXPECT_LE(state.evaluations, kEvaluationCap);
-    EXPECT_LE(state.work(), kWorkCap);
+    bad += state.status != LinkStatus::ok || !(j.off_level <= 1e-9) || !(j.tangential <= 1e-6);
+    EXPECT_LE(state.evaluations, kMaxEvaluations);
+    EXPECT_LE(state.work(), kMaxWork);
   }
   int runs = 0, bad = 0;
   double worst_off = 0;
@@ -39,14 +39,14 @@ class CubicIsosurface : public testing::TestWithParam<Case> {
 
 TEST_P(CubicIsosurface, ReachesTheClosestPointFromAnyStart) {
   const auto grid = make();
-  const auto constraint = isosurface(grid, GetParam().level), exact = isosurface(analytic(GetParam().name), GetParam().level);
+  const auto constraint = isosurface(grid, GetParam().level), exact = isosurface(analytic_field(GetParam().name), GetParam().level);
   Random random(11);
   int farther = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 probe = random.box(1.6);
     Rig rig(constraint), true_one(exact);
     rig.tick(probe);
-    for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick(probe);
+    for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
     count(*grid, probe, rig.state);
     true_one.tick(probe);
     farther += norm(probe - rig.state.proxy) > norm(probe - true_one.state.proxy) + 1e-3;
@@ -59,7 +59,7 @@ TEST_P(CubicIsosurface, WalksWithAHand) {
   const auto grid = make();
   Rig rig(isosurface(grid, GetParam().level));
   Random random(12);
-  const double speed = 0.3 * grid->mapping().smallest_edge();
+  const double speed = 0.3 * grid->mapping().min_voxel_edge();
   Vec3 probe(0.9, 0.3, 0.4), velocity = random.unit() * speed;
   rig.tick(probe);
   for (int i = 0; i < 5000; ++i) {
@@ -85,7 +85,7 @@ double normal_error(const field::ScalarFieldPtr& field, double radius) {
   for (int i = 0; i < 400; ++i) {
     const Vec3 probe = random.unit() * (1.02 * radius);
     rig.tick(probe);
-    for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick(probe);
+    for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
     const Vec3 n = direction(field->sample(rig.state.proxy, cursor).gradient);
     worst = std::max(worst, norm(n - direction(rig.state.proxy)));
   }
@@ -93,7 +93,7 @@ double normal_error(const field::ScalarFieldPtr& field, double radius) {
 }
 
 TEST(CubicIsosurface, NormalsOfSpheresAreTwentyTimesNearerToTheTruth) {
-  const auto linear = std::dynamic_pointer_cast<const field::ScalarGrid>(sampled("sphere", 64));
+  const auto linear = std::dynamic_pointer_cast<const field::ScalarGrid>(sampled_field("sphere", 64));
   const auto cubic = cubic_of(linear);
   for (const double radius : {0.5, 0.8, 1.0, 1.25, 1.5}) {
     const double of_linear = normal_error(linear, radius), of_cubic = normal_error(cubic, radius);
@@ -107,41 +107,41 @@ double bowl(const Vec3& p) { return p.z - 0.1 * p.x - 0.25 * (p.x * p.x + p.y * 
 field::Mapping cube() { return field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)); }
 
 TEST(CubicWalls, TheProxySlidesOnTheBoxAndComesBack) {
-  const auto grid = cubic_of(grid_of(cube(), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
+  const auto grid = cubic_of(sample_scalar_grid(cube(), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
   Rig rig(isosurface(grid, 0));
   for (double x = 0; x < 3; x += 0.01) {
     rig.tick({x, 0.33, 0.5});
     ASSERT_LE(rig.state.proxy.x, 2 + 1e-12);
     // the foot on the plane; beyond the wall the nearest on the edge
     const double foot = (x + 0.1 * 0.5) / 1.01;
-    ASSERT_TRUE(std::fabs(foot - 2) < 1e-6 || rig.state.status == (foot < 2 ? Status::ok : Status::boundary)) << x;
+    ASSERT_TRUE(std::fabs(foot - 2) < 1e-6 || rig.state.status == (foot < 2 ? LinkStatus::ok : LinkStatus::boundary)) << x;
     ASSERT_NEAR(rig.state.proxy.x, std::min(foot, 2.0), 1e-6) << x;
     ASSERT_NEAR(rig.state.proxy.y, 0.33, 1e-6) << x;
   }
   EXPECT_NEAR(rig.state.proxy.z, 0.2, 1e-9);
-  EXPECT_EQ(rig.state.reason, Reason::box);
+  EXPECT_EQ(rig.state.reason, SampleStatus::outside_box);
   rig.tick({3, -0.7, 0.5});
   EXPECT_NEAR(rig.state.proxy.y, -0.7, 1e-6);
   rig.tick({3, 3, 0.5});  // where two walls meet
   EXPECT_NEAR(norm(rig.state.proxy - Vec3(2, 2, 0.2)), 0, 1e-6);
-  EXPECT_EQ(rig.state.status, Status::boundary);
-  EXPECT_EQ(rig.tick({1, 0, 0}).status, Status::ok);
+  EXPECT_EQ(rig.state.status, LinkStatus::boundary);
+  EXPECT_EQ(rig.tick({1, 0, 0}).status, LinkStatus::ok);
 }
 
 TEST(CubicWalls, OnACurvedSurfaceTheWallIsACurve) {
-  const auto grid = cubic_of(grid_of(cube(), {17, 17, 17}, bowl));
+  const auto grid = cubic_of(sample_scalar_grid(cube(), {17, 17, 17}, bowl));
   Rig rig(isosurface(grid, 0.5));
   // on x = 2: z = 1.7 + y^2 / 4; brute force over y
   for (double y = -1; y <= 1; y += 0.05) {
     const Vec3 probe(2.6, y, 2.2);
     rig.tick(probe);
-    for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick(probe);
+    for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
     double best = 1e9, at = 0;
     for (double t = -1.0954; t <= 1.0954; t += 1e-4) {  // below the box's top
       const double d = norm(probe - Vec3(2, t, 0.5 + 0.2 + 0.25 * (4 + t * t)));
       if (d < best) best = d, at = t;
     }
-    ASSERT_EQ(rig.state.status, Status::boundary) << y;
+    ASSERT_EQ(rig.state.status, LinkStatus::boundary) << y;
     ASSERT_NEAR(rig.state.proxy.x, 2, 1e-9);
     ASSERT_NEAR(rig.state.proxy.y, at, 2e-4) << y;
     ASSERT_NEAR(bowl(rig.state.proxy), 0.5, 1e-7) << "the samples are floats";
@@ -150,14 +150,14 @@ TEST(CubicWalls, OnACurvedSurfaceTheWallIsACurve) {
 
 TEST(CubicWalls, ObliqueBoxesToo) {
   const auto mapping = field::Mapping::from_linear(Mat3(0.2, 0.05, 0, -0.04, 0.25, 0.02, 0.03, 0, 0.3), Vec3(-2.0));
-  const auto grid = cubic_of(grid_of(mapping, {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
+  const auto grid = cubic_of(sample_scalar_grid(mapping, {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
   const Vec3 from = mapping.world_from_index(Vec3(8.0)), out = mapping.world_from_index(Vec3(22, 8, 8));
   Rig rig(isosurface(grid, from.z - 0.1 * from.x));
   for (int k = 0; k <= 100; ++k) rig.tick(from + (k / 100.0) * (out - from));
-  ASSERT_EQ(rig.state.status, Status::boundary);
+  ASSERT_EQ(rig.state.status, LinkStatus::boundary);
   EXPECT_NEAR(mapping.index_from_world(rig.state.proxy).x, 16, 1e-8);
   // what is left of the way points out of the wall, in the plane of the wall and the level's normal only
-  const Vec3 n = direction(Vec3(-0.1, 0, 1)), wall = direction(mapping.world_gradient(Vec3(1, 0, 0)));
+  const Vec3 n = direction(Vec3(-0.1, 0, 1)), wall = direction(mapping.world_from_index_gradient(Vec3(1, 0, 0)));
   const Vec3 edge = direction(cross(n, wall));
   EXPECT_NEAR(dot(out - rig.state.proxy, edge), 0, 1e-6);
   EXPECT_GT(dot(out - rig.state.proxy, wall), 0);
@@ -170,7 +170,7 @@ TEST(CubicWalls, MasksAndValuesThatAreNoneAreWalls) {
       for (int y = 0; y < 17; ++y)
         for (int x = 0; x < 17; ++x) valid.push_back(x <= 10);
     const double hole = masked ? 9.0 : 0.6;
-    const auto made = grid_of(
+    const auto made = sample_scalar_grid(
         cube(), {17, 17, 17}, [&](const Vec3& p) { return p.x > hole ? std::nan("") : p.z - 0.1 * p.x; },
         masked ? valid : std::vector<std::uint8_t>{});
     Rig rig(isosurface(cubic_of(made), 0));
@@ -179,20 +179,20 @@ TEST(CubicWalls, MasksAndValuesThatAreNoneAreWalls) {
       ASSERT_TRUE(is_finite(rig.state.proxy));
       ASSERT_LE(rig.state.proxy.x, 0.5 + 1e-12);
     }
-    EXPECT_EQ(rig.state.status, Status::boundary);
-    EXPECT_EQ(rig.state.reason, masked ? Reason::mask : Reason::not_finite);
+    EXPECT_EQ(rig.state.status, LinkStatus::boundary);
+    EXPECT_EQ(rig.state.reason, masked ? SampleStatus::masked : SampleStatus::not_finite);
     EXPECT_NEAR(rig.state.proxy.x, 0.5, 1e-8);
     EXPECT_NEAR(rig.state.proxy.y, 0.1 + 0.2 * 1.49, 1e-6) << "it goes on along the wall";
-    EXPECT_EQ(rig.tick({-0.5, 0, 0.1}).status, Status::ok);
+    EXPECT_EQ(rig.tick({-0.5, 0, 0.1}).status, LinkStatus::ok);
   }
 }
 
 TEST(CubicWalls, ASliceHasACurve) {
-  const auto grid = cubic_of(grid_of(cube(), {17, 17, 1}, [](const Vec3& p) { return p.y - 0.25 * p.x * p.x; }));
+  const auto grid = cubic_of(sample_scalar_grid(cube(), {17, 17, 1}, [](const Vec3& p) { return p.y - 0.25 * p.x * p.x; }));
   Rig rig(isosurface(grid, 0));
   rig.tick({1, 1, -2});
-  for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick({1, 1, -2});
-  const Judged j = judge(*grid, 0, {1, 1, -2}, rig.state.proxy);
+  for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick({1, 1, -2});
+  const SurfaceCheck j = check_on_surface(*grid, 0, {1, 1, -2}, rig.state.proxy);
   EXPECT_LE(j.off_level, 1e-9);
   EXPECT_LE(j.tangential, 1e-6);
   EXPECT_NEAR(rig.state.proxy.z, -2, 1e-12);

@@ -3,7 +3,7 @@
 // residual at most 1e-6 L; it may take 20 still ticks, then it rests bit for bit.
 #include <numbers>
 
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace isosurface_folded_test {
@@ -31,14 +31,14 @@ const Formula kRipples{"marschner-lobb", ripples, ripples_gradient}, kBell{"gaus
 struct Count {
   int runs = 0, late = 0, bad = 0, restless = 0, no_minimum = 0;
   double worst_off = 0, worst_tangential = 0;
-  Spread evaluations;
+  Quantiles evaluations;
   std::string text() {
     char line[240];
     std::snprintf(line, sizeof line,
                   "%d runs: %d not in the first tick, %d bad, %d moved at rest, %d no minimum; off level %.2g L, tangential %.2g L; "
                   "evaluations p50 %d p99 %d max %d",
-                  runs, late, bad, restless, no_minimum, worst_off, worst_tangential, evaluations.at(0.5), evaluations.at(0.99),
-                  evaluations.at(1));
+                  runs, late, bad, restless, no_minimum, worst_off, worst_tangential, evaluations.at_quantile(0.5),
+                  evaluations.at_quantile(0.99), evaluations.at_quantile(1));
     return line;
   }
 };
@@ -55,8 +55,8 @@ class Judge {
     bool good = is_good(rig.state, probe);
     count.late += !good;
     for (int i = 0; i < 20 && !good; ++i) {
-      EXPECT_EQ(rig.state.status, Status::budget) << "given up at " << probe.x << " " << probe.y << " " << probe.z;
-      EXPECT_LE(rig.state.evaluations, kEvaluationCap);
+      EXPECT_EQ(rig.state.status, LinkStatus::budget) << "given up at " << probe.x << " " << probe.y << " " << probe.z;
+      EXPECT_LE(rig.state.evaluations, kMaxEvaluations);
       rig.tick(probe);
       good = is_good(rig.state, probe);
     }
@@ -64,7 +64,7 @@ class Judge {
     if (!good) return;
     const Vec3 proxy = rig.state.proxy;
     rig.tick(probe);
-    count.restless += !same_bits(rig.state.proxy, proxy) || rig.state.evaluations != 0;
+    count.restless += !bitwise_equal(rig.state.proxy, proxy) || rig.state.evaluations != 0;
     count.no_minimum += !is_minimum(proxy, probe);
   }
 
@@ -78,7 +78,7 @@ class Judge {
     const double off = std::fabs(formula_.value(state.proxy) - level_) / slope / kLength;
     const Vec3 t = e - n * dot(n, e);
     const double tangential = std::sqrt(dot(t, t)) / kLength;
-    if (state.status != Status::ok || !(off <= 1e-11) || !(tangential <= 1e-6)) return false;
+    if (state.status != LinkStatus::ok || !(off <= 1e-11) || !(tangential <= 1e-6)) return false;
     count.worst_off = std::max(count.worst_off, off);
     count.worst_tangential = std::max(count.worst_tangential, tangential);
     return true;
@@ -104,7 +104,7 @@ class Judge {
 };
 
 TEST(FoldedIsosurface, RipplesFromColdStarts) {
-  const auto constraint = isosurface(analytic("marschner-lobb"), 0.5);
+  const auto constraint = isosurface(analytic_field("marschner-lobb"), 0.5);
   Judge judge(kRipples, 0.5);
   Random random(21);
   for (int i = 0; i < 2000; ++i) {
@@ -118,13 +118,13 @@ TEST(FoldedIsosurface, RipplesFromColdStarts) {
 
 TEST(FoldedIsosurface, RipplesAfterJumps) {
   for (const double level : {0.3, 0.5}) {
-    Rig rig(isosurface(analytic("marschner-lobb"), level));
+    Rig rig(isosurface(analytic_field("marschner-lobb"), level));
     Judge judge(kRipples, level);
     Random random(22);
     Vec3 probe(0.2, -0.1, 0.3);
     for (int i = 0; i < 2000; ++i) {
       Vec3 next;
-      do next = probe + random.unit() * random.in(0.02, 1.5);
+      do next = probe + random.unit() * random.uniform(0.02, 1.5);
       while (max_abs(next) > 1);
       probe = next;
       judge.run(rig, probe);
@@ -136,7 +136,7 @@ TEST(FoldedIsosurface, RipplesAfterJumps) {
 }
 
 TEST(FoldedIsosurface, RipplesAfterJumpsFromSideToSide) {
-  Rig rig(isosurface(analytic("marschner-lobb"), 0.5));
+  Rig rig(isosurface(analytic_field("marschner-lobb"), 0.5));
   Judge judge(kRipples, 0.5);
   Random random(26);
   for (int i = 0; i < 2000; ++i) judge.run(rig, random.box(1.5));
@@ -146,7 +146,7 @@ TEST(FoldedIsosurface, RipplesAfterJumpsFromSideToSide) {
 }
 
 TEST(FoldedIsosurface, AHandOnTheRipples) {
-  Rig rig(isosurface(analytic("marschner-lobb"), 0.5));
+  Rig rig(isosurface(analytic_field("marschner-lobb"), 0.5));
   Judge judge(kRipples, 0.5);
   Random random(23);
   Vec3 probe(0.4, 0.1, 0.3), velocity = random.unit() * 5e-4;
@@ -162,7 +162,7 @@ TEST(FoldedIsosurface, AHandOnTheRipples) {
 }
 
 TEST(FoldedIsosurface, AStartAboveTheRipplesIsNotStuckBehindThem) {
-  Rig rig(isosurface(analytic("marschner-lobb"), 0.5));
+  Rig rig(isosurface(analytic_field("marschner-lobb"), 0.5));
   Judge judge(kRipples, 0.5);
   const Vec3 probe(-0.7, 0.9, 0.8);
   judge.run(rig, probe);
@@ -172,7 +172,7 @@ TEST(FoldedIsosurface, AStartAboveTheRipplesIsNotStuckBehindThem) {
 
 TEST(FoldedIsosurface, ABellsFarFlankAfterJumps) {
   for (const double level : {1e-5, 1e-3, 0.01}) {
-    Rig rig(isosurface(analytic("gaussian"), level));
+    Rig rig(isosurface(analytic_field("gaussian"), level));
     Judge judge(kBell, level);
     Random random(24);
     double worst = 0;
@@ -191,7 +191,7 @@ TEST(FoldedIsosurface, ABellsFarFlankAfterJumps) {
 }
 
 TEST(FoldedIsosurface, AJumpAcrossTheBellIsNotStuckOnItsWay) {
-  Rig rig(isosurface(analytic("gaussian"), 1e-5));
+  Rig rig(isosurface(analytic_field("gaussian"), 1e-5));
   Judge judge(kBell, 1e-5);
   judge.run(rig, {1.32, -0.01, 0.77});
   judge.run(rig, {-0.64, 0.09, -1.14});
@@ -203,14 +203,14 @@ TEST(FoldedIsosurface, OnlyADegenerateSurfaceIsGivenUp) {
   int given_up = 0;
   Random random(25);
   for (int i = 0; i < 50; ++i) {
-    Rig rig(isosurface(analytic("torus"), 0));
+    Rig rig(isosurface(analytic_field("torus"), 0));
     for (int k = 0; k < 5; ++k) {
       const Vec3 probe = random.box(1.5);
       for (int still = 0; still < 20; ++still) rig.tick(probe);
       ASSERT_TRUE(is_finite(rig.state.proxy));
-      ASSERT_TRUE(rig.state.status == Status::critical || rig.state.status == Status::no_surface)
+      ASSERT_TRUE(rig.state.status == LinkStatus::critical || rig.state.status == LinkStatus::no_surface)
           << i << " status " << static_cast<int>(rig.state.status);
-      if (rig.state.status == Status::no_surface) continue;
+      if (rig.state.status == LinkStatus::no_surface) continue;
       ++given_up;
       EXPECT_NEAR(std::hypot(rig.state.proxy.x, rig.state.proxy.y), 1, 1e-8);
       EXPECT_EQ(rig.state.evaluations, 0);

@@ -1,5 +1,5 @@
 // Number 8 of the acceptance tests (figures printed when they fail), then the rules of sides, release and the domain's edge.
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace isosurface_test {
@@ -9,11 +9,11 @@ constexpr double kOffAnalytic = 1e-11, kOffSampled = 1e-9, kTangential = 1e-6;  
 struct Tally {
   int runs = 0, bad = 0;
   double worst_off = 0, worst_tangential = 0;
-  Spread evaluations;
+  Quantiles evaluations;
   std::string text() {
     char line[200];
     std::snprintf(line, sizeof line, "%d of %d bad; off level %.2g L, tangential %.2g L; evaluations p50 %d p99 %d max %d", bad, runs,
-                  worst_off, worst_tangential, evaluations.at(0.5), evaluations.at(0.99), evaluations.at(1));
+                  worst_off, worst_tangential, evaluations.at_quantile(0.5), evaluations.at_quantile(0.99), evaluations.at_quantile(1));
     return line;
   }
 };
@@ -27,7 +27,7 @@ void PrintTo(const Formula& f, std::ostream* out) { *out << f.name << " at " << 
 class AnalyticIsosurface : public testing::TestWithParam<Formula> {};
 
 TEST_P(AnalyticIsosurface, ReachesTheClosestPointFromAnyStart) {
-  const auto f = analytic(GetParam().name);
+  const auto f = analytic_field(GetParam().name);
   const auto constraint = isosurface(f, GetParam().level);
   Random random(7);
   Tally tally;
@@ -35,19 +35,19 @@ TEST_P(AnalyticIsosurface, ReachesTheClosestPointFromAnyStart) {
     const Vec3 probe = random.box(2);
     Rig rig(constraint);
     rig.tick(probe);
-    const Judged j = judge(*f, GetParam().level, probe, rig.state.proxy);
+    const SurfaceCheck j = check_on_surface(*f, GetParam().level, probe, rig.state.proxy);
     ++tally.runs;
     tally.evaluations.add(rig.state.evaluations);
     tally.worst_off = std::max(tally.worst_off, j.off_level);
     tally.worst_tangential = std::max(tally.worst_tangential, j.tangential);
-    tally.bad += rig.state.status != Status::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
+    tally.bad += rig.state.status != LinkStatus::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
   }
   EXPECT_EQ(tally.bad, 0) << tally.text();
   RecordProperty("figures", tally.text());
 }
 
 TEST_P(AnalyticIsosurface, FollowsJumpsWithinTheTick) {
-  const auto f = analytic(GetParam().name);
+  const auto f = analytic_field(GetParam().name);
   const auto constraint = isosurface(f, GetParam().level);
   Random random(8);
   Tally tally;
@@ -56,20 +56,20 @@ TEST_P(AnalyticIsosurface, FollowsJumpsWithinTheTick) {
   for (int i = 0; i < 5000; ++i) {
     const Vec3 probe = random.box(1.5);
     rig.tick(probe);
-    const Judged j = judge(*f, GetParam().level, probe, rig.state.proxy);
+    const SurfaceCheck j = check_on_surface(*f, GetParam().level, probe, rig.state.proxy);
     ++tally.runs;
     tally.evaluations.add(rig.state.evaluations);
     tally.worst_off = std::max(tally.worst_off, j.off_level);
     tally.worst_tangential = std::max(tally.worst_tangential, j.tangential);
-    tally.bad += rig.state.status != Status::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
+    tally.bad += rig.state.status != LinkStatus::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
   }
   EXPECT_EQ(tally.bad, 0) << tally.text();
-  EXPECT_LE(tally.evaluations.at(0.99), 32) << tally.text();
+  EXPECT_LE(tally.evaluations.at_quantile(0.99), 32) << tally.text();
   RecordProperty("figures", tally.text());
 }
 
 TEST_P(AnalyticIsosurface, AHandsMotionCostsFewEvaluations) {
-  const auto f = analytic(GetParam().name);
+  const auto f = analytic_field(GetParam().name);
   Rig rig(isosurface(f, GetParam().level));
   Random random(9);
   Vec3 probe(0.9, 0.3, 0.4), velocity = random.unit() * 2e-3;
@@ -80,15 +80,15 @@ TEST_P(AnalyticIsosurface, AHandsMotionCostsFewEvaluations) {
     probe = probe + velocity;
     rig.tick(probe);
     if (i == 0) continue;
-    const Judged j = judge(*f, GetParam().level, probe, rig.state.proxy);
+    const SurfaceCheck j = check_on_surface(*f, GetParam().level, probe, rig.state.proxy);
     ++tally.runs;
     tally.evaluations.add(rig.state.evaluations);
     tally.worst_off = std::max(tally.worst_off, j.off_level);
     tally.worst_tangential = std::max(tally.worst_tangential, j.tangential);
-    tally.bad += rig.state.status != Status::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
+    tally.bad += rig.state.status != LinkStatus::ok || !(j.off_level <= kOffAnalytic) || !(j.tangential <= kTangential);
   }
   EXPECT_EQ(tally.bad, 0) << tally.text();
-  EXPECT_LE(tally.evaluations.at(0.5), 3) << tally.text();
+  EXPECT_LE(tally.evaluations.at_quantile(0.5), 3) << tally.text();
   RecordProperty("figures", tally.text());
 }
 
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Formulas, AnalyticIsosurface,
 
 TEST(Isosurface, AStillProbeLeavesTheProxyStill) {
   for (const bool grid : {false, true}) {
-    const auto f = grid ? sampled("sphere", 33, 4) : analytic("sphere");
+    const auto f = grid ? sampled_field("sphere", 33, 4) : analytic_field("sphere");
     for (const double d : {0.1, 0.5, 0.9, 1.5, 2.5, 3.0, 5.0, 20.0}) {
       Rig rig(isosurface(f, 1));
       rig.tick(Vec3(1.2, 0.1, -0.3));
@@ -107,7 +107,7 @@ TEST(Isosurface, AStillProbeLeavesTheProxyStill) {
       const Vec3 after = rig.state.proxy;
       for (int i = 0; i < 50; ++i) {
         rig.tick(direction(Vec3(1, 2, -0.5)) * d);
-        ASSERT_TRUE(same_bits(rig.state.proxy, after)) << "d = " << d << ", grid " << grid << ", tick " << i;
+        ASSERT_TRUE(bitwise_equal(rig.state.proxy, after)) << "d = " << d << ", grid " << grid << ", tick " << i;
       }
     }
   }
@@ -115,7 +115,7 @@ TEST(Isosurface, AStillProbeLeavesTheProxyStill) {
 
 // the control: the printed Newton (Eq. 5) must fail where the safeguarded one does not
 TEST(Isosurface, PlainNewtonFailsOnASteepProfile) {
-  const auto f = analytic("tanh");
+  const auto f = analytic_field("tanh");
   field::Cursor cursor;
   int failed = 0;
   for (int i = 0; i < 100; ++i) {
@@ -133,12 +133,12 @@ TEST(Isosurface, PlainNewtonFailsOnASteepProfile) {
 }
 
 TEST(Isosurface, PlateausAreLeft) {
-  const auto f = analytic("tanh");
+  const auto f = analytic_field("tanh");
   for (const double z : {0.1, -0.5, 1.0, -1.9, 1.99}) {
     Rig rig(isosurface(f, 0.3));
     rig.tick({0.3, 0.2, z});
-    EXPECT_EQ(rig.state.status, Status::ok) << z << " after " << rig.state.evaluations;
-    EXPECT_LE(judge(*f, 0.3, {0.3, 0.2, z}, rig.state.proxy).off_level, kOffAnalytic) << z;
+    EXPECT_EQ(rig.state.status, LinkStatus::ok) << z << " after " << rig.state.evaluations;
+    EXPECT_LE(check_on_surface(*f, 0.3, {0.3, 0.2, z}, rig.state.proxy).off_level, kOffAnalytic) << z;
   }
 }
 
@@ -166,7 +166,7 @@ double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3
         const auto cell = grid.cell({bx, by, bz}, cursor);
         if (!cell.valid) continue;
         const Vec3 f = index - Vec3(bx, by, bz);
-        const Vec3 g = m.world_gradient(cell.gradient(f));
+        const Vec3 g = m.world_from_index_gradient(cell.gradient(f));
         for (int held = 0; held < 8; ++held) {
           Vec3 n = g, e = probe - proxy;
           bool legal = true;
@@ -184,7 +184,7 @@ double descent_left(const field::ScalarGrid& grid, const Vec3& proxy, const Vec3
           if (legal) most = std::max(most, norm(t));
         }
       }
-  return most / grid.length();
+  return most / grid.domain_length();
 }
 
 struct Grid {
@@ -199,7 +199,7 @@ class SampledIsosurface : public testing::TestWithParam<Grid> {
  protected:
   std::shared_ptr<const field::ScalarGrid> make() const {
     const Grid& p = GetParam();
-    const auto exact = analytic(p.name);
+    const auto exact = analytic_field(p.name);
     const double h = 4.0 / (p.resolution - 1);
     const Vec3 edge = p.anisotropic ? Vec3(h, 0.7 * h, 2.1 * h) : Vec3(h);
     const field::Index3 size = p.anisotropic ? field::Index3{p.resolution, static_cast<int>(4 / (0.7 * h)), static_cast<int>(4 / (2.1 * h))}
@@ -207,24 +207,25 @@ class SampledIsosurface : public testing::TestWithParam<Grid> {
     Mat3 j(0.0);
     for (int a = 0; a < 3; ++a) j[a][a] = edge[a];
     field::Cursor cursor;
-    return grid_of(field::Mapping::from_linear(j, Vec3(-2.0)), size, [&](const Vec3& x) { return exact->sample(x, cursor).value; });
+    return sample_scalar_grid(field::Mapping::from_linear(j, Vec3(-2.0)), size,
+                              [&](const Vec3& x) { return exact->sample(x, cursor).value; });
   }
   /// Holds the probe still until the work is done: at once, or in a few ticks. True: later.
   static bool arrive(Rig& rig, const Vec3& probe) {
-    if (rig.tick(probe).status != Status::budget) return false;
-    for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick(probe);
+    if (rig.tick(probe).status != LinkStatus::budget) return false;
+    for (int k = 0; k < 3 && rig.state.status == LinkStatus::budget; ++k) rig.tick(probe);
     return true;
   }
   void count(Tally& tally, const field::ScalarGrid& grid, const Vec3& probe, const LinkState& state) const {
     ++tally.runs;
     tally.evaluations.add(state.evaluations);
     const double left = descent_left(grid, state.proxy, probe);
-    const Judged j = judge(grid, GetParam().level, probe, state.proxy);
+    const SurfaceCheck j = check_on_surface(grid, GetParam().level, probe, state.proxy);
     tally.worst_off = std::max(tally.worst_off, j.off_level);
-    if (state.status == Status::ok) tally.worst_tangential = std::max(tally.worst_tangential, left);
+    if (state.status == LinkStatus::ok) tally.worst_tangential = std::max(tally.worst_tangential, left);
     tally.bad +=
-        (state.status != Status::ok && state.status != Status::boundary) || !(left <= kTangential) || !(j.off_level <= kOffSampled);
-    EXPECT_LE(state.evaluations, kEvaluationCap);
+        (state.status != LinkStatus::ok && state.status != LinkStatus::boundary) || !(left <= kTangential) || !(j.off_level <= kOffSampled);
+    EXPECT_LE(state.evaluations, kMaxEvaluations);
   }
 };
 
@@ -247,7 +248,7 @@ TEST_P(SampledIsosurface, WalksWithAHand) {
   const auto grid = make();
   Rig rig(isosurface(grid, GetParam().level));
   Random random(12);
-  const double speed = 0.3 * grid->mapping().smallest_edge();
+  const double speed = 0.3 * grid->mapping().min_voxel_edge();
   Vec3 probe(0.9, 0.3, 0.4), velocity = random.unit() * speed;
   rig.tick(probe);
   Tally tally;

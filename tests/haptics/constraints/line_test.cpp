@@ -1,4 +1,4 @@
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace line_test {
@@ -13,7 +13,7 @@ TEST(Line, ProjectsOrthogonally) {
     EXPECT_LE(std::fabs(dot(d, probe - rig.state.proxy)), 1e-14);
     EXPECT_LE(norm(cross(d, rig.state.proxy - point)), 1e-14);
     EXPECT_LE(rig.state.residual, 1e-14);
-    EXPECT_EQ(rig.state.status, Status::ok);
+    EXPECT_EQ(rig.state.status, LinkStatus::ok);
     EXPECT_EQ(rig.state.evaluations, 0);
   }
 }
@@ -26,7 +26,7 @@ TEST(Line, IsInfiniteAndKeepsItsAccuracyFarOut) {
     const Vec3 p = rig.state.proxy / scale, expected = (Vec3(1, 2, 2) / 9.0) * 0.5;
     EXPECT_LE(norm(p - expected), 4 / scale + 4e-16) << scale;
     EXPECT_LE(rig.state.residual, 4e-16 * scale + 1e-15) << scale;
-    EXPECT_EQ(rig.state.status, Status::ok);
+    EXPECT_EQ(rig.state.status, LinkStatus::ok);
   }
 }
 
@@ -41,20 +41,20 @@ TEST(Line, TheLengthOfItsDirectionDoesNotCount) {
 
 TEST(Line, LetsGoAtReleaseAndTakesHoldWithinATenth) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0], "release": 0.5})"));
-  EXPECT_EQ(rig.tick({3, 0.49, 0}).status, Status::ok);
+  EXPECT_EQ(rig.tick({3, 0.49, 0}).status, LinkStatus::ok);
   EXPECT_EQ(rig.state.limit, 0.5);
-  EXPECT_EQ(rig.tick({3, 0, 0.5}).status, Status::released);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(3, 0, 0.5)));
-  EXPECT_EQ(rig.tick({9, 0, 0.0501}).status, Status::released);
-  EXPECT_EQ(rig.tick({9, 0, 0.0499}).status, Status::ok);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(9, 0, 0)));
+  EXPECT_EQ(rig.tick({3, 0, 0.5}).status, LinkStatus::released);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(3, 0, 0.5)));
+  EXPECT_EQ(rig.tick({9, 0, 0.0501}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({9, 0, 0.0499}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(9, 0, 0)));
 }
 
 TEST(Line, SweepsThereAndBackWithTheSameBits) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [0.1, 0.2, 0.3], "direction": [0.3, -0.2, 0.7]})"));
   std::vector<Vec3> there;
   for (int i = 0; i <= 100; ++i) there.push_back(rig.tick({0.01 * i, 0.5, -0.02 * i}).proxy);
-  for (int i = 100; i >= 0; --i) EXPECT_TRUE(same_bits(rig.tick({0.01 * i, 0.5, -0.02 * i}).proxy, there[static_cast<std::size_t>(i)]));
+  for (int i = 100; i >= 0; --i) EXPECT_TRUE(bitwise_equal(rig.tick({0.01 * i, 0.5, -0.02 * i}).proxy, there[static_cast<std::size_t>(i)]));
 }
 
 TEST(Line, IsItsOwnPrimitive) {
@@ -64,8 +64,8 @@ TEST(Line, IsItsOwnPrimitive) {
   Primitive primitive;
   ASSERT_TRUE(rig.constraint->primitive({0.3, 4, 1}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::line);
-  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0, 4, 1)));
-  EXPECT_TRUE(same_bits(primitive.axis, Vec3(0, 1, 0)));
+  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0, 4, 1)));
+  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(0, 1, 0)));
   rig.tick({0.6, 2, 1});
   EXPECT_FALSE(rig.constraint->primitive({0.3, 4, 1}, rig.state, rig.scratch, primitive));  // released
 }

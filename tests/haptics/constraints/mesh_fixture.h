@@ -1,6 +1,6 @@
 /// Felt meshes, and what a mesh is by brute force: the closest point over all triangles, inside by crossings of a ray.
 #pragma once
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::haptics::tests {
@@ -8,18 +8,18 @@ namespace catena::haptics::tests {
 using catena::test::add_box;
 using catena::test::add_quad;
 using catena::test::box_soup;
-using catena::test::mesh_of;
+using catena::test::make_mesh_from;
 using catena::test::sheet_soup;
 using catena::test::sphere_soup;
 
-inline ConstraintPtr felt(mesh::MeshPtr mesh, const std::string& more = R"(, "free": "above")") {
+inline ConstraintPtr mesh_link(mesh::MeshPtr mesh, const std::string& more = R"(, "free": "above")") {
   Fields fields;
   fields.meshes["m"] = std::move(mesh);
   return build(R"({"name": "a", "type": "mesh", "mesh": "m")" + more + "}", fields);
 }
 
 /// The closest point of a triangle, on its own: over its plane, its edges, its corners.
-inline Vec3 closest_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
+inline Vec3 closest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
   const Vec3 n = cross(b - a, c - a);
   const Vec3 p = x - n * (dot(n, x - a) / dot(n, n));
   if (dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0) return p;
@@ -32,11 +32,11 @@ inline Vec3 closest_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
   return best;
 }
 
-inline Vec3 brute_force(const mesh::TriangleMesh& mesh, const Vec3& x) {
+inline Vec3 closest_on_mesh(const mesh::TriangleMesh& mesh, const Vec3& x) {
   Vec3 best(1e300);
   double least = 1e300;
   for (const mesh::Triangle& t : mesh.triangles()) {
-    const Vec3 p = closest_on(mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]], x);
+    const Vec3 p = closest_on_triangle(mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]], x);
     if (norm(p - x) < least) {
       least = norm(p - x);
       best = p;
@@ -58,6 +58,6 @@ inline bool is_inside(const mesh::TriangleMesh& mesh, const Vec3& x) {
   return crossings % 2 == 1;
 }
 
-inline double off(const mesh::TriangleMesh& mesh, const Vec3& p) { return norm(brute_force(mesh, p) - p) / mesh.length(); }
+inline double off(const mesh::TriangleMesh& mesh, const Vec3& p) { return norm(closest_on_mesh(mesh, p) - p) / mesh.domain_length(); }
 
 }  // namespace catena::haptics::tests

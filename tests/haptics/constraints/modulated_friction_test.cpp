@@ -20,7 +20,7 @@ class Formula final : public field::VectorField {
 /// On the sphere |x| = 1 with v = cos(angle) n + sin(angle) tangent, times `scale`.
 Fields at_angle(double angle, double scale = 1, double slope = 1) {
   Fields fields;
-  fields.named["s"].scalar = analytic("sphere", slope);
+  fields.named["s"].scalar = analytic_field("sphere", slope);
   fields.named["v"].vector = std::make_shared<Formula>([angle, scale](const Vec3& p) {
     const Vec3 n = direction(p), t = direction(cross(n, Vec3(0.3, -0.2, 1)));
     return (n * std::cos(angle) + t * std::sin(angle)) * scale;
@@ -68,7 +68,7 @@ TEST(ModulatedFriction, AlongTheNormalIsTheHardest) {
 // the angle is taken before the proxy moves: the slide goes by the old place's threshold
 TEST(ModulatedFriction, AsAtTheProxyBeforeItMoves) {
   Fields fields;
-  fields.named["s"].scalar = analytic("plane");
+  fields.named["s"].scalar = analytic_field("plane");
   fields.named["v"].vector = std::make_shared<Formula>([](const Vec3& p) { return Vec3(p.x < 0.5 ? 1 : 0, 0, p.x < 0.5 ? 0 : 1); });
   Rig rig(build(modulated(0.01, 0.1, R"(, "level": 0)"), fields));
   rig.tick({0.4, 0, 0});
@@ -91,7 +91,7 @@ TEST(ModulatedFriction, SafeNormalisation) {
     }
   for (const double bad : {0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     Fields fields;
-    fields.named["s"].scalar = analytic("sphere");
+    fields.named["s"].scalar = analytic_field("sphere");
     fields.named["v"].vector = std::make_shared<Formula>([bad](const Vec3&) { return Vec3(bad); });
     Rig safe(build(modulated(0.01, 0.1), fields)), printed(build(modulated(0.01, 0.1, R"(, "law": "printed")"), fields));
     for (Rig* rig : {&safe, &printed}) {

@@ -1,4 +1,4 @@
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace plane_test {
@@ -14,57 +14,57 @@ TEST(Plane, ProjectsOrthogonally) {
     rig.tick(probe);
     EXPECT_LE(std::fabs(dot(n, rig.state.proxy - Vec3(1, 2, 3))), 1e-14 * 10);
     EXPECT_LE(norm(cross(n, probe - rig.state.proxy)), 1e-14 * 10);
-    EXPECT_EQ(rig.state.status, Status::ok);
+    EXPECT_EQ(rig.state.status, LinkStatus::ok);
   }
 }
 
 TEST(Plane, IsFreeAboveAndHeldBelow) {
   Rig rig(build(kFloor + R"(, "free": "above"})"));
-  EXPECT_EQ(rig.tick({0.1, 0.2, 0.3}).status, Status::free);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
+  EXPECT_EQ(rig.tick({0.1, 0.2, 0.3}).status, LinkStatus::free);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
   EXPECT_TRUE(rig.state.active());
-  EXPECT_EQ(rig.tick({0.1, 0.2, -0.3}).status, Status::ok);  // within the tick that crosses
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, 0.2, 0)));
-  EXPECT_EQ(rig.tick({0.1, 0.2, 1e-9}).status, Status::free);
+  EXPECT_EQ(rig.tick({0.1, 0.2, -0.3}).status, LinkStatus::ok);  // within the tick that crosses
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0)));
+  EXPECT_EQ(rig.tick({0.1, 0.2, 1e-9}).status, LinkStatus::free);
 }
 
 TEST(Plane, IsFreeBelow) {
   Rig rig(build(kFloor + R"(, "free": "below"})"));
-  EXPECT_EQ(rig.tick({0, 0, -1}).status, Status::free);
-  EXPECT_EQ(rig.tick({0, 0, 1}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0, 0, -1}).status, LinkStatus::free);
+  EXPECT_EQ(rig.tick({0, 0, 1}).status, LinkStatus::ok);
   EXPECT_EQ(rig.state.proxy.z, 0);
 }
 
 TEST(Plane, OneSidedReleaseAndReArm) {
   Rig rig(build(kFloor + R"(, "free": "above", "release": 0.25})"));
-  EXPECT_EQ(rig.tick({0, 0, 0.1}).status, Status::free);
-  EXPECT_EQ(rig.tick({0, 0, -0.2}).status, Status::ok);
-  EXPECT_EQ(rig.tick({0, 0, -0.25}).status, Status::released);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0, -0.25)));
+  EXPECT_EQ(rig.tick({0, 0, 0.1}).status, LinkStatus::free);
+  EXPECT_EQ(rig.tick({0, 0, -0.2}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({0, 0, -0.25}).status, LinkStatus::released);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0, -0.25)));
   EXPECT_FALSE(rig.state.active());
-  EXPECT_EQ(rig.tick({0, 0, -0.01}).status, Status::released);  // close is not enough for one side
-  EXPECT_EQ(rig.tick({0, 0, 0.01}).status, Status::free);
+  EXPECT_EQ(rig.tick({0, 0, -0.01}).status, LinkStatus::released);  // close is not enough for one side
+  EXPECT_EQ(rig.tick({0, 0, 0.01}).status, LinkStatus::free);
   EXPECT_TRUE(rig.state.active());
-  EXPECT_EQ(rig.tick({0, 0, -0.01}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0, 0, -0.01}).status, LinkStatus::ok);
 }
 
 TEST(Plane, TwoSidedReleaseAndReArm) {
   const auto plane = build(kFloor + R"(, "release": 0.25})");
   Rig rig(plane);
-  EXPECT_EQ(rig.tick({0, 0, 0.2}).status, Status::ok);
-  EXPECT_EQ(rig.tick({0, 0, 0.3}).status, Status::released);
-  EXPECT_EQ(rig.tick({0, 0, 0.026}).status, Status::released);
-  EXPECT_EQ(rig.tick({0, 0, 0.024}).status, Status::ok);  // within a tenth
-  EXPECT_EQ(rig.tick({0, 0, 0.3}).status, Status::released);
-  EXPECT_EQ(rig.tick({0, 0, -0.1}).status, Status::ok);  // crossed the level
-  EXPECT_EQ(rig.tick({0, 0, 0.1}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0, 0, 0.2}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({0, 0, 0.3}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0, 0, 0.026}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0, 0, 0.024}).status, LinkStatus::ok);  // within a tenth
+  EXPECT_EQ(rig.tick({0, 0, 0.3}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0, 0, -0.1}).status, LinkStatus::ok);  // crossed the level
+  EXPECT_EQ(rig.tick({0, 0, 0.1}).status, LinkStatus::ok);
 }
 
 TEST(Plane, FirstProbeDeeperThanReleaseStartsReleased) {
   Rig deep(build(kFloor + R"(, "free": "above", "release": 0.25})"));
-  EXPECT_EQ(deep.tick({0, 0, -0.3}).status, Status::released);
+  EXPECT_EQ(deep.tick({0, 0, -0.3}).status, LinkStatus::released);
   Rig shallow(build(kFloor + R"(, "free": "above", "release": 0.25})"));
-  EXPECT_EQ(shallow.tick({0, 0, -0.2}).status, Status::ok);
+  EXPECT_EQ(shallow.tick({0, 0, -0.2}).status, LinkStatus::ok);
 }
 
 TEST(Plane, RefusesBadKeys) {

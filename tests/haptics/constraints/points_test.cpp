@@ -7,8 +7,8 @@ curves::PointSetPtr cloud(int count, unsigned seed) {
   Random random(seed);
   auto set = std::make_shared<curves::PointSet>();
   for (int i = 0; i < count; ++i) set->points.emplace_back(random.box(1));
-  set->lowest = Vec3(-1.0);
-  set->highest = Vec3(1.0);
+  set->min_corner = Vec3(-1.0);
+  set->max_corner = Vec3(1.0);
   set->version = 1000000 + seed;
   return set;
 }
@@ -30,9 +30,9 @@ TEST(PointsLink, TakesHoldOfTheClosestOfAll) {
       const Vec3 probe = random.box(1.5);
       int ticks = 0;
       do rig.tick(probe);
-      while (rig.state.status == Status::budget && ++ticks < 20);
+      while (rig.state.status == LinkStatus::budget && ++ticks < 20);
       ASSERT_EQ(norm(probe - rig.state.proxy), distance_to(*fields.points["cloud"], probe)) << count;
-      ASSERT_LE(rig.state.work(), kWorkCap);
+      ASSERT_LE(rig.state.work(), kMaxWork);
     }
   }
 }
@@ -41,7 +41,7 @@ TEST(PointsLink, StaysUntilItLetsGoAndSnapsToTheNext) {
   Fields fields;
   auto set = std::make_shared<curves::PointSet>();
   set->points = {{0, 0, 0}, {1, 0, 0}};
-  set->highest = Vec3(1, 0, 0);
+  set->max_corner = Vec3(1, 0, 0);
   set->version = 999;
   fields.points["two"] = set;
   Rig rig(build(R"({"name": "a", "type": "points", "points": "two", "snap": 0.2, "release": 0.75})", fields));
@@ -72,7 +72,7 @@ TEST(PointsLink, AMillionPointsWithinTheWorkOfATick) {
       held += rig.state.released ? 0 : 1;
     }
   }
-  EXPECT_LE(most, kWorkCap);
+  EXPECT_LE(most, kMaxWork);
   EXPECT_GT(held, 3500);
 }
 

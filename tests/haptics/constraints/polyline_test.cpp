@@ -1,4 +1,4 @@
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace polyline_test {
@@ -55,7 +55,7 @@ TEST(Polyline, StartsAtTheClosestPlace) {
         rig.tick(probe);
         ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, closed, probe), 2e-15);
         ASSERT_LE(rig.state.residual, 1e-15);
-        ASSERT_EQ(rig.state.status, Status::ok);
+        ASSERT_EQ(rig.state.status, LinkStatus::ok);
       }
     }
   }
@@ -68,24 +68,24 @@ TEST(Polyline, DoesNotChangeOverToAPartThatItMerelyPasses) {
   rig.tick({1, -0.05, 0});
   for (int i = 0; i <= 300; ++i) {
     const Vec3 probe(1 + 0.01 * i, 0.19, 0);  // 0.01 from the other run
-    ASSERT_TRUE(same_bits(rig.tick(probe).proxy, Vec3(probe.x, 0, 0)));
+    ASSERT_TRUE(bitwise_equal(rig.tick(probe).proxy, Vec3(probe.x, 0, 0)));
   }
   // round the end the local minimum vanishes
-  EXPECT_TRUE(same_bits(rig.tick({5.1, 0.1, 0}).proxy, Vec3(5, 0.1, 0)));
-  EXPECT_TRUE(same_bits(rig.tick({5.1, 0.3, 0}).proxy, Vec3(5, 0.2, 0)));
-  EXPECT_TRUE(same_bits(rig.tick({4, 0.01, 0}).proxy, Vec3(4, 0.2, 0)));  // on the other run now
+  EXPECT_TRUE(bitwise_equal(rig.tick({5.1, 0.1, 0}).proxy, Vec3(5, 0.1, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({5.1, 0.3, 0}).proxy, Vec3(5, 0.2, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({4, 0.01, 0}).proxy, Vec3(4, 0.2, 0)));  // on the other run now
 }
 
 TEST(Polyline, HoldsAtCornersBitForBit) {
   Rig rig(build(polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})));
-  EXPECT_TRUE(same_bits(rig.tick({1.2, -0.3, 0.1}).proxy, Vec3(1, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({1.2, -0.3, 0.1}).proxy, Vec3(1, 0, 0)));
   EXPECT_EQ(rig.state.residual, 0);
-  EXPECT_TRUE(same_bits(rig.tick({1.4, -1e-9, 0.1}).proxy, Vec3(1, 0, 0)));
-  EXPECT_TRUE(same_bits(rig.tick({1.4, 0.25, 0.1}).proxy, Vec3(1, 0.25, 0)));
-  EXPECT_TRUE(same_bits(rig.tick({0.25, -0.5, 0}).proxy, Vec3(0.25, 0, 0)));
-  EXPECT_TRUE(same_bits(rig.tick({-3, 0, 0}).proxy, Vec3(0, 0, 0)));  // the open end
-  EXPECT_EQ(rig.state.status, Status::ok);
-  EXPECT_TRUE(same_bits(rig.tick({1, 7, 0}).proxy, Vec3(1, 1, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({1.4, -1e-9, 0.1}).proxy, Vec3(1, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({1.4, 0.25, 0.1}).proxy, Vec3(1, 0.25, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({0.25, -0.5, 0}).proxy, Vec3(0.25, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({-3, 0, 0}).proxy, Vec3(0, 0, 0)));  // the open end
+  EXPECT_EQ(rig.state.status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(rig.tick({1, 7, 0}).proxy, Vec3(1, 1, 0)));
 }
 
 TEST(Polyline, LeavesACornerByTheSteeperSide) {
@@ -94,10 +94,10 @@ TEST(Polyline, LeavesACornerByTheSteeperSide) {
     Rig rig(build(polyline(points)));
     // to the corner from either side: what follows is the same
     rig.tick(from_above ? Vec3(1, 0.5, 0) : Vec3(0.5, 0, 0));
-    ASSERT_TRUE(same_bits(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
-    EXPECT_TRUE(same_bits(rig.tick({0.5, 0.25, 0}).proxy, Vec3(0.5, 0, 0)));
-    ASSERT_TRUE(same_bits(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
-    EXPECT_TRUE(same_bits(rig.tick({0.75, 0.5, 0}).proxy, Vec3(1, 0.5, 0)));
+    ASSERT_TRUE(bitwise_equal(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
+    EXPECT_TRUE(bitwise_equal(rig.tick({0.5, 0.25, 0}).proxy, Vec3(0.5, 0, 0)));
+    ASSERT_TRUE(bitwise_equal(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
+    EXPECT_TRUE(bitwise_equal(rig.tick({0.75, 0.5, 0}).proxy, Vec3(1, 0.5, 0)));
   }
 }
 
@@ -114,7 +114,7 @@ TEST(Polyline, AClosedOneWrapsAndRepeatsItsBits) {
       const Vec3 probe(1.5 * std::cos(i * 6.283185307179586e-3), 1.5 * std::sin(i * 6.283185307179586e-3), 0.05);
       rig.tick(probe);
       if (lap == 0) first.push_back(rig.state.proxy);
-      ASSERT_TRUE(same_bits(rig.state.proxy, first[static_cast<std::size_t>(i)])) << lap << " " << i;
+      ASSERT_TRUE(bitwise_equal(rig.state.proxy, first[static_cast<std::size_t>(i)])) << lap << " " << i;
       ASSERT_LE(norm(rig.state.proxy - last), lap + k > 0 ? 0.02 : 2);
       last = rig.state.proxy;
     }
@@ -142,8 +142,8 @@ TEST(Polyline, RepeatedPointsCountOnce) {
   Random random(2);
   for (int i = 0; i < 500; ++i) {
     const Vec3 probe = random.box(1.5);
-    ASSERT_TRUE(same_bits(a.tick(probe).proxy, b.tick(probe).proxy));
-    ASSERT_TRUE(same_bits(c.tick(probe).proxy, d.tick(probe).proxy));
+    ASSERT_TRUE(bitwise_equal(a.tick(probe).proxy, b.tick(probe).proxy));
+    ASSERT_TRUE(bitwise_equal(c.tick(probe).proxy, d.tick(probe).proxy));
   }
 }
 
@@ -156,12 +156,12 @@ TEST(Polyline, ALongWalkTakesSeveralTicksAndArrives) {
   do {
     rig.tick({9.99995, 0, 1});
     ++ticks;
-  } while (rig.state.status == Status::budget && ticks < 100);
-  EXPECT_EQ(rig.state.status, Status::ok);
+  } while (rig.state.status == LinkStatus::budget && ticks < 100);
+  EXPECT_EQ(rig.state.status, LinkStatus::ok);
   EXPECT_NEAR(ticks, 100000.0 / 4096, 2);
   EXPECT_NEAR(rig.state.proxy.x, 9.99995, 1e-4);
   rig.tick({0.3, 0, 1});
-  EXPECT_EQ(rig.state.status, Status::budget);
+  EXPECT_EQ(rig.state.status, LinkStatus::budget);
 }
 
 TEST(Polyline, SeekFindsTheClosestPlaceAnywhere) {
@@ -176,12 +176,12 @@ TEST(Polyline, SeekFindsTheClosestPlaceAnywhere) {
     do {
       made->seek(probe, rig.state, rig.scratch);
       ++ticks;
-    } while ((rig.state.status == Status::budget || ticks < 2) && ticks < 200);
+    } while ((rig.state.status == LinkStatus::budget || ticks < 2) && ticks < 200);
     ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
     // and once it is taken, it is followed from there
     const Vec3 found = rig.state.proxy;
     rig.tick(probe);
-    ASSERT_TRUE(same_bits(rig.state.proxy, found));
+    ASSERT_TRUE(bitwise_equal(rig.state.proxy, found));
   }
 }
 
@@ -195,7 +195,7 @@ TEST(Polyline, ASeekThatTheHandInterruptsStillEnds) {
   for (int i = 0; i < 3000; ++i) {
     probe += random.box(0.001);
     made->seek(probe, rig.state, rig.scratch);
-    ASSERT_TRUE(rig.state.status == Status::ok || rig.state.status == Status::budget);
+    ASSERT_TRUE(rig.state.status == LinkStatus::ok || rig.state.status == LinkStatus::budget);
   }
   for (int i = 0; i < 200; ++i) made->seek(probe, rig.state, rig.scratch);
   EXPECT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
@@ -204,25 +204,25 @@ TEST(Polyline, ASeekThatTheHandInterruptsStillEnds) {
 TEST(Polyline, LetsGoAtReleaseAndTakesHoldOfAnyPart) {
   const std::vector<Vec3> hairpin{{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {0, 3, 0}};
   Rig rig(build(polyline(hairpin, R"(, "release": 0.5)")));
-  EXPECT_EQ(rig.tick({1, 0.49, 0}).status, Status::ok);
-  EXPECT_EQ(rig.tick({1, 0.5, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({1, 0.051, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({1, 2.949, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({1, 2.951, 0}).status, Status::ok);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(1, 3, 0)));
+  EXPECT_EQ(rig.tick({1, 0.49, 0}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({1, 0.5, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({1, 0.051, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({1, 2.949, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({1, 2.951, 0}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(1, 3, 0)));
 }
 
 TEST(Polyline, OnceTakenItIsFollowedAlsoWhereTheSearchWasNotThrough) {
   std::vector<Vec3> points;
   for (int i = 0; i < 50000; ++i) points.emplace_back(0.03 * std::cos(i * 1.2566e-4), 0.03 * std::sin(i * 1.2566e-4), 0);
   Rig rig(build(polyline(points, R"(, "release": 0.5)")));
-  ASSERT_EQ(rig.tick({0.04, 0, 0}).status, Status::ok);
-  ASSERT_EQ(rig.tick({1, 0, 0}).status, Status::released);
+  ASSERT_EQ(rig.tick({0.04, 0, 0}).status, LinkStatus::ok);
+  ASSERT_EQ(rig.tick({1, 0, 0}).status, LinkStatus::released);
   // at the centre all places are as near, and all within a tenth
-  ASSERT_EQ(rig.tick({0, 0, 1e-9}).status, Status::ok);
+  ASSERT_EQ(rig.tick({0, 0, 1e-9}).status, LinkStatus::ok);
   const Vec3 taken = rig.state.proxy;
   for (int i = 1; i < 50; ++i) {
-    ASSERT_EQ(rig.tick({0, 0, 1e-9 * i}).status, Status::ok) << i;
+    ASSERT_EQ(rig.tick({0, 0, 1e-9 * i}).status, LinkStatus::ok) << i;
     ASSERT_LE(norm(rig.state.proxy - taken), 1e-3);
   }
 }
@@ -231,10 +231,10 @@ TEST(Polyline, FarProbes) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 2, 0.5}};
   for (const double far : {1e20, 1e160, 1e300}) {
     Rig rig(build(polyline(points)));
-    EXPECT_TRUE(same_bits(rig.tick(Vec3(0.1, 1, 0.2) * far).proxy, points[3])) << far;
-    EXPECT_TRUE(same_bits(rig.tick(Vec3(-1, -1, 0) * far).proxy, points[0])) << far;
-    EXPECT_TRUE(same_bits(rig.tick(Vec3(1, -0.2, 0) * far).proxy, points[1])) << far;
-    EXPECT_EQ(rig.state.status, Status::ok);
+    EXPECT_TRUE(bitwise_equal(rig.tick(Vec3(0.1, 1, 0.2) * far).proxy, points[3])) << far;
+    EXPECT_TRUE(bitwise_equal(rig.tick(Vec3(-1, -1, 0) * far).proxy, points[0])) << far;
+    EXPECT_TRUE(bitwise_equal(rig.tick(Vec3(1, -0.2, 0) * far).proxy, points[1])) << far;
+    EXPECT_EQ(rig.state.status, LinkStatus::ok);
   }
 }
 
@@ -244,12 +244,12 @@ TEST(Polyline, ItsPrimitiveIsALineAndAtACornerAPoint) {
   Primitive primitive;
   ASSERT_TRUE(rig.constraint->primitive({0.25, -0.1, 0}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::line);
-  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0.25, 0, 0)));
-  EXPECT_TRUE(same_bits(primitive.axis, Vec3(1, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0.25, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(1, 0, 0)));
   ASSERT_TRUE(rig.constraint->primitive({1.1, -0.1, 0}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::point);
-  EXPECT_TRUE(same_bits(primitive.origin, Vec3(1, 0, 0)));
-  EXPECT_TRUE(same_bits(rig.tick({0.5, -0.1, 0}).proxy, Vec3(0.5, 0, 0)));  // asking has moved nothing
+  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(1, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({0.5, -0.1, 0}).proxy, Vec3(0.5, 0, 0)));  // asking has moved nothing
 }
 
 TEST(Polyline, RefusesBadKeys) {

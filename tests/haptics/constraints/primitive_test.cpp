@@ -1,5 +1,5 @@
 /// The linear primitives that stand for curves and surfaces near a place: what the baselines combine.
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace primitive_test {
@@ -22,14 +22,14 @@ TEST(Primitive, OfAStreamlineIsTheTangentAtTheFoot) {
       const double a = 0.1 * i;
       rig.tick({0.6 * std::cos(a), 0.6 * std::sin(a), 0.2});
       const LinkState before = rig.state;
-      const double b = a + random.in(-0.2, 0.2);
+      const double b = a + random.uniform(-0.2, 0.2);
       Primitive line;
       ASSERT_TRUE(rig.constraint->primitive({0.4 * std::cos(b), 0.4 * std::sin(b), 0}, rig.state, rig.scratch, line));
       EXPECT_EQ(line.kind, Primitive::Kind::line);
       EXPECT_LE(norm(line.origin - Vec3(0.5 * std::cos(b), 0.5 * std::sin(b), 0.25)), *more ? 1e-7 : 1e-8);  // online: 4e-9 a step, summed
       EXPECT_LE(norm(line.axis - Vec3(-std::sin(b), std::cos(b), 0)), 1e-7);
-      EXPECT_TRUE(same_bits(rig.state.proxy, before.proxy));
-      EXPECT_LE(rig.state.evaluations, kEvaluationCap);
+      EXPECT_TRUE(bitwise_equal(rig.state.proxy, before.proxy));
+      EXPECT_LE(rig.state.evaluations, kMaxEvaluations);
     }
   }
 }
@@ -43,7 +43,7 @@ TEST(Primitive, OfAnOnlineStreamlineAtItsOwnProxyIsTheFieldThere) {
   EXPECT_LE(norm(line.axis - Vec3(-1, 0, 0)), 1e-15);
   rig.state.proxy = {0, 0, 0};  // the circles' centre: no direction
   EXPECT_FALSE(rig.constraint->primitive(rig.state.proxy, rig.state, rig.scratch, line));
-  EXPECT_EQ(rig.state.status, Status::critical);
+  EXPECT_EQ(rig.state.status, LinkStatus::critical);
 }
 
 TEST(Primitive, OfAnOpenEndIsAPoint) {
@@ -51,7 +51,7 @@ TEST(Primitive, OfAnOpenEndIsAPoint) {
     Rig rig(
         build(std::string(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0])") + more + "}", with_vector("node")));
     for (int i = 0; i < 20; ++i) rig.tick({-0.5, 0, 0});  // back to the node and held there
-    ASSERT_EQ(rig.state.status, Status::critical);
+    ASSERT_EQ(rig.state.status, LinkStatus::critical);
     Primitive end;
     ASSERT_TRUE(rig.constraint->primitive({-0.1, 0, 0}, rig.state, rig.scratch, end));
     EXPECT_EQ(end.kind, Primitive::Kind::point);
@@ -60,12 +60,12 @@ TEST(Primitive, OfAnOpenEndIsAPoint) {
 }
 
 TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneFetch) {
-  for (const auto& sphere : {analytic("sphere"), sampled("sphere", 64)}) {
+  for (const auto& sphere : {analytic_field("sphere"), sampled_field("sphere", 64)}) {
     const double tolerance = sphere->is_grid() ? 1e-2 : 1e-15;
     Rig rig(isosurface(sphere, 1));
     Random random(3);
     for (int i = 0; i < 100; ++i) {
-      const Vec3 n = random.unit(), at = n * random.in(0.8, 1.2);
+      const Vec3 n = random.unit(), at = n * random.uniform(0.8, 1.2);
       const int before = rig.state.evaluations;
       Primitive plane;
       ASSERT_TRUE(rig.constraint->primitive(at, rig.state, rig.scratch, plane));
@@ -75,15 +75,15 @@ TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneFetch) {
       EXPECT_EQ(rig.state.evaluations, before + 1);
       rig.state.begin_tick();
     }
-    rig.state.evaluations = kEvaluationCap;
+    rig.state.evaluations = kMaxEvaluations;
     Primitive plane;
     EXPECT_FALSE(rig.constraint->primitive({1, 0, 0}, rig.state, rig.scratch, plane));
-    EXPECT_EQ(rig.state.evaluations, kEvaluationCap);
+    EXPECT_EQ(rig.state.evaluations, kMaxEvaluations);
   }
-  Rig flat(isosurface(analytic("sphere"), 1));
+  Rig flat(isosurface(analytic_field("sphere"), 1));
   Primitive plane;
   EXPECT_FALSE(flat.constraint->primitive({0, 0, 0}, flat.state, flat.scratch, plane));  // no gradient
-  EXPECT_EQ(flat.state.status, Status::critical);
+  EXPECT_EQ(flat.state.status, LinkStatus::critical);
 }
 
 }  // namespace primitive_test

@@ -1,20 +1,20 @@
-#include "haptics/constraints/rules/link_keys.h"
+#include "haptics/constraints/common/link_schema.h"
 
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace read_parameter_test {
 
 Fields fields() {
   Fields made;
-  for (const char* name : {"plane", "constant", "gaussian"}) made.named[name].scalar = analytic(name);
-  made.named["ball"].scalar = sampled("sphere", 33);
+  for (const char* name : {"plane", "constant", "gaussian"}) made.named[name].scalar = analytic_field(name);
+  made.named["ball"].scalar = sampled_field("sphere", 33);
   made.named["circle"].vector = field::make_analytic("circle")->vector;
   made.named["swirl"].vector = field::sample_on_grid(*made.named["circle"].vector, 9, -2, 2);
   return made;
 }
 
-Result<Parameter> read(const std::string& value, json::Range range = json::Range::positive) {
+Result<Parameter> read(const std::string& value, json::NumberRange range = json::NumberRange::positive) {
   static const Fields all = fields();
   const auto node = json::parse("{\"type\": \"x\",\n\"threshold\": " + value + "}", "scene.json");
   if (!node) return node.error();
@@ -41,7 +41,7 @@ TEST(ReadParameter, ANumberOrAMap) {
   EXPECT_DOUBLE_EQ(at(R"({"field": "circle", "of": "magnitude", "map": [[0, 1], [2, 3]]})", {0.5, 0, 3}), 1.5);
   const Fields none;
   const auto node = json::parse("{}", "scene.json");
-  EXPECT_EQ(get_parameter(*node, "threshold", 9.0, json::Range::positive, none.context())->least(), 9);
+  EXPECT_EQ(get_parameter(*node, "threshold", 9.0, json::NumberRange::positive, none.context())->min(), 9);
 }
 
 TEST(ReadParameter, NormalisesByTheFieldsOwnRange) {
@@ -95,13 +95,13 @@ TEST(ReadParameter, AReleaseFollowsAField) {
       "release": {"field": "plane", "map": [[0, 0.1], [1, 0.3]]}})",
                            fields());
   Rig rig(plane);
-  EXPECT_EQ(rig.tick({0.19, 0, 0.5}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0.19, 0, 0.5}).status, LinkStatus::ok);
   EXPECT_DOUBLE_EQ(rig.state.limit, 0.2);
   EXPECT_EQ(rig.state.evaluations, 2);  // start and advance
-  EXPECT_EQ(rig.tick({0.21, 0, 0.5}).status, Status::released);
+  EXPECT_EQ(rig.tick({0.21, 0, 0.5}).status, LinkStatus::released);
   EXPECT_EQ(rig.state.evaluations, 1);
   Rig higher(plane);
-  EXPECT_EQ(higher.tick({0.29, 0, 1}).status, Status::ok);
+  EXPECT_EQ(higher.tick({0.29, 0, 1}).status, LinkStatus::ok);
 }
 
 }  // namespace read_parameter_test

@@ -1,23 +1,23 @@
 #include <set>
 
 #include "engine/schema/documents.h"
-#include "haptics/constraints/presets/modes.h"
-#include "tests/haptics/constraints/rig.h"
+#include "haptics/constraints/presets/mode_presets.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace registry_test {
 
 TEST(Registry, TypesAreUniqueAndFound) {
   std::set<std::string> seen;
-  for (const ConstraintType& type : registry()) {
+  for (const ConstraintType& type : constraint_types()) {
     EXPECT_TRUE(seen.insert(type.type).second) << type.type;
-    EXPECT_EQ(find_constraint(type.type), &type);
+    EXPECT_EQ(find_constraint_type(type.type), &type);
     EXPECT_NE(type.build, nullptr);
     for (const schema::Key& key : type.keys)
       for (const schema::Key& common : common_keys()) EXPECT_NE(key.name, common.name) << type.type;
   }
-  for (const char* type : {"point", "plane", "isosurface"}) EXPECT_NE(find_constraint(type), nullptr) << type;
-  EXPECT_EQ(find_constraint("spline"), nullptr);
+  for (const char* type : {"point", "plane", "isosurface"}) EXPECT_NE(find_constraint_type(type), nullptr) << type;
+  EXPECT_EQ(find_constraint_type("spline"), nullptr);
 }
 
 TEST(Registry, UnknownTypeNamesTheKnownOnes) {
@@ -45,9 +45,9 @@ TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {
   const auto schema = json::parse(text, "schema");
   ASSERT_TRUE(schema) << schema.error().message << "\n" << text;
   const json::Node& list = *schema->find("items")->find("oneOf");
-  ASSERT_EQ(list.items.size(), registry().size() + ready_modes().size());
-  for (std::size_t i = 0; i < registry().size(); ++i) {
-    const ConstraintType& type = registry()[i];
+  ASSERT_EQ(list.items.size(), constraint_types().size() + mode_presets().size());
+  for (std::size_t i = 0; i < constraint_types().size(); ++i) {
+    const ConstraintType& type = constraint_types()[i];
     const json::Node& properties = *list.items[i].find("properties");
     EXPECT_EQ(properties.find("type")->find("const")->string, type.type);
     for (const schema::Key& key : type.keys) ASSERT_NE(properties.find(key.name), nullptr) << key.name;

@@ -1,4 +1,4 @@
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace segment_test {
@@ -35,8 +35,8 @@ TEST(Segment, IsTheClosestPoint) {
       rig.tick(probe);
       EXPECT_LE(norm(rig.state.proxy - reference(a, b, probe)), 2e-15);
       EXPECT_LE(rig.state.residual, 1e-15);
-      EXPECT_EQ(rig.state.status, Status::ok);
-      ends += same_bits(rig.state.proxy, a) || same_bits(rig.state.proxy, b);
+      EXPECT_EQ(rig.state.status, LinkStatus::ok);
+      ends += bitwise_equal(rig.state.proxy, a) || bitwise_equal(rig.state.proxy, b);
     }
   }
   EXPECT_GT(ends, 1000);
@@ -47,9 +47,9 @@ TEST(Segment, HoldsAtItsEndsBitForBit) {
   const Vec3 a(0.1, 0.2, 0.3), b(0.4, -0.7, 1.1);
   Rig rig(build(segment(a, b)));
   for (const double scale : {1.0, 1e3, 1e16, 1e160, 1e300}) {
-    EXPECT_TRUE(same_bits(rig.tick(b + (b - a) * scale).proxy, b)) << scale;
+    EXPECT_TRUE(bitwise_equal(rig.tick(b + (b - a) * scale).proxy, b)) << scale;
     EXPECT_EQ(rig.state.residual, 0);
-    EXPECT_TRUE(same_bits(rig.tick(a - (b - a) * scale).proxy, a)) << scale;
+    EXPECT_TRUE(bitwise_equal(rig.tick(a - (b - a) * scale).proxy, a)) << scale;
   }
 }
 
@@ -67,19 +67,19 @@ TEST(Segment, NeverMovesFurtherThanTheProbe) {
 
 TEST(Segment, TinyAndHugeOnes) {
   Rig tiny(build(segment({0, 0, 0}, {0, 1e-310, 0})));
-  EXPECT_TRUE(same_bits(tiny.tick({1, 1, 1}).proxy, Vec3(0, 1e-310, 0)));
-  EXPECT_TRUE(same_bits(tiny.tick({1, 4e-311, 1}).proxy, Vec3(0, 4e-311, 0)));
+  EXPECT_TRUE(bitwise_equal(tiny.tick({1, 1, 1}).proxy, Vec3(0, 1e-310, 0)));
+  EXPECT_TRUE(bitwise_equal(tiny.tick({1, 4e-311, 1}).proxy, Vec3(0, 4e-311, 0)));
   Rig huge(build(segment({-1e300, 0, 0}, {1e300, 0, 0})));
   EXPECT_LE(std::fabs(huge.tick({5e299, 1e300, -1e300}).proxy.x - 5e299), 1e285);
-  EXPECT_EQ(huge.state.status, Status::ok);
+  EXPECT_EQ(huge.state.status, LinkStatus::ok);
 }
 
 TEST(Segment, LetsGoAtReleaseAndTakesHoldWithinATenth) {
   Rig rig(build(segment({0, 0, 0}, {1, 0, 0}, R"(, "release": 0.5)")));
-  EXPECT_EQ(rig.tick({1.49, 0, 0}).status, Status::ok);
-  EXPECT_EQ(rig.tick({1.5, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({0.5, 0.0501, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({0.5, 0.0499, 0}).status, Status::ok);
+  EXPECT_EQ(rig.tick({1.49, 0, 0}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({1.5, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0.5, 0.0501, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0.5, 0.0499, 0}).status, LinkStatus::ok);
 }
 
 TEST(Segment, ItsPrimitiveIsALineAndBeyondAnEndAPoint) {
@@ -88,11 +88,11 @@ TEST(Segment, ItsPrimitiveIsALineAndBeyondAnEndAPoint) {
   Primitive primitive;
   ASSERT_TRUE(rig.constraint->primitive({1, 0, 0.5}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::line);
-  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0, 0, 0.5)));
-  EXPECT_TRUE(same_bits(primitive.axis, Vec3(0, 0, 1)));
+  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0, 0, 0.5)));
+  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(0, 0, 1)));
   ASSERT_TRUE(rig.constraint->primitive({1, 0, 2.5}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::point);
-  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0, 0, 2)));
+  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0, 0, 2)));
 }
 
 TEST(Segment, RefusesBadKeys) {

@@ -1,8 +1,8 @@
-#include "haptics/constraints/rules/snap.h"
+#include "haptics/constraints/common/snap.h"
 
 #include "engine/base/memory_limit.h"
-#include "haptics/constraints/streamline/selected.h"
-#include "tests/haptics/constraints/rig.h"
+#include "haptics/constraints/streamline/selected_streamline.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace snap_test {
@@ -12,14 +12,14 @@ const std::string kPoint = R"({"name": "a", "type": "point", "position": [0, 0, 
 Fields flow_fields() {
   Fields fields;
   for (const char* name : {"circle", "uniform", "abc"}) fields.named[name].vector = field::make_analytic(name)->vector;
-  for (const char* name : {"sphere", "gaussian"}) fields.named[name].scalar = analytic(name);
+  for (const char* name : {"sphere", "gaussian"}) fields.named[name].scalar = analytic_field(name);
   return fields;
 }
 
 bool apart(const Rig& rig, const Vec3& probe) {
-  return rig.state.status == Status::released && rig.state.released && !rig.state.active() && same_bits(rig.state.proxy, probe);
+  return rig.state.status == LinkStatus::released && rig.state.released && !rig.state.active() && bitwise_equal(rig.state.proxy, probe);
 }
-bool held(const Rig& rig) { return rig.state.status == Status::ok && !rig.state.released && rig.state.active(); }
+bool held(const Rig& rig) { return rig.state.status == LinkStatus::ok && !rig.state.released && rig.state.active(); }
 
 TEST(Snap, TakesHoldWithinSnapAndLetsGoAtRelease) {
   Rig rig(build(kPoint + R"(, "snap": 0.1, "release": 0.3})"));
@@ -32,7 +32,7 @@ TEST(Snap, TakesHoldWithinSnapAndLetsGoAtRelease) {
   EXPECT_EQ(rig.state.residual, 0);
   at(0.1);
   EXPECT_TRUE(held(rig));
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.0)));
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.0)));
   EXPECT_EQ(rig.state.limit, 0.3);
   at(std::nextafter(0.3, 0.0));
   EXPECT_TRUE(held(rig));
@@ -65,7 +65,7 @@ TEST(Snap, NoChatterUnderTremorSmallerThanTheGap) {
     for (int i = 0; i < 4000; ++i) {
       const double way = i < 1000 ? 0.001 * i : i < 3000 ? 1.0 : 0.001 * (i - 2000);
       const double x = boundary == 0.1 ? 1.0 - 0.9 * std::min(way, 1.0) : 0.3 * way;
-      rig.tick({x + random.in(-0.09, 0.09), 0, 0});
+      rig.tick({x + random.uniform(-0.09, 0.09), 0, 0});
       if (i > 0 && rig.state.released != was) ++changes;
       was = rig.state.released;
     }
@@ -116,20 +116,20 @@ TEST(Snap, SurfacesThatReleaseByThemselvesKeepTheirRuleWithoutSnap) {
   const std::string floor = R"({"name": "a", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.25)";
   Rig own(build(floor + "}")), snaps(build(floor + R"(, "snap": 0.1})"));
   for (Rig* rig : {&own, &snaps}) {
-    EXPECT_EQ(rig->tick({0, 0, 0.1}).status, Status::free);
-    EXPECT_TRUE(same_bits(rig->state.proxy, Vec3(0, 0, 0.1)));
+    EXPECT_EQ(rig->tick({0, 0, 0.1}).status, LinkStatus::free);
+    EXPECT_TRUE(bitwise_equal(rig->state.proxy, Vec3(0, 0, 0.1)));
     EXPECT_TRUE(rig->state.active());
-    EXPECT_EQ(rig->tick({0, 0, -0.2}).status, Status::ok);
-    EXPECT_TRUE(same_bits(rig->state.proxy, Vec3(0, 0, 0)));
-    EXPECT_EQ(rig->tick({0, 0, -0.25}).status, Status::released);
-    EXPECT_EQ(rig->tick({0, 0, -0.2}).status, Status::released);
+    EXPECT_EQ(rig->tick({0, 0, -0.2}).status, LinkStatus::ok);
+    EXPECT_TRUE(bitwise_equal(rig->state.proxy, Vec3(0, 0, 0)));
+    EXPECT_EQ(rig->tick({0, 0, -0.25}).status, LinkStatus::released);
+    EXPECT_EQ(rig->tick({0, 0, -0.2}).status, LinkStatus::released);
   }
   // its own rule waits for the free side, snap takes hold within reach
-  EXPECT_EQ(own.tick({0, 0, -0.05}).status, Status::released);
-  EXPECT_EQ(snaps.tick({0, 0, -0.05}).status, Status::ok);
-  EXPECT_TRUE(same_bits(snaps.state.proxy, Vec3(0, 0, 0)));
-  EXPECT_EQ(own.tick({0, 0, 0.05}).status, Status::free);
-  EXPECT_EQ(snaps.tick({0, 0, 0.05}).status, Status::free);
+  EXPECT_EQ(own.tick({0, 0, -0.05}).status, LinkStatus::released);
+  EXPECT_EQ(snaps.tick({0, 0, -0.05}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(snaps.state.proxy, Vec3(0, 0, 0)));
+  EXPECT_EQ(own.tick({0, 0, 0.05}).status, LinkStatus::free);
+  EXPECT_EQ(snaps.tick({0, 0, 0.05}).status, LinkStatus::free);
 }
 
 TEST(Snap, ASurfaceIsFoundWhereverTheHandWentMeanwhile) {
@@ -144,7 +144,7 @@ TEST(Snap, ASurfaceIsFoundWhereverTheHandWentMeanwhile) {
     rig.tick(onto * 1.04);
     ASSERT_TRUE(held(rig)) << i;
     ASSERT_LE(norm(rig.state.proxy - onto), 1e-8) << i;
-    ASSERT_LE(rig.state.evaluations, kEvaluationCap);
+    ASSERT_LE(rig.state.evaluations, kMaxEvaluations);
   }
 }
 
@@ -154,7 +154,7 @@ TEST(Snap, ASelectedStreamlineTakesHoldOfItsClosestPlace) {
   Rig rig(link);
   Random random(7);
   for (int i = 0; i < 300; ++i) {
-    const double a = random.in(-3.14, 3.14);
+    const double a = random.uniform(-3.14, 3.14);
     const Vec3 place(std::cos(a), std::sin(a), 0);
     rig.tick(place * 0.79);
     ASSERT_TRUE(apart(rig, place * 0.79));
@@ -168,7 +168,7 @@ TEST(Snap, AnOnlineStreamlineWithoutSeedTakesHoldWhereTheHandIs) {
   Rig rig(build(R"({"name": "a", "type": "streamline", "field": "uniform", "snap": 0.1, "release": 0.3})", flow_fields()));
   rig.tick({0, 0.5, 0});
   EXPECT_TRUE(held(rig));
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0.5, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0, 0.5, 0)));
   rig.tick({0.2, 0.7, 0});
   EXPECT_LE(norm(rig.state.proxy - Vec3(0.2, 0.5, 0)), 1e-11);
   // pulled off, it lets go, and then takes hold of the line through the hand
@@ -176,7 +176,7 @@ TEST(Snap, AnOnlineStreamlineWithoutSeedTakesHoldWhereTheHandIs) {
   EXPECT_TRUE(apart(rig, {0.2, 0.81, 0}));
   rig.tick({0.2, 0.81, 0});
   EXPECT_TRUE(held(rig));
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.2, 0.81, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.2, 0.81, 0)));
 }
 
 TEST(Snap, AnOnlineStreamlineWithASeedStaysOnItsLine) {
@@ -208,18 +208,18 @@ TEST(Snap, FollowsAField) {
 
 TEST(Snap, WithoutASurfaceTheProbePassesThrough) {
   Fields fields;
-  fields.named["f"].scalar = analytic("constant");
+  fields.named["f"].scalar = analytic_field("constant");
   Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 1, "snap": 0.1})", fields));
   for (int k = 0; k < 3; ++k) rig.tick({0.1, 0.2, 0.3});
-  EXPECT_EQ(rig.state.status, Status::no_surface);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
+  EXPECT_EQ(rig.state.status, LinkStatus::no_surface);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
   EXPECT_FALSE(rig.state.released);
 }
 
 TEST(Snap, AllocatesNothing) {
   Rig rig(build(R"({"name": "a", "type": "streamline", "field": "abc", "seed": [0.1, 0.2, 0.3], "snap": 0.1})", flow_fields()));
   Random random(8);
-  AllocationGuard guard;
+  AllocationCounter guard;
   for (int i = 0; i < 1000; ++i) rig.tick(random.box(2));
   EXPECT_EQ(guard.count(), 0u);
 }

@@ -1,4 +1,4 @@
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace sphere_test {
@@ -14,11 +14,11 @@ TEST(Sphere, IsTheClosestPoint) {
   Rig rig(build(R"({"name": "a", "type": "sphere", "center": [0.5, -1, 2], "radius": 0.75})"));
   Random random(2);
   for (int i = 0; i < 3000; ++i) {
-    const Vec3 probe = c + random.unit() * random.in(1e-6, 3);
+    const Vec3 probe = c + random.unit() * random.uniform(1e-6, 3);
     rig.tick(probe);
     EXPECT_LE(norm(rig.state.proxy - (c + (probe - c) * (0.75 / norm(probe - c)))), 1e-15);
     EXPECT_LE(rig.state.residual, 1e-15);
-    EXPECT_EQ(rig.state.status, Status::ok);
+    EXPECT_EQ(rig.state.status, LinkStatus::ok);
   }
 }
 
@@ -35,52 +35,52 @@ TEST(Sphere, FarAndTinyProbesAndRadii) {
 
 TEST(Sphere, TheCentreKeepsTheLastNormal) {
   Rig rig(build(sphere(1)));
-  EXPECT_TRUE(same_bits(rig.tick({0, 0, 0}).proxy, Vec3(1, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({0, 0, 0}).proxy, Vec3(1, 0, 0)));
   rig.tick({0, 0, -0.3});
-  EXPECT_TRUE(same_bits(rig.tick({0, 0, 0}).proxy, Vec3(0, 0, -1)));
-  EXPECT_TRUE(same_bits(rig.tick({-0.0, 0, -0.0}).proxy, Vec3(0, 0, -1)));
-  EXPECT_EQ(rig.state.status, Status::ok);
+  EXPECT_TRUE(bitwise_equal(rig.tick({0, 0, 0}).proxy, Vec3(0, 0, -1)));
+  EXPECT_TRUE(bitwise_equal(rig.tick({-0.0, 0, -0.0}).proxy, Vec3(0, 0, -1)));
+  EXPECT_EQ(rig.state.status, LinkStatus::ok);
 }
 
 TEST(Sphere, FreeAboveIsOutsideFreeBelowIsInside) {
   Rig ball(build(sphere(1, R"(, "free": "above")")));
-  EXPECT_EQ(ball.tick({1.5, 0, 0}).status, Status::free);
-  EXPECT_TRUE(same_bits(ball.state.proxy, Vec3(1.5, 0, 0)));
-  EXPECT_EQ(ball.tick({0.5, 0, 0}).status, Status::ok);
-  EXPECT_TRUE(same_bits(ball.state.proxy, Vec3(1, 0, 0)));
+  EXPECT_EQ(ball.tick({1.5, 0, 0}).status, LinkStatus::free);
+  EXPECT_TRUE(bitwise_equal(ball.state.proxy, Vec3(1.5, 0, 0)));
+  EXPECT_EQ(ball.tick({0.5, 0, 0}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(ball.state.proxy, Vec3(1, 0, 0)));
   Rig room(build(sphere(1, R"(, "free": "below")")));
-  EXPECT_EQ(room.tick({0.5, 0, 0}).status, Status::free);
-  EXPECT_EQ(room.tick({0, 1.5, 0}).status, Status::ok);
-  EXPECT_TRUE(same_bits(room.state.proxy, Vec3(0, 1, 0)));
-  EXPECT_EQ(room.tick({0, 1, 0}).status, Status::free);
+  EXPECT_EQ(room.tick({0.5, 0, 0}).status, LinkStatus::free);
+  EXPECT_EQ(room.tick({0, 1.5, 0}).status, LinkStatus::ok);
+  EXPECT_TRUE(bitwise_equal(room.state.proxy, Vec3(0, 1, 0)));
+  EXPECT_EQ(room.tick({0, 1, 0}).status, LinkStatus::free);
 }
 
 TEST(Sphere, OneSidedReleaseAndReArm) {
   Rig rig(build(sphere(1, R"(, "free": "above", "release": 0.25)")));
-  EXPECT_EQ(rig.tick({1.2, 0, 0}).status, Status::free);
-  EXPECT_EQ(rig.tick({0.76, 0, 0}).status, Status::ok);
-  EXPECT_EQ(rig.tick({0.75, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({0.99, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({1.01, 0, 0}).status, Status::free);
-  EXPECT_EQ(rig.tick({0.99, 0, 0}).status, Status::ok);
+  EXPECT_EQ(rig.tick({1.2, 0, 0}).status, LinkStatus::free);
+  EXPECT_EQ(rig.tick({0.76, 0, 0}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({0.75, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0.99, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({1.01, 0, 0}).status, LinkStatus::free);
+  EXPECT_EQ(rig.tick({0.99, 0, 0}).status, LinkStatus::ok);
   Rig deep(build(sphere(1, R"(, "free": "above", "release": 0.25)")));
-  EXPECT_EQ(deep.tick({0.7, 0, 0}).status, Status::released);
+  EXPECT_EQ(deep.tick({0.7, 0, 0}).status, LinkStatus::released);
 }
 
 TEST(Sphere, TwoSidedReleaseAndReArm) {
   Rig rig(build(sphere(1, R"(, "release": 0.25)")));
-  EXPECT_EQ(rig.tick({0.8, 0, 0}).status, Status::ok);
-  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({1.026, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({1.024, 0, 0}).status, Status::ok);
-  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, Status::ok);  // crossed
-  EXPECT_EQ(rig.tick({0.7, 0, 0}).status, Status::released);
+  EXPECT_EQ(rig.tick({0.8, 0, 0}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({1.026, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({1.024, 0, 0}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, LinkStatus::ok);  // crossed
+  EXPECT_EQ(rig.tick({0.7, 0, 0}).status, LinkStatus::released);
   // in and out again within one tick, then held at the closest point
   Rig passed(build(sphere(0.1, R"(, "release": 0.25)")));
   passed.tick({0.2, 0, 0});
-  EXPECT_EQ(passed.tick({0.5, 0.05, 0}).status, Status::released);
-  EXPECT_EQ(passed.tick({-0.3, 0.05, 0}).status, Status::ok);
+  EXPECT_EQ(passed.tick({0.5, 0.05, 0}).status, LinkStatus::released);
+  EXPECT_EQ(passed.tick({-0.3, 0.05, 0}).status, LinkStatus::ok);
   EXPECT_LE(norm(passed.state.proxy - direction(Vec3(-0.3, 0.05, 0)) * 0.1), 1e-16);
 }
 
@@ -101,31 +101,31 @@ TEST(Sphere, AThinOneIsNotPassedWithinOneTick) {
   Random random(8);
   for (int i = 0; i < 500; ++i) {
     Rig rig(build(sphere(0.01, R"(, "free": "above")")));
-    const Vec3 way = random.unit(), aside = direction(cross(way, random.unit())) * random.in(0, 0.009);
+    const Vec3 way = random.unit(), aside = direction(cross(way, random.unit())) * random.uniform(0, 0.009);
     rig.tick(aside - way * 0.1);
     rig.tick(aside - way * 0.035);
-    ASSERT_EQ(rig.tick(aside + way * 0.035).status, Status::ok);  // within 0.02 L = 0.08
+    ASSERT_EQ(rig.tick(aside + way * 0.035).status, LinkStatus::ok);  // within 0.02 L = 0.08
     ASSERT_LE(rig.state.residual, 1e-16);
     ASSERT_LT(dot(rig.state.proxy, way), 0);
-    ASSERT_EQ(rig.tick(aside + way * 0.04).status, Status::ok);
+    ASSERT_EQ(rig.tick(aside + way * 0.04).status, LinkStatus::ok);
     ASSERT_LT(dot(rig.state.proxy, way), 0);
-    ASSERT_EQ(rig.tick(aside - way * 0.035).status, Status::free);  // back
+    ASSERT_EQ(rig.tick(aside - way * 0.035).status, LinkStatus::free);  // back
     rig.tick(aside + way * 0.035);
-    ASSERT_EQ(rig.tick(aside + way * 0.1).status, Status::ok);    // however far behind
-    ASSERT_EQ(rig.tick(aside + way * 0.2).status, Status::free);  // thrown
+    ASSERT_EQ(rig.tick(aside + way * 0.1).status, LinkStatus::ok);    // however far behind
+    ASSERT_EQ(rig.tick(aside + way * 0.2).status, LinkStatus::free);  // thrown
   }
 }
 
 TEST(Sphere, CuttingACapOrPassingBesideIsFree) {
   Rig cap(build(sphere(1, R"(, "free": "above")")));
   cap.tick({-0.035, 1.0004, 0});
-  EXPECT_EQ(cap.tick({0.035, 1.0004, 0}).status, Status::free);  // the chord goes 0.0002 deep
+  EXPECT_EQ(cap.tick({0.035, 1.0004, 0}).status, LinkStatus::free);  // the chord goes 0.0002 deep
   Rig beside(build(sphere(0.01, R"(, "free": "above")")));
   beside.tick({-0.03, 0.0101, 0});
-  EXPECT_EQ(beside.tick({0.03, 0.0101, 0}).status, Status::free);
+  EXPECT_EQ(beside.tick({0.03, 0.0101, 0}).status, LinkStatus::free);
   Rig jump(build(sphere(0.01, R"(, "free": "above")")));
   jump.tick({-0.5, 0, 0});
-  EXPECT_EQ(jump.tick({0.5, 0, 0}).status, Status::free);  // a jump, no hand
+  EXPECT_EQ(jump.tick({0.5, 0, 0}).status, LinkStatus::free);  // a jump, no hand
 }
 
 TEST(Sphere, ItsPrimitiveIsTheTangentPlane) {
@@ -134,8 +134,8 @@ TEST(Sphere, ItsPrimitiveIsTheTangentPlane) {
   rig.tick({0, 1.9, 0});
   ASSERT_TRUE(rig.constraint->primitive({0, 0, 1}, rig.state, rig.scratch, primitive));
   EXPECT_EQ(primitive.kind, Primitive::Kind::plane);
-  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0, 0, 2)));
-  EXPECT_TRUE(same_bits(primitive.axis, Vec3(0, 0, 1)));
+  EXPECT_TRUE(bitwise_equal(primitive.origin, Vec3(0, 0, 2)));
+  EXPECT_TRUE(bitwise_equal(primitive.axis, Vec3(0, 0, 1)));
 }
 
 TEST(Sphere, RefusesBadKeys) {

@@ -1,13 +1,13 @@
-// Streamlines of cubic grids in the hand: the line that is felt is the line that is drawn.
-#include "engine/flow/curve.h"
-#include "tests/haptics/constraints/rig.h"
+// StreamlineTracing of cubic grids in the hand: the line that is felt is the line that is drawn.
+#include "engine/geometry/flow/curve.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace streamline_cubic_test {
 
 TEST(StreamlineCubic, FeltAndDrawnLinesAgree) {
   const auto abc = field::make_analytic("abc")->vector;
-  const auto made = field::sample_on_grid(*abc, 40, -2, 2)->cubic();
+  const auto made = field::sample_on_grid(*abc, 40, -2, 2)->as_cubic();
   ASSERT_TRUE(made);
   Fields fields;
   fields.named["f"].vector = *made;
@@ -22,13 +22,13 @@ TEST(StreamlineCubic, FeltAndDrawnLinesAgree) {
     for (int k = 0; k <= 4000; ++k) {
       const double s = 1.2 * std::sin(2 * 3.141592653589793 * k / 4000);
       rig.tick((*drawn)->position(s) + Vec3(0.01, -0.02, 0.01));
-      ASSERT_TRUE(rig.state.status == Status::ok) << k << more;
-      worst = std::max(worst, std::sqrt(nearest.at(rig.state.proxy).distance2));
+      ASSERT_TRUE(rig.state.status == LinkStatus::ok) << k << more;
+      worst = std::max(worst, std::sqrt(nearest.find(rig.state.proxy).distance2));
       gone = std::max(gone, norm(rig.state.proxy - seed));
     }
-    EXPECT_LE(worst, 1e-9 * field.length()) << more;
+    EXPECT_LE(worst, 1e-9 * field.domain_length()) << more;
     EXPECT_GT(gone, 0.9);
-    std::printf("felt off drawn%s: %.2g L\n", more, worst / field.length());
+    std::printf("felt off drawn%s: %.2g L\n", more, worst / field.domain_length());
   }
 }
 

@@ -5,16 +5,16 @@
 #include <map>
 
 #include "haptics/constraints/streamline/streamline.h"
-#include "tests/engine/flow/fields.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
 
 namespace catena::test {
 
-struct StreamlineBench {
+struct StreamlineFixture {
   std::map<std::string, field::AnyField> fields;
   haptics::BuildContext context;
   mutable flow::CurvePtr last_curve;
 
-  StreamlineBench() {
+  StreamlineFixture() {
     context.field = [this](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
       const auto found = fields.find(name);
       if (found == fields.end()) return json::error_at(where, "unknown field \"" + name + "\"");
@@ -28,7 +28,7 @@ struct StreamlineBench {
       return *curve;
     };
   }
-  StreamlineBench& with(const std::string& name, field::VectorFieldPtr field) {
+  StreamlineFixture& with(const std::string& name, field::VectorFieldPtr field) {
     fields[name].vector = std::move(field);
     return *this;
   }
@@ -44,13 +44,13 @@ struct StreamlineBench {
 };
 
 /// One link, as the chain's tick drives it.
-struct Hand {
+struct LinkDriver {
   std::shared_ptr<const haptics::Constraint> constraint;
   haptics::LinkState state;
   haptics::LinkScratch scratch;
   bool started = false;
 
-  explicit Hand(std::shared_ptr<const haptics::Constraint> c) : constraint(std::move(c)) {}
+  explicit LinkDriver(std::shared_ptr<const haptics::Constraint> c) : constraint(std::move(c)) {}
   const Vec3& to(const Vec3& probe) {
     state.begin_tick();
     if (!started) constraint->start(probe, state, scratch);

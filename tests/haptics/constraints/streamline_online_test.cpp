@@ -1,20 +1,20 @@
-#include "haptics/constraints/streamline/online.h"
+#include "haptics/constraints/streamline/online_streamline.h"
 
 #include <cstring>
 #include <limits>
 #include <random>
 
 #include "engine/base/memory_limit.h"
-#include "tests/engine/flow/advect.h"
+#include "tests/engine/geometry/flow/advection_reference.h"
 #include "tests/haptics/constraints/streamline_fixture.h"
 
 namespace catena::haptics {
 namespace streamline_online_test {
 
 using test::analytic_vector;
-using test::grid_of;
-using test::Hand;
 using test::lambda_field;
+using test::LinkDriver;
+using test::sample_vector_grid;
 
 struct Online {
   std::optional<Vec3> seed;
@@ -23,20 +23,20 @@ struct Online {
   double min_speed = 0, tolerance = 1e-9;
 };
 
-Hand online(const field::VectorFieldPtr& field, const Online& with) {
-  OnlineSpec spec;
+LinkDriver online(const field::VectorFieldPtr& field, const Online& with) {
+  OnlineStreamlineSpec spec;
   spec.field = field;
   spec.seed = with.seed;
   spec.method = with.method;
-  spec.line = with.line;
+  spec.is_line_field = with.line;
   spec.min_speed = with.min_speed;
   spec.tolerance = with.tolerance;
-  return Hand(make_online_streamline(spec));
+  return LinkDriver(make_online_streamline(spec));
 }
 
 /// The probe goes round the circle of radius 0.05 at 0.2 units/s and 1 kHz; how far the proxy is from it after one lap.
 double drift_of_a_lap(flow::Method method, int& most) {
-  Hand hand = online(analytic_vector("circle"), {Vec3(0.05, 0.0, 0.0), method});
+  LinkDriver hand = online(analytic_vector("circle"), {Vec3(0.05, 0.0, 0.0), method});
   const int ticks = static_cast<int>(std::lround(2 * M_PI * 0.05 / 0.2e-3));
   double worst = 0;
   most = 0;
@@ -45,7 +45,7 @@ double drift_of_a_lap(flow::Method method, int& most) {
     hand.to(Vec3(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.0));
     worst = std::max(worst, std::fabs(norm(hand.state.proxy) - 0.05));
     most = std::max(most, hand.state.evaluations);
-    EXPECT_EQ(hand.state.status, Status::ok);
+    EXPECT_EQ(hand.state.status, LinkStatus::ok);
   }
   return worst;
 }
@@ -64,9 +64,9 @@ TEST(StreamlineOnline, DriftOfALapOfTheCircle) {
                {flow::Method::dp54, 0, 5e-10}};
   for (const auto& c : cases) {
     const double drift = drift_of_a_lap(c.method, most);
-    std::printf("online circle %s: drift %.3e, evaluations a tick <= %d\n", flow::method_word(c.method), drift, most);
-    EXPECT_LE(drift, c.greatest) << flow::method_word(c.method);
-    EXPECT_GE(drift, c.least) << flow::method_word(c.method);
+    std::printf("online circle %s: drift %.3e, evaluations a tick <= %d\n", flow::to_string(c.method), drift, most);
+    EXPECT_LE(drift, c.greatest) << flow::to_string(c.method);
+    EXPECT_GE(drift, c.least) << flow::to_string(c.method);
     if (c.method == flow::Method::linear) {
       EXPECT_LE(most, 2);
     }
@@ -78,12 +78,12 @@ TEST(StreamlineOnline, ConvergesFromAnywhereAroundACircleAndNeverGoesAway) {
   const auto circle = analytic_vector("circle");
   int most = 0;
   for (const double d : {0.2, 0.5, 0.9, 1.0, 1.1, 1.9, 2.1, 2.5, 4.0, 6.0}) {
-    Hand hand = online(circle, {Vec3(1.0, 0.0, 0.0)});
+    LinkDriver hand = online(circle, {Vec3(1.0, 0.0, 0.0)});
     const double angle = 20 * M_PI / 180;
     const Vec3 probe(d * std::cos(angle), d * std::sin(angle), 0.0);
     hand.to(probe);
     most = std::max(most, hand.state.evaluations);
-    EXPECT_EQ(hand.state.status, Status::ok) << d;
+    EXPECT_EQ(hand.state.status, LinkStatus::ok) << d;
     EXPECT_LE(norm(hand.state.proxy - Vec3(std::cos(angle), std::sin(angle), 0.0)), 4e-8) << d;
     // tangential residual
     EXPECT_LE(hand.state.residual, 1e-9) << d;
@@ -93,7 +93,7 @@ TEST(StreamlineOnline, ConvergesFromAnywhereAroundACircleAndNeverGoesAway) {
     EXPECT_EQ(hand.state.evaluations, 0);
   }
   std::printf("online, 20 degrees off: evaluations <= %d\n", most);
-  EXPECT_LE(most, kEvaluationCap);
+  EXPECT_LE(most, kMaxEvaluations);
 }
 
 TEST(StreamlineOnline, DistanceNeverGrowsFromColdStarts) {
@@ -103,17 +103,17 @@ TEST(StreamlineOnline, DistanceNeverGrowsFromColdStarts) {
   int budget = 0, most = 0;
   for (int i = 0; i < 600; ++i) {
     const Vec3 seed(place(random), place(random), place(random)), probe(place(random), place(random), place(random));
-    Hand hand = online(i % 2 ? analytic_vector("circle") : abc, {seed});
+    LinkDriver hand = online(i % 2 ? analytic_vector("circle") : abc, {seed});
     double distance = norm(seed - probe);
     for (int tick = 0; tick < 6; ++tick) {
       hand.to(probe);
-      ASSERT_LE(hand.state.evaluations, kEvaluationCap);
+      ASSERT_LE(hand.state.evaluations, kMaxEvaluations);
       const double now = norm(hand.state.proxy - probe);
       ASSERT_LE(now, distance * (1 + 1e-15) + 1e-15);
       distance = now;
       most = std::max(most, hand.state.evaluations);
     }
-    budget += hand.state.status == Status::budget;
+    budget += hand.state.status == LinkStatus::budget;
   }
   std::printf("cold starts: %d of 600 still under way after 6 ticks, evaluations <= %d\n", budget, most);
   EXPECT_LE(budget, 30);
@@ -144,38 +144,38 @@ TEST(StreamlineOnline, NodesAndStraightManifoldsStopCriticalAndLetGo) {
   for (const auto method : {flow::Method::euler, flow::Method::rk2, flow::Method::rk4, flow::Method::rkf34, flow::Method::dp54})
     for (const auto& [field, seed] :
          {std::pair{node, Vec3(1.0, 0.0, 0.0)}, std::pair{saddle, Vec3(0.0, 1.0, 0.0)}, std::pair{node, Vec3(0.0, 0.0, 0.7)}}) {
-      Hand hand = online(field, {seed, method});
+      LinkDriver hand = online(field, {seed, method});
       for (int tick = 0; tick < 6; ++tick) {
         hand.to(-0.5 * seed);
-        EXPECT_LE(hand.state.evaluations, kEvaluationCap);
+        EXPECT_LE(hand.state.evaluations, kMaxEvaluations);
       }
-      EXPECT_EQ(hand.state.status, Status::critical) << flow::method_word(method);
-      EXPECT_LE(norm(hand.state.proxy), 4e-6) << flow::method_word(method);
+      EXPECT_EQ(hand.state.status, LinkStatus::critical) << flow::to_string(method);
+      EXPECT_LE(norm(hand.state.proxy), 4e-6) << flow::to_string(method);
       hand.to(-0.1 * seed);
       EXPECT_EQ(hand.state.evaluations, 0);
       // the hand turns back
       for (int tick = 0; tick < 3; ++tick) hand.to(0.3 * seed);
-      EXPECT_EQ(hand.state.status, Status::ok);
-      EXPECT_LE(norm(hand.state.proxy - 0.3 * seed), 1e-6) << flow::method_word(method);
+      EXPECT_EQ(hand.state.status, LinkStatus::ok);
+      EXPECT_LE(norm(hand.state.proxy - 0.3 * seed), 1e-6) << flow::to_string(method);
     }
 }
 
 TEST(StreamlineOnline, CurvedManifoldIsReachedWhenDragged) {
   // x = y^2 / 3 is the stable manifold of the saddle at 0
   const auto field = lambda_field([](const Vec3& p) { return Vec3(p.x - p.y * p.y, -p.y, 0.0); });
-  Hand hand = online(field, {Vec3(1.0 / 3, 1.0, 0.0)});
+  LinkDriver hand = online(field, {Vec3(1.0 / 3, 1.0, 0.0)});
   bool reached = false;
   for (double y = 1; y > -0.3; y -= 0.02) {
     hand.to(Vec3(y * y / 3, y, 0.0));
-    if (hand.state.status == Status::critical) reached = true;
+    if (hand.state.status == LinkStatus::critical) reached = true;
     if (reached) {
       EXPECT_LE(norm(hand.state.proxy), 4e-4);
-      EXPECT_EQ(hand.state.status, Status::critical);
+      EXPECT_EQ(hand.state.status, LinkStatus::critical);
     }
   }
   EXPECT_TRUE(reached);
   for (double y = -0.3; y < 0.5; y += 0.02) hand.to(Vec3(y * y / 3, y, 0.0));
-  EXPECT_EQ(hand.state.status, Status::ok);
+  EXPECT_EQ(hand.state.status, LinkStatus::ok);
   EXPECT_LE(std::fabs(hand.state.proxy.x - hand.state.proxy.y * hand.state.proxy.y / 3), 1e-6);
 }
 
@@ -193,7 +193,7 @@ TEST(StreamlineOnline, CurvedManifoldsInAnyPositionAreReachedAndLeft) {
         return (x - bend * y * y) * a - y * b + third * z * c;
       });
       const auto on = [&](double y) { return zero + (bend * y * y / 3) * a + y * b; };
-      Hand hand = online(field, {on(1), method});
+      LinkDriver hand = online(field, {on(1), method});
       for (double y = 0.99; y > -0.3; y -= 0.02) {
         const double before = norm(hand.state.proxy - on(y));
         const bool started = hand.started;
@@ -202,21 +202,21 @@ TEST(StreamlineOnline, CurvedManifoldsInAnyPositionAreReachedAndLeft) {
           ASSERT_LE(norm(hand.state.proxy - on(y)), before + 1e-14) << i;
         }
       }
-      EXPECT_EQ(hand.state.status, Status::critical) << i;
+      EXPECT_EQ(hand.state.status, LinkStatus::critical) << i;
       EXPECT_LE(norm(hand.state.proxy - zero), 4e-6) << i;
       for (double y = -0.3; y < 0.5; y += 0.02) hand.to(on(y));
-      EXPECT_EQ(hand.state.status, Status::ok) << i;
+      EXPECT_EQ(hand.state.status, LinkStatus::ok) << i;
       EXPECT_LE(norm(hand.state.proxy - on(0.48)), 0.02) << i;
     }
 }
 
 TEST(StreamlineOnline, SmallCirclesAreNotMistakenForTheirCentre) {
   for (const double radius : {1e-5, 1e-4, 1e-3}) {
-    Hand hand = online(analytic_vector("circle"), {Vec3(radius, 0.0, 0.0)});
+    LinkDriver hand = online(analytic_vector("circle"), {Vec3(radius, 0.0, 0.0)});
     for (int i = 0; i < 200; ++i) {
       const Vec3 direction(std::cos(0.05 * i), std::sin(0.05 * i), 0.0);
       hand.to(1.2 * radius * direction);
-      ASSERT_EQ(hand.state.status, Status::ok) << radius << " " << i;
+      ASSERT_EQ(hand.state.status, LinkStatus::ok) << radius << " " << i;
       ASSERT_LE(norm(hand.state.proxy - radius * direction), 1e-3 * radius + 1e-10) << radius;
     }
   }
@@ -226,42 +226,42 @@ TEST(StreamlineOnline, LeastSpeedHoldsCritical) {
   const auto field = lambda_field([](const Vec3& p) { return Vec3(1 - 0.5 * p.x, 0.0, 0.0); });
   Online with{Vec3(0.0)};
   with.min_speed = 0.25;
-  Hand hand = online(field, with);
+  LinkDriver hand = online(field, with);
   for (int i = 0; i < 4; ++i) hand.to(Vec3(1.9, 0.0, 0.0));
-  EXPECT_EQ(hand.state.status, Status::critical);
+  EXPECT_EQ(hand.state.status, LinkStatus::critical);
   EXPECT_NEAR(hand.state.proxy.x, 1.5, 1e-6);
   hand.to(Vec3(1.0, 0.2, 0.0));
-  EXPECT_EQ(hand.state.status, Status::ok);
+  EXPECT_EQ(hand.state.status, LinkStatus::ok);
   EXPECT_NEAR(hand.state.proxy.x, 1, 1e-10);
 }
 
 TEST(StreamlineOnline, BoundaryHoldsUntilTheProbeTurnsBack) {
-  const auto grid = grid_of(field::Mapping{}, {9, 9, 9}, [](const Vec3& p) { return Vec3(1.0, 0.1 * p.x, 0.0); });
+  const auto grid = sample_vector_grid(field::Mapping{}, {9, 9, 9}, [](const Vec3& p) { return Vec3(1.0, 0.1 * p.x, 0.0); });
   for (const auto method : {flow::Method::linear, flow::Method::euler, flow::Method::rkf34, flow::Method::dp54}) {
-    Hand hand = online(grid, {Vec3(4.0, 4.0, 4.0), method});
+    LinkDriver hand = online(grid, {Vec3(4.0, 4.0, 4.0), method});
     for (int i = 0; i < 4; ++i) {
       hand.to(Vec3(9.5, 6.0, 4.0));
-      EXPECT_LE(hand.state.evaluations, kEvaluationCap);
+      EXPECT_LE(hand.state.evaluations, kMaxEvaluations);
     }
-    EXPECT_EQ(hand.state.status, Status::boundary);
+    EXPECT_EQ(hand.state.status, LinkStatus::boundary);
     EXPECT_LE(hand.state.proxy.x, 8 + 1e-8);
     if (method != flow::Method::linear) {
       EXPECT_NEAR(hand.state.proxy.x, 8, 1e-7);
       EXPECT_EQ(hand.state.evaluations, 0);
     }
     for (int i = 0; i < 3; ++i) hand.to(Vec3(5.0, 5.0, 4.0));
-    EXPECT_EQ(hand.state.status, Status::ok);
+    EXPECT_EQ(hand.state.status, LinkStatus::ok);
     EXPECT_NEAR(hand.state.proxy.x, 5, 0.5);
   }
 }
 
 TEST(StreamlineOnline, WithoutASeedItBeginsAtTheProbe) {
-  const auto grid = grid_of(field::Mapping{}, {9, 9, 9}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); });
-  Hand hand = online(grid, {});
+  const auto grid = sample_vector_grid(field::Mapping{}, {9, 9, 9}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); });
+  LinkDriver hand = online(grid, {});
   EXPECT_EQ(hand.to(Vec3(-1.0, 3.0, 3.0)), Vec3(-1.0, 3.0, 3.0));
-  EXPECT_EQ(hand.state.status, Status::boundary);
+  EXPECT_EQ(hand.state.status, LinkStatus::boundary);
   EXPECT_EQ(hand.to(Vec3(2.0, 3.0, 3.0)), Vec3(2.0, 3.0, 3.0));
-  EXPECT_EQ(hand.state.status, Status::ok);
+  EXPECT_EQ(hand.state.status, LinkStatus::ok);
   EXPECT_LE(norm(hand.to(Vec3(2.5, 4.0, 3.0)) - Vec3(2.5, 3.0, 3.0)), 1e-10);
 }
 
@@ -269,7 +269,7 @@ TEST(StreamlineOnline, FieldScaleDoesNotMatter) {
   std::vector<Vec3> reference;
   for (const double scale : {1.0, 1e-300, 1e300}) {
     const auto field = lambda_field([scale](const Vec3& p) { return scale * Vec3(-p.y, p.x, 0.3); });
-    Hand hand = online(field, {Vec3(0.5, 0.0, 0.0)});
+    LinkDriver hand = online(field, {Vec3(0.5, 0.0, 0.0)});
     for (int i = 0; i < 50; ++i) {
       const Vec3 proxy = hand.to(Vec3(0.5 * std::cos(0.03 * i), 0.6 * std::sin(0.03 * i), 0.01 * i));
       if (scale == 1) reference.push_back(proxy);
@@ -283,11 +283,11 @@ TEST(StreamlineOnline, SurvivesBadValuesAndFarProbes) {
   for (const double bad : {std::nan(""), inf, -inf, 0.0, 1e-323, 1e308})
     for (const auto method : {flow::Method::linear, flow::Method::euler, flow::Method::rk3, flow::Method::rkf34, flow::Method::dp54}) {
       const auto field = lambda_field([bad](const Vec3& p) { return p.x > 0.5 ? Vec3(bad) : Vec3(1.0, 0.2, 0.0); });
-      Hand hand = online(field, {Vec3(0.0), method});
+      LinkDriver hand = online(field, {Vec3(0.0), method});
       for (const Vec3& probe : {Vec3(2.0), Vec3(-1e9), Vec3(1e300, 0.0, 0.0), Vec3(0.0), Vec3(0.7)}) {
         hand.to(probe);
         EXPECT_TRUE(is_finite(hand.state.proxy));
-        EXPECT_LE(hand.state.evaluations, kEvaluationCap);
+        EXPECT_LE(hand.state.evaluations, kMaxEvaluations);
       }
     }
 }
@@ -296,12 +296,12 @@ TEST(StreamlineOnline, LineFieldsKeepTheirSide) {
   const auto helix = [](const Vec3& p) { return direction(Vec3(-2 * p.y, 2 * p.x, 0.5)); };
   const auto mapping = field::Mapping::from_linear(Mat3(4.0 / 31), Vec3(-2.0));
   std::mt19937 random(5);
-  const auto flipping = grid_of(mapping, {32, 32, 32}, [&](const Vec3& p) { return (random() & 1 ? 1.0 : -1.0) * helix(p); });
-  const auto steady = grid_of(mapping, {32, 32, 32}, helix);
+  const auto flipping = sample_vector_grid(mapping, {32, 32, 32}, [&](const Vec3& p) { return (random() & 1 ? 1.0 : -1.0) * helix(p); });
+  const auto steady = sample_vector_grid(mapping, {32, 32, 32}, helix);
   Online with{Vec3(1.0, 0.2, 0.1)};
-  Hand plain = online(steady, with);
+  LinkDriver plain = online(steady, with);
   with.line = true;
-  Hand fibres = online(flipping, with), same = online(steady, with);
+  LinkDriver fibres = online(flipping, with), same = online(steady, with);
   for (int i = 0; i < 200; ++i) {
     const double a = 0.01 * i;
     const Vec3 probe(std::cos(a + 0.2), std::sin(a + 0.2), 0.1 + 0.25 * a);
@@ -314,9 +314,9 @@ TEST(StreamlineOnline, LineFieldsKeepTheirSide) {
 TEST(StreamlineOnline, SameBitsAndNoAllocation) {
   const auto abc = analytic_vector("abc");
   const auto walk = [&](std::vector<Vec3>& out) {
-    Hand hand = online(abc, {Vec3(0.3, 0.2, 0.1)});
+    LinkDriver hand = online(abc, {Vec3(0.3, 0.2, 0.1)});
     hand.to(Vec3(0.3, 0.2, 0.1));
-    const AllocationGuard guard;
+    const AllocationCounter guard;
     for (int i = 0; i < 500; ++i) out[static_cast<std::size_t>(i)] = hand.to(Vec3(0.3 + 0.002 * i, 0.2 - 0.001 * i, 0.1 + 0.003 * i));
     EXPECT_EQ(guard.count(), 0u);
   };

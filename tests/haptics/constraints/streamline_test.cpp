@@ -4,28 +4,28 @@
 #include <random>
 
 #include "engine/base/memory_limit.h"
-#include "haptics/constraints/streamline/selected.h"
+#include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/haptics/constraints/streamline_fixture.h"
 
 namespace catena::haptics {
 namespace streamline_test {
 
 using test::analytic_vector;
-using test::grid_of;
-using test::Hand;
 using test::lambda_field;
-using test::StreamlineBench;
+using test::LinkDriver;
+using test::sample_vector_grid;
+using test::StreamlineFixture;
 
 const std::string kCircle = R"({"name": "a", "type": "streamline", "field": "f", "seed": [0.05, 0, 0]})";
 
-std::string failure(const StreamlineBench& bench, const std::string& text) {
+std::string failure(const StreamlineFixture& bench, const std::string& text) {
   const auto built = bench.build(text);
   EXPECT_FALSE(built) << text;
   return built ? "" : built.error().message;
 }
 
 TEST(Streamline, KeysAreCheckedWithTheirLine) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   bench.with("f", analytic_vector("circle"));
   bench.fields["s"].scalar = field::make_analytic("sphere")->scalar;
   const auto link = [](const std::string& more) { return "\n\n{\"name\": \"a\", \"type\": \"streamline\"" + more + "}"; };
@@ -60,26 +60,26 @@ TEST(Streamline, KeysAreCheckedWithTheirLine) {
 }
 
 TEST(Streamline, SeedOutsideAGridIsAnError) {
-  StreamlineBench bench;
-  bench.with("f", grid_of(field::Mapping{}, {8, 8, 8}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }));
+  StreamlineFixture bench;
+  bench.with("f", sample_vector_grid(field::Mapping{}, {8, 8, 8}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }));
   for (const char* more : {"", R"(, "method": "rk4")"})
     EXPECT_NE(failure(bench, std::string(R"({"field": "f", "seed": [9, 0, 0])") + more + "}").find("outside"), std::string::npos);
 }
 
 TEST(Streamline, SelectedStartsOnTheSeedAndRestsThere) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   bench.with("f", analytic_vector("circle"));
-  Hand hand(bench.link(kCircle));
+  LinkDriver hand(bench.link(kCircle));
   EXPECT_EQ(hand.to(Vec3(0.05, 0.0, 0.0)), Vec3(0.05, 0.0, 0.0));
   EXPECT_EQ(hand.to(Vec3(0.08, 0.0, 0.3)), Vec3(0.05, 0.0, 0.0));
   EXPECT_EQ(hand.state.evaluations, 0);
-  EXPECT_EQ(hand.state.status, Status::ok);
+  EXPECT_EQ(hand.state.status, LinkStatus::ok);
 }
 
 TEST(Streamline, SelectedLapOfTheCircle) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   bench.with("f", analytic_vector("circle"));
-  Hand hand(bench.link(kCircle));
+  LinkDriver hand(bench.link(kCircle));
   const int ticks = static_cast<int>(2 * M_PI * 0.05 / 0.2e-3);
   double off = 0, lag = 0;
   int work = 0;
@@ -89,11 +89,11 @@ TEST(Streamline, SelectedLapOfTheCircle) {
     const Vec3 proxy = hand.to(probe);
     off = std::max(off, std::fabs(norm(proxy) - 0.05));
     lag = std::max(lag, norm(proxy - probe));
-    work = std::max(work, memory_of<SelectedMemory>(hand.state).knots);
+    work = std::max(work, memory_as<SelectedStreamlineMemory>(hand.state).knots_visited);
     EXPECT_EQ(hand.state.evaluations, 0);
-    EXPECT_EQ(hand.state.status, Status::ok);
+    EXPECT_EQ(hand.state.status, LinkStatus::ok);
     // on the drawn curve
-    EXPECT_LE(norm(proxy - bench.last_curve->position(memory_of<SelectedMemory>(hand.state).s)), 1e-12 * 4);
+    EXPECT_LE(norm(proxy - bench.last_curve->position(memory_as<SelectedStreamlineMemory>(hand.state).s)), 1e-12 * 4);
   }
   std::printf("selected circle: off %.2e, lag %.2e, knots a tick %d\n", off, lag, work);
   EXPECT_LE(off, 5e-10);
@@ -102,9 +102,9 @@ TEST(Streamline, SelectedLapOfTheCircle) {
 }
 
 TEST(Streamline, TheCentreOfACircleMovesNothing) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   bench.with("f", analytic_vector("circle"));
-  Hand hand(bench.link(kCircle));
+  LinkDriver hand(bench.link(kCircle));
   for (const double z : {0.0, 0.3, -2.0}) EXPECT_EQ(hand.to(Vec3(0.0, 0.0, z)), Vec3(0.05, 0.0, 0.0));
   // and very far away
   for (const double far : {1e100, 1e299, 1.7e308}) {
@@ -114,10 +114,10 @@ TEST(Streamline, TheCentreOfACircleMovesNothing) {
 }
 
 TEST(Streamline, SweepsHaveNoHysteresis) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   const auto abc = analytic_vector("abc");
   bench.with("f", abc);
-  Hand hand(bench.link(R"({"field": "f", "seed": [0.3, 0.2, 0.1]})"));
+  LinkDriver hand(bench.link(R"({"field": "f", "seed": [0.3, 0.2, 0.1]})"));
   std::vector<Vec3> first;
   for (int sweep = 0; sweep < 20; ++sweep)
     for (int i = 0; i <= 400; ++i) {
@@ -130,9 +130,9 @@ TEST(Streamline, SweepsHaveNoHysteresis) {
 }
 
 TEST(Streamline, SelectedGoesDownhillOnly) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   bench.with("f", lambda_field([](const Vec3& p) { return Vec3(-2 * p.y, 2 * p.x, 0.1); }));
-  Hand hand(bench.link(R"({"field": "f", "seed": [1, 0, 0]})"));
+  LinkDriver hand(bench.link(R"({"field": "f", "seed": [1, 0, 0]})"));
   hand.to(Vec3(1.0, 0.0, 0.0));
   // near the next turn of the helix, which is another branch: the proxy stays on its own
   const Vec3 proxy = hand.to(Vec3(1.0, 0.0, 0.3));
@@ -144,44 +144,44 @@ TEST(Streamline, SelectedGoesDownhillOnly) {
     const Vec3 before = hand.state.proxy;
     hand.to(probe);
     EXPECT_LE(norm(hand.state.proxy - probe), norm(before - probe) + 1e-9);
-    EXPECT_EQ(hand.state.status, Status::ok);
+    EXPECT_EQ(hand.state.status, LinkStatus::ok);
   }
 }
 
 TEST(Streamline, OpenEndsHoldWithTheirWord) {
-  StreamlineBench bench;
-  bench.with("grid", grid_of(field::Mapping{}, {9, 9, 9}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }));
+  StreamlineFixture bench;
+  bench.with("grid", sample_vector_grid(field::Mapping{}, {9, 9, 9}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }));
   bench.with("node", lambda_field([](const Vec3& p) { return -p; }));
   bench.with("far", lambda_field([](const Vec3&) { return Vec3(1.0, 0.0, 0.0); }));
-  Hand boundary(bench.link(R"({"field": "grid", "seed": [4, 4, 4]})"));
+  LinkDriver boundary(bench.link(R"({"field": "grid", "seed": [4, 4, 4]})"));
   EXPECT_EQ(boundary.to(Vec3(11.0, 5.0, 4.0)), Vec3(8.0, 4.0, 4.0));
-  EXPECT_EQ(boundary.state.status, Status::boundary);
+  EXPECT_EQ(boundary.state.status, LinkStatus::boundary);
   EXPECT_EQ(boundary.to(Vec3(-3.0, 5.0, 4.0)), Vec3(0.0, 4.0, 4.0));
-  EXPECT_EQ(boundary.state.status, Status::boundary);
+  EXPECT_EQ(boundary.state.status, LinkStatus::boundary);
   EXPECT_LE(norm(boundary.to(Vec3(6.25, 5.0, 4.0)) - Vec3(6.25, 4.0, 4.0)), 1e-12);
-  EXPECT_EQ(boundary.state.status, Status::ok);
-  Hand critical(bench.link(R"({"field": "node", "seed": [1, 0, 0]})"));
+  EXPECT_EQ(boundary.state.status, LinkStatus::ok);
+  LinkDriver critical(bench.link(R"({"field": "node", "seed": [1, 0, 0]})"));
   EXPECT_LE(norm(critical.to(Vec3(-1.0, 0.0, 0.0))), 4e-6);
-  EXPECT_EQ(critical.state.status, Status::critical);
-  Hand ended(bench.link(R"({"field": "far", "seed": [0, 0, 0]})"));
+  EXPECT_EQ(critical.state.status, LinkStatus::critical);
+  LinkDriver ended(bench.link(R"({"field": "far", "seed": [0, 0, 0]})"));
   ended.to(Vec3(1e6, 0.0, 0.0));
   EXPECT_NEAR(ended.state.proxy.x, 40, 1e-9);
-  EXPECT_EQ(ended.state.status, Status::ok);
+  EXPECT_EQ(ended.state.status, LinkStatus::ok);
 }
 
 TEST(Streamline, SelectedNeverAllocatesAndKeepsUpWithAFastHand) {
-  StreamlineBench bench;
+  StreamlineFixture bench;
   bench.with("f", analytic_vector("abc"));
-  Hand hand(bench.link(R"({"field": "f", "seed": [0.3, 0.2, 0.1]})"));
+  LinkDriver hand(bench.link(R"({"field": "f", "seed": [0.3, 0.2, 0.1]})"));
   hand.to(Vec3(0.3, 0.2, 0.1));
   int most = 0;
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 target = bench.last_curve->position(0.004 * i);
     hand.to(target);
-    EXPECT_NE(hand.state.status, Status::budget);
+    EXPECT_NE(hand.state.status, LinkStatus::budget);
     EXPECT_LE(norm(hand.state.proxy - target), 1e-9);
-    most = std::max(most, memory_of<SelectedMemory>(hand.state).knots);
+    most = std::max(most, memory_as<SelectedStreamlineMemory>(hand.state).knots_visited);
   }
   EXPECT_EQ(guard.count(), 0u);
   std::printf("selected abc at 1e-3 L a tick: knots a tick %d\n", most);

@@ -1,5 +1,5 @@
 // Friction on surfaces that are hostile: noise, broken voxels, masks, thin sheets, jumps from sheet to sheet.
-#include "haptics/constraints/friction/contact.h"
+#include "haptics/constraints/friction/friction_contact.h"
 
 #include <limits>
 
@@ -21,20 +21,21 @@ struct Surface {
 std::vector<Surface> surfaces() {
   Random random(31);
   std::vector<std::uint8_t> valid;
-  for (int i = 0; i < 21 * 21 * 21; ++i) valid.push_back(random.in(0, 1) > 0.03);
+  for (int i = 0; i < 21 * 21 * 21; ++i) valid.push_back(random.uniform(0, 1) > 0.03);
   return {
-      {"torus", analytic("torus"), 0.4},
-      {"noise", grid_of(kMapping, kSize, [&](const Vec3&) { return random.in(-1, 1); }), 0.1},
+      {"torus", analytic_field("torus"), 0.4},
+      {"noise", sample_scalar_grid(kMapping, kSize, [&](const Vec3&) { return random.uniform(-1, 1); }), 0.1},
       {"broken",
-       grid_of(kMapping, kSize, [&](const Vec3& p) { return random.in(0, 1) < 0.03 ? std::numeric_limits<double>::quiet_NaN() : norm(p); }),
+       sample_scalar_grid(kMapping, kSize,
+                          [&](const Vec3& p) { return random.uniform(0, 1) < 0.03 ? std::numeric_limits<double>::quiet_NaN() : norm(p); }),
        1.2},
       {"masked",
-       grid_of(
+       sample_scalar_grid(
            kMapping, kSize, [](const Vec3& p) { return norm(p); }, valid),
        1.2},
-      {"sheet", grid_of(kMapping, kSize, [](const Vec3& p) { return std::fabs(p.z + 0.1 * p.x) < 0.15 ? 1.0 : 0.0; }), 0.5},
-      {"tiny", grid_of(kMapping, kSize, [](const Vec3& p) { return 1e-30 * norm(p); }), 1.2e-30},
-      {"huge", grid_of(kMapping, kSize, [](const Vec3& p) { return 1e30 * norm(p); }), 1.2e30}};
+      {"sheet", sample_scalar_grid(kMapping, kSize, [](const Vec3& p) { return std::fabs(p.z + 0.1 * p.x) < 0.15 ? 1.0 : 0.0; }), 0.5},
+      {"tiny", sample_scalar_grid(kMapping, kSize, [](const Vec3& p) { return 1e-30 * norm(p); }), 1.2e-30},
+      {"huge", sample_scalar_grid(kMapping, kSize, [](const Vec3& p) { return 1e30 * norm(p); }), 1.2e30}};
 }
 
 /// Places on the level: far apart, then a stroll from each; and some off it.
@@ -45,7 +46,7 @@ std::vector<Vec3> places(const Surface& s, std::uint64_t seed) {
     const Vec3 from = random.box(1.8);
     Rig rig(isosurface(s.field, s.level));
     rig.tick(from);
-    if (rig.state.status == Status::no_surface) continue;
+    if (rig.state.status == LinkStatus::no_surface) continue;
     Vec3 way = random.unit();
     for (int k = 0; k < 20; ++k) {
       rig.tick(rig.state.proxy + way * (k % 7 == 6 ? 0.3 : 0.01));
@@ -62,7 +63,7 @@ TEST(SurfaceContact, HostileSurfaces) {
   Random random(32);
   std::vector<float> vectors;
   for (int i = 0; i < 3 * 21 * 21 * 21; ++i)
-    vectors.push_back(random.in(0, 1) < 0.01 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(random.in(-1, 1)));
+    vectors.push_back(random.uniform(0, 1) < 0.01 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(random.uniform(-1, 1)));
   const std::string types[] = {R"("type": "drag", "threshold": 0.05)", R"("type": "texture", "threshold": 0.05, "wavelength": 0.1)",
                                R"("type": "friction", "field": "v", "threshold": 0.03)",
                                R"("type": "friction", "field": "v", "kind": "line", "threshold": 0.3)",
@@ -73,19 +74,19 @@ TEST(SurfaceContact, HostileSurfaces) {
     fields.named["v"].vector = field::make_vector_grid("v", kMapping, kSize, vectors);
     const std::vector<Vec3> path = places(s, 33);
     ASSERT_GT(path.size(), 300u) << s.name;
-    const double length = s.field->length();
+    const double length = s.field->domain_length();
     for (const std::string& type : types) {
       char level[40];
       std::snprintf(level, sizeof level, "%.17g", s.level);
       Rig rig(build(R"({"name": "a", "surface": "s", "level": )" + std::string(level) + ", " + type + "}", fields));
-      std::map<Status, int> seen;
+      std::map<LinkStatus, int> seen;
       int most = 0;
       double off = 0, gap = 0;
       for (std::size_t i = 0; i < path.size(); ++i) {
         const LinkState before = rig.state;
-        const bool rests = i > 0 && same_bits(path[i], path[i - 1]);
+        const bool rests = i > 0 && bitwise_equal(path[i], path[i - 1]);
         {
-          const AllocationGuard guard;
+          const AllocationCounter guard;
           rig.tick(path[i]);
           ASSERT_EQ(guard.count(), 0u);
         }
@@ -93,23 +94,23 @@ TEST(SurfaceContact, HostileSurfaces) {
         ++seen[now.status];
         most = std::max(most, now.evaluations);
         ASSERT_TRUE(is_finite(now.proxy) && std::isfinite(now.residual) && std::isfinite(now.limit)) << s.name << type << i;
-        ASSERT_LE(now.evaluations, kEvaluationCap) << s.name << type << i;
-        if (now.status == Status::free || now.status == Status::no_surface) {
-          ASSERT_TRUE(same_bits(now.proxy, path[i])) << s.name << type << i;
+        ASSERT_LE(now.evaluations, kMaxEvaluations) << s.name << type << i;
+        if (now.status == LinkStatus::free || now.status == LinkStatus::no_surface) {
+          ASSERT_TRUE(bitwise_equal(now.proxy, path[i])) << s.name << type << i;
         }
-        if (rests && before.status != Status::budget) {
-          ASSERT_TRUE(same_bits(now.proxy, before.proxy) && now.status == before.status && now.evaluations == 0) << s.name << type << i;
+        if (rests && before.status != LinkStatus::budget) {
+          ASSERT_TRUE(bitwise_equal(now.proxy, before.proxy) && now.status == before.status && now.evaluations == 0) << s.name << type << i;
         }
-        if (now.status == Status::ok) {
+        if (now.status == LinkStatus::ok) {
           off = std::max(off, off_level(*s.field, s.level, now.proxy) / length);
           gap = std::max(gap, (norm(path[i] - now.proxy) - now.limit) / length);
         }
       }
       std::printf("%-7s %-28.28s", s.name, type.c_str());
-      for (const auto& [status, count] : seen) std::printf(" %s %d", exchange::status_word(status), count);
+      for (const auto& [status, count] : seen) std::printf(" %s %d", to_string(status), count);
       std::printf("; off %.1e, over tau %.1e, evaluations <= %d\n", off, gap, most);
       EXPECT_LE(off, 1e-9) << s.name << type;
-      EXPECT_GT(seen[Status::ok], 50) << s.name << type;
+      EXPECT_GT(seen[LinkStatus::ok], 50) << s.name << type;
     }
   }
 }
@@ -117,7 +118,7 @@ TEST(SurfaceContact, HostileSurfaces) {
 // where somebody else has moved the proxy it starts from the probe again
 TEST(SurfaceContact, AProxyMovedByOthersStartsAnew) {
   Fields fields;
-  fields.named["s"].scalar = analytic("sphere");
+  fields.named["s"].scalar = analytic_field("sphere");
   Rig rig(build(R"({"name": "a", "type": "drag", "threshold": 0.2, "surface": "s", "level": 1})", fields));
   rig.tick({0, 0, 1});
   rig.state.proxy = Vec3(3, 3, 3);
@@ -128,12 +129,12 @@ TEST(SurfaceContact, AProxyMovedByOthersStartsAnew) {
 // a field beyond its grid's edge is unknown: not on the surface
 TEST(SurfaceContact, OutsideTheDomainIsOffTheSurface) {
   Fields fields;
-  fields.named["s"].scalar = field::sample_on_grid(*analytic("plane"), 21, -2, 2);
+  fields.named["s"].scalar = field::sample_on_grid(*analytic_field("plane"), 21, -2, 2);
   Rig rig(build(R"({"name": "a", "type": "drag", "threshold": 0.2, "surface": "s", "level": 0})", fields));
-  EXPECT_EQ(rig.tick({1.9, 0, 0}).status, Status::ok);
-  EXPECT_EQ(rig.tick({2.1, 0, 0}).status, Status::free);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(2.1, 0, 0)));
-  EXPECT_EQ(rig.tick({1.95, 0, 0}).status, Status::ok);
+  EXPECT_EQ(rig.tick({1.9, 0, 0}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({2.1, 0, 0}).status, LinkStatus::free);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(2.1, 0, 0)));
+  EXPECT_EQ(rig.tick({1.95, 0, 0}).status, LinkStatus::ok);
 }
 
 }  // namespace surface_contact_test

@@ -67,14 +67,14 @@ TEST(Texture, WithoutAmplitudeItIsDrag) {
     const Vec3 probe = random.box(0.2);
     rig.tick(probe);
     drag.tick(probe);
-    ASSERT_TRUE(same_bits(rig.state.proxy, drag.state.proxy));
+    ASSERT_TRUE(bitwise_equal(rig.state.proxy, drag.state.proxy));
   }
 }
 
 // by data: the base follows a field, here with the wave on top
 TEST(Texture, TheBaseMayFollowAField) {
   Fields fields;
-  fields.named["r"].scalar = analytic("sphere");
+  fields.named["r"].scalar = analytic_field("sphere");
   Rig rig(build(R"({"name": "a", "type": "texture", "wavelength": 0.5, "amplitude": 0.5,
                     "threshold": {"field": "r", "map": [[0, 0], [2, 0.2]]}})",
                 fields));
@@ -83,14 +83,14 @@ TEST(Texture, TheBaseMayFollowAField) {
 }
 
 TEST(Texture, OnASurfaceItStaysThere) {
-  const auto torus = sampled("torus", 48);
+  const auto torus = sampled_field("torus", 48);
   Fields fields;
   fields.named["s"].scalar = torus;
   Rig rig(build(texture(R"(, "wavelength": 0.1, "surface": "s", "level": 0.4)"), fields));
   double off = 0, gap = 0;
-  for (const Vec3& probe : walk_on(torus, 0.4, {1, 0.1, 0.4}, 0.004, 4000, 2)) {
+  for (const Vec3& probe : walk_on_surface(torus, 0.4, {1, 0.1, 0.4}, 0.004, 4000, 2)) {
     rig.tick(probe);
-    ASSERT_EQ(rig.state.status, Status::ok);
+    ASSERT_EQ(rig.state.status, LinkStatus::ok);
     off = std::max(off, off_level(*torus, 0.4, rig.state.proxy));
     gap = std::max(gap, norm(probe - rig.state.proxy) - rig.state.limit);
   }

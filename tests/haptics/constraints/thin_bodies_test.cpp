@@ -1,6 +1,6 @@
 // A one-sided link holds a hand by the sheet by which it came in, until `release` and through no other door, whatever the body's thickness,
 // tilt and curvature, and whatever the hand's speed and the rate.
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace thin_bodies_test {
@@ -39,7 +39,7 @@ template <class Inside>
 void push(const ConstraintPtr& link, const Shell& shell, const Vec3& way, double slow, double fast, double dt, const Inside& is_inside,
           const std::string& what) {
   Rig rig(link);
-  rig.state.hand_step = kFastestHand * dt;
+  rig.state.max_probe_step = kMaxProbeSpeed * dt;
   const double cosine = -dot(way, shell.outward);
   double at = -0.5 * shell.thickness - 0.02;
   Vec3 x = way * (at / cosine);
@@ -56,10 +56,10 @@ void push(const ConstraintPtr& link, const Shell& shell, const Vec3& way, double
       EXPECT_GE(shell.thickness * 0.5 - shell.height(x), kReleaseAt * 0.7) << what;
       return;
     }
-    ASSERT_TRUE(rig.state.status == Status::ok || rig.state.status == Status::budget)
-        << what << ": " << exchange::status_word(rig.state.status) << " at a depth of " << 0.5 * shell.thickness - shell.height(x);
+    ASSERT_TRUE(rig.state.status == LinkStatus::ok || rig.state.status == LinkStatus::budget)
+        << what << ": " << to_string(rig.state.status) << " at a depth of " << 0.5 * shell.thickness - shell.height(x);
     ASSERT_LT(norm(rig.state.proxy - x), kReleaseAt) << what;
-    if (rig.state.status == Status::ok) {
+    if (rig.state.status == LinkStatus::ok) {
       ASSERT_GT(dot(rig.state.proxy - x, shell.up(rig.state.proxy)), -1e-9) << what << ": held by the far side";
     }
   }
@@ -71,15 +71,15 @@ class ThinBodies : public testing::TestWithParam<int> {};
 TEST_P(ThinBodies, HoldByTheSheetOfTheirFront) {
   Random random(static_cast<std::uint64_t>(100 + GetParam()));
   for (int i = 0; i < 40; ++i) {
-    Shell shell{random.unit(), std::pow(10, random.in(-3, -1))};
-    if (i % 2) shell.radius = random.in(0.8, 3);
+    Shell shell{random.unit(), std::pow(10, random.uniform(-3, -1))};
+    if (i % 2) shell.radius = random.uniform(0.8, 3);
     const double rate = std::array{100.0, 1000.0, 8000.0}[static_cast<std::size_t>(i % 3)];
-    const double speed = std::pow(10, random.in(-2, 1));
+    const double speed = std::pow(10, random.uniform(-2, 1));
     const double step = speed / rate, fast = std::max(step, 0.01);
-    const Vec3 way = direction(direction(cross(shell.outward, random.unit())) * random.in(0, 0.6) - shell.outward);
+    const Vec3 way = direction(direction(cross(shell.outward, random.unit())) * random.uniform(0, 0.6) - shell.outward);
     const double slow = std::max(step, shell.thickness / 500);
     Fields fields;
-    const double voxel = shell.thickness * random.in(0.6, 3);
+    const double voxel = shell.thickness * random.uniform(0.6, 3);
     const std::string what = fmt::format("{}: thickness {:.4f}, radius {:.2f}, voxel {:.4f}, {:.3f} m/s at {} Hz", i, shell.thickness,
                                          shell.radius, voxel, speed, rate);
     fields.named["f"].scalar = std::make_shared<ShellFormula>(shell);
@@ -96,7 +96,7 @@ TEST_P(ThinBodies, HoldByTheSheetOfTheirFront) {
       if (shell.thickness < 1.2 * edge) shell.thickness = 1.2 * edge;
       const auto mapping = field::Mapping::from_linear(Mat3(edge), Vec3(-edge * half));
       fields.named["g"].scalar =
-          grid_of(mapping, {2 * half + 1, 2 * half + 1, 2 * half + 1}, [&](const Vec3& x) { return shell.value(x); });
+          sample_scalar_grid(mapping, {2 * half + 1, 2 * half + 1, 2 * half + 1}, [&](const Vec3& x) { return shell.value(x); });
       push(
           build(R"({"name": "a", "type": "isosurface", "field": "g", "level": 0, "free": "below")" + rules + "}", fields), shell, way, slow,
           fast, 1 / rate,
@@ -125,17 +125,18 @@ TEST(ThinBodies, AFastHandIsCaughtHoweverThinTheBodyIs) {
   Random random(7);
   for (int i = 0; i < 300; ++i) {
     Fields fields;
-    const double peak = std::pow(10, random.in(-4, -0.5));  // the body is as thick as 2 peak voxels
+    const double peak = std::pow(10, random.uniform(-4, -0.5));  // the body is as thick as 2 peak voxels
     const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.0));
-    fields.named["f"].scalar = grid_of(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
+    fields.named["f"].scalar = sample_scalar_grid(mapping, {21, 21, 21}, [&](const Vec3& x) { return peak - std::fabs(x.z) / 0.1; });
     Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "below"})", fields));
-    rig.state.hand_step = 0.2;
-    const double before = random.in(0.001, 0.03), after = random.in(0.001, 0.03);
-    const Vec3 place(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 0), slant(random.in(-0.02, 0.02), random.in(-0.02, 0.02), 0);
+    rig.state.max_probe_step = 0.2;
+    const double before = random.uniform(0.001, 0.03), after = random.uniform(0.001, 0.03);
+    const Vec3 place(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 0),
+        slant(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), 0);
     rig.tick(place + Vec3(0, 0, 0.1 * peak + before));
-    ASSERT_EQ(rig.tick(place + slant - Vec3(0, 0, 0.1 * peak + after)).status, Status::ok) << peak;
+    ASSERT_EQ(rig.tick(place + slant - Vec3(0, 0, 0.1 * peak + after)).status, LinkStatus::ok) << peak;
     ASSERT_NEAR(rig.state.proxy.z, 0.1 * peak, 1e-7);
-    ASSERT_EQ(rig.tick(place + slant + Vec3(0, 0, 0.1 * peak + after)).status, Status::free);
+    ASSERT_EQ(rig.tick(place + slant + Vec3(0, 0, 0.1 * peak + after)).status, LinkStatus::free);
   }
 }
 
@@ -146,13 +147,13 @@ TEST(ThinBodies, AFastHandIsCaughtBeforeMaskedCellsAndValuesThatAreNone) {
     std::vector<std::uint8_t> valid;
     for (int i = 0; i < 21 * 21 * 21; ++i) valid.push_back(i / (21 * 21) >= 9);
     Fields fields;
-    fields.named["f"].scalar = grid_of(
+    fields.named["f"].scalar = sample_scalar_grid(
         mapping, {21, 21, 21}, [&](const Vec3& x) { return !masked && x.z < -0.15 ? std::nan("") : x.z; },
         masked ? valid : std::vector<std::uint8_t>{});
     Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0, "free": "above"})", fields));
-    rig.state.hand_step = 0.5;
+    rig.state.max_probe_step = 0.5;
     rig.tick({0.1, 0.2, 0.14});
-    ASSERT_EQ(rig.tick({0.12, 0.2, -0.3}).status, Status::ok) << masked;
+    ASSERT_EQ(rig.tick({0.12, 0.2, -0.3}).status, LinkStatus::ok) << masked;
     EXPECT_NEAR(rig.state.proxy.z, 0, 1e-6);
   }
 }
@@ -164,18 +165,18 @@ TEST(ThinBodies, AStepOfAHandNeverLeadsToAnotherBody) {
   ConstraintPtr link;
   for (int i = 0; i < 4000; ++i) {
     if (i % 400 == 0) {
-      const double radius = 0.35, centre = radius + random.in(0.15, 0.4) / 2;
+      const double radius = 0.35, centre = radius + random.uniform(0.15, 0.4) / 2;
       const auto balls = [&](const Vec3& x) { return std::min(norm(x - Vec3(-centre, 0, 0)), norm(x - Vec3(centre, 0, 0))) - radius; };
-      const auto grid = grid_of(field::Mapping::from_linear(Mat3(0.13), Vec3(-1.5)), {24, 24, 24}, balls);
+      const auto grid = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.13), Vec3(-1.5)), {24, 24, 24}, balls);
       Fields fields;
-      fields.named["f"].scalar = i % 800 ? *grid->cubic() : grid;
+      fields.named["f"].scalar = i % 800 ? *grid->as_cubic() : grid;
       link = build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 0})", fields);
     }
     Rig rig(link);
-    rig.state.hand_step = 1;
-    Vec3 x(random.in(-0.6, -0.1), random.in(-0.3, 0.3), random.in(-0.3, 0.3));
+    rig.state.max_probe_step = 1;
+    Vec3 x(random.uniform(-0.6, -0.1), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
     if (rig.tick(x); !(rig.state.proxy.x < 0)) continue;
-    const Vec3 way = direction(Vec3(1, random.in(-0.4, 0.4), random.in(-0.4, 0.4))) * random.in(0.1, 0.5);
+    const Vec3 way = direction(Vec3(1, random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4))) * random.uniform(0.1, 0.5);
     for (int k = 0; k < 10; ++k) {
       rig.tick(x += k < 5 ? way : -way);
       ASSERT_LT(rig.state.proxy.x, 0) << i << " " << k;

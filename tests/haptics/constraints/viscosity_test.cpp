@@ -1,4 +1,4 @@
-#include "tests/haptics/constraints/rig.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {
 namespace viscosity_test {
@@ -18,7 +18,7 @@ TEST(Viscosity, SteadyMotionLagsByVelocityTimesTime) {
       const int ticks = static_cast<int>(50 * (time + dt) / dt);
       for (int i = 0; i <= ticks; ++i) rig.tick(v * (dt * i));
       EXPECT_LE(norm(v * (dt * ticks) - rig.state.proxy - v * time), 1e-12) << dt << " " << time;
-      EXPECT_EQ(rig.state.status, Status::ok);
+      EXPECT_EQ(rig.state.status, LinkStatus::ok);
       EXPECT_EQ(rig.state.evaluations, 0);
     }
 }
@@ -31,7 +31,7 @@ TEST(Viscosity, ACoefficientIsTheDampersOwn) {
   Rig limp = viscous("\"coefficient\": 6", 1e-3, 0);
   limp.tick({0, 0, 0});
   limp.tick({1, 0, 0});
-  EXPECT_TRUE(same_bits(limp.state.proxy, Vec3(1, 0, 0)));
+  EXPECT_TRUE(bitwise_equal(limp.state.proxy, Vec3(1, 0, 0)));
 }
 
 TEST(Viscosity, ConvergesAndThenRestsOnTheProbeBitForBit) {
@@ -41,7 +41,7 @@ TEST(Viscosity, ConvergesAndThenRestsOnTheProbeBitForBit) {
     const Vec3 probe(0.3, 1.7, -1e-9);
     double last = norm(probe);
     int ticks = 0;
-    for (; ticks < 2000 && !same_bits(rig.state.proxy, probe); ++ticks) {
+    for (; ticks < 2000 && !bitwise_equal(rig.state.proxy, probe); ++ticks) {
       rig.tick(probe);
       ASSERT_LE(norm(probe - rig.state.proxy), last);  // never overshoots
       last = norm(probe - rig.state.proxy);
@@ -49,7 +49,7 @@ TEST(Viscosity, ConvergesAndThenRestsOnTheProbeBitForBit) {
     EXPECT_LT(ticks, 2000) << dt;
     for (int i = 0; i < 10; ++i) {
       rig.tick(probe);
-      EXPECT_TRUE(same_bits(rig.state.proxy, probe));
+      EXPECT_TRUE(bitwise_equal(rig.state.proxy, probe));
     }
   }
 }
@@ -58,7 +58,7 @@ TEST(Viscosity, NoTimeStepHoldsTheProxyAndExtremesStayFinite) {
   Rig rig = viscous("\"time\": 0.01", 0);
   rig.tick({0, 0, 0});
   rig.tick({1, 2, 3});
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.0)));
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.0)));
   for (const double dt : {1e-300, 1e-3, 1e300, std::numeric_limits<double>::infinity(), -1.0})
     for (const char* time : {"1e-300", "1", "1e300"}) {
       Rig far = viscous(std::string("\"time\": ") + time, dt);
@@ -71,7 +71,7 @@ TEST(Viscosity, NoTimeStepHoldsTheProxyAndExtremesStayFinite) {
 
 TEST(Viscosity, ThickensWithAField) {
   Fields fields;
-  fields.named["f"].scalar = analytic("plane");
+  fields.named["f"].scalar = analytic_field("plane");
   Rig rig = viscous(R"("time": {"field": "f", "map": [[0, 0.01], [1, 0.03]]})", 1e-3, 0, fields);
   const double v = 0.2;
   for (int i = 0; i <= 4000; ++i) rig.tick({v * 1e-3 * i, 0, 0.5});

@@ -1,6 +1,6 @@
-#include "engine/field/load.h"
-#include "tests/engine/flow/known_cores.h"
-#include "tests/haptics/constraints/rig.h"
+#include "engine/io/volume/load_field.h"
+#include "tests/engine/geometry/flow/analytic_cores.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/support.h"
 
 namespace catena::haptics::tests {
@@ -20,9 +20,9 @@ TEST(VortexCore, IsTheZAxisOfStraightVortices) {
     for (const double scale : {1.0, -1.0, 1e-300, 1e300}) {
       Rig rig(core_of(formula(name, scale), R"(, "search": 0.6)"));
       for (int i = 0; i < 100; ++i) {
-        const Vec3 x(random.in(-0.4, 0.4), random.in(-0.4, 0.4), random.in(-1.5, 1.5));
+        const Vec3 x(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-1.5, 1.5));
         rig.tick(x);
-        ASSERT_EQ(rig.state.status, Status::ok) << name << " " << scale << " " << i;
+        ASSERT_EQ(rig.state.status, LinkStatus::ok) << name << " " << scale << " " << i;
         ASSERT_LE(norm(rig.state.proxy - Vec3(0, 0, x.z)), 4e-12 * 4) << name << " " << scale;
         ASSERT_LE(rig.state.residual, 4e-12);
         ASSERT_EQ(rig.state.limit, 0.6);
@@ -33,21 +33,21 @@ TEST(VortexCore, IsTheZAxisOfStraightVortices) {
 TEST(VortexCore, TheTubeIsFreeInsideAndAWallOutside) {
   Rig rig(core_of(formula("helix"), R"(, "radius": 0.2)"));
   rig.tick({0.1, -0.1, 0.3});
-  EXPECT_EQ(rig.state.status, Status::free);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, -0.1, 0.3)));
+  EXPECT_EQ(rig.state.status, LinkStatus::free);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.1, -0.1, 0.3)));
   EXPECT_TRUE(rig.state.active());
   for (int i = 0; i < 100; ++i) {
     const double a = 0.0628 * i;
     const Vec3 out(std::cos(a), std::sin(a), 0);
     const Vec3 x = out * 0.35 + Vec3(0, 0, 0.01 * i);
     rig.tick(x);
-    ASSERT_EQ(rig.state.status, Status::ok);
+    ASSERT_EQ(rig.state.status, LinkStatus::ok);
     ASSERT_LE(norm(rig.state.proxy - (out * 0.2 + Vec3(0, 0, 0.01 * i))), 1e-11);
   }
   // too far from the core (0.1 L = 0.4)
   rig.tick({0.41, 0, 0});
-  EXPECT_EQ(rig.state.status, Status::no_surface);
-  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.41, 0, 0)));
+  EXPECT_EQ(rig.state.status, LinkStatus::no_surface);
+  EXPECT_TRUE(bitwise_equal(rig.state.proxy, Vec3(0.41, 0, 0)));
 }
 
 TEST(VortexCore, OfHillsVortexIsARing) {
@@ -55,10 +55,10 @@ TEST(VortexCore, OfHillsVortexIsARing) {
   Rig rig(core_of(formula("hill"), R"(, "search": 0.3)"));
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
-    const double a = 0.02 * i, r = 0.7 + random.in(-0.15, 0.15), z = random.in(-0.15, 0.15);
+    const double a = 0.02 * i, r = 0.7 + random.uniform(-0.15, 0.15), z = random.uniform(-0.15, 0.15);
     const Vec3 x(r * std::cos(a), r * std::sin(a), z);
     rig.tick(x);
-    ASSERT_EQ(rig.state.status, Status::ok) << i;
+    ASSERT_EQ(rig.state.status, LinkStatus::ok) << i;
     const Vec3 ring = Vec3(std::cos(a), std::sin(a), 0) * std::sqrt(0.5);
     ASSERT_LE(norm(rig.state.proxy - ring), 1e-9) << i;
   }
@@ -69,34 +69,34 @@ TEST(VortexCore, OfASampledTiltedVortex) {
   const Vec3 w = direction(Vec3(0.3, -0.2, 1)), c(0.2, 0.1, -0.05);
   const auto flow = [&](const Vec3& p) { return 2.0 * cross(w, p - c) + 0.5 * w; };
   Mat3 axes(Vec3(0.08, 0.06, 0) * 1.0, Vec3(-0.06, 0.08, 0), Vec3(0, 0.01, 0.11));
-  const auto grid = catena::test::grid_of(field::Mapping::from_linear(axes, Vec3(-1.0, -2.2, -1.6)), {40, 40, 32}, flow);
+  const auto grid = catena::test::sample_vector_grid(field::Mapping::from_linear(axes, Vec3(-1.0, -2.2, -1.6)), {40, 40, 32}, flow);
   Rig rig(core_of(grid, R"(, "search": 0.5)"));
   Random random(3);
   for (int i = 0; i < 300; ++i) {
-    const double s = random.in(-0.5, 0.5);
+    const double s = random.uniform(-0.5, 0.5);
     const Vec3 off = cross(w, random.unit()) * 0.3, x = c + w * s + off;
     rig.tick(x);
-    ASSERT_EQ(rig.state.status, Status::ok) << i;
+    ASSERT_EQ(rig.state.status, LinkStatus::ok) << i;
     ASSERT_LE(norm(rig.state.proxy - (c + w * s)), 2e-6) << i;
   }
 }
 
 TEST(VortexCore, HoldsInMidFlowOnAGrid) {
   // once around, along and about each core, with noise: no tick without a hold
-  for (const catena::test::KnownCore& known : catena::test::known_cores())
+  for (const catena::test::AnalyticCore& known : catena::test::analytic_cores())
     for (const bool cubic : {false, true})
       for (const double noise : {0.0, 0.02}) {
-        const auto grid = catena::test::sampled_core(known, 33, noise, 3);
-        Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->cubic()) : grid, R"(, "search": 0.6)"));
+        const auto grid = catena::test::sample_core_flow(known, 33, noise, 3);
+        Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->as_cubic()) : grid, R"(, "search": 0.6)"));
         double longest = 0;
-        for (std::size_t k = 10; k + 10 < known.places.size(); ++k)
+        for (std::size_t k = 10; k + 10 < known.points.size(); ++k)
           for (int i = 0; i < 5; ++i) {
             const double t = 0.2 * i, a = 0.1 * static_cast<double>(5 * k) + 0.1 * i;
-            const Vec3 x = known.places[k] * (1 - t) + known.places[k + 1] * t + Vec3(std::cos(a), std::sin(a), std::sin(2 * a)) * 0.05;
+            const Vec3 x = known.points[k] * (1 - t) + known.points[k + 1] * t + Vec3(std::cos(a), std::sin(a), std::sin(2 * a)) * 0.05;
             const Vec3 before = rig.state.proxy;
             rig.tick(x);
-            ASSERT_EQ(rig.state.status, Status::ok) << known.name << " " << cubic << " " << noise << " " << k;
-            ASSERT_LE(norm(rig.state.proxy - known.nearest(rig.state.proxy)), 2.4 / 32) << "within a voxel";
+            ASSERT_EQ(rig.state.status, LinkStatus::ok) << known.name << " " << cubic << " " << noise << " " << k;
+            ASSERT_LE(norm(rig.state.proxy - known.nearest_point(rig.state.proxy)), 2.4 / 32) << "within a voxel";
             if (k > 10) longest = std::max(longest, norm(rig.state.proxy - before));
           }
         EXPECT_LE(longest, 2.4 / 32) << known.name << ": the proxy hops";
@@ -105,11 +105,11 @@ TEST(VortexCore, HoldsInMidFlowOnAGrid) {
 
 TEST(VortexCore, IsConservative) {
   // the work over closed loops of the probe about a core, by the trapezoidal rule, of K gap^2
-  for (const catena::test::KnownCore& known : catena::test::known_cores())
+  for (const catena::test::AnalyticCore& known : catena::test::analytic_cores())
     for (const bool cubic : {false, true}) {
-      const auto grid = catena::test::sampled_core(known, 33, 0, 3);
-      Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->cubic()) : grid, R"(, "search": 0.6)"));
-      const Vec3 middle = known.places[known.places.size() / 2];
+      const auto grid = catena::test::sample_core_flow(known, 33, 0, 3);
+      Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->as_cubic()) : grid, R"(, "search": 0.6)"));
+      const Vec3 middle = known.points[known.points.size() / 2];
       const auto at = [&](int i) {
         const double a = 6.283185307179586 * i / 4000;
         return middle + Vec3(0.2 * std::cos(a), 0.15 * std::sin(a), 0.1 * std::sin(a + 1));
@@ -133,9 +133,9 @@ TEST(VortexCore, DoesNotPullWhereEveryPlaceIsACore) {
   for (int i = 0; i < 20; ++i) {
     const Vec3 x(0.1 * i - 1, 0.3, 0.2);
     rig.tick(x);
-    EXPECT_EQ(rig.state.status, Status::critical);
-    EXPECT_EQ(rig.state.reason, Reason::parallel);
-    EXPECT_TRUE(same_bits(rig.state.proxy, x));
+    EXPECT_EQ(rig.state.status, LinkStatus::critical);
+    EXPECT_EQ(rig.state.reason, SampleStatus::parallel);
+    EXPECT_TRUE(bitwise_equal(rig.state.proxy, x));
   }
 }
 
@@ -150,8 +150,8 @@ TEST(VortexCore, WithoutSwirlTheProbePassesThrough) {
         for (int i = 0; i < 50; ++i) {
           const Vec3 x = random.box(1.9);
           rig.tick(x);
-          ASSERT_EQ(rig.state.status, Status::no_surface) << name << " " << scale << " " << sampled;
-          ASSERT_TRUE(same_bits(rig.state.proxy, x));
+          ASSERT_EQ(rig.state.status, LinkStatus::no_surface) << name << " " << scale << " " << sampled;
+          ASSERT_TRUE(bitwise_equal(rig.state.proxy, x));
         }
       }
 }
@@ -159,21 +159,21 @@ TEST(VortexCore, WithoutSwirlTheProbePassesThrough) {
 TEST(VortexCore, EndsAtTheWallOfTheDomain) {
   Rig rig(core_of(field::sample_on_grid(*formula("helix"), 17, -2, 2)));
   for (int i = 0; i <= 60; ++i) rig.tick({0.1, 0.05, 1.5 + 0.01 * i});
-  EXPECT_EQ(rig.state.status, Status::boundary);
+  EXPECT_EQ(rig.state.status, LinkStatus::boundary);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 2)), 0.02);
   EXPECT_LE(rig.state.proxy.z, 2);
   rig.tick({0.1, 0.05, 1.9});
-  EXPECT_EQ(rig.state.status, Status::ok);
+  EXPECT_EQ(rig.state.status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 1.9)), 1e-6);
 }
 
 TEST(VortexCore, SnapsAndReleases) {
   Rig rig(core_of(formula("helix"), R"(, "search": 1, "snap": 0.1, "release": 0.3)"));
-  EXPECT_EQ(rig.tick({0.2, 0, 0}).status, Status::released);
-  EXPECT_EQ(rig.tick({0.09, 0, 0.2}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0.2, 0, 0}).status, LinkStatus::released);
+  EXPECT_EQ(rig.tick({0.09, 0, 0.2}).status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 0.2)), 1e-11);
-  EXPECT_EQ(rig.tick({0.29, 0, 0.2}).status, Status::ok);
-  EXPECT_EQ(rig.tick({0.31, 0, 0.2}).status, Status::released);
+  EXPECT_EQ(rig.tick({0.29, 0, 0.2}).status, LinkStatus::ok);
+  EXPECT_EQ(rig.tick({0.31, 0, 0.2}).status, LinkStatus::released);
 }
 
 TEST(VortexCore, AnotherCoreTakesHoldAfterATickThatIsReleased) {
@@ -183,23 +183,23 @@ TEST(VortexCore, AnotherCoreTakesHoldAfterATickThatIsReleased) {
     return catena::test::swirl_rate(dot(e, e), 0.2) * Vec3(-e.y, e.x, 0);
   };
   const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.2));
-  const auto field = catena::test::grid_of(mapping, {25, 25, 25}, [&](const Vec3& p) { return turn(p, -0.6) + turn(p, 0.6); });
+  const auto field = catena::test::sample_vector_grid(mapping, {25, 25, 25}, [&](const Vec3& p) { return turn(p, -0.6) + turn(p, 0.6); });
   for (const char* rules : {R"(, "search": 2)", R"(, "search": 2, "snap": 1, "release": 3)"}) {
     Rig rig(core_of(field, rules));
     int curve = -1, released = 0;
     for (int i = 0; i <= 400; ++i) {
       rig.tick({-0.6 + 0.003 * i, 0.05, 0.1});
-      if (rig.state.status == Status::released) {
+      if (rig.state.status == LinkStatus::released) {
         ++released;
         EXPECT_GT(i, 200);
-        EXPECT_EQ(rig.state.curve, -1);
+        EXPECT_EQ(rig.state.curve_index, -1);
         EXPECT_EQ(rig.state.proxy, Vec3(-0.6 + 0.003 * i, 0.05, 0.1));
         curve = -1;
         continue;
       }
-      ASSERT_EQ(rig.state.status, Status::ok) << i;
-      ASSERT_TRUE(curve < 0 || curve == rig.state.curve) << i;
-      curve = rig.state.curve;
+      ASSERT_EQ(rig.state.status, LinkStatus::ok) << i;
+      ASSERT_TRUE(curve < 0 || curve == rig.state.curve_index) << i;
+      curve = rig.state.curve_index;
       ASSERT_NEAR(rig.state.proxy.x, released > 0 ? 0.6 : -0.6, 0.05);
     }
     EXPECT_EQ(released, 1) << rules;
@@ -216,25 +216,26 @@ TEST(VortexCore, OnRealDataIsBoundedAndRests) {
   Rig rig(core_of(velocity, R"(, "search": 1)"));
   Random random(5);
   const field::Box& box = velocity->index_box();
-  Spread work;
+  Quantiles work;
   int held = 0, ticks = 0;
   for (int walk = 0; walk < 200; ++walk) {
-    Vec3 x =
-        velocity->mapping().world_from_index({random.in(box.lo.x, box.hi.x), random.in(box.lo.y, box.hi.y), random.in(box.lo.z, box.hi.z)});
+    Vec3 x = velocity->mapping().world_from_index(
+        {random.uniform(box.lo.x, box.hi.x), random.uniform(box.lo.y, box.hi.y), random.uniform(box.lo.z, box.hi.z)});
     const Vec3 way = random.unit() * 0.01;
     for (int i = 0; i < 100; ++i, x += way, ++ticks) {
       rig.tick(x);
       ASSERT_TRUE(is_finite(rig.state.proxy));
       work.add(rig.state.work());
-      held += rig.state.status != Status::no_surface;
-      if (i % 10 > 0 || rig.state.status == Status::released) continue;
+      held += rig.state.status != LinkStatus::no_surface;
+      if (i % 10 > 0 || rig.state.status == LinkStatus::released) continue;
       const Vec3 rest = rig.state.proxy;
       rig.tick(x);
-      ASSERT_TRUE(same_bits(rig.state.proxy, rest));
+      ASSERT_TRUE(bitwise_equal(rig.state.proxy, rest));
     }
   }
-  std::printf("combustor: held %.1f %%, work p50 %d p99 %d max %d\n", 100.0 * held / ticks, work.at(0.5), work.at(0.99), work.at(1));
-  EXPECT_LE(work.at(1), kWorkCap);
+  std::printf("combustor: held %.1f %%, work p50 %d p99 %d max %d\n", 100.0 * held / ticks, work.at_quantile(0.5), work.at_quantile(0.99),
+              work.at_quantile(1));
+  EXPECT_LE(work.at_quantile(1), kMaxWork);
   EXPECT_GT(held, ticks / 100);
 }
 
@@ -252,7 +253,7 @@ TEST(VortexCore, StandsForALineInTheBaselines) {
 TEST(VortexCore, RefusesBadKeys) {
   Fields fields;
   fields.named["v"].vector = formula("helix");
-  fields.named["s"].scalar = analytic("sphere");
+  fields.named["s"].scalar = analytic_field("sphere");
   const auto fails = [&](const std::string& keys, const char* part) {
     const auto made = try_build("{\"name\": \"a\", \"type\": \"vortex_core\",\n" + keys + "}", fields);
     ASSERT_FALSE(made) << keys;

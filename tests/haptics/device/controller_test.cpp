@@ -7,8 +7,8 @@
 #include <random>
 #include <thread>
 
-#include "haptics/servo/limits_for.h"
-#include "haptics/servo/step.h"
+#include "haptics/servo/device_limits.h"
+#include "haptics/servo/servo_tick.h"
 #include "tests/support/simple_links.h"
 
 namespace controller_test {
@@ -21,7 +21,7 @@ constexpr std::int64_t kTick_ns = 1'000'000;
 
 struct Rig {
   Rig() { clock_ns = 1'000'000'000'000; }
-  Controller controller{{.now = [] { return clock_ns; }}};
+  TrackedController controller{{.clock = [] { return clock_ns; }}};
   DeviceInput tick() {
     clock_ns += kTick_ns;
     return controller.read();
@@ -33,7 +33,7 @@ Vec3 hand_at(std::int64_t t_ns) {
   const double t = 1e-9 * static_cast<double>(t_ns - 1'000'000'000'000);
   return {0.1 * std::sin(2 * M_PI * t), 0.02 * std::sin(7 * t), 0.3};
 }
-Quat turn_at(std::int64_t t_ns) { return rotation_of({0, 10 * hand_at(t_ns).x, 0}); }
+Quat turn_at(std::int64_t t_ns) { return rotation_from_vector({0, 10 * hand_at(t_ns).x, 0}); }
 
 TEST(Controller, MakesEvenTicksOfFewSamples) {
   for (const double hz : {60.0, 90.0, 120.0, 500.0}) {
@@ -42,18 +42,18 @@ TEST(Controller, MakesEvenTicksOfFewSamples) {
     std::uniform_real_distribution<double> late(0, 0.3), lost(0, 1);
     double next = 0, most_m = 0, most_turn = 0, off_m = 0;
     Vec3 last(0.0);
-    Quat last_turn = kNoRotation;
+    Quat last_turn = kIdentityRotation;
     for (int k = 0; k < 4000; ++k) {
       // samples come up to a third of their interval late, and each twentieth not at all
       if (1e-3 * k >= next) {
-        if (lost(random) > 0.05) rig.controller.say({clock_ns, hand_at(clock_ns), turn_at(clock_ns)});
+        if (lost(random) > 0.05) rig.controller.push_pose({clock_ns, hand_at(clock_ns), turn_at(clock_ns)});
         next = (std::floor(next * hz + 1e-6) + 1 + late(random)) / hz;
       }
       const DeviceInput input = rig.tick();
       ASSERT_EQ(input.status, DeviceStatus::ready);
       if (k > 500) {
         most_m = std::max(most_m, norm(input.position_m - last));
-        most_turn = std::max(most_turn, norm(rotation_vector(normalised(input.orientation * glm::conjugate(last_turn)))));
+        most_turn = std::max(most_turn, norm(rotation_vector(normalized(input.orientation * glm::conjugate(last_turn)))));
         // the best of the last 100 ms: how far from the hand's way the place is
         double off = 1;
         for (int back = 0; back < 100; ++back) off = std::min(off, norm(input.position_m - hand_at(clock_ns - back * kTick_ns)));
@@ -77,7 +77,7 @@ TEST(Controller, APauseOfTheTrackerIsNoJump) {
     Vec3 last(0.0);
     for (int k = 0; k < 3000; ++k) {
       if (1e-3 * k >= next) {
-        rig.controller.say({clock_ns, Vec3(5e-4 * k, 0, 0), kNoRotation});
+        rig.controller.push_pose({clock_ns, Vec3(5e-4 * k, 0, 0), kIdentityRotation});
         next = (k % 500 >= 400 && k % 500 < 420 ? 0.08 : 0) + 1e-3 * k + 1 / hz;
       }
       const DeviceInput input = rig.tick();
@@ -92,56 +92,56 @@ TEST(Controller, APauseOfTheTrackerIsNoJump) {
 TEST(Controller, AStillHandComesToRestToTheBit) {
   Rig rig;
   for (int k = 0; k < 300; ++k) {
-    if (k % 11 == 0) rig.controller.say({clock_ns, Vec3(0.1, 0.2, 0.3), turn_at(clock_ns), Controller::kGrab});
+    if (k % 11 == 0) rig.controller.push_pose({clock_ns, Vec3(0.1, 0.2, 0.3), turn_at(clock_ns), TrackedController::kGrab});
     rig.tick();
   }
   const DeviceInput input = rig.tick();
   EXPECT_EQ(input.position_m, Vec3(0.1, 0.2, 0.3));
-  EXPECT_EQ(input.buttons, Controller::kGrab);
+  EXPECT_EQ(input.buttons, TrackedController::kGrab);
 }
 
 TEST(Controller, IsLostBySilenceOrWordAndFoundWhereItIs) {
   Rig rig;
   EXPECT_EQ(rig.tick().status, DeviceStatus::starting);
-  rig.controller.say({clock_ns, Vec3(0.1)});
+  rig.controller.push_pose({clock_ns, Vec3(0.1)});
   for (int k = 0; k < 99; ++k) EXPECT_EQ(rig.tick().status, DeviceStatus::ready);
   rig.tick();
   EXPECT_EQ(rig.tick().status, DeviceStatus::lost) << "silent for more than 100 ms";
-  rig.controller.say({clock_ns, Vec3(0.5)});
+  rig.controller.push_pose({clock_ns, Vec3(0.5)});
   EXPECT_EQ(rig.tick().position_m, Vec3(0.5)) << "not on the way from where it was";
-  rig.controller.say({clock_ns, {}, kNoRotation, 0, false});
+  rig.controller.push_pose({clock_ns, {}, kIdentityRotation, 0, false});
   EXPECT_EQ(rig.tick().status, DeviceStatus::lost) << "by word";
   for (int k = 0; k < 20; ++k) rig.tick();
-  rig.controller.say({clock_ns, Vec3(0.9)});
+  rig.controller.push_pose({clock_ns, Vec3(0.9)});
   const DeviceInput found = rig.tick();
   EXPECT_EQ(found.status, DeviceStatus::ready);
   EXPECT_EQ(found.position_m, Vec3(0.9));
-  rig.controller.say({clock_ns, Vec3(NAN)});
-  rig.controller.say({clock_ns - 50'000'000, Vec3(7.0)});
+  rig.controller.push_pose({clock_ns, Vec3(NAN)});
+  rig.controller.push_pose({clock_ns - 50'000'000, Vec3(7.0)});
   EXPECT_EQ(rig.tick().position_m, Vec3(0.9)) << "not a number, and older than what is known";
 }
 
 TEST(Controller, FoundAgainTheForceRisesAndNothingBuzzes) {
   Rig rig;
-  Program program;
+  HapticProgram program;
   program.links = {test::hold_height("plane", 0)};
-  program.limits = limits_for(rig.controller.capabilities(), {});
+  program.limits = compute_device_limits(rig.controller.capabilities(), {});
   EXPECT_EQ(program.limits.ramp_in_s, 0.5);
-  Stepper stepper(rig.controller, program, 1000);
+  ServoStepper stepper(rig.controller, program, 1000);
   const auto at = [&](const Vec3& place) {
-    rig.controller.say({clock_ns, place});
+    rig.controller.push_pose({clock_ns, place});
     clock_ns += kTick_ns;
     return stepper.step();
   };
   for (int k = 0; k < 1000; ++k) at({0, 0, -0.001});
   EXPECT_NEAR(at({0, 0, -0.001}).force_n.z, 0.5, 1e-9);
-  rig.controller.peaks().take();
+  rig.controller.peaks().take_peaks();
   for (int k = 0; k < 300; ++k) {
     clock_ns += kTick_ns;
     const Vec3 force = stepper.step().force_n;
     EXPECT_TRUE(k <= 100 || force == Vec3(0.0)) << "silent for so long";
   }
-  rig.controller.peaks().take();
+  rig.controller.peaks().take_peaks();
   // found deep below the plane: 5 N wait
   double last = 0, most_step = 0;
   for (int k = 0; k < 600; ++k) {
@@ -151,15 +151,16 @@ TEST(Controller, FoundAgainTheForceRisesAndNothingBuzzes) {
   }
   EXPECT_NEAR(last, 5, 1e-9);
   EXPECT_LT(most_step, 5 / 500.0 * 1.01);
-  EXPECT_LT(rig.controller.peaks().take().change_n, 5 / 0.5 * Peaks::kTau_s * 1.01) << "the slope of the ramp, no contact of 5 N";
+  EXPECT_LT(rig.controller.peaks().take_peaks().change_n, 5 / 0.5 * PeakDetector::kTau_s * 1.01)
+      << "the slope of the ramp, no contact of 5 N";
 }
 
 TEST(Controller, PosesAreNeverTornBetweenThreads) {
-  Controller controller({.now = [] { return std::int64_t{1} << 40; }});
+  TrackedController controller({.clock = [] { return std::int64_t{1} << 40; }});
   constexpr int kPoses = 20000;
   std::thread tracker([&] {
     for (int i = 1; i <= kPoses; ++i)
-      controller.say({(std::int64_t{1} << 40) + i, Vec3(static_cast<double>(i)), kNoRotation, static_cast<std::uint32_t>(i)});
+      controller.push_pose({(std::int64_t{1} << 40) + i, Vec3(static_cast<double>(i)), kIdentityRotation, static_cast<std::uint32_t>(i)});
   });
   std::uint32_t last = 0;
   while (last < kPoses) {

@@ -1,5 +1,5 @@
 /// A Falcon in memory, played by a test: a boot loader, then firmware that answers each command by a frame. What it hears and
-/// how it fails is scripted. Locked, so that a test may turn its knobs while the driver's thread runs.
+/// how it fails is scripted. LockedRange, so that a test may turn its knobs while the driver's thread runs.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -18,7 +18,7 @@ namespace catena::haptics::usb::test {
 using Bytes = std::vector<std::uint8_t>;
 
 /// A boot stream with one block of `words` words.
-inline Bytes small_image(int words = 200) {
+inline Bytes make_boot_image(int words = 200) {
   Bytes image{0xAA, 0x08};
   const auto put = [&](unsigned word) {
     image.push_back(static_cast<std::uint8_t>(word & 0xFF));
@@ -35,48 +35,48 @@ struct FakeFalcon {
   std::recursive_mutex mutex;
 
   // knobs
-  bool plugged = true;
-  bool firmware_runs = false;
-  bool silent = false;            ///< answers no command
-  FalconFrame frame;              ///< what firmware says
-  Bytes before_frame;             ///< garbage in front of each
-  std::vector<std::size_t> cuts;  ///< payload bytes of the packets to come, over and over; empty: as many as fit
+  bool is_plugged = true;
+  bool firmware_is_running = false;
+  bool ignores_commands = false;          ///< answers no command
+  FalconFrame frame;                      ///< what firmware says
+  Bytes garbage_before_frame;             ///< garbage in front of each
+  std::vector<std::size_t> packet_sizes;  ///< payload bytes of the packets to come, over and over; empty: as many as fit
   std::deque<UsbError> read_faults, write_faults, control_faults;
-  Bytes hello{0x0A, 0x44, 0x2C, 0x0D};
-  int deaf_handshakes = 0;                      ///< so many go unanswered
-  int bad_uploads = 0;                          ///< so many uploads have a wrong echo,
-  std::size_t bad_byte = 100;                   ///< at this byte
-  int dead_uploads = 0;                         ///< so many leave the firmware dead
-  Bytes image;                                  ///< what starts the firmware
-  bool echoes = false;                          ///< a loader that sends everything back
-  std::atomic<bool> hang{false}, hangs{false};  ///< the next read waits while `hang`; it says so
-  std::chrono::microseconds pace{0};            ///< a read takes so long
+  Bytes handshake_reply{0x0A, 0x44, 0x2C, 0x0D};
+  int ignored_handshakes = 0;                               ///< so many go unanswered
+  int corrupt_uploads = 0;                                  ///< so many uploads have a wrong echo,
+  std::size_t corrupt_byte = 100;                           ///< at this byte
+  int failed_uploads = 0;                                   ///< so many leave the firmware dead
+  Bytes image;                                              ///< what starts the firmware
+  bool echoes_all = false;                                  ///< a loader that sends everything back
+  std::atomic<bool> block_reads{false}, is_blocked{false};  ///< the next read waits while `hang`; it says so
+  std::chrono::microseconds read_delay{0};                  ///< a read takes so long
 
   // what it heard
   std::vector<std::pair<int, int>> controls;
   std::vector<FalconCommand> commands;
-  int handshakes = 0, uploads = 0, cleared_in = 0, cleared_out = 0, opened = 0;
+  int handshake_count = 0, upload_count = 0, in_halt_clears = 0, out_halt_clears = 0, open_count = 0;
   FalconCommand last() {
     const std::lock_guard lock(mutex);
     return commands.empty() ? FalconCommand{} : commands.back();
   }
 
   // inside
-  std::deque<std::uint8_t> to_host;
+  std::deque<std::uint8_t> output_queue;
   Bytes pending, received;
   int baud = 0;
-  bool listening = false;  ///< for an image
-  std::size_t cut = 0;
+  bool is_receiving_image = false;  ///< for an image
+  std::size_t packet_index = 0;
 
   template <class F>
-  auto with(F f) {
+  auto with_lock(F f) {
     const std::lock_guard lock(mutex);
     return f(*this);
   }
 
-  void hear(std::span<const std::uint8_t> bytes) {
-    if (echoes) to_host.insert(to_host.end(), bytes.begin(), bytes.end());
-    if (firmware_runs) {
+  void receive(std::span<const std::uint8_t> bytes) {
+    if (echoes_all) output_queue.insert(output_queue.end(), bytes.begin(), bytes.end());
+    if (firmware_is_running) {
       pending.insert(pending.end(), bytes.begin(), bytes.end());
       FalconCommand command;
       while (pending.size() >= kFalconPacketBytes) {
@@ -84,36 +84,36 @@ struct FakeFalcon {
         pending.erase(pending.begin(), pending.begin() + (is ? kFalconPacketBytes : 1));
         if (!is) continue;
         commands.push_back(command);
-        if (silent) continue;
-        to_host.insert(to_host.end(), before_frame.begin(), before_frame.end());
+        if (ignores_commands) continue;
+        output_queue.insert(output_queue.end(), garbage_before_frame.begin(), garbage_before_frame.end());
         const FalconPacket packet = encode_frame(frame);
-        to_host.insert(to_host.end(), packet.begin(), packet.end());
+        output_queue.insert(output_queue.end(), packet.begin(), packet.end());
       }
       return;
     }
-    if (silent || echoes) return;
+    if (ignores_commands || echoes_all) return;
     if (baud == 0x4138 && Bytes(bytes.begin(), bytes.end()) == Bytes{0x0A, 0x43, 0x0D}) {
-      listening = false;
+      is_receiving_image = false;
       received.clear();
-      if (++handshakes > deaf_handshakes) to_host.insert(to_host.end(), hello.begin(), hello.end());
+      if (++handshake_count > ignored_handshakes) output_queue.insert(output_queue.end(), handshake_reply.begin(), handshake_reply.end());
       return;
     }
     if (baud != 0x15) return;
     for (const std::uint8_t byte : bytes) {
-      if (!listening) {
-        listening = byte == 0x41;
-        if (listening) {
-          to_host.push_back(byte);
-          ++uploads;
+      if (!is_receiving_image) {
+        is_receiving_image = byte == 0x41;
+        if (is_receiving_image) {
+          output_queue.push_back(byte);
+          ++upload_count;
         }
         continue;
       }
-      const bool spoilt = uploads <= bad_uploads && received.size() == bad_byte;
-      to_host.push_back(static_cast<std::uint8_t>(spoilt ? byte ^ 0x10 : byte));
+      const bool spoilt = upload_count <= corrupt_uploads && received.size() == corrupt_byte;
+      output_queue.push_back(static_cast<std::uint8_t>(spoilt ? byte ^ 0x10 : byte));
       received.push_back(byte);
       if (received == image) {
-        listening = false;
-        firmware_runs = uploads > bad_uploads + dead_uploads;
+        is_receiving_image = false;
+        firmware_is_running = upload_count > corrupt_uploads + failed_uploads;
       }
     }
   }
@@ -125,44 +125,44 @@ class FakeTransport final : public Transport {
 
   UsbError control(std::uint8_t request, std::uint16_t value) noexcept override {
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->plugged) return UsbError::gone;
+    if (!falcon_->is_plugged) return UsbError::disconnected;
     if (const UsbError fault = take(falcon_->control_faults); fault != UsbError::none) return fault;
     falcon_->controls.emplace_back(request, value);
     if (request == 3) falcon_->baud = value;
-    if (request == 0 && value == 1) falcon_->to_host.clear();
+    if (request == 0 && value == 1) falcon_->output_queue.clear();
     return UsbError::none;
   }
-  UsbMoved write(std::span<const std::uint8_t> bytes, int) noexcept override {
+  UsbTransferResult write(std::span<const std::uint8_t> bytes, int) noexcept override {
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->plugged) return {UsbError::gone, 0};
+    if (!falcon_->is_plugged) return {UsbError::disconnected, 0};
     if (const UsbError fault = take(falcon_->write_faults); fault != UsbError::none) return {fault, 0};
-    falcon_->hear(bytes);
+    falcon_->receive(bytes);
     return {UsbError::none, bytes.size()};
   }
-  UsbMoved read(UsbPacket& packet, int) noexcept override {
-    const auto pace = falcon_->with([](FakeFalcon& f) { return f.pace; });
+  UsbTransferResult read(UsbPacket& packet, int) noexcept override {
+    const auto pace = falcon_->with_lock([](FakeFalcon& f) { return f.read_delay; });
     if (pace.count() > 0) std::this_thread::sleep_for(pace);
-    while (falcon_->hang) {
-      falcon_->hangs = true;
+    while (falcon_->block_reads) {
+      falcon_->is_blocked = true;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->plugged) return {UsbError::gone, 0};
+    if (!falcon_->is_plugged) return {UsbError::disconnected, 0};
     if (const UsbError fault = take(falcon_->read_faults); fault != UsbError::none) return {fault, 0};
     packet[0] = 0x01;
     packet[1] = 0x60;
-    std::size_t n = falcon_->cuts.empty() ? 62 : falcon_->cuts[falcon_->cut++ % falcon_->cuts.size()];
-    n = std::min(n, falcon_->to_host.size());
+    std::size_t n = falcon_->packet_sizes.empty() ? 62 : falcon_->packet_sizes[falcon_->packet_index++ % falcon_->packet_sizes.size()];
+    n = std::min(n, falcon_->output_queue.size());
     for (std::size_t i = 0; i < n; ++i) {
-      packet[2 + i] = falcon_->to_host.front();
-      falcon_->to_host.pop_front();
+      packet[2 + i] = falcon_->output_queue.front();
+      falcon_->output_queue.pop_front();
     }
     return {UsbError::none, n + 2};
   }
   UsbError clear_halt(UsbEndpoint endpoint) noexcept override {
     const std::lock_guard lock(falcon_->mutex);
-    ++(endpoint == UsbEndpoint::in ? falcon_->cleared_in : falcon_->cleared_out);
-    return falcon_->plugged ? UsbError::none : UsbError::gone;
+    ++(endpoint == UsbEndpoint::in ? falcon_->in_halt_clears : falcon_->out_halt_clears);
+    return falcon_->is_plugged ? UsbError::none : UsbError::disconnected;
   }
 
  private:
@@ -180,9 +180,9 @@ class FakeSource final : public TransportSource {
   explicit FakeSource(std::shared_ptr<FakeFalcon> falcon) : falcon_(std::move(falcon)) {}
   Result<std::unique_ptr<Transport>> open() override {
     const std::lock_guard lock(falcon_->mutex);
-    if (!falcon_->plugged) return Error{"the fake Falcon is not on the USB bus; it was expected"};
-    ++falcon_->opened;
-    falcon_->to_host.clear();
+    if (!falcon_->is_plugged) return Error{"the fake Falcon is not on the USB bus; it was expected"};
+    ++falcon_->open_count;
+    falcon_->output_queue.clear();
     return std::unique_ptr<Transport>(std::make_unique<FakeTransport>(falcon_));
   }
   bool wait_for_arrival(int) noexcept override {

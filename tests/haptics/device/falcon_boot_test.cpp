@@ -17,7 +17,7 @@ struct FalconBoot : testing::Test {
   Ftdi ftdi{transport, counters};
   FalconBootOptions options;
   std::atomic<std::uint64_t> uploads{0};
-  Bytes image = test::small_image();
+  Bytes image = test::make_boot_image();
 
   FalconBoot() { fake->image = image; }
   std::string boot() {
@@ -31,20 +31,20 @@ TEST_F(FalconBoot, ControlRequestsAreTheseNumbers) {
   ftdi.rts_low();
   ftdi.dtr_low();
   ftdi.dtr_high();
-  ftdi.no_flow_control();
-  ftdi.baud(FtdiBaud::boot_9600);
-  ftdi.baud(FtdiBaud::image_140000);
-  ftdi.baud(FtdiBaud::run_1500000);
-  ftdi.eight_n_one();
-  ftdi.latency_ms(16);
+  ftdi.disable_flow_control();
+  ftdi.set_baud(FtdiBaud::boot_9600);
+  ftdi.set_baud(FtdiBaud::image_140000);
+  ftdi.set_baud(FtdiBaud::run_1500000);
+  ftdi.set_8n1();
+  ftdi.set_latency_ms(16);
   EXPECT_EQ(fake->controls,
             (Controls{{0, 1}, {0, 2}, {1, 0x200}, {1, 0x100}, {1, 0x101}, {2, 0}, {3, 0x4138}, {3, 0x15}, {3, 2}, {4, 8}, {9, 16}}));
 }
 
 TEST_F(FalconBoot, FirmwareThatRunsIsLeftAlone) {
-  fake->firmware_runs = true;
+  fake->firmware_is_running = true;
   EXPECT_EQ(boot(), "");
-  EXPECT_EQ(fake->handshakes, 0);
+  EXPECT_EQ(fake->handshake_count, 0);
   EXPECT_EQ(uploads, 0u);
   EXPECT_EQ(fake->controls, (Controls{{0, 1}, {0, 2}, {9, 1}, {3, 2}, {0, 1}, {0, 2}}));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
@@ -68,66 +68,66 @@ TEST_F(FalconBoot, NoFirmwareAndNoneGivenSaysWhatToGive) {
   EXPECT_NE(message.find("--firmware FILE"), std::string::npos) << message;
   EXPECT_NE(message.find("\"firmware\""), std::string::npos) << message;
   EXPECT_NE(message.find("may not ship"), std::string::npos) << message;
-  EXPECT_EQ(fake->handshakes, 0);
+  EXPECT_EQ(fake->handshake_count, 0);
 }
 
 TEST_F(FalconBoot, TheAnswerWithAZeroBeforeItIsUnderstood) {
-  fake->hello = {0x00, 0x0A, 0x44, 0x2C, 0x0D};
+  fake->handshake_reply = {0x00, 0x0A, 0x44, 0x2C, 0x0D};
   EXPECT_EQ(boot(), "");
-  EXPECT_EQ(fake->handshakes, 1);
+  EXPECT_EQ(fake->handshake_count, 1);
 }
 
 TEST_F(FalconBoot, AnAnswerInSinglePiecesIsUnderstood) {
-  fake->cuts = {1, 0, 2, 1, 0, 0, 3};
+  fake->packet_sizes = {1, 0, 2, 1, 0, 0, 3};
   EXPECT_EQ(boot(), "");
   EXPECT_EQ(fake->received, image);
 }
 
 TEST_F(FalconBoot, AWrongAnswerIsNone) {
-  fake->hello = {0x0A, 0x44, 0x2D, 0x0D};
+  fake->handshake_reply = {0x0A, 0x44, 0x2D, 0x0D};
   EXPECT_NE(boot().find("did not answer 100 hand shakes"), std::string::npos);
-  EXPECT_EQ(fake->handshakes, 200);
-  EXPECT_EQ(fake->uploads, 0);
+  EXPECT_EQ(fake->handshake_count, 200);
+  EXPECT_EQ(fake->upload_count, 0);
 }
 
 TEST_F(FalconBoot, TheHundredthHandShakeIsStillInTime) {
-  fake->deaf_handshakes = 99;
+  fake->ignored_handshakes = 99;
   EXPECT_EQ(boot(), "");
-  EXPECT_EQ(fake->handshakes, 100);
+  EXPECT_EQ(fake->handshake_count, 100);
   EXPECT_EQ(uploads, 1u);
 }
 
 TEST_F(FalconBoot, AWrongEchoIsTriedAgainTenTimes) {
-  fake->bad_uploads = 9;
+  fake->corrupt_uploads = 9;
   EXPECT_EQ(boot(), "");
   EXPECT_EQ(uploads, 10u);
   EXPECT_EQ(fake->received, image);
 }
 
 TEST_F(FalconBoot, TenWrongEchoesAreAnErrorThatNamesTheByte) {
-  fake->bad_uploads = 1000;
-  fake->bad_byte = 100;
+  fake->corrupt_uploads = 1000;
+  fake->corrupt_byte = 100;
   const std::string message = boot();
   EXPECT_NE(message.find("10 tries"), std::string::npos) << message;
   EXPECT_NE(message.find("byte 100 of the image came back as"), std::string::npos) << message;
-  EXPECT_EQ(fake->uploads, 10);
+  EXPECT_EQ(fake->upload_count, 10);
 }
 
 TEST_F(FalconBoot, FirmwareThatDoesNotStartIsTriedAgain) {
-  fake->dead_uploads = 2;
+  fake->failed_uploads = 2;
   EXPECT_EQ(boot(), "");
   EXPECT_EQ(uploads, 3u);
 }
 
 TEST_F(FalconBoot, ALoaderThatEchoesIsNotFirmware) {
-  fake->echoes = true;
+  fake->echoes_all = true;
   image.clear();
   EXPECT_NE(boot().find("no firmware runs"), std::string::npos);
 }
 
 TEST_F(FalconBoot, UnpluggedWhileBootingEndsAtOnce) {
   options.progress = [&](int, double share) {
-    if (share > 0.5) fake->plugged = false;
+    if (share > 0.5) fake->is_plugged = false;
     return true;
   };
   EXPECT_NE(boot().find("unplugged"), std::string::npos);
@@ -144,7 +144,7 @@ TEST_F(FalconBoot, ProgressRisesAndMayGiveUp) {
   };
   EXPECT_NE(boot().find("given up"), std::string::npos);
   EXPECT_GE(last, 0.5);
-  EXPECT_FALSE(fake->firmware_runs);
+  EXPECT_FALSE(fake->firmware_is_running);
 }
 
 TEST_F(FalconBoot, StallsAndTimeOutsOnTheWayAreOvercome) {
@@ -152,8 +152,8 @@ TEST_F(FalconBoot, StallsAndTimeOutsOnTheWayAreOvercome) {
   fake->write_faults = {UsbError::stall};
   fake->read_faults = {UsbError::timeout, UsbError::stall};
   EXPECT_EQ(boot(), "");
-  EXPECT_EQ(fake->cleared_out, 1);
-  EXPECT_EQ(fake->cleared_in, 1);
+  EXPECT_EQ(fake->out_halt_clears, 1);
+  EXPECT_EQ(fake->in_halt_clears, 1);
   EXPECT_EQ(counters.stalls, 3u);
   EXPECT_EQ(counters.timeouts, 1u);
   EXPECT_EQ(counters.retries, 3u);
@@ -164,7 +164,7 @@ TEST_F(FalconBoot, ModemBytesAreStrippedAndAloneAreNoUnplug) {
   EXPECT_EQ(ftdi.read(payload, 1), UsbError::none);
   EXPECT_TRUE(payload.empty());
   EXPECT_EQ(counters.idle_packets, 1u);
-  for (int i = 0; i < 100; ++i) fake->to_host.push_back(static_cast<std::uint8_t>(i));
+  for (int i = 0; i < 100; ++i) fake->output_queue.push_back(static_cast<std::uint8_t>(i));
   EXPECT_EQ(ftdi.read(payload, 1), UsbError::none);
   ASSERT_EQ(payload.size(), 62u);
   EXPECT_EQ(payload[0], 0);

@@ -23,7 +23,7 @@ void expect_error(const std::vector<std::uint8_t>& image, int offset, const std:
 }
 
 TEST(FalconImage, AGoodOneTellsItsBlocks) {
-  const auto info = check_falcon_image(test::small_image(200), "a.bin");
+  const auto info = check_falcon_image(test::make_boot_image(200), "a.bin");
   ASSERT_TRUE(info) << info.error().message;
   EXPECT_EQ(info->blocks, 1);
   EXPECT_EQ(info->data_words, 200u);
@@ -31,32 +31,32 @@ TEST(FalconImage, AGoodOneTellsItsBlocks) {
 }
 
 TEST(FalconImage, ErrorsNameTheByteAndWhatWasExpected) {
-  std::vector<std::uint8_t> image = test::small_image(4);
+  std::vector<std::uint8_t> image = test::make_boot_image(4);
   expect_error({}, 0, "key 0x08AA");
   image[0] = 0x4D;
   expect_error(image, 0, "0x084D where the key 0x08AA");
-  image = test::small_image(4);
+  image = test::make_boot_image(4);
   image[18] = 0x40;  // entry high: 0x40 = bit 22
   expect_error(image, 18, "below 0x400000");
-  image = test::small_image(4);
+  image = test::make_boot_image(4);
   image[24] = 0x40;
   expect_error(image, 24, "below 0x400000");
-  image = test::small_image(4);
+  image = test::make_boot_image(4);
   image[22] = 200;
   expect_error(image, 22, "400 bytes where 10 bytes are left");
-  image = test::small_image(4);
+  image = test::make_boot_image(4);
   image.push_back(0);
   expect_error(image, static_cast<int>(image.size()), "half a word");
   image.push_back(0);
   expect_error(image, static_cast<int>(image.size()) - 2, "2 bytes after the closing 0");
-  image = test::small_image(4);
+  image = test::make_boot_image(4);
   image.resize(22);
   image.insert(image.end(), {0, 0});
   expect_error(image, 22, "first block");
 }
 
 TEST(FalconImage, EveryCutOfItIsRefused) {
-  const std::vector<std::uint8_t> image = test::small_image(20);
+  const std::vector<std::uint8_t> image = test::make_boot_image(20);
   for (std::size_t n = 0; n < image.size(); ++n)
     EXPECT_NE(error_of({image.begin(), image.begin() + static_cast<std::ptrdiff_t>(n)}), "") << n;
   EXPECT_EQ(error_of(image), "");
@@ -83,7 +83,7 @@ TEST(FalconImage, WhatIsNoFileIsRefused) {
 
 TEST(FalconImage, AFileIsReadWhole) {
   const auto path = std::filesystem::path(testing::TempDir()) / "falcon_image_good.bin";
-  const std::vector<std::uint8_t> image = test::small_image(300);
+  const std::vector<std::uint8_t> image = test::make_boot_image(300);
   std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
   const auto read = read_falcon_image(path.string());
   ASSERT_TRUE(read) << read.error().message;

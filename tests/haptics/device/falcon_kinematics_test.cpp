@@ -13,7 +13,7 @@ constexpr double kPi = std::numbers::pi;
 
 Vec3 forward_mm(const FalconCounts& counts) {
   Vec3 p(0.0);
-  EXPECT_TRUE(falcon_forward(falcon_angles(counts), p));
+  EXPECT_TRUE(falcon_forward_kinematics(falcon_angles(counts), p));
   return p * 1e3;
 }
 
@@ -38,7 +38,7 @@ TEST(FalconKinematics, ForwardGivesTheGoldenPlaces) {
 
 TEST(FalconKinematics, InverseGivesTheGoldenCounts) {
   Vec3 angles;
-  ASSERT_TRUE(falcon_inverse({0.020, 0, 0.110}, angles));
+  ASSERT_TRUE(falcon_inverse_kinematics({0.020, 0, 0.110}, angles));
   EXPECT_LT(max_abs(falcon_encoders(angles) - Vec3(-351.36, -856.23, -209.63)), 0.005);
 }
 
@@ -46,7 +46,7 @@ TEST(FalconKinematics, GoldenCountAndTorqueAt110Millimetres) {
   const Vec3 p{0, 0, 0.110};
   Vec3 angles;
   Mat3 j;
-  ASSERT_TRUE(falcon_inverse(p, angles));
+  ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
   ASSERT_TRUE(falcon_jacobian(p, angles, j));
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(norm(j[axis]) * 0.0364347 * kPi / 180, 37.7e-6, 0.05e-6);
   EXPECT_LT(max_abs(falcon_torque(j, {0, 0, 1}) - Vec3(24.18e-3)), 0.005e-3);
@@ -56,8 +56,8 @@ TEST(FalconKinematics, RoundTripsOverTheWholeWorkspace) {
   int places = 0;
   everywhere([&](const Vec3& p) {
     Vec3 angles, back;
-    ASSERT_TRUE(falcon_inverse(p, angles)) << p.x << " " << p.y << " " << p.z;
-    ASSERT_TRUE(falcon_forward(angles, back)) << p.x << " " << p.y << " " << p.z;
+    ASSERT_TRUE(falcon_inverse_kinematics(p, angles)) << p.x << " " << p.y << " " << p.z;
+    ASSERT_TRUE(falcon_forward_kinematics(angles, back)) << p.x << " " << p.y << " " << p.z;
     ASSERT_LT(max_abs(back - p), 2e-12) << p.x << " " << p.y << " " << p.z;
     ++places;
   });
@@ -68,14 +68,14 @@ TEST(FalconKinematics, TheJacobianIsWhatSmallStepsShow) {
   everywhere([](const Vec3& p) {
     Vec3 angles;
     Mat3 j;
-    ASSERT_TRUE(falcon_inverse(p, angles));
+    ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
     ASSERT_TRUE(falcon_jacobian(p, angles, j));
     constexpr double h = 1e-5;
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 up = angles, down = angles, p_up, p_down;
       up[axis] += h;
       down[axis] -= h;
-      ASSERT_TRUE(falcon_forward(up, p_up) && falcon_forward(down, p_down));
+      ASSERT_TRUE(falcon_forward_kinematics(up, p_up) && falcon_forward_kinematics(down, p_down));
       const Vec3 column = (p_up - p_down) / (2 * h);
       ASSERT_LT(max_abs(column - j[axis]), 1e-5 * norm(j[axis])) << p.x << " " << p.y << " " << p.z << " axis " << axis;
     }
@@ -86,10 +86,10 @@ TEST(FalconKinematics, TorqueDoesTheWorkOfTheForce) {
   const Vec3 p{0.015, -0.02, 0.12}, force{1.5, -2, 3};
   Vec3 angles, moved;
   Mat3 j;
-  ASSERT_TRUE(falcon_inverse(p, angles));
+  ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
   ASSERT_TRUE(falcon_jacobian(p, angles, j));
   const Vec3 turn{1e-6, -2e-6, 3e-6};
-  ASSERT_TRUE(falcon_forward(angles + turn, moved));
+  ASSERT_TRUE(falcon_forward_kinematics(angles + turn, moved));
   EXPECT_NEAR(dot(falcon_torque(j, force), turn), dot(force, moved - p), 1e-11);
 }
 
@@ -97,12 +97,12 @@ TEST(FalconKinematics, OutOfReachIsRefusedAndTouchesNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Vec3& p : {Vec3{0.2, 0, 0.11}, Vec3{0, 0, 0.3}, Vec3{nan, 0, 0.1}, Vec3{0, inf, 0.1}}) {
     Vec3 angles(7.0);
-    EXPECT_FALSE(falcon_inverse(p, angles));
+    EXPECT_FALSE(falcon_inverse_kinematics(p, angles));
     EXPECT_EQ(angles, Vec3(7.0));
   }
   for (const Vec3& angles : {Vec3(3.0), Vec3(-3.0), Vec3(nan, 0.5, 0.5), Vec3(0.5, 0.5, inf), Vec3(0.6, -1.5, 2.5)}) {
     Vec3 p(7.0);
-    EXPECT_FALSE(falcon_forward(angles, p)) << angles.x << " " << angles.y << " " << angles.z;
+    EXPECT_FALSE(falcon_forward_kinematics(angles, p)) << angles.x << " " << angles.y << " " << angles.z;
     EXPECT_EQ(p, Vec3(7.0));
   }
   Mat3 j(7.0);
@@ -117,12 +117,12 @@ TEST(FalconKinematics, EveryCountEndsAndIsRightOrRefused) {
       for (int c = -2400; c <= 2400; c += 240) {
         const FalconCounts counts{static_cast<std::int16_t>(a), static_cast<std::int16_t>(b), static_cast<std::int16_t>(c)};
         Vec3 p, angles;
-        if (!falcon_forward(falcon_angles(counts), p)) {
+        if (!falcon_forward_kinematics(falcon_angles(counts), p)) {
           ++refused;
           continue;
         }
         ++found;
-        ASSERT_TRUE(falcon_inverse(p, angles));
+        ASSERT_TRUE(falcon_inverse_kinematics(p, angles));
         ASSERT_LE(max_abs(angles - falcon_angles(counts)), 1e-12);
       }
   EXPECT_GT(found, 100);
@@ -145,7 +145,7 @@ TEST(FalconKinematics, TooMuchTorqueKeepsItsDirection) {
 double weakest_force_n(const Vec3& p) {
   Vec3 angles;
   Mat3 j;
-  EXPECT_TRUE(falcon_inverse(p, angles) && falcon_jacobian(p, angles, j));
+  EXPECT_TRUE(falcon_inverse_kinematics(p, angles) && falcon_jacobian(p, angles, j));
   return kFalconFullTorque / kFalconForceGain / std::max({norm(j[0]), norm(j[1]), norm(j[2])});
 }
 

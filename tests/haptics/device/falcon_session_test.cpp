@@ -23,7 +23,7 @@ struct FalconSessionTest : testing::Test {
   FalconSession session{ftdi, counters, 1e4, test_clock};
 
   FalconSessionTest() {
-    fake->firmware_runs = true;
+    fake->firmware_is_running = true;
     fake->baud = 2;
   }
   void say(const FalconCounts& encoders, int homed, int buttons = 0) {
@@ -62,8 +62,8 @@ TEST_F(FalconSessionTest, HomedIsBelievedInTheThirdFrame) {
   go(2);
   EXPECT_EQ(session.pose().state, FalconState::homing);
   go();
-  EXPECT_EQ(session.pose().state, FalconState::waiting);
-  EXPECT_TRUE(session.pose().good);
+  EXPECT_EQ(session.pose().state, FalconState::arming);
+  EXPECT_TRUE(session.pose().valid);
   EXPECT_NEAR(session.pose().position_m.z, 0.110, 1e-4);
   go();
   EXPECT_EQ(fake->last().control, kFalconBlue);
@@ -72,12 +72,12 @@ TEST_F(FalconSessionTest, HomedIsBelievedInTheThirdFrame) {
 TEST_F(FalconSessionTest, ForcesWaitUntilTheGripWasFullyOut) {
   say(kAt110, 7);
   go(10, {0, 0, 5});
-  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  EXPECT_EQ(session.pose().state, FalconState::arming);
   for (const FalconCommand& c : fake->commands) EXPECT_EQ(c.motors, FalconCounts{});
   // 169 mm is not enough
   say({800, 800, 800}, 7);
   go(2, {0, 0, 5});
-  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   say(kAt175, 7);
   go(2, {0, 0, 5});
@@ -124,7 +124,7 @@ TEST_F(FalconSessionTest, HomingLostForThreeFramesMustBeArmedAgain) {
   go(3);
   say(kAt110, 7);
   go(10, {0, 0, 1});
-  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  EXPECT_EQ(session.pose().state, FalconState::arming);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
 }
 
@@ -133,14 +133,14 @@ TEST_F(FalconSessionTest, AJumpIsBelievedOnlyWhenTheNextFrameAgrees) {
   const Vec3 before = session.pose().position_m;
   say({900, 900, 900}, 7);
   go(1, {0, 0, 1});
-  EXPECT_FALSE(session.pose().good);
+  EXPECT_FALSE(session.pose().valid);
   EXPECT_EQ(session.pose().position_m, before);
   EXPECT_EQ(counters.jumps, 1u);
   say(kAt110, 7);
   go(1, {0, 0, 1});
   EXPECT_EQ(fake->last().motors, FalconCounts{});  // no force at a place that is not believed
   go();
-  EXPECT_TRUE(session.pose().good);
+  EXPECT_TRUE(session.pose().valid);
   EXPECT_EQ(session.pose().position_m, before);
 }
 
@@ -154,7 +154,7 @@ TEST_F(FalconSessionTest, OutOfReachHoldsThePositionAndStopsTheForce) {
   }
   say({-4200, -4200, -4200}, 7);
   go(2, {0, 0, 1});
-  EXPECT_FALSE(session.pose().good);
+  EXPECT_FALSE(session.pose().valid);
   EXPECT_GT(counters.out_of_reach, 0u);
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_TRUE(is_finite(session.pose().position_m));
@@ -164,8 +164,8 @@ TEST_F(FalconSessionTest, OutOfReachHoldsThePositionAndStopsTheForce) {
 
 TEST_F(FalconSessionTest, SplitJoinedAndGarbledFramesAreRead) {
   arm();
-  fake->cuts = {5, 0, 11, 16, 3, 13, 32, 1};
-  fake->before_frame = {'<', 'A', 0xFF};
+  fake->packet_sizes = {5, 0, 11, 16, 3, 13, 32, 1};
+  fake->garbage_before_frame = {'<', 'A', 0xFF};
   for (int i = 0; i < 200; ++i) {
     const auto e = static_cast<std::int16_t>(kAt110[0] + i);
     say({e, e, e}, 7, i & 15);
@@ -180,17 +180,17 @@ TEST_F(FalconSessionTest, SplitJoinedAndGarbledFramesAreRead) {
 
 TEST_F(FalconSessionTest, SilenceTimeOutsAndStallsAreNoFrameAndNoLoss) {
   arm();
-  fake->silent = true;
+  fake->ignores_commands = true;
   EXPECT_EQ(go(), Cycle::no_frame);
-  fake->silent = false;
+  fake->ignores_commands = false;
   fake->read_faults = {UsbError::timeout};
   EXPECT_EQ(go(), Cycle::no_frame);
   EXPECT_EQ(go(), Cycle::frame);
   fake->read_faults = {UsbError::stall};
   fake->write_faults = {UsbError::stall};
   EXPECT_EQ(go(), Cycle::frame);
-  EXPECT_EQ(fake->cleared_in, 1);
-  EXPECT_EQ(fake->cleared_out, 1);
+  EXPECT_EQ(fake->in_halt_clears, 1);
+  EXPECT_EQ(fake->out_halt_clears, 1);
   fake->read_faults = {UsbError::stall, UsbError::stall};
   EXPECT_EQ(go(), Cycle::no_frame);
   EXPECT_EQ(go(), Cycle::frame);
@@ -200,17 +200,17 @@ TEST_F(FalconSessionTest, SilenceTimeOutsAndStallsAreNoFrameAndNoLoss) {
 
 TEST_F(FalconSessionTest, UnplugIsGone) {
   arm();
-  fake->plugged = false;
-  EXPECT_EQ(go(), Cycle::gone);
-  fake->plugged = true;
-  fake->read_faults = {UsbError::gone};
-  EXPECT_EQ(go(), Cycle::gone);
+  fake->is_plugged = false;
+  EXPECT_EQ(go(), Cycle::disconnected);
+  fake->is_plugged = true;
+  fake->read_faults = {UsbError::disconnected};
+  EXPECT_EQ(go(), Cycle::disconnected);
 }
 
 TEST_F(FalconSessionTest, LeavingSendsZeroWithTheLightsOff) {
   arm();
   go(1, {0, 0, 5});
-  session.leave();
+  session.send_shutdown();
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(fake->last().control, 0);
 }

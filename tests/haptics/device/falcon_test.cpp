@@ -23,10 +23,10 @@ struct FalconDevice : testing::Test {
   FalconOptions options;
 
   FalconDevice() {
-    fake->firmware_runs = true;
-    fake->pace = 100us;
-    fake->image = test::small_image();
-    options.return_poll_ms = 2;
+    fake->firmware_is_running = true;
+    fake->read_delay = 100us;
+    fake->image = test::make_boot_image();
+    options.reconnect_poll_ms = 2;
     options.clock = fake_clock;
   }
   std::string open() {
@@ -36,7 +36,7 @@ struct FalconDevice : testing::Test {
     return "";
   }
   void say(const FalconCounts& encoders, int homed) {
-    fake->with([&](test::FakeFalcon& f) { f.frame = {encoders, 0, static_cast<std::uint8_t>(homed), 'A'}; });
+    fake->with_lock([&](test::FakeFalcon& f) { f.frame = {encoders, 0, static_cast<std::uint8_t>(homed), 'A'}; });
   }
   // until it holds; a test that waits a minute fails
   template <class F>
@@ -73,7 +73,7 @@ TEST_F(FalconDevice, HomesArmsAndTellsThePersonWhatToDo) {
   EXPECT_FALSE(falcon->read().forces_on);
   EXPECT_EQ(falcon->status_text(), "Falcon: pull the grip fully out, then push it in (homed: 1 of 3 axes)");
   say(kAt110, 7);
-  ASSERT_TRUE(becomes(FalconState::waiting));
+  ASSERT_TRUE(becomes(FalconState::arming));
   DeviceInput input = falcon->read();
   EXPECT_EQ(input.status, DeviceStatus::ready);
   EXPECT_FALSE(input.forces_on);
@@ -122,18 +122,18 @@ TEST_F(FalconDevice, AnOrderThatWasLetGoIsToldSoThatTheForceRampsIn) {
 }
 
 TEST_F(FalconDevice, ADeviceThatSaysNothingGetsZeroBeforeItsLineIsSetUpAgain) {
-  options.lost_after = 1000000;
+  options.lost_after_cycles = 1000000;
   arm();
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
-  const auto requests = fake->with([](test::FakeFalcon& f) { return f.controls.size(); });
-  fake->with([](test::FakeFalcon& f) { f.silent = true; });
-  ASSERT_TRUE(eventually([&] { return fake->with([&](test::FakeFalcon& f) { return f.controls.size() > requests; }); }));
+  const auto requests = fake->with_lock([](test::FakeFalcon& f) { return f.controls.size(); });
+  fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = true; });
+  ASSERT_TRUE(eventually([&] { return fake->with_lock([&](test::FakeFalcon& f) { return f.controls.size() > requests; }); }));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "so that the force ramps in";
   ASSERT_TRUE(cycles(5));
   EXPECT_EQ(fake->last().motors, FalconCounts{}) << "no frame, no force";
-  fake->with([](test::FakeFalcon& f) { f.silent = false; });
+  fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = false; });
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
@@ -142,18 +142,18 @@ TEST_F(FalconDevice, ADeviceThatSaysNothingGetsZeroBeforeItsLineIsSetUpAgain) {
 TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
   options.firmware = fake->image;
   arm();
-  fake->with([](test::FakeFalcon& f) { f.plugged = false; });
+  fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
   ASSERT_TRUE(becomes(FalconState::absent));
-  fake->with([](test::FakeFalcon& f) {
-    f.firmware_runs = false;
-    f.deaf_handshakes = 1000000;
-    f.pace = 2ms;
-    f.plugged = true;
+  fake->with_lock([](test::FakeFalcon& f) {
+    f.firmware_is_running = false;
+    f.ignored_handshakes = 1000000;
+    f.read_delay = 2ms;
+    f.is_plugged = true;
   });
-  ASSERT_TRUE(eventually([&] { return fake->with([](test::FakeFalcon& f) { return f.handshakes > 0; }); }));
-  const int before = fake->with([](test::FakeFalcon& f) { return f.handshakes; });
+  ASSERT_TRUE(eventually([&] { return fake->with_lock([](test::FakeFalcon& f) { return f.handshake_count > 0; }); }));
+  const int before = fake->with_lock([](test::FakeFalcon& f) { return f.handshake_count; });
   falcon.reset();
-  EXPECT_LE(fake->handshakes, before + 10) << "of a hundred";
+  EXPECT_LE(fake->handshake_count, before + 10) << "of a hundred";
 }
 
 TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
@@ -167,10 +167,10 @@ TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
   ASSERT_TRUE(cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
   EXPECT_NE(falcon->status_text().find("stopped"), std::string::npos);
-  const std::size_t before = fake->with([](test::FakeFalcon& f) { return f.commands.size(); });
+  const std::size_t before = fake->with_lock([](test::FakeFalcon& f) { return f.commands.size(); });
   falcon->resume();
   ASSERT_TRUE(cycles(3));
-  fake->with([&](test::FakeFalcon& f) {
+  fake->with_lock([&](test::FakeFalcon& f) {
     for (std::size_t i = before; i < f.commands.size(); ++i) EXPECT_EQ(f.commands[i].motors, FalconCounts{});
   });
   falcon->write({{0, 0, 1}, Vec3(0.0)});
@@ -202,7 +202,7 @@ TEST_F(FalconDevice, TheDestructorSendsZeroWithTheLightsOff) {
 TEST_F(FalconDevice, UnpluggedIsLostAndComesBackThroughBootHomingAndArming) {
   options.firmware = fake->image;
   arm();
-  fake->with([](test::FakeFalcon& f) { f.plugged = false; });
+  fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
   ASSERT_TRUE(becomes(FalconState::absent));
   const DeviceInput held = falcon->read();
   EXPECT_EQ(held.status, DeviceStatus::lost);
@@ -210,19 +210,19 @@ TEST_F(FalconDevice, UnpluggedIsLostAndComesBackThroughBootHomingAndArming) {
   EXPECT_NEAR(held.position_m.z, 0.110, 1e-4);
   EXPECT_TRUE(eventually([&] { return falcon->status_text().find("not on the USB bus") != std::string::npos; }));
   // power was gone: the firmware too
-  fake->with([](test::FakeFalcon& f) {
-    f.firmware_runs = false;
+  fake->with_lock([](test::FakeFalcon& f) {
+    f.firmware_is_running = false;
     f.frame = {kAt110, 0, 0, 'A'};
-    f.plugged = true;
+    f.is_plugged = true;
   });
   ASSERT_TRUE(becomes(FalconState::homing));
   ASSERT_TRUE(cycles(3));
   EXPECT_EQ(falcon->read().status, DeviceStatus::starting);
   EXPECT_EQ(falcon->stats().uploads, 1u);
-  EXPECT_EQ(falcon->stats().losses, 1u);
-  EXPECT_EQ(falcon->stats().returns, 1u);
+  EXPECT_EQ(falcon->stats().disconnects, 1u);
+  EXPECT_EQ(falcon->stats().reconnects, 1u);
   say(kAt110, 7);
-  ASSERT_TRUE(becomes(FalconState::waiting));
+  ASSERT_TRUE(becomes(FalconState::arming));
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   ASSERT_TRUE(cycles(3));
   EXPECT_EQ(fake->last().motors, FalconCounts{});
@@ -234,30 +234,30 @@ TEST_F(FalconDevice, UnpluggedIsLostAndComesBackThroughBootHomingAndArming) {
 
 TEST_F(FalconDevice, ASilentDeviceIsLostAndOpenedAgain) {
   arm();
-  fake->with([](test::FakeFalcon& f) { f.silent = true; });
-  ASSERT_TRUE(eventually([&] { return falcon->stats().losses == 1; }));
+  fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = true; });
+  ASSERT_TRUE(eventually([&] { return falcon->stats().disconnects == 1; }));
   EXPECT_GE(falcon->stats().bad_cycles, 10u);
-  fake->with([](test::FakeFalcon& f) { f.silent = false; });
-  ASSERT_TRUE(becomes(FalconState::waiting));
-  EXPECT_GE(fake->with([](test::FakeFalcon& f) { return f.opened; }), 2);
+  fake->with_lock([](test::FakeFalcon& f) { f.ignores_commands = false; });
+  ASSERT_TRUE(becomes(FalconState::arming));
+  EXPECT_GE(fake->with_lock([](test::FakeFalcon& f) { return f.open_count; }), 2);
 }
 
 TEST_F(FalconDevice, APoseThatGetsOldIsLost) {
   arm();
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
-  fake->hang = true;
-  ASSERT_TRUE(eventually([&] { return fake->hangs.load(); }));
+  fake->block_reads = true;
+  ASSERT_TRUE(eventually([&] { return fake->is_blocked.load(); }));
   fake_now_ns += 90000000;
   EXPECT_NEAR(falcon->read().age_s, 0.09, 1e-9);
   EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
   fake_now_ns += 20000000;
   EXPECT_EQ(falcon->read().status, DeviceStatus::lost);
-  fake->hang = false;
+  fake->block_reads = false;
 }
 
 TEST_F(FalconDevice, ReadAndWriteNeverAllocate) {
   arm();
-  const AllocationGuard guard;
+  const AllocationCounter guard;
   for (int i = 0; i < 1000; ++i) {
     falcon->read();
     falcon->write({{0, 0, 1}, Vec3(0.0)});
@@ -268,10 +268,10 @@ TEST_F(FalconDevice, ReadAndWriteNeverAllocate) {
 }
 
 TEST_F(FalconDevice, OpeningErrorsSayWhatToDo) {
-  fake->plugged = false;
+  fake->is_plugged = false;
   EXPECT_NE(open().find("not on the USB bus"), std::string::npos);
-  fake->plugged = true;
-  fake->firmware_runs = false;
+  fake->is_plugged = true;
+  fake->firmware_is_running = false;
   EXPECT_NE(open().find("--firmware FILE"), std::string::npos);
   options.firmware = fake->image;
   EXPECT_EQ(open(), "");
@@ -291,16 +291,16 @@ TEST_F(FalconDevice, ReadsAndOrdersFromAnotherThreadWhileItComesAndGoes) {
     }
   });
   for (int round = 0; round < 5; ++round) {
-    fake->with([](test::FakeFalcon& f) { f.plugged = false; });
+    fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = false; });
     EXPECT_TRUE(becomes(FalconState::absent));
     falcon->stop();
-    fake->with([](test::FakeFalcon& f) { f.plugged = true; });
-    EXPECT_TRUE(becomes(FalconState::waiting));
+    fake->with_lock([](test::FakeFalcon& f) { f.is_plugged = true; });
+    EXPECT_TRUE(becomes(FalconState::arming));
     falcon->status_text();
   }
   end = true;
   servo.join();
-  EXPECT_EQ(falcon->stats().returns, 5u);
+  EXPECT_EQ(falcon->stats().reconnects, 5u);
 }
 
 TEST(FalconRegistry, IsKnownListedAndRefusedWithAReason) {
@@ -308,7 +308,7 @@ TEST(FalconRegistry, IsKnownListedAndRefusedWithAReason) {
   const DeviceCapabilities c = nominal_capabilities("falcon");
   EXPECT_EQ(c.name, "Novint Falcon");
   EXPECT_GT(c.max_force_n, 0);
-  EXPECT_DOUBLE_EQ(c.workspace_centre_m.z, 0.125);
+  EXPECT_DOUBLE_EQ(c.workspace_center_m.z, 0.125);
   int listed = 0;
   for (const DeviceInfo& info : list_devices())
     if (info.name.starts_with("falcon")) {

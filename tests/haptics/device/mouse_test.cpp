@@ -14,7 +14,7 @@ TEST(Mouse, BeginsWhereItIsPut) {
   EXPECT_EQ(input.position_m, Vec3(1.0, 2.0, 3.0));
   EXPECT_EQ(input.buttons, 0u);
   EXPECT_EQ(input.status, DeviceStatus::ready);
-  EXPECT_FALSE(input.recorded);
+  EXPECT_FALSE(input.is_recorded);
 }
 
 TEST(Mouse, WithoutSmoothingTheNewestPlaceCounts) {
@@ -50,7 +50,7 @@ TEST(Mouse, ANonFinitePlaceIsIgnored) {
 
 TEST(Mouse, ATurnIsEasedTheShorterWayAndComesToRest) {
   MouseDevice mouse(Vec3(0.0), {0.02, 1000});
-  const Quat target = rotation_of({0, 0, 1.0});
+  const Quat target = rotation_from_vector({0, 0, 1.0});
   mouse.move_to(Vec3(0.0), 0, Quat(-target.w, -target.x, -target.y, -target.z));  // the same rotation
   double last = 0;
   for (int k = 1; k <= 20; ++k) {

@@ -98,14 +98,14 @@ TEST(ProcessDevice, ADeviceThatIsNoneAndATableThatCannotBeAreSaid) {
   EXPECT_NE(none.error().message.find("emulated-falcon:still"), std::string::npos) << none.error().message;
   const auto full = open_in_process("emulated-falcon", "/dev/null/t.csv", {});
   ASSERT_FALSE(full);
-  EXPECT_FALSE(full.error().machine);
+  EXPECT_FALSE(full.error().system_failure);
   const test::TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   for (const std::string& path : {folder / "pipe", std::string("/dev/full"), folder.path()}) {
     const auto strange = open_in_process("emulated-falcon", path, {});
     ASSERT_FALSE(strange) << path;
     EXPECT_NE(strange.error().message.find("regular file"), std::string::npos) << strange.error().message;
-    EXPECT_FALSE(strange.error().machine);
+    EXPECT_FALSE(strange.error().system_failure);
   }
 }
 
@@ -127,7 +127,7 @@ TEST(ProcessDevice, AFullDiskIsSaidBeforeTheHandStartsAndLosesNoZero) {
   const std::string path = folder / "t.csv";
   const int at_first = on_small_disk(folder.path(), 16, [&] {
     const auto table = process::open_force_table(path);
-    if (table || !table.error().machine) return 1;
+    if (table || !table.error().system_failure) return 1;
     return table.error().message.find("No space left") == std::string::npos ? 2 : test::exists(path) ? 3 : 0;
   });
   if (at_first == 255) GTEST_SKIP() << "only root can make a small disk";

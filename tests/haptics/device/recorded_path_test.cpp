@@ -18,7 +18,7 @@ TEST(RecordedPath, PlaysItsFileAndStaysAtTheEnd) {
   Device& device = **opened;
   EXPECT_TRUE(device.capabilities().has_orientation);
   const DeviceInput first = device.read();
-  EXPECT_TRUE(first.recorded);
+  EXPECT_TRUE(first.is_recorded);
   EXPECT_EQ(first.t_s, 0);
   EXPECT_EQ(first.position_m, Vec3(1, 2, 3));
   for (int k = 0; k < 3; ++k) {

@@ -6,12 +6,12 @@ namespace catena::test {
 
 class ScriptedDevice final : public haptics::Device {
  public:
-  const haptics::DeviceCapabilities& capabilities() const override { return able; }
+  const haptics::DeviceCapabilities& capabilities() const override { return caps; }
   haptics::DeviceInput read() noexcept override { return input; }
   void write(const haptics::DeviceOutput& out) noexcept override { output = out; }
   void stop() noexcept override { stopped = true; }
 
-  haptics::DeviceCapabilities able;
+  haptics::DeviceCapabilities caps;
   haptics::DeviceInput input;
   haptics::DeviceOutput output;
   bool stopped = false;

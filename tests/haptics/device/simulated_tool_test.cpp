@@ -1,10 +1,10 @@
 /// The simulated 6-DOF device in a closed loop with the rotational chain.
-#include "haptics/device/simulated_hand.h"
+#include "haptics/device/simulated_device.h"
 
 #include <gtest/gtest.h>
 
 #include "haptics/device/device.h"
-#include "haptics/device/mechanism.h"
+#include "haptics/device/mass_model.h"
 #include "haptics/servo/servo.h"
 #include "tests/support/axis_link.h"
 
@@ -15,8 +15,8 @@ using namespace catena::haptics;
 
 constexpr double kPi = 3.14159265358979323846;
 
-ToolParameters alone() {
-  ToolParameters p;
+SimulatedToolParameters alone() {
+  SimulatedToolParameters p;
   p.grip_stiffness_nm_per_rad = p.grip_damping_nms_per_rad = 0;
   p.max_torque_nm = 100;
   return p;
@@ -25,12 +25,12 @@ ToolParameters alone() {
 /// The tick without a thread: what the servo does between a device and a program.
 struct Loop {
   SimulatedTool tool;
-  Program program;
+  HapticProgram program;
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   std::uint64_t k = 0;
-  Loop(const ToolParameters& parameters, const Quat& wish) : tool(std::make_unique<NullDevice>(), {{0, wish}}, parameters) {}
+  Loop(const SimulatedToolParameters& parameters, const Quat& wish) : tool(std::make_unique<NullDevice>(), {{0, wish}}, parameters) {}
   void step() {
     const DeviceInput in = tool.read();
     tick(program, {1e-3 * static_cast<double>(k++), in.position_m, in.buttons, in.orientation}, state, scratch, out);
@@ -40,13 +40,13 @@ struct Loop {
 };
 
 TEST(SimulatedTool, FollowsItsPathTheShorterWay) {
-  const Quat a = rotation_of({0, 0, 3.0}), b = rotation_of({0, 0, -3.0});  // 0.28 rad apart through half a turn
+  const Quat a = rotation_from_vector({0, 0, 3.0}), b = rotation_from_vector({0, 0, -3.0});  // 0.28 rad apart through half a turn
   SimulatedTool tool(std::make_unique<NullDevice>(), {{0, a}, {1, b}}, {});
   EXPECT_TRUE(tool.capabilities().has_orientation);
   double furthest = 0;
   for (int k = 0; k <= 1500; ++k) {
     const Quat q = tool.read().orientation;
-    furthest = std::max(furthest, norm(rotation_vector(q * glm::conjugate(rotation_of({0, 0, kPi})))));
+    furthest = std::max(furthest, norm(rotation_vector(q * glm::conjugate(rotation_from_vector({0, 0, kPi})))));
   }
   EXPECT_LE(furthest, 0.15);
   EXPECT_LE(norm(rotation_vector(tool.orientation() * glm::conjugate(b))), 1e-6);
@@ -54,7 +54,7 @@ TEST(SimulatedTool, FollowsItsPathTheShorterWay) {
 
 TEST(SimulatedTool, SettlesWhereTheGripBalancesTheAlignment) {
   // the hand wants the tool's z turned by 0.6 away from the normal: k_h (0.6 - a) = kappa a
-  Loop loop({}, rotation_of({0.6, 0, 0}));
+  Loop loop({}, rotation_from_vector({0.6, 0, 0}));
   loop.program.links = {test::axis_link("a", {0, 0, 1}, 0.25)};
   for (int k = 0; k < 4000; ++k) loop.step();
   EXPECT_NEAR(rotation_vector(loop.tool.orientation()).x, 0.5 * 0.6 / 0.75, 1e-9);
@@ -63,12 +63,12 @@ TEST(SimulatedTool, SettlesWhereTheGripBalancesTheAlignment) {
 }
 
 TEST(SimulatedTool, AKickDiesOutBelowTheDerivedLimitAndGrowsAboveIt) {
-  const ToolParameters parameters = alone();
+  const SimulatedToolParameters parameters = alone();
   const double limit =
       safe_rotational_stiffness(SimulatedTool(std::make_unique<NullDevice>(), {{}}, parameters).capabilities().mechanics, 1e-3);
   EXPECT_DOUBLE_EQ(limit, 1.0);
   const auto growth = [&](double kappa, bool capped) {
-    Loop loop(parameters, kNoRotation);
+    Loop loop(parameters, kIdentityRotation);
     loop.program.links = {test::axis_link("a", {0, 0, 1}, kappa)};
     if (capped) loop.program.limits.max_rotational_stiffness_nm_per_rad = 0.95 * limit;
     loop.tool.set_rate({0.5, 0, 0});
@@ -87,7 +87,7 @@ TEST(SimulatedTool, AKickDiesOutBelowTheDerivedLimitAndGrowsAboveIt) {
 }
 
 TEST(SimulatedTool, GivesNoMoreTorqueThanItCan) {
-  ToolParameters p = alone();
+  SimulatedToolParameters p = alone();
   p.max_torque_nm = 0.01;
   p.damping_nms_per_rad = 0;
   SimulatedTool tool(std::make_unique<NullDevice>(), {{}}, p);
@@ -105,10 +105,10 @@ TEST(SimulatedTool, GivesNoMoreTorqueThanItCan) {
 TEST(SimulatedTool, TheServoTurnsOrientationAndTorqueWithTheWorkspace) {
   // the same closed loop in a turned workspace: the tool ends in the same place of its own axes
   const auto end = [](const Quat& r) {
-    auto program = std::make_shared<Program>();
+    auto program = std::make_shared<HapticProgram>();
     program->links = {test::axis_link("a", rotate(r, {0, 0, 1}), 0.25)};
     program->workspace_rotation = glm::mat3_cast(r);
-    SimulatedTool tool(std::make_unique<NullDevice>(), {{0, rotation_of({0.6, 0.1, 0})}}, {});
+    SimulatedTool tool(std::make_unique<NullDevice>(), {{0, rotation_from_vector({0.6, 0.1, 0})}}, {});
     ServoOptions options;
     options.paced = false;
     options.max_ticks = 3000;
@@ -118,14 +118,14 @@ TEST(SimulatedTool, TheServoTurnsOrientationAndTorqueWithTheWorkspace) {
     servo.stop();
     return tool.orientation();
   };
-  const Quat plain = end(kNoRotation), turned = end(rotation_of({0.4, -0.9, 1.3}));
+  const Quat plain = end(kIdentityRotation), turned = end(rotation_from_vector({0.4, -0.9, 1.3}));
   EXPECT_LE(norm(rotation_vector(turned * glm::conjugate(plain))), 1e-9);
   EXPECT_GT(norm(rotation_vector(plain)), 0.3);
 }
 
 TEST(SimulatedTool, RepeatsToTheBit) {
   const auto run = [] {
-    Loop loop({}, rotation_of({0.6, -0.2, 0.1}));
+    Loop loop({}, rotation_from_vector({0.6, -0.2, 0.1}));
     loop.program.links = {test::axis_link("a", {0.1, 0, 1}, 0.25)};
     for (int k = 0; k < 500; ++k) loop.step();
     return loop.tool.orientation();

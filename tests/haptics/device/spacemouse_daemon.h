@@ -23,18 +23,18 @@ class SpaceMouseDaemon {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     path.copy(address.sun_path, sizeof address.sun_path - 1);
-    ok_ = bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && listen(listener_, 1) == 0;
+    is_listening_ = bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && listen(listener_, 1) == 0;
   }
   ~SpaceMouseDaemon() {
-    hang_up();
+    disconnect();
     close(listener_);
     unlink(path_.c_str());
     unsetenv("SPNAV_SOCKET");
   }
-  bool ok() const { return ok_; }
+  bool is_listening() const { return is_listening_; }
 
   /// Takes one connection; answers the greeting where it speaks the newer protocol. False: nobody came within 3 s.
-  bool greet(bool answers) {
+  bool accept_client(bool answers) {
     pollfd waiting{listener_, POLLIN, 0};
     if (poll(&waiting, 1, 3000) <= 0) return false;
     client_ = accept(listener_, nullptr, nullptr);
@@ -44,11 +44,11 @@ class SpaceMouseDaemon {
     float sensitivity = 0;  // an old one hears nothing but sensitivities
     return recv(client_, &sensitivity, sizeof sensitivity, MSG_WAITALL) == sizeof sensitivity && sensitivity == 1.0f;
   }
-  bool say(const std::array<std::int32_t, 8>& packet, std::size_t first = 0, std::size_t bytes = 32) {
+  bool send_packet(const std::array<std::int32_t, 8>& packet, std::size_t first = 0, std::size_t bytes = 32) {
     const char* data = reinterpret_cast<const char*>(packet.data());
     return send(client_, data + first, bytes, MSG_NOSIGNAL) == static_cast<ssize_t>(bytes);
   }
-  void hang_up() {
+  void disconnect() {
     if (client_ >= 0) close(client_);
     client_ = -1;
   }
@@ -56,7 +56,7 @@ class SpaceMouseDaemon {
  private:
   std::string path_;
   int listener_ = -1, client_ = -1;
-  bool ok_ = false;
+  bool is_listening_ = false;
 };
 
 }  // namespace catena::test

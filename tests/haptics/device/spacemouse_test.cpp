@@ -32,7 +32,7 @@ struct Rig {
   std::unique_ptr<SpaceMouseDaemon> daemon = std::make_unique<SpaceMouseDaemon>(folder / "spnav.sock");
   std::unique_ptr<Device> device;
   explicit Rig(bool newer = true) {
-    auto greeted = std::async(std::launch::async, [&] { return daemon->greet(newer); });
+    auto greeted = std::async(std::launch::async, [&] { return daemon->accept_client(newer); });
     auto opened = open_device("spacemouse", {});
     EXPECT_TRUE(greeted.get());
     EXPECT_TRUE(opened) << opened.error().message;
@@ -45,7 +45,7 @@ TEST(SpaceMouse, RatesHaveADeadZoneAndEndAtFullDeflection) {
   parameters.dead_zone_counts = 50;
   SpaceMouseCounts counts;
   counts.axes = {50, -200, 350, -50, 51, -9999};
-  const SpaceMouseRates rates = spacemouse_rates(counts, parameters);
+  const SpaceMouseRates rates = compute_spacemouse_rates(counts, parameters);
   EXPECT_EQ(rates.velocity_m_per_s.x, 0);
   EXPECT_DOUBLE_EQ(rates.velocity_m_per_s.y, -0.5 * parameters.speed_m_per_s);
   EXPECT_DOUBLE_EQ(rates.velocity_m_per_s.z, -parameters.speed_m_per_s);
@@ -67,7 +67,7 @@ TEST(SpaceMouse, AxesAreThoseOfTheLibrarysOwnObjectMotion) {
     spnav_posrot_moveobj(&library, &event.motion);
     SpaceMouseCounts counts;
     counts.axes[static_cast<std::size_t>(axis)] = 100;
-    const SpaceMouseRates rates = spacemouse_rates(counts, parameters);
+    const SpaceMouseRates rates = compute_spacemouse_rates(counts, parameters);
     const Vec3 moved(library.pos[0], library.pos[1], library.pos[2]);
     const Vec3 turned = rotation_vector(Quat(library.rot[3], library.rot[0], library.rot[1], library.rot[2]));
     EXPECT_LE(norm(direction(rates.velocity_m_per_s) - direction(moved)), 1e-6) << axis;
@@ -77,7 +77,7 @@ TEST(SpaceMouse, AxesAreThoseOfTheLibrarysOwnObjectMotion) {
 
 TEST(SpaceMouse, WithoutADaemonItSaysWhatToDo) {
   unsetenv("SPNAV_SOCKET");
-  if (SpaceMouse::daemon_is_there()) GTEST_SKIP() << "a spacenavd runs on this machine";
+  if (SpaceMouse::is_daemon_available()) GTEST_SKIP() << "a spacenavd runs on this machine";
   const auto opened = open_device("spacemouse", {});
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message, "spacenavd is not running: install and start it (apt install spacenavd)");
@@ -88,8 +88,8 @@ TEST(SpaceMouse, SteersRatesThroughTheLibrary) {
     Rig rig(newer);
     ASSERT_TRUE(rig.device);
     EXPECT_EQ(rig.device->read().position_m, Vec3(0.0));
-    ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 350, 16}));
-    ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::press, 1, 0, 0, 0, 0, 0, 0}));
+    ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 350, 16}));
+    ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::press, 1, 0, 0, 0, 0, 0, 0}));
     ASSERT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.buttons == 2; }));
     // full deflection: 0.1 m/s and -1.5 rad/s about z, a tick at a time
     const DeviceInput a = rig.device->read(), b = rig.device->read();
@@ -99,8 +99,8 @@ TEST(SpaceMouse, SteersRatesThroughTheLibrary) {
     // the workspace ends
     for (int k = 0; k < 3000; ++k) rig.device->read();
     EXPECT_EQ(rig.device->read().position_m, Vec3(0.1, 0, 0));
-    ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::motion, 0, 0, 0, 0, 0, 0, 16}));
-    ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::release, 1, 0, 0, 0, 0, 0, 0}));
+    ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, 0, 0, 0, 0, 0, 0, 16}));
+    ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::release, 1, 0, 0, 0, 0, 0, 0}));
     ASSERT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.buttons == 0; }));
     const Quat rest = rig.device->read().orientation;
     EXPECT_EQ(rig.device->read().orientation, rest);
@@ -110,15 +110,15 @@ TEST(SpaceMouse, SteersRatesThroughTheLibrary) {
 TEST(SpaceMouse, APacketInPiecesIsOnePacketAndAStrangeOneIsNone) {
   Rig rig;
   ASSERT_TRUE(rig.device);
-  ASSERT_TRUE(rig.daemon->say({77, 1, 2, 3, 4, 5, 6, 7}));
+  ASSERT_TRUE(rig.daemon->send_packet({77, 1, 2, 3, 4, 5, 6, 7}));
   const std::array<std::int32_t, 8> right = {SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 0, 16};
-  ASSERT_TRUE(rig.daemon->say(right, 0, 9));
+  ASSERT_TRUE(rig.daemon->send_packet(right, 0, 9));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(rig.device->read().position_m, Vec3(0.0));
-  ASSERT_TRUE(rig.daemon->say(right, 9, 23));
+  ASSERT_TRUE(rig.daemon->send_packet(right, 9, 23));
   EXPECT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.position_m.x > 1e-4; }));
   // unplugged behind the daemon: what it held no longer counts
-  ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::device, 1, 0, 0, 0, 0, 0, 0}));
+  ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::device, 1, 0, 0, 0, 0, 0, 0}));
   double last = -1;
   EXPECT_TRUE(eventually(*rig.device, [&](const DeviceInput& in) { return std::exchange(last, in.position_m.x) == in.position_m.x; }));
 }
@@ -126,7 +126,7 @@ TEST(SpaceMouse, APacketInPiecesIsOnePacketAndAStrangeOneIsNone) {
 TEST(SpaceMouse, ALostDaemonIsSaidAndComesBack) {
   Rig rig;
   ASSERT_TRUE(rig.device);
-  ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 0, 16}));
+  ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, 350, 0, 0, 0, 0, 0, 16}));
   ASSERT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.position_m.x > 0.01; }));
   const std::string path = rig.folder / "spnav.sock";
   rig.daemon.reset();
@@ -135,11 +135,11 @@ TEST(SpaceMouse, ALostDaemonIsSaidAndComesBack) {
   EXPECT_EQ(rig.device->read().position_m, rest);
 
   rig.daemon = std::make_unique<SpaceMouseDaemon>(path);
-  ASSERT_TRUE(rig.daemon->ok());
-  ASSERT_TRUE(rig.daemon->greet(true));
+  ASSERT_TRUE(rig.daemon->is_listening());
+  ASSERT_TRUE(rig.daemon->accept_client(true));
   ASSERT_TRUE(eventually(*rig.device, [](const DeviceInput& in) { return in.status == DeviceStatus::ready; }));
   EXPECT_EQ(rig.device->read().position_m, rest);  // no deflection is remembered
-  ASSERT_TRUE(rig.daemon->say({SpaceMouseDaemon::motion, -350, 0, 0, 0, 0, 0, 16}));
+  ASSERT_TRUE(rig.daemon->send_packet({SpaceMouseDaemon::motion, -350, 0, 0, 0, 0, 0, 16}));
   EXPECT_TRUE(eventually(*rig.device, [&](const DeviceInput& in) { return in.position_m.x < rest.x; }));
 }
 

@@ -1,5 +1,5 @@
 # The emulated Falcon, and the unmodified libusb in front of it: through umockdev (label usb), and within one process.
-catena_tests(haptics/device/emulator ROOMS haptics/device)
+catena_tests(haptics/device/emulator MODULES haptics/device)
 
 pkg_check_modules(UMOCKDEV REQUIRED IMPORTED_TARGET umockdev-1.0)
 add_library(catena_test_usbfs OBJECT haptics/device/usbfs/emulated_usbfs.cpp)
@@ -10,9 +10,9 @@ target_link_libraries(catena_test_umockdev PUBLIC catena_test_usbfs PkgConfig::U
 target_link_libraries(catena_test_in_process PUBLIC catena_test_usbfs)
 
 # In one process: microseconds a round trip. The soak is small enough for the thread sanitizer, and has no scene.
-catena_tests(haptics/device/usb_soak ROOMS haptics/servo THIRD_PARTY catena_test_in_process catena_test_usbfs PkgConfig::LIBUSB ${CMAKE_DL_LIBS}
+catena_tests(haptics/device/usb_soak MODULES haptics/servo THIRD_PARTY catena_test_in_process catena_test_usbfs PkgConfig::LIBUSB ${CMAKE_DL_LIBS}
   LABELS usb threads)
-catena_tests(haptics/device/usb_fast ROOMS haptics/servo haptics/extract THIRD_PARTY catena_test_in_process catena_test_usbfs PkgConfig::LIBUSB
+catena_tests(haptics/device/usb_fast MODULES haptics/servo haptics/build THIRD_PARTY catena_test_in_process catena_test_usbfs PkgConfig::LIBUSB
   ${CMAKE_DL_LIBS} LABELS usb)
 
 # Through umockdev: its preload library stands before the C library. It cannot live with the thread sanitizer.
@@ -26,7 +26,7 @@ if(NOT CATENA_SANITIZE MATCHES "thread")
     set(CMAKE_CROSSCOMPILING_EMULATOR ${UMOCKDEV_WRAPPER})
   endif()
   # every case runs through the wrapper: the property of a target that is set here, which gtest_discover_tests reads
-  catena_tests(haptics/device/usb ROOMS haptics/servo haptics/extract THIRD_PARTY catena_test_umockdev catena_test_usbfs PkgConfig::LIBUSB
+  catena_tests(haptics/device/usb MODULES haptics/servo haptics/build THIRD_PARTY catena_test_umockdev catena_test_usbfs PkgConfig::LIBUSB
     PROGRAM LABELS usb)
   # preloaded into the programs that these tests start
   add_library(catena_inherited_node MODULE haptics/device/usbfs/inherited_node.cpp)

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "haptics/device/mechanism.h"
+#include "haptics/device/mass_model.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/simple_links.h"
 
@@ -18,27 +18,27 @@ using test::ClosedLoop;
 
 constexpr double kMass = 0.159, kDamping = 0.5, kPeriod = 1e-3;
 
-HandParameters bare(double delay_s = 0) {
-  HandParameters p;
+SimulatedDeviceParameters bare(double delay_s = 0) {
+  SimulatedDeviceParameters p;
   p.mass_kg = kMass;
   p.device_damping_ns_per_m = kDamping;
-  p.stiffness_n_per_m = p.damping_ns_per_m = 0;
+  p.grip_stiffness_n_per_m = p.grip_damping_ns_per_m = 0;
   p.delay_s = delay_s;
   p.max_force_n = 1e9;
   return p;
 }
 
 /// A spring towards z = 0 with virtual damping.
-Program spring(double stiffness, double damping = 0) {
-  Program p;
+HapticProgram spring(double stiffness, double damping = 0) {
+  HapticProgram p;
   p.links = {test::hold_height("a", 0, stiffness)};
   p.coupling.damping_ns_per_m = damping;
   p.coupling.max_force_n = 1e9;
   return p;
 }
 
-void control(Program& p, double delay_s = 0) {
-  p.limits.passivity = true;
+void control(HapticProgram& p, double delay_s = 0) {
+  p.limits.passivity_control = true;
   p.limits.damping_ns_per_m = kDamping;
   p.limits.delay_s = delay_s;
   p.limits.max_added_damping_ns_per_m = 0.25 * kMass / (kPeriod + delay_s);
@@ -92,9 +92,9 @@ bool is_stable(double stiffness, double damping, bool delayed) {
 
 /// The tick and the simulated mechanism: does a push die away?
 bool settles(double stiffness, double damping, double delay_s) {
-  const Program p = spring(stiffness, damping);
+  const HapticProgram p = spring(stiffness, damping);
   ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 1e-3}}});
-  const auto energy = [&] { return loop.kinetic_j() + 0.5 * stiffness * loop.hand.position_m().z * loop.hand.position_m().z; };
+  const auto energy = [&] { return loop.kinetic_j() + 0.5 * stiffness * loop.device.position_m().z * loop.device.position_m().z; };
   const auto most_of = [&](int ticks) {
     double most = 0;
     for (int i = 0; i < ticks; ++i) {
@@ -142,7 +142,7 @@ TEST(ClosedLoopTest, TheLargestStableStiffnessIsTheOneOfTheTable) {
 }
 
 /// min(E + int b v^2) / E0 of a spring let go from rest, 4 s.
-double least_energy(const Program& p, double stiffness, double delay_s = 0) {
+double least_energy(const HapticProgram& p, double stiffness, double delay_s = 0) {
   ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 0.01}}});
   double most_kinetic = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -162,19 +162,19 @@ TEST(ClosedLoopTest, TheEnergyTestSeparates990From1010) {
 TEST(ClosedLoopTest, TheObserverSeesTheSameLimit) {
   // E + int b v^2 by the work alone, the test's account, and the observer's
   for (const double k : {990.0, 999.0, 1001.0, 1010.0}) {
-    Program p = spring(k);
+    HapticProgram p = spring(k);
     p.limits.damping_ns_per_m = kDamping;
     ClosedLoop loop(p, bare(), {{0, {0, 0, 0.01}}});
     loop.run(4000);
     const double e0 = 0.5 * k * 1e-4;
-    EXPECT_EQ(loop.least_j / e0<-1.0001, k> 1000) << k;
+    EXPECT_EQ(loop.min_passivity_j / e0<-1.0001, k> 1000) << k;
     EXPECT_EQ(loop.state->passivity.balance_j<-1e-6 * e0, k> 1000) << k;
-    EXPECT_NEAR(loop.state->passivity.granted_j, e0, 1e-12) << "the spring was tight when it began";
+    EXPECT_NEAR(loop.state->passivity.exempt_j, e0, 1e-12) << "the spring was tight when it began";
   }
 }
 
 TEST(ClosedLoopTest, TheLedgerIsTheWorkDone) {
-  const Program p = spring(800, 1);
+  const HapticProgram p = spring(800, 1);
   ClosedLoop loop(p, bare(), {{0, {0, 0, 0.01}}});
   for (int i = 0; i < 500; ++i) {
     loop.step();
@@ -182,19 +182,19 @@ TEST(ClosedLoopTest, TheLedgerIsTheWorkDone) {
     // one link and the coupling's damping: the link's share is the spring's alone
     const double stored = loop.out.links[0].energy_j(1);
     ASSERT_NEAR(ledger.stored_j[0], stored, 1e-15);
-    ASSERT_NEAR(loop.out.links[0].booked_j, ledger.given_j[0] + stored, 1e-15);
+    ASSERT_NEAR(loop.out.links[0].accounted_j, ledger.work_j[0] + stored, 1e-15);
   }
-  EXPECT_GT(loop.state->passivity.given_j[0], loop.given_j) << "the damping has taken some of it";
+  EXPECT_GT(loop.state->passivity.work_j[0], loop.energy_to_device_j) << "the damping has taken some of it";
 }
 
 TEST(ClosedLoopTest, BelowTheLimitTheControllerLeavesTheForceAlone) {
-  Program with = spring(990), without = spring(990);
+  HapticProgram with = spring(990), without = spring(990);
   control(with);
   ClosedLoop a(with, bare(), {{0, {0, 0, 0.01}}}), b(without, bare(), {{0, {0, 0, 0.01}}});
   for (int i = 0; i < 4000; ++i) {
     a.step();
     b.step();
-    ASSERT_TRUE(same_bits(a.out.force_n, b.out.force_n)) << i;
+    ASSERT_TRUE(bitwise_equal(a.out.force_n, b.out.force_n)) << i;
   }
   EXPECT_EQ(a.out.dissipated_j, 0);
 }
@@ -203,7 +203,7 @@ TEST(ClosedLoopTest, AboveTheLimitTheControllerKeepsThePeace) {
   for (const double delay_s : {0.0, 1e-3, 1.5e-3})
     for (const double times : {1.1, 2.0, 5.0, 10.0}) {
       const double limit = 2 * kDamping / (kPeriod + 2 * delay_s), k = times * limit;
-      Program without = spring(k), with = spring(k);
+      HapticProgram without = spring(k), with = spring(k);
       control(with, delay_s);
       EXPECT_LT(least_energy(without, k, delay_s), times > 2 ? -1000 : -2) << k << " " << delay_s;
       EXPECT_GT(least_energy(with, k, delay_s), -1.05) << k << " " << delay_s;
@@ -222,12 +222,12 @@ class Wall final : public Constraint {
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override { state.proxy = probe; }
   void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
     state.proxy = {probe.x, probe.y, probe.z < 0 ? 0 : probe.z};
-    state.status = probe.z < 0 ? Status::ok : Status::free;
+    state.status = probe.z < 0 ? LinkStatus::ok : LinkStatus::free;
   }
 };
 
-Program wall(double stiffness) {
-  Program p;
+HapticProgram wall(double stiffness) {
+  HapticProgram p;
   Link link;
   link.name = "wall";
   link.constraint = std::make_shared<Wall>();
@@ -238,9 +238,9 @@ Program wall(double stiffness) {
 }
 
 /// A hand that pushes 10 mm into a wall, and trembles: the most kinetic energy in the last half second of four.
-double unrest_j(const Program& p, HandParameters hand) {
-  hand.stiffness_n_per_m = 500;
-  hand.damping_ns_per_m = 0.2;
+double unrest_j(const HapticProgram& p, SimulatedDeviceParameters hand) {
+  hand.grip_stiffness_n_per_m = 500;
+  hand.grip_damping_ns_per_m = 0.2;
   hand.tremor_m = 2e-5;
   ClosedLoop loop(p, hand, {{0, {0, 0, 0.01}}, {0.1, {0, 0, -0.01}}});
   loop.run(3500);
@@ -256,24 +256,24 @@ TEST(ClosedLoopTest, AWallIsStillWithDelayAndEncodersToo) {
   const double push_j = 0.5 * 500 * 1e-4;  // what the hand has to spend on it
   for (const double delay_s : {0.0, 1e-3, 1.5e-3})
     for (const double step_m : {0.0, 4e-5}) {
-      HandParameters hand = bare(delay_s);
+      SimulatedDeviceParameters hand = bare(delay_s);
       hand.encoder_step_m = step_m;
       hand.friction_n = step_m > 0 ? 0.1 : 0;
-      const double safe = safe_stiffness(SimulatedHand({{}}, hand).capabilities().mechanics, kPeriod).n_per_m();
+      const double safe = safe_stiffness(SimulatedDevice({{}}, hand).capabilities().mechanics, kPeriod).min_n_per_m();
       EXPECT_LT(unrest_j(wall(0.9 * safe), hand), 0.01 * push_j) << "below the limit: " << delay_s << " " << step_m;
       const double stiff = 8 * safe;
       EXPECT_GT(unrest_j(wall(stiff), hand), 10 * push_j) << "above it, without the controller: " << delay_s << " " << step_m;
-      Program controlled = wall(stiff);
+      HapticProgram controlled = wall(stiff);
       control(controlled, delay_s);
       EXPECT_LT(unrest_j(controlled, hand), 0.01 * push_j) << "above it, with the controller: " << delay_s << " " << step_m;
     }
 }
 
 TEST(ClosedLoopTest, TheCapBringsAStiffWallBackBelowTheLimit) {
-  HandParameters hand = bare();
-  Program p = wall(20000);
+  SimulatedDeviceParameters hand = bare();
+  HapticProgram p = wall(20000);
   EXPECT_GT(unrest_j(p, hand), 1);
-  p.limits.max_stiffness_n_per_m = safe_stiffness(SimulatedHand({{}}, hand).capabilities().mechanics, kPeriod).n_per_m() * 0.9;
+  p.limits.max_stiffness_n_per_m = safe_stiffness(SimulatedDevice({{}}, hand).capabilities().mechanics, kPeriod).min_n_per_m() * 0.9;
   EXPECT_LT(unrest_j(p, hand), 1e-4);
 }
 

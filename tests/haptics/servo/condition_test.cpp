@@ -16,8 +16,8 @@
 namespace catena::haptics {
 namespace condition_test {
 
-std::shared_ptr<Program> program() {
-  auto p = std::make_shared<Program>();
+std::shared_ptr<HapticProgram> program() {
+  auto p = std::make_shared<HapticProgram>();
   p->epoch = 1;
   p->links = {test::hold_height("a", 0.004)};
   return p;
@@ -38,7 +38,7 @@ class Scripted final : public Device {
   }
   void write(const DeviceOutput& output) noexcept override {
     sent.push_back(stopped_.load() ? Vec3(0.0) : output.force_n);
-    live.push_back(output.live);
+    live.push_back(output.forces_active);
   }
   void stop() noexcept override {
     stopped_ = true;
@@ -62,16 +62,16 @@ class Scripted final : public Device {
 };
 
 struct Seen final : TickSink {
-  void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override {
+  void put(const ProbeSample& input, const HapticState& output) noexcept override {
     inputs.push_back(input);
     outputs.push_back(output);
   }
   std::vector<ProbeSample> inputs;
-  std::vector<exchange::HapticState> outputs;
+  std::vector<HapticState> outputs;
 };
 
 /// Runs so many ticks; the watchdog and real time only where a case asks.
-ServoReport run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions options = {.watchdog_s = 0}) {
+ServoStats run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions options = {.watchdog_s = 0}) {
   options.max_ticks = ticks;
   options.sink = &seen;
   seen.inputs.reserve(ticks);
@@ -80,7 +80,7 @@ ServoReport run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions op
   EXPECT_TRUE(servo.start());
   while (servo.running()) nap_ms(1);
   servo.stop();
-  return servo.report();
+  return servo.stats();
 }
 
 TEST(Condition, LateIsATickMoreThanTwoPeriodsAfterTheLast) {
@@ -90,10 +90,10 @@ TEST(Condition, LateIsATickMoreThanTwoPeriodsAfterTheLast) {
       if (k % 20 == 10) nap_ms(2 * periods);
     });
     Seen seen;
-    const ServoReport report = run(device, 100, seen, {.rate_hz = 500, .watchdog_s = 0});
+    const ServoStats report = run(device, 100, seen, {.rate_hz = 500, .watchdog_s = 0});
     std::uint64_t late = 0, after_nap = 0;
     for (std::size_t k = 1; k < 100; ++k) {
-      const bool is_late = seen.inputs[k].condition == Condition::late;
+      const bool is_late = seen.inputs[k].condition == TickCondition::late;
       EXPECT_EQ(is_late, seen.inputs[k].t_s - seen.inputs[k - 1].t_s > 0.004 + 1e-9) << k;
       late += is_late ? 1 : 0;
       if (k % 20 == 11) after_nap += is_late ? 1 : 0;
@@ -133,11 +133,11 @@ TEST(Condition, AStuckDeviceIsStoppedByTheWatchdogAndComesBack) {
   });
   self = &device;
   Seen seen;
-  const ServoReport report = run(device, 80, seen, {.rate_hz = 500, .watchdog_s = 0.06});
+  const ServoStats report = run(device, 80, seen, {.rate_hz = 500, .watchdog_s = 0.06});
   EXPECT_TRUE(stopped_meanwhile);
   EXPECT_GE(report.watchdog_trips, 1u);
-  EXPECT_EQ(seen.outputs[30].condition, Condition::watchdog) << "the tick that was stuck";
-  EXPECT_EQ(seen.outputs[30].force_state, exchange::ForceState::stopped);
+  EXPECT_EQ(seen.outputs[30].condition, TickCondition::watchdog) << "the tick that was stuck";
+  EXPECT_EQ(seen.outputs[30].force_state, ForceState::stopped);
   EXPECT_EQ(norm(device.sent[30]), 0);
   const auto pushes = [](const Vec3& force) { return norm(force) > 0; };
   EXPECT_TRUE(std::any_of(device.sent.begin(), device.sent.begin() + 30, pushes));
@@ -152,10 +152,10 @@ TEST(Condition, AStuckTickWithoutAWatchdogIsOnlyLate) {
     if (k == 10) nap_ms(40);
   });
   Seen seen;
-  const ServoReport report = run(device, 20, seen, {.rate_hz = 500, .watchdog_s = 0});
+  const ServoStats report = run(device, 20, seen, {.rate_hz = 500, .watchdog_s = 0});
   EXPECT_EQ(report.watchdog_trips, 0u);
   EXPECT_EQ(device.stops, 1) << "at the end";
-  EXPECT_EQ(seen.inputs[11].condition, Condition::late);
+  EXPECT_EQ(seen.inputs[11].condition, TickCondition::late);
 }
 
 TEST(Condition, UnpacedTicksAreNeverLateNorWatched) {
@@ -163,8 +163,8 @@ TEST(Condition, UnpacedTicksAreNeverLateNorWatched) {
     if (k == 10) nap_ms(150);
   });
   Seen seen;
-  const ServoReport report = run(device, 20, seen, {.rate_hz = 1000, .paced = false});
-  for (const ProbeSample& input : seen.inputs) EXPECT_EQ(input.condition, Condition::normal);
+  const ServoStats report = run(device, 20, seen, {.rate_hz = 1000, .paced = false});
+  for (const ProbeSample& input : seen.inputs) EXPECT_EQ(input.condition, TickCondition::normal);
   EXPECT_EQ(report.late_ticks + report.missed_deadlines + report.watchdog_trips, 0u);
   EXPECT_FALSE(report.realtime.fifo || report.realtime.locked);
   EXPECT_EQ(seen.inputs[19].t_s, 0.019);
@@ -175,13 +175,13 @@ TEST(Condition, ALostDeviceGetsNothingUntilItIsBack) {
     if (k >= 10 && k < 20) input.status = k < 15 ? DeviceStatus::lost : DeviceStatus::starting;
   });
   Seen seen;
-  const ServoReport report = run(device, 40, seen, {.paced = false});
+  const ServoStats report = run(device, 40, seen, {.paced = false});
   for (std::size_t k = 0; k < 40; ++k) {
     const bool away = k >= 10 && k < 20;
-    EXPECT_EQ(seen.inputs[k].condition == Condition::no_device, away) << k;
+    EXPECT_EQ(seen.inputs[k].condition == TickCondition::no_device, away) << k;
     if (away) {
       EXPECT_EQ(norm(device.sent[k]), 0) << k;
-      EXPECT_EQ(seen.outputs[k].force_state, exchange::ForceState::stopped);
+      EXPECT_EQ(seen.outputs[k].force_state, ForceState::stopped);
     }
   }
   EXPECT_GT(norm(device.sent[9]), 0);
@@ -205,7 +205,7 @@ TEST(Condition, AForceComesBackByTheRampHoweverLongTheDeviceWasAway) {
   ASSERT_NEAR(norm(device.sent[999]), 2, 1e-12);
   EXPECT_EQ(norm(device.sent[1999]), 0);
   for (std::size_t k = 2000; k < 2400; ++k) {
-    ASSERT_EQ(seen.outputs[k].force_state, exchange::ForceState::ramping_in) << k;
+    ASSERT_EQ(seen.outputs[k].force_state, ForceState::ramping_in) << k;
     ASSERT_NEAR(norm(device.sent[k]), 2 * static_cast<double>(k - 1999) / 500, 1e-6) << k;
   }
   EXPECT_NEAR(norm(device.sent[2599]), 2, 1e-12);
@@ -215,7 +215,7 @@ TEST(Condition, AStallBetweenTicksDoesNotShortenTheRamp) {
   // the tick after the stall is the watchdog's, the one after it is in time again
   ChainState state;
   ChainScratch scratch;
-  exchange::HapticState out;
+  HapticState out;
   auto p = program();
   p->limits.ramp_in_s = 0.5;
   ProbeSample probe;
@@ -223,15 +223,15 @@ TEST(Condition, AStallBetweenTicksDoesNotShortenTheRamp) {
     probe.t_s = 1e-3 * k;
     tick(*p, probe, state, scratch, out);
   }
-  ASSERT_EQ(out.force_state, exchange::ForceState::on);
+  ASSERT_EQ(out.force_state, ForceState::on);
   probe.t_s += 3;
-  probe.condition = exchange::Condition::watchdog;
+  probe.condition = TickCondition::watchdog;
   tick(*p, probe, state, scratch, out);
   EXPECT_EQ(norm(out.force_n), 0);
   probe.t_s += 1e-3;
-  probe.condition = exchange::Condition::normal;
+  probe.condition = TickCondition::normal;
   tick(*p, probe, state, scratch, out);
-  EXPECT_EQ(out.force_state, exchange::ForceState::ramping_in);
+  EXPECT_EQ(out.force_state, ForceState::ramping_in);
   EXPECT_NEAR(norm(out.force_n), 2 * 1e-3 / 0.5, 1e-9);
 }
 
@@ -260,7 +260,7 @@ TEST(Condition, APoseThatIsNoNumberGetsNoForceInThatTick) {
   run(device, 40, seen, {.paced = false});
   for (const std::size_t k : {10u, 20u}) {
     EXPECT_EQ(norm(device.sent[k]), 0) << k;
-    EXPECT_EQ(seen.outputs[k].links[0].status, exchange::Status::bad_probe);
+    EXPECT_EQ(seen.outputs[k].links[0].status, LinkStatus::bad_probe);
     EXPECT_GT(norm(device.sent[k - 1]), 0) << k;
   }
   EXPECT_GT(norm(device.sent[39]), 0);
@@ -275,20 +275,20 @@ TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   struct Switch final : TickSink {
     Seen* seen;
     Servo** servo;
-    void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override {
+    void put(const ProbeSample& input, const HapticState& output) noexcept override {
       seen->put(input, output);
-      if (seen->inputs.size() == 10) (*servo)->set_forces(true);
+      if (seen->inputs.size() == 10) (*servo)->set_forces_enabled(true);
     }
   } flip;
   flip.seen = &seen;
   flip.servo = &servo_at;
-  Servo servo(device, program(), {.paced = false, .max_ticks = 60, .sink = &flip, .forces = false});
+  Servo servo(device, program(), {.paced = false, .max_ticks = 60, .sink = &flip, .forces_enabled = false});
   servo_at = &servo;
-  EXPECT_FALSE(servo.forces());
+  EXPECT_FALSE(servo.forces_enabled());
   EXPECT_TRUE(servo.start());
   while (servo.running()) nap_ms(1);
   servo.stop();
-  EXPECT_TRUE(servo.forces());
+  EXPECT_TRUE(servo.forces_enabled());
   for (std::size_t k = 0; k < 60; ++k) {
     EXPECT_EQ(seen.inputs[k].forces_on, k >= 10 && k < 20) << k;
     // switched off, a force leaves by a ramp of 20 ms: ticks 20 to 39

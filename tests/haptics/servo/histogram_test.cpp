@@ -1,4 +1,4 @@
-#include "haptics/servo/report.h"
+#include "haptics/servo/servo_stats.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace catena::haptics {
 namespace histogram_test {
 
 TEST(Histogram, OfNothingIsNothing) {
-  const HistogramFigures f = Histogram().figures();
+  const HistogramSummary f = Histogram().summarize();
   EXPECT_EQ(f.count, 0u);
   EXPECT_EQ(f.p50_us, 0);
   EXPECT_EQ(f.max_us, 0);
@@ -22,7 +22,7 @@ TEST(Histogram, OneValueIsEveryQuantileWithinABucket) {
   for (std::int64_t ns = 1; ns < (std::int64_t{1} << 39); ns = ns * 5 / 4 + 1) {
     Histogram h;
     h.add(ns);
-    const HistogramFigures f = h.figures();
+    const HistogramSummary f = h.summarize();
     EXPECT_EQ(f.max_us, 1e-3 * static_cast<double>(ns));
     EXPECT_NEAR(f.p50_us, f.max_us, f.max_us / 256) << ns;
     EXPECT_EQ(f.p50_us, f.p999_us);
@@ -41,7 +41,7 @@ TEST(Histogram, QuantilesAreWithinHalfAPercentOfTheExactOnes) {
     h.add(ns);
     exact.push_back(1e-3 * static_cast<double>(ns));
   }
-  const HistogramFigures f = h.figures();
+  const HistogramSummary f = h.summarize();
   EXPECT_EQ(f.count, exact.size());
   EXPECT_NEAR(f.p50_us / quantile(exact, 0.5), 1, 0.005);
   EXPECT_NEAR(f.p99_us / quantile(exact, 0.99), 1, 0.005);
@@ -52,7 +52,7 @@ TEST(Histogram, QuantilesAreWithinHalfAPercentOfTheExactOnes) {
 TEST(Histogram, BinsHoldEveryValueOnce) {
   Histogram h;
   for (const std::int64_t ns : {5, 15, 16, 1000, 1023, 1024, 1151, 1152, 1000000}) h.add(ns);
-  const std::vector<HistogramFigures::Bin> bins = h.figures().bins;
+  const std::vector<HistogramSummary::Bin> bins = h.summarize().bins;
   const std::vector<std::pair<double, std::uint64_t>> expected = {{0, 2}, {0.016, 1}, {0.960, 2}, {1.024, 2}, {1.152, 1}, {983.040, 1}};
   ASSERT_EQ(bins.size(), expected.size());
   for (std::size_t i = 0; i < bins.size(); ++i) {
@@ -66,7 +66,7 @@ TEST(Histogram, TimesOutOfRangeAreCountedAtTheEnds) {
   h.add(-5);
   h.add(0);
   h.add(std::int64_t{1} << 62);
-  const HistogramFigures f = h.figures();
+  const HistogramSummary f = h.summarize();
   EXPECT_EQ(f.count, 3u);
   EXPECT_EQ(f.p50_us, 0);
   EXPECT_EQ(f.max_us, 1e-3 * std::ldexp(1.0, 62));
@@ -80,7 +80,7 @@ TEST(Histogram, IsReadableWhileItIsFilled) {
   });
   std::uint64_t last = 0;
   while (last < kCount) {
-    const HistogramFigures f = h.figures();
+    const HistogramSummary f = h.summarize();
     ASSERT_GE(f.count, last);
     if (f.count > 0) {
       ASSERT_NEAR(f.p99_us, 1.05, 0.07);

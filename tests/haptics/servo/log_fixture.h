@@ -6,14 +6,14 @@
 #include <thread>
 
 #include "haptics/servo/servo.h"
-#include "tests/support/log_rig.h"
+#include "tests/support/recording_fixture.h"
 
 namespace catena::test {
 
 using namespace haptics;
 using namespace haptics::log;
 
-struct Read {
+struct LogContents {
   std::vector<std::uint64_t> ticks;
   std::vector<LogGap> gaps;
   int programs = 0;
@@ -21,9 +21,9 @@ struct Read {
   std::string ending;
 };
 
-inline Read read_all(std::string_view bytes) {
-  Read out;
-  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
+inline LogContents read_all(std::string_view bytes) {
+  LogContents out;
+  auto reader = LogReader::open(make_memory_source(bytes), "x.catlog");
   if (!reader) {
     out.ending = reader.error().message;
     return out;
@@ -36,7 +36,7 @@ inline Read read_all(std::string_view bytes) {
   }
   out.clean = reader->end().has_value();
   out.damaged = reader->damaged();
-  out.ending = reader->ending();
+  out.ending = reader->end_summary();
   return out;
 }
 
@@ -47,9 +47,9 @@ inline bool rising_from_one(const std::vector<std::uint64_t>& ticks) {
 }
 
 // A device that lets the servo run as fast as the log is written, and no faster.
-class Throttled final : public Device {
+class ThrottledDevice final : public Device {
  public:
-  Throttled(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
+  ThrottledDevice(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override {
     while (reads_ > writer_.status().ticks + 3000 || reads_ >= allowed_.load(std::memory_order_acquire)) std::this_thread::yield();
@@ -59,7 +59,7 @@ class Throttled final : public Device {
     input.orientation = p.orientation;
     input.buttons = p.buttons;
     input.forces_on = p.forces_on;
-    input.status = p.condition == Condition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
+    input.status = p.condition == TickCondition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
     ++reads_;
     return input;
   }
@@ -74,13 +74,13 @@ class Throttled final : public Device {
   std::uint64_t reads_ = 0;
 };
 
-inline std::shared_ptr<const Program> numbered_program(std::uint64_t epoch) {
-  return epoch % 3 == 0 ? level_program(epoch, {"a"}) : level_program(epoch, {"b", "a"});
+inline std::shared_ptr<const HapticProgram> make_numbered_program(std::uint64_t epoch) {
+  return epoch % 3 == 0 ? make_level_program(epoch, {"a"}) : make_level_program(epoch, {"b", "a"});
 }
 
 inline Result<LogReplay> replay_numbered(LogReader& reader) {
   LogReplayHooks hooks;
-  hooks.build = [](const LogProgram& p) -> Result<std::shared_ptr<const Program>> { return numbered_program(p.epoch); };
+  hooks.build = [](const LogProgram& p) -> Result<std::shared_ptr<const HapticProgram>> { return make_numbered_program(p.epoch); };
   return replay_log(reader, hooks);
 }
 

@@ -21,21 +21,21 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
   if (path.empty()) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndRepeats";
   auto writer = LogWriter::open(path, {}, {}, fast_flush());
   ASSERT_TRUE(writer);
-  Throttled device(**writer, test::hostile_path(1000));
+  ThrottledDevice device(**writer, test::adversarial_path(1000));
   // a program for 200 ticks each, however the threads are scheduled
   constexpr std::uint64_t kTicks = 200;
-  const auto first = numbered_program(1);
+  const auto first = make_numbered_program(1);
   (*writer)->add_program(*first);
   device.allow(kTicks);
   Servo servo(device, first, {.rate_hz = 1000, .paced = false, .sink = writer->get()});
   EXPECT_TRUE(servo.start());
-  exchange::HapticState seen;
+  HapticState seen;
   for (std::uint64_t epoch = 2;; ++epoch) {
     while (seen.tick < kTicks * (epoch - 1)) {
-      servo.take(seen);
+      servo.receive(seen);
       std::this_thread::yield();
     }
-    const auto program = numbered_program(epoch);
+    const auto program = make_numbered_program(epoch);
     (*writer)->add_program(*program);
     servo.set_program(program);
     device.allow(kTicks * epoch);
@@ -64,9 +64,9 @@ TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
     ASSERT_TRUE(reader) << reader.error().message;
     const auto result = replay_numbered(*reader);
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_TRUE(result->exact()) << moment << ": tick " << result->first_differing << " " << result->difference << result->stopped;
+    EXPECT_TRUE(result->exact()) << moment << ": tick " << result->first_differing << " " << result->difference << result->stop_reason;
     EXPECT_FALSE(reader->end().has_value());
-    EXPECT_FALSE(reader->damaged()) << reader->ending();
+    EXPECT_FALSE(reader->damaged()) << reader->end_summary();
     EXPECT_EQ(result->stats.ticks, reader->last_tick());
     // a first block of 200 ticks may be cut off within
     if (moment > 4) {

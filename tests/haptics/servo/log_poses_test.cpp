@@ -13,36 +13,36 @@ LogPoses some(int k) {
   LogPoses out;
   out.tick = static_cast<std::uint64_t>(10 * k);
   out.predicted_ns = 1'000'000'007LL * k - 5;
-  for (std::size_t part = 0; part < kTrackedParts; ++part)
+  for (std::size_t part = 0; part < kTrackedPartCount; ++part)
     if ((k >> part & 1) == 0)
-      out.parts[part] = TrackedPose{{0.1 * k, -0.0, 1.7 + 0.1 * static_cast<double>(part)}, rotation_of({0.1, 0.2, 0.3})};
+      out.parts[part] = TrackedPose{{0.1 * k, -0.0, 1.7 + 0.1 * static_cast<double>(part)}, rotation_from_vector({0.1, 0.2, 0.3})};
   return out;
 }
 
 TEST(LogPoses, BytesLeadBack) {
   std::vector<LogPoses> all;
-  EXPECT_EQ(poses_from(to_bytes(all)), all);
+  EXPECT_EQ(parse_poses(to_bytes(all)), all);
   for (int k = 0; k < 16; ++k) all.push_back(some(k));
   const std::string bytes = to_bytes(all);
-  EXPECT_EQ(poses_from(bytes), all);
-  for (std::size_t cut = 0; cut < bytes.size(); cut += 7) EXPECT_FALSE(poses_from(bytes.substr(0, cut)));
-  EXPECT_FALSE(poses_from(bytes + "x"));
-  all[3][TrackedPart::gaze] = TrackedPose{Vec3(NAN), kNoRotation};
-  EXPECT_FALSE(poses_from(to_bytes(all)));
+  EXPECT_EQ(parse_poses(bytes), all);
+  for (std::size_t cut = 0; cut < bytes.size(); cut += 7) EXPECT_FALSE(parse_poses(bytes.substr(0, cut)));
+  EXPECT_FALSE(parse_poses(bytes + "x"));
+  all[3][TrackedPart::gaze] = TrackedPose{Vec3(NAN), kIdentityRotation};
+  EXPECT_FALSE(parse_poses(to_bytes(all)));
   std::string parts = to_bytes({LogPoses{}});
   parts[4 + 16] = 16;
-  EXPECT_FALSE(poses_from(parts)) << "a fifth part";
+  EXPECT_FALSE(parse_poses(parts)) << "a fifth part";
 }
 
 TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
   const test::TemporaryFolder folder;
-  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
   std::vector<LogPoses> said;
   for (const bool with : {false, true}) {
     auto writer = LogWriter::open(folder / (with ? "with" : "without"), {}, {}, fast_flush());
-    for (const Change& change : changes) (*writer)->add_program(*change.program, {});
+    for (const ProgramChange& change : changes) (*writer)->add_program(*change.program, {});
     int k = 0;
-    test::drive(changes, test::hostile_path(3000), [&](const ProbeSample& input, const exchange::HapticState& output) {
+    test::run_ticks(changes, test::adversarial_path(3000), [&](const ProbeSample& input, const HapticState& output) {
       (*writer)->put(input, output);
       if (!with || ++k % 11 != 0) return;
       said.push_back(some(k));
@@ -70,18 +70,18 @@ TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
   }
   EXPECT_EQ(without->end()->state_hash, reader->end()->state_hash);
   auto again = LogReader::open(folder / "with");
-  const auto replayed = replay_log(*again, test::hooks_for(changes));
+  const auto replayed = replay_log(*again, test::make_replay_hooks(changes));
   EXPECT_EQ(replayed->stats.ticks, 3000u);
   EXPECT_EQ(replayed->differing, 0u);
 }
 
 TEST(LogPoses, AreATable) {
   std::string line;
-  append_poses(line, some(13));  // 1101: only the left hand
+  append_poses_csv(line, some(13));  // 1101: only the left hand
   EXPECT_TRUE(line.starts_with("130,13000000086,,,,,,,,1.3,-0,1.8,")) << line;
   const auto columns = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
-  EXPECT_EQ(columns(line), columns(poses_header()));
-  EXPECT_TRUE(poses_header().starts_with("tick,predicted_ns,head_x,head_y,head_z,head_qw"));
+  EXPECT_EQ(columns(line), columns(poses_csv_header()));
+  EXPECT_TRUE(poses_csv_header().starts_with("tick,predicted_ns,head_x,head_y,head_z,head_qw"));
 }
 
 }  // namespace log_poses_test

@@ -15,14 +15,14 @@ using namespace catena::test;
 
 std::uint64_t fnv(const std::string& bytes, std::size_t at, std::size_t size) {
   Fnv1a hash;
-  hash.bytes(bytes.data() + at, size);
+  hash.add_bytes(bytes.data() + at, size);
   return hash.value;
 }
 
 struct Block {
   std::size_t at = 0;  ///< of its head
-  BlockHead head;
-  std::size_t payload() const { return at + sizeof(BlockHead); }
+  BlockHeader head;
+  std::size_t payload() const { return at + sizeof(BlockHeader); }
   std::size_t after() const { return payload() + head.length; }
 };
 
@@ -33,10 +33,10 @@ std::vector<Block> blocks_of(const std::string& bytes) {
     Block block;
     block.at = at;
     std::memcpy(&block.head, bytes.data() + at, sizeof block.head);
-    EXPECT_EQ(block.head.mark, BlockHead::kBlockMark);
+    EXPECT_EQ(block.head.magic, BlockHeader::kBlockMagic);
     EXPECT_EQ(block.head.sequence, blocks.size());
     EXPECT_EQ(block.head.payload_hash, fnv(bytes, block.payload(), block.head.length));
-    EXPECT_EQ(block.head.head_hash, fnv(bytes, at, 32));
+    EXPECT_EQ(block.head.header_hash, fnv(bytes, at, 32));
     blocks.push_back(block);
     at = block.after();
   }
@@ -44,10 +44,10 @@ std::vector<Block> blocks_of(const std::string& bytes) {
 }
 
 void seal(std::string& bytes, const Block& block) {
-  BlockHead head = block.head;
+  BlockHeader head = block.head;
   head.payload_hash = fnv(bytes, block.payload(), block.head.length);
   std::memcpy(bytes.data() + block.at, &head, sizeof head);
-  head.head_hash = fnv(bytes, block.at, 32);
+  head.header_hash = fnv(bytes, block.at, 32);
   std::memcpy(bytes.data() + block.at, &head, sizeof head);
 }
 
@@ -55,13 +55,14 @@ BlockType type_of(const Block& block) { return static_cast<BlockType>(block.head
 
 TEST(Log, HoldsEveryBitOfEveryTick) {
   const test::TemporaryFolder folder;
-  const std::vector<Change> changes{{1, test::level_program(7, {"a", "b"}), {}}, {301, test::level_program(9, {"b", "c", "a"}), "text"}};
-  const auto path = test::hostile_path(900);
+  const std::vector<ProgramChange> changes{{1, test::make_level_program(7, {"a", "b"}), {}},
+                                           {301, test::make_level_program(9, {"b", "c", "a"}), "text"}};
+  const auto path = test::adversarial_path(900);
   std::uint64_t hash = 0;
   {
     auto writer = LogWriter::open(folder / "l.catlog", {"s.json", "/w", "scene", {"f=g"}, "falcon", "0.1.0", 2000, 77, "a trial"});
     ASSERT_TRUE(writer) << writer.error().message;
-    hash = test::record(**writer, changes, path);
+    hash = test::record_ticks(**writer, changes, path);
     const Outcome done = (*writer)->finish();
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ((*writer)->status().ticks, 900u);
@@ -78,7 +79,7 @@ TEST(Log, HoldsEveryBitOfEveryTick) {
   EXPECT_EQ(reader->header().rate_hz, 2000);
   EXPECT_EQ(reader->header().started_unix_ns, 77);
   EXPECT_EQ(reader->header().about, "a trial");
-  test::drive(changes, path, [&](const ProbeSample& input, const exchange::HapticState& output) {
+  test::run_ticks(changes, path, [&](const ProbeSample& input, const HapticState& output) {
     LogEvent event = reader->next();
     if (output.tick == 1 || output.tick == 301) {
       ASSERT_EQ(event, LogEvent::program) << output.tick;
@@ -89,9 +90,9 @@ TEST(Log, HoldsEveryBitOfEveryTick) {
     }
     ASSERT_EQ(event, LogEvent::tick);
     const LogTick& got = reader->tick();
-    Words wanted{}, is{};
-    pack(input, output, wanted.data());
-    pack(got.input, got.output, is.data());
+    RecordWords wanted{}, is{};
+    pack_tick(input, output, wanted.data());
+    pack_tick(got.input, got.output, is.data());
     EXPECT_EQ(wanted, is) << output.tick;
     EXPECT_EQ(got.output.tick, output.tick);
     EXPECT_EQ(got.output.program_epoch, output.program_epoch);
@@ -120,13 +121,13 @@ TEST(Log, HoldsEveryBitOfEveryTick) {
   ASSERT_TRUE(reader->end());
   EXPECT_EQ(reader->end()->state_hash, hash);
   EXPECT_EQ(reader->end()->ticks, 900u);
-  EXPECT_EQ(reader->ending(), "ends cleanly with tick 900");
+  EXPECT_EQ(reader->end_summary(), "ends cleanly with tick 900");
 }
 
 TEST(Log, EveryFieldOfARecordComesBack) {
   // every word is different, so that two that are swapped show
   LogTick tick;
-  exchange::HapticState& out = tick.output;
+  HapticState& out = tick.output;
   double next = 1;
   const auto vector = [&](Vec3& v) {
     for (int a = 0; a < 3; ++a) v[a] = next++;
@@ -138,7 +139,7 @@ TEST(Log, EveryFieldOfARecordComesBack) {
   vector(tick.input.position);
   turn(tick.input.orientation);
   tick.input.buttons = 0x80000001u;
-  tick.input.condition = Condition::watchdog;
+  tick.input.condition = TickCondition::watchdog;
   tick.input.forces_on = false;
   out.force_state = ForceState::ramping_out;
   out.mode = 5;
@@ -147,29 +148,30 @@ TEST(Log, EveryFieldOfARecordComesBack) {
   out.missed_deadlines = ~std::uint64_t{0};
   for (double* v : {&out.period_us, &out.compute_us, &out.device_us}) *v = next++;
   out.link_count = kMaxLinks;
-  for (exchange::LinkReport& link : out.links) {
+  for (LinkReport& link : out.links) {
     for (Vec3* v : {&link.proxy, &link.force_n, &link.torque_nm}) vector(*v);
     turn(link.orientation);
-    for (double* v : {&link.residual, &link.weight, &link.stiffness_n_per_m, &link.gap, &link.booked_j, &link.leaving}) *v = next++;
+    for (double* v : {&link.residual, &link.weight, &link.stiffness_n_per_m, &link.gap, &link.accounted_j, &link.release_ratio})
+      *v = next++;
     link.evaluations = -static_cast<std::int32_t>(next);
-    link.status = exchange::Status::boundary;
+    link.status = LinkStatus::boundary;
     link.active = true;
-    link.left = next > 100;
+    link.released = next > 100;
   }
-  out.widget_count = exchange::kMaxWidgets;
-  for (exchange::WidgetReport& widget : out.widgets) {
+  out.widget_count = kMaxWidgets;
+  for (WidgetReport& widget : out.widgets) {
     for (Vec3& v : widget.pose.points) vector(v);
     turn(widget.pose.orientation);
     widget.value = next++;
     widget.revision = 0xf0000000u + static_cast<std::uint32_t>(next);
-    widget.mode = exchange::WidgetMode::drag;
+    widget.mode = WidgetMode::drag;
     widget.handle = static_cast<std::int8_t>(&widget - out.widgets.data() - 1);
-    widget.held = static_cast<std::uint8_t>(&widget - out.widgets.data());
+    widget.active_planes = static_cast<std::uint8_t>(&widget - out.widgets.data());
   }
-  Words words{};
-  ASSERT_EQ(pack(tick.input, out, words.data()), kMaxWords);
+  RecordWords words{};
+  ASSERT_EQ(pack_tick(tick.input, out, words.data()), kMaxRecordWords);
   LogTick got;
-  ASSERT_TRUE(unpack(words, shape_of(out), got));
+  ASSERT_TRUE(unpack_tick(words, record_layout(out), got));
   EXPECT_EQ(got.input.t_s, tick.input.t_s);
   EXPECT_EQ(got.input.position, tick.input.position);
   EXPECT_EQ(got.input.orientation, tick.input.orientation);
@@ -191,7 +193,7 @@ TEST(Log, EveryFieldOfARecordComesBack) {
   EXPECT_EQ(got.output.compute_us, out.compute_us);
   EXPECT_EQ(got.output.device_us, out.device_us);
   for (std::size_t i = 0; i < kMaxLinks; ++i) {
-    const exchange::LinkReport &a = got.output.links[i], &b = out.links[i];
+    const LinkReport &a = got.output.links[i], &b = out.links[i];
     EXPECT_EQ(a.proxy, b.proxy);
     EXPECT_EQ(a.force_n, b.force_n);
     EXPECT_EQ(a.torque_nm, b.torque_nm);
@@ -200,62 +202,62 @@ TEST(Log, EveryFieldOfARecordComesBack) {
     EXPECT_EQ(a.weight, b.weight);
     EXPECT_EQ(a.stiffness_n_per_m, b.stiffness_n_per_m);
     EXPECT_EQ(a.gap, b.gap);
-    EXPECT_EQ(a.booked_j, b.booked_j);
-    EXPECT_EQ(a.leaving, b.leaving);
+    EXPECT_EQ(a.accounted_j, b.accounted_j);
+    EXPECT_EQ(a.release_ratio, b.release_ratio);
     EXPECT_EQ(a.evaluations, b.evaluations);
     EXPECT_EQ(a.status, b.status);
     EXPECT_EQ(a.active, b.active);
-    EXPECT_EQ(a.left, b.left);
+    EXPECT_EQ(a.released, b.released);
   }
-  EXPECT_EQ(got.output.widget_count, exchange::kMaxWidgets);
-  for (std::size_t i = 0; i < exchange::kMaxWidgets; ++i) {
-    const exchange::WidgetReport &a = got.output.widgets[i], &b = out.widgets[i];
+  EXPECT_EQ(got.output.widget_count, kMaxWidgets);
+  for (std::size_t i = 0; i < kMaxWidgets; ++i) {
+    const WidgetReport &a = got.output.widgets[i], &b = out.widgets[i];
     EXPECT_EQ(a.pose, b.pose);
     EXPECT_EQ(a.value, b.value);
     EXPECT_EQ(a.revision, b.revision);
     EXPECT_EQ(a.mode, b.mode);
     EXPECT_EQ(a.handle, b.handle);
-    EXPECT_EQ(a.held, b.held);
+    EXPECT_EQ(a.active_planes, b.active_planes);
   }
 }
 
 TEST(Log, ProgramsComeBackWithAllTheirNumbers) {
-  Program program = *test::level_program(42, {"a", "bee"});
+  HapticProgram program = *test::make_level_program(42, {"a", "bee"});
   double next = 1;
   for (double* v : {&program.limits.max_stiffness_n_per_m, &program.limits.max_rotational_stiffness_nm_per_rad, &program.limits.max_force_n,
                     &program.limits.max_torque_nm, &program.limits.slew_n_per_s, &program.limits.ramp_in_s, &program.limits.ramp_out_s,
                     &program.limits.damping_ns_per_m, &program.coupling.stiffness_n_per_m, &program.coupling.damping_ns_per_m,
-                    &program.coupling.max_force_n, &program.coupling.ramp_s, &program.metres_per_unit})
+                    &program.coupling.max_force_n, &program.coupling.ramp_s, &program.meters_per_unit})
     *v = next++;
-  program.limits.late_ticks = 11;
-  program.limits.passivity = true;
+  program.limits.max_late_ticks = 11;
+  program.limits.passivity_control = true;
   program.coupling.method = CouplingMethod::closest;
   program.workspace_origin = {21, 22, 23};
   program.workspace_rotation = Mat3(Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9));
   program.modes = {{"m", {0}, {}}, {"n", {1}, {}}};
-  const std::string bytes = to_bytes(facts_of(program, "text"));
-  const auto got = program_from(bytes);
+  const std::string bytes = to_bytes(to_log_program(program, "text"));
+  const auto got = parse_program(bytes);
   ASSERT_TRUE(got);
   EXPECT_EQ(to_bytes(*got), bytes);
   EXPECT_EQ(got->epoch, 42u);
   EXPECT_EQ(got->limits.max_rotational_stiffness_nm_per_rad, 2);
   EXPECT_EQ(got->limits.damping_ns_per_m, 8);
-  EXPECT_EQ(got->limits.late_ticks, 11);
-  EXPECT_TRUE(got->limits.passivity);
+  EXPECT_EQ(got->limits.max_late_ticks, 11);
+  EXPECT_TRUE(got->limits.passivity_control);
   EXPECT_EQ(got->coupling.stiffness_n_per_m, 9);
   EXPECT_EQ(got->coupling.ramp_s, 12);
   EXPECT_EQ(got->coupling.method, CouplingMethod::closest);
-  EXPECT_EQ(got->metres_per_unit, 13);
+  EXPECT_EQ(got->meters_per_unit, 13);
   EXPECT_EQ(got->workspace_origin, program.workspace_origin);
   EXPECT_EQ(got->workspace_rotation, program.workspace_rotation);
   EXPECT_EQ(got->link_names(), (std::vector<std::string>{"a", "bee"}));
-  EXPECT_EQ(got->links[1].recipe, 2u);
+  EXPECT_EQ(got->links[1].spec_hash, 2u);
   EXPECT_EQ(got->modes, (std::vector<std::string>{"m", "n"}));
-  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(program_from(std::string_view(bytes).substr(0, n))) << n;
+  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(parse_program(std::string_view(bytes).substr(0, n))) << n;
 }
 
 TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
-  const std::string bytes = test::small_log();
+  const std::string bytes = test::make_small_log();
   const std::vector<Block> blocks = blocks_of(bytes);
   ASSERT_EQ(type_of(blocks.back()), BlockType::end);
   ASSERT_EQ(blocks.size(), 12u);
@@ -274,7 +276,7 @@ TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
     // a copy of its own, so that a read past the end is seen
     const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    const Read read = read_all({cut.data(), cut.size()});
+    const LogContents read = read_all({cut.data(), cut.size()});
     ASSERT_EQ(read.opened, size >= blocks[0].after()) << size;
     if (!read.opened) {
       EXPECT_NE(read.ending.find("x.catlog: "), std::string::npos);
@@ -292,7 +294,7 @@ TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
 }
 
 TEST(Log, ADamagedBlockCostsItsOwnTicksAndSaysWhich) {
-  const std::string bytes = test::small_log();
+  const std::string bytes = test::make_small_log();
   for (const Block& block : blocks_of(bytes)) {
     if (type_of(block) != BlockType::ticks) continue;
     std::uint64_t first = 0;
@@ -303,39 +305,39 @@ TEST(Log, ADamagedBlockCostsItsOwnTicksAndSaysWhich) {
     for (const std::size_t at : {block.payload() + 30, block.at + 16, block.at, block.at + 4}) {
       std::string broken = bytes;
       broken[at] = static_cast<char>(broken[at] ^ 0x20);
-      const Read read = read_all(broken);
+      const LogContents read = read_all(broken);
       ASSERT_TRUE(read.opened);
       EXPECT_TRUE(read.damaged);
       EXPECT_TRUE(read.clean);
       ASSERT_EQ(read.gaps.size(), 1u) << first;
       EXPECT_EQ(read.gaps[0].first_tick, first);
       EXPECT_EQ(read.gaps[0].ticks, count);
-      EXPECT_EQ(read.gaps[0].why, LogGap::Why::damaged);
+      EXPECT_EQ(read.gaps[0].cause, LogGap::Cause::damaged);
       EXPECT_EQ(read.ticks.size(), 60 - count);
     }
   }
 }
 
 TEST(Log, ADamagedProgramIsUnknownAndReplayStopsThere) {
-  std::string bytes = test::small_log();
+  std::string bytes = test::make_small_log();
   const std::vector<Block> blocks = blocks_of(bytes);
   const Block& second = blocks[3];
   ASSERT_EQ(type_of(second), BlockType::program);
   bytes[second.payload() + 3] ^= 1;
-  const Read read = read_all(bytes);
+  const LogContents read = read_all(bytes);
   EXPECT_EQ(read.ticks.size(), 60u);
   EXPECT_TRUE(read.damaged);
-  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
-  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
-  const auto result = replay_log(*reader, test::hooks_for(changes));
+  auto reader = LogReader::open(make_memory_source(bytes), "x.catlog");
+  const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
+  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_EQ(result->stats.ticks, 10u);
   EXPECT_EQ(result->differing, 0u);
-  EXPECT_NE(result->stopped.find("tick 11"), std::string::npos) << result->stopped;
+  EXPECT_NE(result->stop_reason.find("tick 11"), std::string::npos) << result->stop_reason;
 }
 
 TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
-  std::string bytes = test::small_log();
+  std::string bytes = test::make_small_log();
   const auto message = [](const std::string& text) { return read_all(text).ending; };
   EXPECT_NE(message("").find("no recording"), std::string::npos);
   EXPECT_NE(message("{\"chain\": []} and more").find(".catlog file was expected"), std::string::npos);
@@ -348,7 +350,7 @@ TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
   std::swap(other[12], other[15]);
   EXPECT_NE(message(other).find("byte order"), std::string::npos);
   other = bytes;
-  other[kPreambleBytes + sizeof(BlockHead) + 5] ^= 1;
+  other[kPreambleBytes + sizeof(BlockHeader) + 5] ^= 1;
   EXPECT_NE(message(other).find("header is damaged"), std::string::npos);
   EXPECT_FALSE(LogReader::open("/nowhere/none.catlog"));
   EXPECT_FALSE(LogReader::open("/tmp"));
@@ -356,30 +358,30 @@ TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
 
 TEST(Log, ReplayIsExactOverEveryKindOfTickAndChange) {
   const test::TemporaryFolder folder;
-  const std::vector<Change> changes{{1, test::level_program(1, {"a", "b"}), {}},
-                                    {300, test::level_program(2, {"b", "a"}), {}},
-                                    {301, test::level_program(3, {"c"}), {}},
-                                    {1999, test::level_program(4, {}), {}},
-                                    {2400, test::level_program(5, {"a", "b", "c", "d", "e", "f", "g", "h"}), {}}};
+  const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a", "b"}), {}},
+                                           {300, test::make_level_program(2, {"b", "a"}), {}},
+                                           {301, test::make_level_program(3, {"c"}), {}},
+                                           {1999, test::make_level_program(4, {}), {}},
+                                           {2400, test::make_level_program(5, {"a", "b", "c", "d", "e", "f", "g", "h"}), {}}};
   auto writer = LogWriter::open(folder / "l.catlog", {});
-  const std::uint64_t hash = test::record(**writer, changes, test::hostile_path(3000));
+  const std::uint64_t hash = test::record_ticks(**writer, changes, test::adversarial_path(3000));
   ASSERT_TRUE((*writer)->finish());
   auto reader = LogReader::open(folder / "l.catlog");
   ASSERT_TRUE(reader);
-  const auto result = replay_log(*reader, test::hooks_for(changes));
+  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_EQ(result->stats.ticks, 3000u);
-  EXPECT_TRUE(result->exact()) << result->difference << result->stopped;
+  EXPECT_TRUE(result->exact()) << result->difference << result->stop_reason;
   EXPECT_EQ(result->stats.state_hash, hash);
 }
 
 TEST(Log, OneBitOfOneForceIsFoundAtItsTick) {
   const test::TemporaryFolder folder;
-  auto program = test::level_program(1, {"a"});
-  const std::vector<Change> changes{{1, program, {}}};
+  auto program = test::make_level_program(1, {"a"});
+  const std::vector<ProgramChange> changes{{1, program, {}}};
   auto writer = LogWriter::open(folder / "l.catlog", {});
-  test::drive(changes, test::hostile_path(500), [&](const ProbeSample& input, const exchange::HapticState& output) {
-    exchange::HapticState state = output;
+  test::run_ticks(changes, test::adversarial_path(500), [&](const ProbeSample& input, const HapticState& output) {
+    HapticState state = output;
     if (state.tick == 123) {
       auto* bits = reinterpret_cast<unsigned char*>(&state.force_n.z);
       bits[0] ^= 1;
@@ -389,7 +391,7 @@ TEST(Log, OneBitOfOneForceIsFoundAtItsTick) {
   });
   ASSERT_TRUE((*writer)->finish());
   auto reader = LogReader::open(folder / "l.catlog");
-  const auto result = replay_log(*reader, test::hooks_for(changes));
+  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
   ASSERT_TRUE(result);
   EXPECT_FALSE(result->exact());
   EXPECT_EQ(result->differing, 1u);
@@ -400,10 +402,10 @@ TEST(Log, OneBitOfOneForceIsFoundAtItsTick) {
 
 TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   // in the file itself, with the hashes made good: what the tick gave must differ, what the servo measured need not
-  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
   const test::TemporaryFolder folder;
   auto writer = LogWriter::open(folder / "l.catlog", {});
-  test::record(**writer, changes, test::hostile_path(3));
+  test::record_ticks(**writer, changes, test::adversarial_path(3));
   ASSERT_TRUE((*writer)->finish());
   const std::string bytes = test::read_file(folder / "l.catlog");
   const std::vector<Block> blocks = blocks_of(bytes);
@@ -413,14 +415,14 @@ TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   const std::size_t mask_at = ticks.payload() + 28;
   std::size_t word_at = mask_at + 6;
   int found = 0, words = 0;
-  for (int k = 0; k < words_of({1, 0}); ++k) {
+  for (int k = 0; k < record_word_count({1, 0}); ++k) {
     if ((bytes[mask_at + static_cast<std::size_t>(k) / 8] >> (k % 8) & 1) == 0) continue;
     std::string turned = bytes;
     turned[word_at] = static_cast<char>(turned[word_at] ^ 1);
     seal(turned, ticks);
     word_at += 8;
-    auto reader = LogReader::open(from_memory(turned), "x.catlog");
-    const auto result = replay_log(*reader, test::hooks_for(changes));
+    auto reader = LogReader::open(make_memory_source(turned), "x.catlog");
+    const auto result = replay_log(*reader, test::make_replay_hooks(changes));
     ASSERT_TRUE(result);
     ASSERT_EQ(result->stats.ticks, 3u) << k;
     const bool measured = k >= 21 && k < 24, input = k < 9;

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "engine/base/memory_limit.h"
-#include "haptics/servo/log/tick_blocks.h"
+#include "haptics/servo/log/tick_block_writer.h"
 #include "tests/haptics/servo/log_fixture.h"
 
 namespace log_writer_test {
@@ -18,27 +18,27 @@ using namespace catena::test;
 
 TEST(LogWriter, AFullRingLeavesAGapThatIsToldAndStopsTheReplay) {
   const test::TemporaryFolder folder;
-  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
   LogOptions options;
   options.ring_bytes = 32768;  // 87 ticks of one link
   options.flush_s = 1000;
   auto writer = LogWriter::open(folder / "l.catlog", {}, {}, options);
-  test::record(**writer, changes, test::hostile_path(1000));
+  test::record_ticks(**writer, changes, test::adversarial_path(1000));
   const LogStatus status = (*writer)->status();
   EXPECT_EQ(status.lost, 1000u - 87u);
   ASSERT_TRUE((*writer)->finish());
-  const Read read = read_all(test::read_file(folder / "l.catlog"));
+  const LogContents read = read_all(test::read_file(folder / "l.catlog"));
   ASSERT_EQ(read.gaps.size(), 1u);
   EXPECT_EQ(read.gaps[0].first_tick, 88u);
   EXPECT_EQ(read.gaps[0].ticks, 913u);
-  EXPECT_EQ(read.gaps[0].why, LogGap::Why::not_kept_up);
+  EXPECT_EQ(read.gaps[0].cause, LogGap::Cause::overrun);
   EXPECT_TRUE(read.clean);
   EXPECT_FALSE(read.damaged);
   auto reader = LogReader::open(folder / "l.catlog");
-  const auto result = replay_log(*reader, test::hooks_for(changes));
+  const auto result = replay_log(*reader, test::make_replay_hooks(changes));
   EXPECT_EQ(result->stats.ticks, 87u);
   EXPECT_EQ(result->differing, 0u);
-  EXPECT_EQ(result->stopped, "ticks 88 to 1000 are lost: the disk did not keep up");
+  EXPECT_EQ(result->stop_reason, "ticks 88 to 1000 are lost: the disk did not keep up");
 }
 
 // The limit on the size of a file stands for a full disk.
@@ -70,9 +70,9 @@ TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
     const SmallDisk disk(20000);
     auto writer = LogWriter::open(folder / "l.catlog", {}, {}, fast_flush());
     ASSERT_TRUE(writer);
-    const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+    const std::vector<ProgramChange> changes{{1, test::make_level_program(1, {"a"}), {}}};
     (*writer)->add_program(*changes[0].program);
-    test::drive(changes, test::hostile_path(400), [&](const ProbeSample& input, const exchange::HapticState& output) {
+    test::run_ticks(changes, test::adversarial_path(400), [&](const ProbeSample& input, const HapticState& output) {
       (*writer)->put(input, output);
       if (output.tick % 20 != 0) return;
       while (!(*writer)->status().failed && (*writer)->status().ticks < output.tick) std::this_thread::yield();
@@ -88,7 +88,7 @@ TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
       EXPECT_NE(done.error().message.find(part), std::string::npos) << done.error().message;
   }
   // what was complete is there
-  const Read read = read_all(test::read_file(folder / "l.catlog"));
+  const LogContents read = read_all(test::read_file(folder / "l.catlog"));
   EXPECT_GE(read.ticks.size(), 20u);
   EXPECT_LT(read.ticks.size(), 400u);
   EXPECT_TRUE(rising_from_one(read.ticks));
@@ -113,7 +113,7 @@ TEST(LogWriter, ReplacesAFileButNotAnInputAndNotOneThatIsBeingWritten) {
   const auto second = LogWriter::open(folder / "l.catlog", {});
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message.find("another program is recording"), std::string::npos) << second.error().message;
-  test::record(**first, {{1, test::level_program(1, {"a"}), {}}}, test::hostile_path(10));
+  test::record_ticks(**first, {{1, test::make_level_program(1, {"a"}), {}}}, test::adversarial_path(10));
   ASSERT_TRUE((*first)->finish());
   EXPECT_TRUE(read_all(test::read_file(folder / "l.catlog")).clean);
   test::write_file(folder / "scene.json", "{}");
@@ -124,11 +124,11 @@ TEST(LogWriter, ReplacesAFileButNotAnInputAndNotOneThatIsBeingWritten) {
 TEST(LogWriter, PutAllocatesNothing) {
   const test::TemporaryFolder folder;
   auto writer = LogWriter::open(folder / "l.catlog", {});
-  const auto program = test::level_program(1, {"a", "b"});
+  const auto program = test::make_level_program(1, {"a", "b"});
   (*writer)->add_program(*program);
   std::uint64_t allocations = 0;
-  test::drive({{1, program, {}}}, test::hostile_path(100), [&](const ProbeSample& input, const exchange::HapticState& output) {
-    const AllocationGuard guard;
+  test::run_ticks({{1, program, {}}}, test::adversarial_path(100), [&](const ProbeSample& input, const HapticState& output) {
+    const AllocationCounter guard;
     (*writer)->put(input, output);
     allocations += guard.count();
   });
@@ -139,19 +139,19 @@ TEST(LogWriter, AProgramThatNobodyAddedIsSaidToBeUnknown) {
   const test::TemporaryFolder folder;
   {
     auto writer = LogWriter::open(folder / "l.catlog", {});
-    test::drive({{1, test::level_program(8, {"a", "b"}), {}}}, test::hostile_path(5),
-                [&](const ProbeSample& input, const exchange::HapticState& output) { (*writer)->put(input, output); });
+    test::run_ticks({{1, test::make_level_program(8, {"a", "b"}), {}}}, test::adversarial_path(5),
+                    [&](const ProbeSample& input, const HapticState& output) { (*writer)->put(input, output); });
   }
   auto reader = LogReader::open(folder / "l.catlog");
   EXPECT_EQ(reader->next(), LogEvent::program);
-  EXPECT_FALSE(reader->program().known);
+  EXPECT_FALSE(reader->program().is_known);
   EXPECT_EQ(reader->program().link_names(), (std::vector<std::string>{"link_1", "link_2"}));
   EXPECT_EQ(reader->next(), LogEvent::tick);
   EXPECT_FALSE(reader->damaged());
 }
 
 TEST(LogRing, PassesMessagesBetweenTwoThreadsInOrder) {
-  Ring ring(1024);
+  SpscRing ring(1024);
   std::uint64_t refused = 0;
   std::thread reader([&] {
     std::uint64_t wanted = 0, message[5];
@@ -160,14 +160,14 @@ TEST(LogRing, PassesMessagesBetweenTwoThreadsInOrder) {
         std::this_thread::yield();
         continue;
       }
-      ring.take(message);
+      ring.pop(message);
       for (std::uint64_t k = 0; k < 5; ++k) ASSERT_EQ(message[k], wanted * 5 + k);
       ++wanted;
     }
   });
   for (std::uint64_t i = 0; i < 20000; ++i) {
     const std::uint64_t message[5] = {i * 5, i * 5 + 1, i * 5 + 2, i * 5 + 3, i * 5 + 4};
-    while (!ring.put(message)) {
+    while (!ring.try_push(message)) {
       ++refused;
       std::this_thread::yield();
     }
@@ -185,18 +185,18 @@ TEST(LogSoak, ServoProgramsAndWriterTogether) {
   constexpr std::uint64_t kTicks = 100000;
 #endif
   auto writer = LogWriter::open(folder / "l.catlog", {}, {}, fast_flush());
-  Throttled device(**writer, test::hostile_path(1000));
-  const auto first = numbered_program(1);
+  ThrottledDevice device(**writer, test::adversarial_path(1000));
+  const auto first = make_numbered_program(1);
   (*writer)->add_program(*first);
   Servo servo(device, first, {.rate_hz = 1000, .paced = false, .max_ticks = kTicks, .sink = writer->get()});
   EXPECT_TRUE(servo.start());
-  exchange::HapticState seen;
+  HapticState seen;
   for (std::uint64_t epoch = 2; servo.running(); ++epoch) {
-    const auto program = numbered_program(epoch);
+    const auto program = make_numbered_program(epoch);
     (*writer)->add_program(*program);
     servo.set_program(program);
     while (seen.program_epoch != epoch && servo.running()) {
-      servo.take(seen);
+      servo.receive(seen);
       std::this_thread::yield();
     }
   }
@@ -207,7 +207,7 @@ TEST(LogSoak, ServoProgramsAndWriterTogether) {
   const auto result = replay_numbered(*reader);
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_EQ(result->stats.ticks, kTicks);
-  EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stopped;
+  EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stop_reason;
   ASSERT_TRUE(reader->end());
   EXPECT_EQ(reader->end()->state_hash, servo.state_hash());
 }

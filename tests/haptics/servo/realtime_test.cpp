@@ -58,11 +58,12 @@ TEST(Realtime, WithoutPrivilegesItSaysWhatItDidWithoutAndHowToHaveIt) {
 
 TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
   NullDevice device;
-  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5, .realtime = {.fifo = false, .lock_memory = false, .cpu = 100000}});
+  Servo servo(device, std::make_shared<HapticProgram>(),
+              {.max_ticks = 5, .realtime = {.fifo = false, .lock_memory = false, .cpu = 100000}});
   EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
-  const ServoReport r = servo.report();
+  const ServoStats r = servo.stats();
   EXPECT_EQ(r.ticks, 5u);
   EXPECT_EQ(r.realtime.cpu, -1);
   ASSERT_EQ(r.realtime.notes.size(), 1u);
@@ -71,9 +72,9 @@ TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
 
 TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
   NullDevice device;
-  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5});
+  Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 5});
   EXPECT_TRUE(servo.start());
-  const RealtimeReport r = servo.report().realtime;
+  const RealtimeReport r = servo.stats().realtime;
   servo.stop();
   const std::size_t refused = (r.fifo ? 0u : 1u) + (r.locked ? 0u : 1u);
   EXPECT_EQ(r.notes.size(), refused);
@@ -99,13 +100,13 @@ class Slow final : public Device {
 
 TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
   Slow device;
-  Servo servo(device, std::make_shared<Program>(), {.rate_hz = 10000, .max_ticks = 1010});
+  Servo servo(device, std::make_shared<HapticProgram>(), {.rate_hz = 10000, .max_ticks = 1010});
   EXPECT_TRUE(servo.start());
-  const bool granted = servo.report().realtime.fifo;
+  const bool granted = servo.stats().realtime.fifo;
   while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   servo.stop();
   if (!granted) GTEST_SKIP() << "no fixed priority here";
-  const ServoReport r = servo.report();
+  const ServoStats r = servo.stats();
   EXPECT_GE(r.missed_deadlines, 1009u);
   EXPECT_FALSE(r.realtime.fifo);
   ASSERT_FALSE(r.realtime.notes.empty());
@@ -138,12 +139,12 @@ TEST(Realtime, TheWatchdogIsNotBoundToTheCoreOfTheThreadThatItWatches) {
   int core = 0;
   while (!CPU_ISSET(static_cast<unsigned>(core), &allowed)) ++core;
   Stuck device;
-  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 2, .realtime = {.fifo = false, .lock_memory = false, .cpu = core}});
+  Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 2, .realtime = {.fifo = false, .lock_memory = false, .cpu = core}});
   EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   servo.stop();
-  EXPECT_EQ(servo.report().realtime.cpu, core);
-  EXPECT_GE(servo.report().watchdog_trips, 1u);
+  EXPECT_EQ(servo.stats().realtime.cpu, core);
+  EXPECT_GE(servo.stats().watchdog_trips, 1u);
   EXPECT_EQ(device.cores, CPU_COUNT(&allowed));
 }
 
@@ -166,7 +167,7 @@ TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
 
 TEST(Realtime, DISABLED_RunsAtAFixedPriorityForEver) {
   std::vector<std::string> notes;
-  if (!take_fifo(1, notes)) _exit(77);
+  if (!acquire_fifo_priority(1, notes)) _exit(77);
   limit_realtime_run(0.05, 0.2);
   std::signal(SIGXCPU, std::getenv("CATENA_IGNORES_XCPU") != nullptr ? SIG_IGN : SIG_DFL);
   for (std::atomic<int> n{0};; ++n) {
@@ -188,15 +189,15 @@ TEST(Realtime, ATickThatNeverEndsIsEnded) {
 
 TEST(Realtime, AServoWithAFixedPriorityLimitsItsRun) {
   NullDevice device;
-  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5});
+  Servo servo(device, std::make_shared<HapticProgram>(), {.max_ticks = 5});
   ASSERT_TRUE(servo.start());
   while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   servo.stop();
   rlimit limit{};
   ASSERT_EQ(getrlimit(RLIMIT_RTTIME, &limit), 0);
-  if (!servo.report().realtime.fifo) GTEST_SKIP() << "a fixed priority is not permitted here";
-  EXPECT_LE(limit.rlim_cur, static_cast<rlim_t>(1e6 * kRealtimeRunS));
-  EXPECT_LE(limit.rlim_max, static_cast<rlim_t>(1e6 * kRealtimeEndS));
+  if (!servo.stats().realtime.fifo) GTEST_SKIP() << "a fixed priority is not permitted here";
+  EXPECT_LE(limit.rlim_cur, static_cast<rlim_t>(1e6 * kRealtimeSoftLimit_s));
+  EXPECT_LE(limit.rlim_max, static_cast<rlim_t>(1e6 * kRealtimeHardLimit_s));
 }
 
 }  // namespace realtime_test

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "haptics/device/recorded_path.h"
-#include "haptics/device/simulated_hand.h"
+#include "haptics/device/simulated_device.h"
 #include "haptics/servo/replay.h"
 #include "tests/support/simple_links.h"
 
@@ -14,8 +14,8 @@ namespace servo_test {
 using namespace catena;
 using namespace catena::haptics;
 
-std::shared_ptr<Program> program_at(double height, std::uint64_t epoch) {
-  auto program = std::make_shared<Program>();
+std::shared_ptr<HapticProgram> program_at(double height, std::uint64_t epoch) {
+  auto program = std::make_shared<HapticProgram>();
   program->epoch = epoch;
   program->links = {test::hold_height("a", height)};
   program->coupling.damping_ns_per_m = 1.5;
@@ -32,14 +32,14 @@ TEST(Servo, ThreadAndReplayGiveOneHash) {
     path.push_back({t, p, 0});
   }
   const auto program = program_at(0.5, 1);
-  const ReplayStats stats = replay(*program, path, [](const exchange::HapticState&) { return true; });
+  const ReplayStats stats = replay(*program, path, [](const HapticState&) { return true; });
   RecordedPath device(samples);
   Servo servo(device, program, {.rate_hz = 1000, .paced = false, .max_ticks = 5000});
   EXPECT_TRUE(servo.start());
-  exchange::HapticState seen;
-  while (servo.running()) servo.take(seen);
+  HapticState seen;
+  while (servo.running()) servo.receive(seen);
   servo.stop();
-  servo.take(seen);
+  servo.receive(seen);
   EXPECT_EQ(servo.state_hash(), stats.state_hash);
   EXPECT_EQ(seen.tick, 5000u);
   EXPECT_EQ(device.forces_written(), 5001u) << "one a tick, and a last zero";
@@ -47,21 +47,21 @@ TEST(Servo, ThreadAndReplayGiveOneHash) {
 
 TEST(ServoDeathTest, TwoProgramsOfOneEpochAreABug) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  SimulatedHand hand({{0, {0, 0, 0.4}}}, {});
+  SimulatedDevice hand({{0, {0, 0, 0.4}}}, {});
   Servo servo(hand, program_at(0.5, 1));
   servo.set_program(program_at(0.5, 2));
   EXPECT_DEATH(servo.set_program(program_at(0.6, 2)), "epoch") << "the frame side would free the one that runs";
 }
 
 TEST(Servo, NewProgramsTakeOverAndOldOnesAreFreedByTheFrameSide) {
-  SimulatedHand hand({{0, {0, 0, 0.4}}}, {});
+  SimulatedDevice hand({{0, {0, 0, 0.4}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 1000, .paced = false});
   EXPECT_TRUE(servo.start());
-  exchange::HapticState seen;
+  HapticState seen;
   for (std::uint64_t epoch = 2; epoch <= 40; ++epoch) {
     servo.set_program(program_at(0.5 + 0.001 * static_cast<double>(epoch), epoch));
-    while (seen.program_epoch != epoch) servo.take(seen);
-    EXPECT_EQ(servo.programs_alive(), 1u);
+    while (seen.program_epoch != epoch) servo.receive(seen);
+    EXPECT_EQ(servo.live_program_count(), 1u);
   }
   servo.stop();
   EXPECT_NEAR(seen.links[0].proxy.z, 0.54, 1e-12);
@@ -71,7 +71,7 @@ TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
   // grip 500 N/m toward z = 0, link 500 N/m toward z = 0.01: they meet in the middle
   auto program = program_at(0.01, 1);
   program->coupling.damping_ns_per_m = 0;
-  SimulatedHand hand({{0, {0, 0, 0}}}, {.mass_kg = 0.15, .stiffness_n_per_m = 500, .damping_ns_per_m = 5, .period_s = 1e-3});
+  SimulatedDevice hand({{0, {0, 0, 0}}}, {.mass_kg = 0.15, .grip_stiffness_n_per_m = 500, .grip_damping_ns_per_m = 5, .period_s = 1e-3});
   Servo servo(hand, program, {.rate_hz = 1000, .paced = false, .max_ticks = 4000});
   EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
@@ -80,13 +80,13 @@ TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
 }
 
 TEST(Servo, PacedLoopKeepsCountOfItsTicks) {
-  SimulatedHand hand({{0, {0, 0, 0}}}, {});
+  SimulatedDevice hand({{0, {0, 0, 0}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 2000, .paced = true, .max_ticks = 200});
   EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
-  exchange::HapticState seen;
-  EXPECT_TRUE(servo.take(seen));
+  HapticState seen;
+  EXPECT_TRUE(servo.receive(seen));
   EXPECT_EQ(seen.tick, 200u);
   EXPECT_GE(seen.t_s, 199 / 2000.0 - 1e-9);
 }
@@ -126,7 +126,7 @@ TEST(Replay, CountsTicksAndStopsWhenAsked) {
   std::vector<ProbeSample> path(100);
   for (std::size_t k = 0; k < path.size(); ++k) path[k].t_s = 0.001 * static_cast<double>(k);
   int calls = 0;
-  const ReplayStats stats = replay(*program_at(0, 1), path, [&](const exchange::HapticState&) { return ++calls < 30; });
+  const ReplayStats stats = replay(*program_at(0, 1), path, [&](const HapticState&) { return ++calls < 30; });
   EXPECT_EQ(stats.ticks, 30u);
   EXPECT_EQ(stats.evaluations_p50, 1);
 }

@@ -19,7 +19,7 @@ class Led final : public Device {
     input.orientation = p.orientation;
     input.buttons = p.buttons;
     input.forces_on = p.forces_on;
-    input.status = p.condition == Condition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
+    input.status = p.condition == TickCondition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
     return input;
   }
   void write(const DeviceOutput&) noexcept override {}
@@ -32,7 +32,7 @@ class Led final : public Device {
   std::uint64_t reads_ = 0;
 };
 
-std::uint64_t ticks_of(const Servo& servo) { return servo.report().ticks; }
+std::uint64_t ticks_of(const Servo& servo) { return servo.stats().ticks; }
 
 void run_to(Led& device, const Servo& servo, std::uint64_t ticks) {
   device.allowed = ticks;
@@ -56,9 +56,9 @@ bool swap(Led& device, Servo& servo, TickSink* sink) {
 
 TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
   const test::TemporaryFolder folder;
-  Led device(test::hostile_path(1000));
+  Led device(test::adversarial_path(1000));
   std::uint64_t epoch = 1;
-  std::shared_ptr<const Program> program = numbered_program(epoch);
+  std::shared_ptr<const HapticProgram> program = make_numbered_program(epoch);
   Servo servo(device, program, {.paced = false});
   EXPECT_TRUE(servo.start());
   for (int round = 0; round < 4; ++round) {
@@ -72,7 +72,7 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
       // programs change while it records
       for (int k = 0; k < 3; ++k) {
         run_to(device, servo, ticks_of(servo) + 300);
-        program = numbered_program(++epoch);
+        program = make_numbered_program(++epoch);
         (*writer)->add_program(*program);
         servo.set_program(program);
       }
@@ -85,10 +85,10 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
     ASSERT_TRUE(reader) << reader.error().message;
     const auto result = replay_numbered(*reader);
     ASSERT_TRUE(result) << result.error().message;
-    EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stopped;
+    EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stop_reason;
     EXPECT_GE(result->stats.ticks, 1200u);
     EXPECT_GE(reader->state().tick, 700u);
-    EXPECT_FALSE(reader->damaged()) << reader->ending();
+    EXPECT_FALSE(reader->damaged()) << reader->end_summary();
     ASSERT_TRUE(reader->end());
   }
   device.allowed = ~std::uint64_t{0} >> 1;
@@ -97,11 +97,11 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
 
 TEST(SinkSwap, AServoThatStandsStillIsNotWaitedForForEver) {
   struct Count final : TickSink {
-    void put(const ProbeSample&, const exchange::HapticState&) noexcept override { ++ticks; }
+    void put(const ProbeSample&, const HapticState&) noexcept override { ++ticks; }
     std::atomic<int> ticks{0};
   } first, second;
-  Led device(test::hostile_path(10));
-  Servo servo(device, numbered_program(1), {.paced = false, .sink = &first});
+  Led device(test::adversarial_path(10));
+  Servo servo(device, make_numbered_program(1), {.paced = false, .sink = &first});
   EXPECT_TRUE(servo.start());
   run_to(device, servo, 5);
   // held in its device, the servo may have looked already: a first swap can still go through, a second one cannot
@@ -121,21 +121,21 @@ TEST(SinkSwap, AStateOfAnotherLayoutIsSaidAndACutOneIsDamage) {
   ChainState state;
   state.ticks = 12;
   const std::string good = to_bytes(state);
-  ASSERT_TRUE(state_from(good));
-  EXPECT_EQ(state_from(good)->tick, 12u);
-  EXPECT_TRUE(state_from(good)->chain);
+  ASSERT_TRUE(parse_state(good));
+  EXPECT_EQ(parse_state(good)->tick, 12u);
+  EXPECT_TRUE(parse_state(good)->chain);
   std::string other = good;
   other[9] = static_cast<char>(other[9] ^ 1);  // in the layout
-  ASSERT_TRUE(state_from(other));
-  EXPECT_FALSE(state_from(other)->chain);
-  EXPECT_FALSE(state_from(good.substr(0, good.size() - 1)));
+  ASSERT_TRUE(parse_state(other));
+  EXPECT_FALSE(parse_state(other)->chain);
+  EXPECT_FALSE(parse_state(good.substr(0, good.size() - 1)));
   state.ticks = 0;
-  EXPECT_FALSE(state_from(to_bytes(state))) << "the servo's beginning has no block";
+  EXPECT_FALSE(parse_state(to_bytes(state))) << "the servo's beginning has no block";
 }
 
 TEST(SinkSwap, AnotherServoGoesOnWithWhatTheChainRemembers) {
-  Led device(test::hostile_path(1000));
-  const auto program = numbered_program(1), next = numbered_program(4);
+  Led device(test::adversarial_path(1000));
+  const auto program = make_numbered_program(1), next = make_numbered_program(4);
   Servo first(device, program, {.paced = false, .max_ticks = 100});
   device.allowed = 100;
   EXPECT_TRUE(first.start());
@@ -143,12 +143,12 @@ TEST(SinkSwap, AnotherServoGoesOnWithWhatTheChainRemembers) {
   first.stop();
   device.allowed = 101;
   Servo second(device, next, {.paced = false, .max_ticks = 1});
-  second.go_on_from(first);
+  second.resume_from(first);
   EXPECT_TRUE(second.start());
   while (second.running()) std::this_thread::yield();
   second.stop();
-  exchange::HapticState seen;
-  ASSERT_TRUE(second.take(seen));
+  HapticState seen;
+  ASSERT_TRUE(second.receive(seen));
   EXPECT_EQ(seen.tick, 101u);
   EXPECT_EQ(seen.program_epoch, 4u);
 }

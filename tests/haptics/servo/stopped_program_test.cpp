@@ -63,18 +63,18 @@ std::unique_ptr<Device> emulated_falcon(const std::shared_ptr<SharedEmulatedFalc
   {
     const std::scoped_lock lock(shared->mutex);
     EXPECT_TRUE(shared->device.mechanism().hold({0, 0, 0.175}));
-    shared->device.on_exchange([&](const EmulatedFalcon::Exchange& e) {
+    shared->device.set_exchange_observer([&](const EmulatedFalcon::Exchange& e) {
       if (packets.size() < kMaxPackets) packets.push_back({now_ns(), norm(e.force_n)});
     });
   }
-  auto falcon = usb::Falcon::open(std::make_unique<EmulatedSource>(shared, true));
+  auto falcon = usb::Falcon::open(std::make_unique<EmulatedTransportSource>(shared, true));
   EXPECT_TRUE(falcon);
   for (int i = 0; i < 5000 && (*falcon)->state() != usb::FalconState::ready; ++i) nap_ms(1);
   return std::move(*falcon);
 }
 
 // The child of the tests below: holds a hand that presses into a ball, and is stopped again and again.
-TEST(StoppedProgram, DISABLED_HoldsAHandAndIsStopped) {
+TEST(SuspendedProcess, DISABLED_HoldsAHandAndIsStopped) {
   const std::string path = test::child_variable("CATENA_PACKETS_OF_THE_CHILD");
   if (path.empty()) GTEST_SKIP() << "the child of this suite";
   std::vector<Packet> packets;
@@ -85,7 +85,7 @@ TEST(StoppedProgram, DISABLED_HoldsAHandAndIsStopped) {
   Plain* stops = kind == "stops in write" ? plain.get() : nullptr;
   std::unique_ptr<Device> device = std::move(plain);
   if (kind == "falcon") device = emulated_falcon(shared, packets);
-  auto program = std::make_shared<Program>(*tests::ball_link_program());
+  auto program = std::make_shared<HapticProgram>(*tests::ball_link_program());
   program->limits.ramp_in_s = kRampS;
   Servo servo(*device, program, {});
   ASSERT_TRUE(servo.start());
@@ -114,7 +114,7 @@ struct Stop {
 void stop_and_go(const std::string& device, std::vector<Packet>& packets, std::vector<Stop>& stops) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "packets";
-  const pid_t child = test::start_case("StoppedProgram.DISABLED_*",
+  const pid_t child = test::start_case("SuspendedProcess.DISABLED_*",
                                        {.environment = {"CATENA_PACKETS_OF_THE_CHILD=" + path, "CATENA_DEVICE_OF_THE_CHILD=" + device}});
   int status = 0;
   while (!test::exists(path + ".ready") && waitpid(child, &status, WNOHANG) == 0) nap_ms(1);
@@ -174,21 +174,21 @@ void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, s
   EXPECT_GE(with_force, kStops / 4);
 }
 
-TEST(StoppedProgram, AStopWithinTheWriteIsSeenToo) {
+TEST(SuspendedProcess, AStopWithinTheWriteIsSeenToo) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
   stop_and_go("stops in write", packets, stops);
   check(packets, stops, 0);
 }
 
-TEST(StoppedProgram, TheFirstTickAfterAStopIsZeroAndThenTheRamp) {
+TEST(SuspendedProcess, TheFirstTickAfterAStopIsZeroAndThenTheRamp) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
   stop_and_go("plain", packets, stops);
   check(packets, stops, 0);
 }
 
-TEST(StoppedProgram, TheMotorsOfAFalconGetTheRamp) {
+TEST(SuspendedProcess, TheMotorsOfAFalconGetTheRamp) {
   std::vector<Packet> packets;
   std::vector<Stop> stops;
   stop_and_go("falcon", packets, stops);

@@ -12,27 +12,27 @@ namespace vibration_test {
 
 using namespace catena;
 using namespace catena::haptics;
-using What = VibrationSender::What;
+using What = VibrationSender::Action;
 
 constexpr std::int64_t kCall_ns = 11'111'111;
 
 /// One tick's step of force, so that the next take has that change.
-void step(Peaks& peaks, double newtons) {
-  peaks.add({.live = false});
+void step(PeakDetector& peaks, double newtons) {
+  peaks.add({.is_live = false});
   peaks.add({});
-  peaks.add({.force_n = Vec3(newtons, 0, 0)});
+  peaks.add({.requested_force_n = Vec3(newtons, 0, 0)});
 }
 
 /// So much friction at 0.1 m/s.
-void rub(Peaks& peaks, double newtons) {
-  peaks.add({.live = false});
+void rub(PeakDetector& peaks, double newtons) {
+  peaks.add({.is_live = false});
   for (int k = 0; k < 60; ++k) peaks.add({Vec3(newtons, 0, 0), Vec3(1e-4 * k, 0, 0), -newtons * 1e-4 * k});
 }
 
 /// Friction lasts until the next call, whatever the time between calls is.
 TEST(VibrationSender, FrictionLastsUntilTheNextCall) {
   for (const double call_s : {0.008, 1.0 / 60, 0.025}) {
-    Peaks peaks;
+    PeakDetector peaks;
     VibrationSender sender;
     std::int64_t now = 1'000'000'000;
     double duration_s = 0;
@@ -40,7 +40,8 @@ TEST(VibrationSender, FrictionLastsUntilTheNextCall) {
     for (int turn = 0; turn < 8; ++turn) {
       for (int k = 0; k < int(1000 * call_s); ++k) peaks.add({{1.0, 0.0, 0.0}, {1e-4 * (k + 40 * turn), 0.0, 0.0}, booked_j -= 1e-4, true});
       const auto call = sender.next(peaks, now, true);
-      if (call.what == VibrationSender::What::vibrate && !call.vibration.is_pulse) duration_s = 1e-9 * double(call.vibration.duration_ns);
+      if (call.action == VibrationSender::Action::vibrate && !call.vibration.is_pulse)
+        duration_s = 1e-9 * double(call.vibration.duration_ns);
       now += std::int64_t(1e9 * call_s);
     }
     EXPECT_NEAR(duration_s, 1.5 * call_s, 1e-6);
@@ -48,44 +49,44 @@ TEST(VibrationSender, FrictionLastsUntilTheNextCall) {
 }
 
 TEST(Vibration, TheMapIsLinearUpToItsEnds) {
-  const VibrationMap map;
-  EXPECT_EQ(vibration_of({}, 0.01), Vibration{});
-  EXPECT_EQ(vibration_of({.change_n = 0.75}, 0.01), (Vibration{0.5, map.pulse_hz, 20'000'000, true}));
-  EXPECT_EQ(vibration_of({.change_n = 100}, 0.01).amplitude, 1);
-  EXPECT_EQ(vibration_of({.change_n = 0.02 * map.full_change_n * 0.99}, 0.01).amplitude, 0) << "less than the least";
-  EXPECT_EQ(vibration_of({0, 1, 0.05}, 0.01), (Vibration{0.3, 100, 15'000'000, false}));
-  EXPECT_EQ(vibration_of({0, 50, 5}, 0.01), (Vibration{0.6, 250, 15'000'000, false}));
-  EXPECT_EQ(vibration_of({0, 1, 1e-3}, 0.01).frequency_hz, 40);
-  EXPECT_TRUE(vibration_of({0.6, 1, 0.05}, 0.01).is_pulse) << "the stronger one";
-  EXPECT_FALSE(vibration_of({0.3, 1, 0.05}, 0.01).is_pulse);
+  const VibrationMapping map;
+  EXPECT_EQ(compute_vibration({}, 0.01), Vibration{});
+  EXPECT_EQ(compute_vibration({.change_n = 0.75}, 0.01), (Vibration{0.5, map.pulse_hz, 20'000'000, true}));
+  EXPECT_EQ(compute_vibration({.change_n = 100}, 0.01).amplitude, 1);
+  EXPECT_EQ(compute_vibration({.change_n = 0.02 * map.saturation_change_n * 0.99}, 0.01).amplitude, 0) << "less than the least";
+  EXPECT_EQ(compute_vibration({0, 1, 0.05}, 0.01), (Vibration{0.3, 100, 15'000'000, false}));
+  EXPECT_EQ(compute_vibration({0, 50, 5}, 0.01), (Vibration{0.6, 250, 15'000'000, false}));
+  EXPECT_EQ(compute_vibration({0, 1, 1e-3}, 0.01).frequency_hz, 40);
+  EXPECT_TRUE(compute_vibration({0.6, 1, 0.05}, 0.01).is_pulse) << "the stronger one";
+  EXPECT_FALSE(compute_vibration({0.3, 1, 0.05}, 0.01).is_pulse);
 }
 
 TEST(Vibration, AWeakerOneDoesNotCutAPulseShortButAStrongerOneReplacesIt) {
-  Peaks peaks;
+  PeakDetector peaks;
   VibrationSender sender;
   std::int64_t now = 0;
-  EXPECT_EQ(sender.next(peaks, now, true).what, What::nothing);
+  EXPECT_EQ(sender.next(peaks, now, true).action, What::nothing);
   step(peaks, 0.75);
   EXPECT_EQ(sender.next(peaks, now += kCall_ns, true).vibration.amplitude, 0.5);
   step(peaks, 0.3);
-  EXPECT_EQ(sender.next(peaks, now += kCall_ns, true).what, What::nothing) << "the pulse lasts 20 ms";
+  EXPECT_EQ(sender.next(peaks, now += kCall_ns, true).action, What::nothing) << "the pulse lasts 20 ms";
   step(peaks, 0.3);
-  EXPECT_EQ(sender.next(peaks, now += kCall_ns, true).what, What::vibrate) << "it is over";
+  EXPECT_EQ(sender.next(peaks, now += kCall_ns, true).action, What::vibrate) << "it is over";
   step(peaks, 1.5);
   EXPECT_EQ(sender.next(peaks, now += kCall_ns, true).vibration.amplitude, 1);
-  EXPECT_EQ(sender.next(peaks, now += 10 * kCall_ns, true).what, What::nothing) << "silence needs no call: a vibration ends by itself";
+  EXPECT_EQ(sender.next(peaks, now += 10 * kCall_ns, true).action, What::nothing) << "silence needs no call: a vibration ends by itself";
 }
 
 TEST(Vibration, FrictionGoesOnWithoutAGapAndFollowsTheForceDown) {
-  Peaks peaks;
+  PeakDetector peaks;
   VibrationSender sender;
   std::int64_t now = 0, ends = 0;
   sender.next(peaks, now, true);
   double last = 1;
   for (double newtons = 2; newtons > 0.2; newtons -= 0.1) {
     rub(peaks, newtons);
-    const VibrationSender::Call call = sender.next(peaks, now += kCall_ns, true);
-    ASSERT_EQ(call.what, What::vibrate);
+    const VibrationSender::Command call = sender.next(peaks, now += kCall_ns, true);
+    ASSERT_EQ(call.action, What::vibrate);
     EXPECT_FALSE(call.vibration.is_pulse);
     EXPECT_LT(call.vibration.amplitude, last);
     EXPECT_TRUE(ends == 0 || now <= ends) << "a gap";
@@ -95,20 +96,20 @@ TEST(Vibration, FrictionGoesOnWithoutAGapAndFollowsTheForceDown) {
 }
 
 TEST(Vibration, ItStopsOnceWhereItIsNotAllowedAndForgetsWhatWasFeltThere) {
-  Peaks peaks;
+  PeakDetector peaks;
   VibrationSender sender;
-  EXPECT_EQ(sender.next(peaks, 0, false).what, What::nothing) << "nothing was begun";
+  EXPECT_EQ(sender.next(peaks, 0, false).action, What::nothing) << "nothing was begun";
   step(peaks, 1);
-  EXPECT_EQ(sender.next(peaks, 1, true).what, What::nothing) << "felt before it was allowed";
+  EXPECT_EQ(sender.next(peaks, 1, true).action, What::nothing) << "felt before it was allowed";
   step(peaks, 1);
-  EXPECT_EQ(sender.next(peaks, 2, true).what, What::vibrate);
+  EXPECT_EQ(sender.next(peaks, 2, true).action, What::vibrate);
   step(peaks, 1);
-  EXPECT_EQ(sender.next(peaks, 3, false).what, What::stop);
+  EXPECT_EQ(sender.next(peaks, 3, false).action, What::stop);
   step(peaks, 1);
-  EXPECT_EQ(sender.next(peaks, 4, false).what, What::nothing);
-  EXPECT_EQ(sender.next(peaks, 5, true).what, What::nothing);
+  EXPECT_EQ(sender.next(peaks, 4, false).action, What::nothing);
+  EXPECT_EQ(sender.next(peaks, 5, true).action, What::nothing);
   step(peaks, 0.1);
-  EXPECT_EQ(sender.next(peaks, 6, true).what, What::vibrate) << "the pulse of before does not last";
+  EXPECT_EQ(sender.next(peaks, 6, true).action, What::vibrate) << "the pulse of before does not last";
 }
 
 // Not a test of its own: the plot of docs/headset.md.
@@ -119,13 +120,13 @@ TEST(Vibration, Plot) {
   std::string contact, friction;
   for (int i = 0; i <= 120; ++i) {
     const double newtons = 0.025 * i;
-    Peaks peaks;
+    PeakDetector peaks;
     step(peaks, newtons);
-    contact += fmt::format("{} {}\n", newtons, vibration_of(peaks.take(), 1e-9 * kCall_ns).amplitude);
+    contact += fmt::format("{} {}\n", newtons, compute_vibration(peaks.take_peaks(), 1e-9 * kCall_ns).amplitude);
     rub(peaks, newtons);
-    FeltPeaks felt = peaks.take();
+    ForcePeaks felt = peaks.take_peaks();
     felt.change_n = 0;
-    friction += fmt::format("{} {}\n", newtons, vibration_of(felt, 1e-9 * kCall_ns).amplitude);
+    friction += fmt::format("{} {}\n", newtons, compute_vibration(felt, 1e-9 * kCall_ns).amplitude);
   }
   test::write_file(folder / "plot",
                    "set terminal png size 520,320 background 'white'\nset output '" + std::string(file) +

@@ -49,7 +49,7 @@ TEST(AxisEdges, AreThoseOfTheOutline) {
                           Case{{-10, 16, 8}, "+y -z", "-x -z", "+x +y"},     //
                           Case{{-10, -16, -8}, "+y -z", "+x -z", "-x +y"}})  // from below: the edges behind are the lowest
     {
-      const auto edges = axis_edges(kBox, from(c.eye, orthographic));
+      const auto edges = find_axis_edges(kBox, from(c.eye, orthographic));
       EXPECT_EQ(words(edges[0]), c.x) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
       EXPECT_EQ(words(edges[1]), c.y) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
       EXPECT_EQ(words(edges[2]), c.z) << c.eye.x << " " << c.eye.y << " " << c.eye.z;
@@ -62,15 +62,15 @@ TEST(AxisEdges, AreThoseOfTheOutline) {
 
 TEST(AxisEdges, OfAFaceSeenStraightOnTheyAreItsLowerAndLeftOnes) {
   for (const bool orthographic : {false, true}) {
-    const auto edges = axis_edges(kBox, from({0, -20, 0}, orthographic));
+    const auto edges = find_axis_edges(kBox, from({0, -20, 0}, orthographic));
     EXPECT_EQ(words(edges[0]), "-y -z");
-    EXPECT_EQ(words(edges[0].out), "-z");
+    EXPECT_EQ(words(edges[0].outward), "-z");
     EXPECT_EQ(words(edges[2]), "-x -y");
-    EXPECT_EQ(words(edges[2].out), "-x");
+    EXPECT_EQ(words(edges[2].outward), "-x");
     EXPECT_EQ(words(edges[1]).find("+z"), std::string::npos) << "across the picture it is a point, or low: " << words(edges[1]);
   }
   // from within there is no outline
-  for (const AxisEdge& edge : axis_edges(kBox, from({0.1, 0.2, 0.3}))) EXPECT_NEAR(norm(edge.out), 1, 1e-12);
+  for (const AxisEdge& edge : find_axis_edges(kBox, from({0.1, 0.2, 0.3}))) EXPECT_NEAR(norm(edge.outward), 1, 1e-12);
 }
 
 /// Whether a ray meets the box, a little smaller than it is.
@@ -90,7 +90,7 @@ TEST(AxisEdges, TicksAndNumbersLieBesideTheBoxFromEverySide) {
       const double z = 1 - (2 * i + 1) / 400.0, r = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
       const View view = from(15.0 * Vec3(r * std::cos(turn), r * std::sin(turn), z), orthographic);
       const Camera camera = make_camera(view, 400, 400, Bounds());
-      const auto edges = axis_edges(kBox, view);
+      const auto edges = find_axis_edges(kBox, view);
       for (std::size_t a = 0; a < 3; ++a) {
         // eyes within a slab of the box see a face alone, whose outline has no edge across it
         bool slab = false;
@@ -99,9 +99,9 @@ TEST(AxisEdges, TicksAndNumbersLieBesideTheBoxFromEverySide) {
         for (const double t : {0.01, 0.5, 0.99}) {
           const Vec3 on = edges[a].from + t * (edges[a].to - edges[a].from);
           for (const double reach : {0.05, 0.3, 1.0}) {
-            const auto place = project(camera, on + reach * edges[a].out);
+            const auto place = project(camera, on + reach * edges[a].outward);
             ASSERT_TRUE(place);
-            EXPECT_FALSE(meets(ray_through(camera, place->x, place->y))) << i << " axis " << a << " " << t << " " << reach;
+            EXPECT_FALSE(meets(pixel_ray(camera, place->x, place->y))) << i << " axis " << a << " " << t << " " << reach;
           }
         }
       }
@@ -110,11 +110,11 @@ TEST(AxisEdges, TicksAndNumbersLieBesideTheBoxFromEverySide) {
 
 TEST(AxisEdges, EveryEyeAndTileHasTheSame) {
   View view = from({-10, -16, 8});
-  const auto whole = axis_edges(kBox, view);
+  const auto whole = find_axis_edges(kBox, view);
   view.window = {0, 1, 0, 0.5};
   view.aspect = 2;
-  const auto tile = axis_edges(kBox, view);
-  for (std::size_t a = 0; a < 3; ++a) EXPECT_TRUE(whole[a].from == tile[a].from && whole[a].out == tile[a].out);
+  const auto tile = find_axis_edges(kBox, view);
+  for (std::size_t a = 0; a < 3; ++a) EXPECT_TRUE(whole[a].from == tile[a].from && whole[a].outward == tile[a].outward);
 }
 
 TEST(AxisEdges, TheyFollowTheViewOfAPacket) {
@@ -125,11 +125,11 @@ TEST(AxisEdges, TheyFollowTheViewOfAPacket) {
   ASSERT_TRUE(scene) << scene.error().message;
   auto packet = make_frame(*scene, 64, 48);
   ASSERT_TRUE(packet) << packet.error().message;
-  const std::size_t tubes = packet->aids.tubes.size(), labels = packet->overlay.axis_labels.size(), objects = packet->objects.size();
+  const std::size_t tubes = packet->environment.tubes.size(), labels = packet->overlay.axis_labels.size(), objects = packet->objects.size();
   ASSERT_GT(labels, 12u);
   const auto name_of_x = [&] {
     for (const LabelItem& label : packet->overlay.axis_labels)
-      if (label.text == "x") return label.at;
+      if (label.text == "x") return label.position;
     return Vec3(0.0);
   };
   EXPECT_LT(name_of_x().y, -2 + 1e-9);
@@ -137,7 +137,7 @@ TEST(AxisEdges, TheyFollowTheViewOfAPacket) {
   behind.position = {10, 16, 8};
   set_view(*scene, behind, *packet);
   EXPECT_GT(name_of_x().y, 2 - 1e-9);
-  EXPECT_EQ(packet->aids.tubes.size(), tubes) << "twelve edges and the ticks";
+  EXPECT_EQ(packet->environment.tubes.size(), tubes) << "twelve edges and the ticks";
   EXPECT_EQ(packet->overlay.axis_labels.size(), labels);
   EXPECT_EQ(packet->overlay.labels.size(), 1u) << "the scene's own stay";
   EXPECT_EQ(packet->objects.size(), objects);

@@ -11,8 +11,8 @@ void expect_near(const Vec3& a, const Vec3& b) { EXPECT_LE(norm(a - b), 1e-12) <
 
 Bounds slab() {
   Bounds b;
-  b.add(Vec3(-1.0, -2.0, -3.0));
-  b.add(Vec3(1.0, 2.0, 5.0));
+  b.extend(Vec3(-1.0, -2.0, -3.0));
+  b.extend(Vec3(1.0, 2.0, 5.0));
   return b;
 }
 
@@ -31,7 +31,7 @@ TEST(CameraMoves, AxisViewsLookAlongTheirAxisAndSeeEverything) {
     const Camera camera = make_camera(*view, 400, 300, slab());
     expect_near(-camera.back, c.looks);
     expect_near(camera.up, c.up);
-    expect_near(view->target, slab().centre());
+    expect_near(view->target, slab().center());
     for (int i = 0; i < 8; ++i) {
       const auto p = project(camera, slab().corner(i));
       ASSERT_TRUE(p);
@@ -50,21 +50,21 @@ TEST(CameraMoves, IsoSeesThreeSidesAlike) {
 }
 
 TEST(CameraMoves, ATurnGoesCounterClockwiseSeenFromAbove) {
-  expect_near(turned(from_south(), 90, 0).position, {10.0, 0.0, 0.0});
-  expect_near(turned(from_south(), 180, 0).position, {0.0, 10.0, 0.0});
-  expect_near(turned(from_south(), 360, 0).position, from_south().position);
+  expect_near(orbit_view(from_south(), 90, 0).position, {10.0, 0.0, 0.0});
+  expect_near(orbit_view(from_south(), 180, 0).position, {0.0, 10.0, 0.0});
+  expect_near(orbit_view(from_south(), 360, 0).position, from_south().position);
 }
 
 TEST(CameraMoves, ElevationRaisesTheEyeAndNeverFlips) {
   const double s = 10 / std::sqrt(2.0);
-  expect_near(turned(from_south(), 0, 45).position, {0.0, -s, s});
-  expect_near(turned(from_south(), 0, -45).position, {0.0, -s, -s});
-  expect_near(turned(from_south(), 90, 45).position, {s, 0.0, s});
+  expect_near(orbit_view(from_south(), 0, 45).position, {0.0, -s, s});
+  expect_near(orbit_view(from_south(), 0, -45).position, {0.0, -s, -s});
+  expect_near(orbit_view(from_south(), 90, 45).position, {s, 0.0, s});
   // straight above, then beyond: the top of the picture turns with the eye
-  const Camera above = make_camera(turned(from_south(), 0, 90), 10, 10, {});
+  const Camera above = make_camera(orbit_view(from_south(), 0, 90), 10, 10, {});
   expect_near(above.back, {0.0, 0.0, 1.0});
   expect_near(above.up, {0.0, 1.0, 0.0});
-  const Camera beyond = make_camera(turned(turned(from_south(), 0, 60), 0, 60), 10, 10, {});
+  const Camera beyond = make_camera(orbit_view(orbit_view(from_south(), 0, 60), 0, 60), 10, 10, {});
   EXPECT_LT(beyond.up.z, 0);
   EXPECT_GT(beyond.up.y, 0);
 }
@@ -73,7 +73,7 @@ TEST(CameraMoves, ZoomEnlargesByItsFactor) {
   for (const bool orthographic : {false, true}) {
     View view = from_south();
     view.orthographic = orthographic;
-    const Camera before = make_camera(view, 200, 200, {}), after = make_camera(zoomed(view, 2.5), 200, 200, {});
+    const Camera before = make_camera(view, 200, 200, {}), after = make_camera(zoom_view(view, 2.5), 200, 200, {});
     const Vec3 point(0.3, 1.0, 0.2);
     EXPECT_NEAR(project(after, point)->x - 100, 2.5 * (project(before, point)->x - 100), 1e-9);
     EXPECT_NEAR(project(after, point)->y - 100, 2.5 * (project(before, point)->y - 100), 1e-9);
@@ -82,7 +82,7 @@ TEST(CameraMoves, ZoomEnlargesByItsFactor) {
 
 TEST(CameraMoves, FittedKeepsDirectionUpAngleAndProjection) {
   View view{{30.0, -4.0, 1.0}, {29.0, 2.0, 3.0}, {0.2, 0.1, 1.0}, 50, true, 9};
-  const View fit = fitted(view, slab(), 1.5);
+  const View fit = refit_view(view, slab(), 1.5);
   const Camera a = make_camera(view, 300, 200, {}), b = make_camera(fit, 300, 200, slab());
   expect_near(a.back, b.back);
   expect_near(a.up, b.up);

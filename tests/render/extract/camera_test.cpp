@@ -11,8 +11,8 @@ namespace camera_test {
 
 Bounds box(const Vec3& lo, const Vec3& hi) {
   Bounds b;
-  b.add(lo);
-  b.add(hi);
+  b.extend(lo);
+  b.extend(hi);
   return b;
 }
 
@@ -58,7 +58,7 @@ TEST(Camera, OrthographicHeightIsTheWholePicture) {
 TEST(Camera, PixelCentresAreAtHalf) {
   // 2 x 2 pixels: the ray of the upper left centre passes a quarter of the way in
   const Camera c = make_camera(looking_along_y(), 2, 2, box(Vec3(-1.0), Vec3(1.0)));
-  const Ray ray = ray_through(c, 0.5, 0.5);
+  const Ray ray = pixel_ray(c, 0.5, 0.5);
   const double t = std::tan(15 * std::acos(-1.0) / 180);
   expect_near(ray.direction, direction(Vec3(-0.5 * t, 1.0, 0.5 * t)), 1e-15);
   expect_near(ray.origin, {0.0, -10.0, 0.0}, 0);
@@ -89,7 +89,7 @@ TEST(Camera, RoundTripsAgreeWithTheMatrices) {
     expect_near(Vec3(back) / back.w, p, 1e-8);
 
     // and on the ray
-    const Ray ray = ray_through(c, pixel->x, pixel->y);
+    const Ray ray = pixel_ray(c, pixel->x, pixel->y);
     EXPECT_LE(norm(cross(p - ray.origin, ray.direction)), 1e-10);
     EXPECT_NEAR(norm(ray.direction), 1, 1e-14);
   }
@@ -144,7 +144,7 @@ TEST(Camera, ABallMayBeSeenWhereAnyOfItsPlacesIs) {
     const Camera c = make_camera(view, 80, 60, Bounds());
     const Vec3 centre{8 * u(random), 8 * u(random), 8 * u(random)};
     const double radius = 1 + u(random);
-    const bool seen = may_be_seen(c, centre, radius);
+    const bool seen = may_be_visible(c, centre, radius);
     bool any = false;
     for (int k = 0; k < 200; ++k) {
       const Vec3 out = direction(Vec3(u(random), u(random), u(random)));
@@ -160,7 +160,7 @@ TEST(Camera, ABallMayBeSeenWhereAnyOfItsPlacesIs) {
 
 TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
   for (const double aspect : {0.5, 1.0, 2.0})
-    for (const Vec3& towards : {default_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)})
+    for (const Vec3& towards : {default_view_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)})
       for (const bool orthographic : {false, true}) {
         const Bounds bounds = box({3.0, -100.0, 7.0}, {9.0, -70.0, 8.0});
         View view = fit_view(bounds, aspect, towards);
@@ -178,38 +178,38 @@ TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
 }
 
 TEST(Camera, FitToPlacesFillsTheShareExactlyAndCentresThem) {
-  FitPlaces cloud;
-  for (int i = 0; i < 200; ++i) cloud.places.push_back({9 * std::sin(1.7 * i), 20 + 5 * std::cos(2.3 * i), 3 * std::sin(0.9 * i)});
+  FitPoints cloud;
+  for (int i = 0; i < 200; ++i) cloud.points.push_back({9 * std::sin(1.7 * i), 20 + 5 * std::cos(2.3 * i), 3 * std::sin(0.9 * i)});
   for (const double aspect : {0.4, 1.0, 2.5})
-    for (const Vec3& towards : {default_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)}) {
+    for (const Vec3& towards : {default_view_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)}) {
       const View view = fit_view({cloud}, aspect, 0.6, 0.8, towards);
       const Camera c = make_camera(view, 400 * aspect, 400, Bounds());
       Bounds seen;
-      for (const Vec3& p : cloud.places) {
+      for (const Vec3& p : cloud.points) {
         const auto at = project(c, p);
         ASSERT_TRUE(at);
-        seen.add({at->x / (400 * aspect), at->y / 400, 0});
+        seen.extend({at->x / (400 * aspect), at->y / 400, 0});
       }
       const Vec3 size = seen.hi - seen.lo;
       EXPECT_LT(size.x, 0.6 + 1e-9);
       EXPECT_LT(size.y, 0.8 + 1e-9);
       EXPECT_TRUE(size.x > 0.6 - 1e-6 || size.y > 0.8 - 1e-6) << size.x << " " << size.y;
-      EXPECT_NEAR(size.y > 0.8 - 1e-6 ? seen.centre().y : seen.centre().x, 0.5, 1e-9);
+      EXPECT_NEAR(size.y > 0.8 - 1e-6 ? seen.center().y : seen.center().x, 0.5, 1e-9);
     }
 }
 
 TEST(Camera, FitToPlacesLeavesSpecksOut) {
-  FitPlaces cloud;
-  for (int i = 0; i < 1000; ++i) cloud.places.push_back({std::sin(1.7 * i), std::cos(2.3 * i), std::sin(0.9 * i)});
+  FitPoints cloud;
+  for (int i = 0; i < 1000; ++i) cloud.points.push_back({std::sin(1.7 * i), std::cos(2.3 * i), std::sin(0.9 * i)});
   const double near = norm(fit_view({cloud}, 1, 0.8, 0.8).position);
-  cloud.places.push_back({50, 0, 0});
+  cloud.points.push_back({50, 0, 0});
   EXPECT_GT(norm(fit_view({cloud}, 1, 0.8, 0.8).position), 5 * near);
-  cloud.ignored = 0.002;
+  cloud.outlier_share = 0.002;
   EXPECT_NEAR(norm(fit_view({cloud}, 1, 0.8, 0.8).position), near, 0.1 * near);
 }
 
 TEST(Camera, FitToOnePlaceOrNone) {
-  for (const std::vector<FitPlaces>& clouds : {std::vector<FitPlaces>{}, {{}}, {{{Vec3(5.0)}, 0}}}) {
+  for (const std::vector<FitPoints>& clouds : {std::vector<FitPoints>{}, {{}}, {{{Vec3(5.0)}, 0}}}) {
     const View view = fit_view(clouds, 1, 0.8, 0.8);
     EXPECT_TRUE(is_finite(view.position));
     EXPECT_GT(norm(view.position - view.target), 0.5);

@@ -5,7 +5,7 @@
 
 #include "engine/scene/prepare.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 
 namespace catena::render {
 namespace extract_overlay_test {
@@ -18,33 +18,33 @@ FramePacket packet_of(const std::string& text) {
   return std::move(*packet);
 }
 
-std::string texts(const BarScale& scale) {
+std::string texts(const ScalarBarTicks& scale) {
   std::string all;
   for (const BarTick& tick : scale.ticks) all += (all.empty() ? "" : " ") + tick.text;
   return all + (scale.factor.empty() ? "" : " | " + scale.factor);
 }
 
 TEST(BarTicks, AreNiceAndSayWhatTheyAre) {
-  EXPECT_EQ(texts(bar_scale(0, 1, 5, "")), "0.0 0.2 0.4 0.6 0.8 1.0");
-  EXPECT_EQ(texts(bar_scale(-0.97, 1.1, 5, "")), "−0.5 0.0 0.5 1.0");
-  EXPECT_EQ(texts(bar_scale(0, 100, 5, "")), "0 20 40 60 80 100");
-  EXPECT_EQ(texts(bar_scale(101325, 101425, 3, "")), "1.0135 1.0140 | ×10⁵");
-  EXPECT_EQ(texts(bar_scale(0, 4e-7, 5, "")), "0 1 2 3 4 | ×10⁻⁷");
-  EXPECT_EQ(texts(bar_scale(0, 3.1e12, 4, "")), "0 1 2 3 | ×10¹²");
-  EXPECT_EQ(texts(bar_scale(0, 1, 3, "%.2f K")), "0.00 K 0.50 K 1.00 K");
-  EXPECT_EQ(texts(bar_scale(-1e-3, 1e-3, 3, "%.0e")), "−1e−03 0e+00 1e−03");
-  EXPECT_EQ(texts(bar_scale(5, 5, 5, "")), "5");
-  EXPECT_TRUE(bar_scale(0, INFINITY, 5, "").ticks.empty());
+  EXPECT_EQ(texts(make_scalar_bar_ticks(0, 1, 5, "")), "0.0 0.2 0.4 0.6 0.8 1.0");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(-0.97, 1.1, 5, "")), "−0.5 0.0 0.5 1.0");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(0, 100, 5, "")), "0 20 40 60 80 100");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(101325, 101425, 3, "")), "1.0135 1.0140 | ×10⁵");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(0, 4e-7, 5, "")), "0 1 2 3 4 | ×10⁻⁷");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(0, 3.1e12, 4, "")), "0 1 2 3 | ×10¹²");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(0, 1, 3, "%.2f K")), "0.00 K 0.50 K 1.00 K");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(-1e-3, 1e-3, 3, "%.0e")), "−1e−03 0e+00 1e−03");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(5, 5, 5, "")), "5");
+  EXPECT_TRUE(make_scalar_bar_ticks(0, INFINITY, 5, "").ticks.empty());
 }
 
 TEST(BarTicks, OfALogarithmArePowersOfTen) {
-  EXPECT_EQ(texts(bar_scale(1e-3, 1e3, 7, "", 1e-3)), "0.001 0.01 0.1 1 10 100 1000");
-  EXPECT_EQ(texts(bar_scale(2e-7, 3e5, 5, "", 2e-7)), "10⁻⁴ 0.1 100 10⁵") << "every third";
-  EXPECT_EQ(texts(bar_scale(2, 60, 5, "", 2)), "2 5 10 20 50") << "few decades";
-  EXPECT_EQ(texts(bar_scale(1, 1e6, 3, "%.0e", 1)), "1e+00 1e+02 1e+04 1e+06");
-  EXPECT_EQ(texts(bar_scale(-100, 100, 7, "", 1)), "−100 −10 −1 0 1 10 100");
-  EXPECT_EQ(texts(bar_scale(-1e6, 10, 5, "", 1)), "−10⁶ −1000 −1 0 1");
-  EXPECT_EQ(texts(bar_scale(2, 2.9, 3, "", 2)), "2.0 2.5") << "less than a decade";
+  EXPECT_EQ(texts(make_scalar_bar_ticks(1e-3, 1e3, 7, "", 1e-3)), "0.001 0.01 0.1 1 10 100 1000");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(2e-7, 3e5, 5, "", 2e-7)), "10⁻⁴ 0.1 100 10⁵") << "every third";
+  EXPECT_EQ(texts(make_scalar_bar_ticks(2, 60, 5, "", 2)), "2 5 10 20 50") << "few decades";
+  EXPECT_EQ(texts(make_scalar_bar_ticks(1, 1e6, 3, "%.0e", 1)), "1e+00 1e+02 1e+04 1e+06");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(-100, 100, 7, "", 1)), "−100 −10 −1 0 1 10 100");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(-1e6, 10, 5, "", 1)), "−10⁶ −1000 −1 0 1");
+  EXPECT_EQ(texts(make_scalar_bar_ticks(2, 2.9, 3, "", 2)), "2.0 2.5") << "less than a decade";
 }
 
 TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
@@ -53,7 +53,7 @@ TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
       for (const int count : {2, 5, 12}) {
         const double hi = lo + width;
         if (!(width > 1e-9 * std::fabs(lo))) continue;
-        const BarScale scale = bar_scale(lo, hi, count, "");
+        const ScalarBarTicks scale = make_scalar_bar_ticks(lo, hi, count, "");
         ASSERT_GE(scale.ticks.size(), 1u) << lo << " " << hi;
         ASSERT_LE(scale.ticks.size(), std::size_t(2 * count));
         for (std::size_t i = 0; i < scale.ticks.size(); ++i) {
@@ -112,13 +112,13 @@ TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
   auto scene = scene::parse_scene(R"({"coupling": {"max_force": 4}, "status": true})", "test.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_FALSE(make_frame(*scene, 32, 32)->overlay.status) << "no hand, nothing to say";
-  exchange::HapticState state;
+  HapticState state;
   state.force_n = {0, 3, 4};
   state.link_count = 2;
   state.links[0].active = true;
-  state.links[1].status = exchange::Status::released;
+  state.links[1].status = LinkStatus::released;
   scene::update_cursor(*scene, state);
-  scene->world.get<scene::Cursor>(scene->cursor).names = {"curve"};
+  scene->entities.get<scene::Cursor>(scene->cursor).names = {"curve"};
   const auto packet = make_frame(*scene, 32, 32);
   ASSERT_TRUE(packet && packet->overlay.status);
   const StatusItem& status = *packet->overlay.status;
@@ -126,11 +126,11 @@ TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
   EXPECT_EQ(status.max_force_n, 4);
   ASSERT_EQ(status.rows.size(), 2u);
   EXPECT_EQ(status.rows[0].name, "curve");
-  EXPECT_EQ(status.rows[0].word, "OK");
-  EXPECT_TRUE(status.rows[0].active);
+  EXPECT_EQ(status.rows[0].status_text, "OK");
+  EXPECT_TRUE(status.rows[0].is_active);
   EXPECT_EQ(status.rows[1].name, "link 2");
-  EXPECT_EQ(status.rows[1].word, "RELEASED");
-  EXPECT_FALSE(status.rows[1].active);
+  EXPECT_EQ(status.rows[1].status_text, "RELEASED");
+  EXPECT_FALSE(status.rows[1].is_active);
 }
 
 TEST(ExtractOverlay, TitleLabelsAndMarkerGoOver) {
@@ -141,8 +141,8 @@ TEST(ExtractOverlay, TitleLabelsAndMarkerGoOver) {
   EXPECT_EQ(overlay.texts[0].text, "T");
   EXPECT_EQ(overlay.texts[0].anchor, Anchor::top);
   ASSERT_EQ(overlay.labels.size(), 1u);
-  EXPECT_EQ(overlay.labels[0].at, Vec3(1, 2, 3));
-  EXPECT_TRUE(overlay.labels[0].behind_hidden);
+  EXPECT_EQ(overlay.labels[0].position, Vec3(1, 2, 3));
+  EXPECT_TRUE(overlay.labels[0].hide_if_occluded);
   ASSERT_TRUE(overlay.orientation_marker);
   EXPECT_EQ(overlay.orientation_marker->anchor, Anchor::top_left);
   EXPECT_EQ(overlay.scale, 2);

@@ -71,8 +71,8 @@ TEST(Extract, FogSpansWhatIsDrawnInAWorldOfAnySize) {
     ASSERT_TRUE(scene) << scene.error().message;
     const FramePacket packet = packet_of(*scene);
     ASSERT_TRUE(packet.fog);
-    EXPECT_GT(packet.fog->end - packet.fog->start, 0.1 * size) << size;
-    EXPECT_LT(packet.fog->end - packet.fog->start, 1.5 * size) << size;
+    EXPECT_GT(packet.fog->far - packet.fog->near, 0.1 * size) << size;
+    EXPECT_LT(packet.fog->far - packet.fog->near, 1.5 * size) << size;
   }
 }
 
@@ -82,13 +82,13 @@ TEST(Extract, FogAndEyesFollowAViewThatMoves) {
       "stereo": {"mode": "left"}, "camera": {"position": [0, -10, 0], "target": [0, 0, 0]}})");
   FramePacket packet = packet_of(scene);
   ASSERT_TRUE(packet.fog);
-  EXPECT_NEAR(packet.fog->start, 8, 1e-9);  // the sphere's field spans -2..2
-  EXPECT_NEAR(packet.fog->end, 12, 1e-9);
+  EXPECT_NEAR(packet.fog->near, 8, 1e-9);  // the sphere's field spans -2..2
+  EXPECT_NEAR(packet.fog->far, 12, 1e-9);
   View far = packet.view;
   far.position = {0, -100, 0};
   set_view(scene, far, packet);
-  EXPECT_NEAR(packet.fog->start, 98, 1e-9);
-  EXPECT_NEAR(packet.fog->end, 102, 1e-9);
+  EXPECT_NEAR(packet.fog->near, 98, 1e-9);
+  EXPECT_NEAR(packet.fog->far, 102, 1e-9);
   ASSERT_EQ(packet.eyes.size(), 1u);
   EXPECT_LT(norm(packet.eyes[0].position - far.position), 5);
 }
@@ -98,7 +98,8 @@ TEST(Extract, AnEdgeIsTheBoxsOrTheAxesAndNeverBoth) {
     scene::Scene scene = scene_of(R"({"fields": {)" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}], )" + aids + "}");
     const FramePacket packet = packet_of(scene);
     int count = 0;
-    for (const TubeItem& tube : packet.aids.tubes) count += norm(tube.points.back() - tube.points.front()) > 3.9;  // ticks are shorter
+    for (const TubeItem& tube : packet.environment.tubes)
+      count += norm(tube.points.back() - tube.points.front()) > 3.9;  // ticks are shorter
     return count;
   };
   EXPECT_EQ(edges(R"("bounding_box": true)"), 12);
@@ -114,7 +115,7 @@ TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.volumes.size(), 1u);
   const VolumeItem& volume = packet.volumes[0];
-  EXPECT_TRUE(volume.shade);
+  EXPECT_TRUE(volume.is_shaded);
   ASSERT_EQ(volume.transfer.extinctions.size(), 3u);
   EXPECT_EQ(volume.transfer.extinctions[0], (std::array<double, 2>{0, 0}));
   EXPECT_DOUBLE_EQ(volume.transfer.extinctions[1][1], std::log(2.0) / 0.25);
@@ -166,12 +167,12 @@ TEST(Extract, TubesAreTheFeltCurve) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(},
     "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0.5]}],
     "streamlines": [{"field": "v", "seeds": [[1, 0, 0.5]], "color": [0, 1, 0]}]})");
-  const auto field = scene::use_field(scene, "v", json::Node());
+  const auto field = scene::resolve_field(scene, "v", json::Node());
   ASSERT_TRUE(field);
-  const auto felt = scene::use_curve(scene, {field->vector.get()}, {1.0, 0.0, 0.5}, json::Node());
+  const auto felt = scene::resolve_streamline(scene, {field->vector.get()}, {1.0, 0.0, 0.5}, json::Node());
   ASSERT_TRUE(felt);
   const FramePacket packet = packet_of(scene);
-  EXPECT_EQ(scene.curves.size(), 1u) << "one object for the hand and the eye";
+  EXPECT_EQ(scene.traced_curves.size(), 1u) << "one object for the hand and the eye";
   ASSERT_EQ(packet.tubes.size(), 1u);
   const TubeItem& tube = packet.tubes[0];
   EXPECT_NEAR(tube.radius, 0.003 * std::sqrt(48.0), 1e-12);  // of the box -2..2
@@ -247,7 +248,7 @@ TEST(Extract, PulsesMoveWithThePhase) {
     return at;
   };
   EXPECT_NEAR(brightest_near(0), 0, 0.05);
-  scene.phase = 0.25;
+  scene.animation_phase = 0.25;
   EXPECT_NEAR(brightest_near(0), 0.25, 0.05);
 }
 
@@ -260,7 +261,7 @@ TEST(Extract, TheIndicatorFollowsTheProbe) {
   EXPECT_NEAR(item.tube.points.front().y, -std::sin(0.2), 1e-5);
   EXPECT_NEAR(item.tube.points.back().y, std::sin(0.2), 1e-5);
   EXPECT_GT(dot(item.arrow.tip - item.arrow.base, Vec3(0, 1, 0)), 0);
-  scene.world.get<scene::Cursor>(scene.cursor).probe = {0, 0, 0};
+  scene.entities.get<scene::Cursor>(scene.cursor).probe = {0, 0, 0};
   EXPECT_TRUE(packet_of(scene).indicators.empty()) << "no line goes through the axis";
 }
 
@@ -279,13 +280,13 @@ TEST(Extract, LinksAreNotDrawnByThemselves) {
   scene::Scene scene =
       scene_of("{\"fields\": {" + kCircle + R"(}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})");
   EXPECT_TRUE(packet_of(scene).tubes.empty());
-  EXPECT_TRUE(scene.curves.empty()) << "and nothing is loaded or traced for the eye";
+  EXPECT_TRUE(scene.traced_curves.empty()) << "and nothing is loaded or traced for the eye";
 }
 
 TEST(Extract, TheCursorShowsOnceItIsVisible) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.5}]})");
   EXPECT_TRUE(packet_of(scene).cursors.empty());
-  scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
   cursor.visible = true;
   cursor.probe = {1.0, 2.0, 3.0};
   cursor.proxies = {{0.0, 0.0, 1.0}, {0.0, 0.0, 2.0}};
@@ -295,11 +296,11 @@ TEST(Extract, TheCursorShowsOnceItIsVisible) {
   ASSERT_EQ(packet.cursors.size(), 1u);
   EXPECT_EQ(packet.cursors[0].probe, cursor.probe);
   EXPECT_EQ(packet.cursors[0].proxies, cursor.proxies);
-  EXPECT_EQ(packet.cursors[0].active.size(), 2u);
-  EXPECT_GT(packet.cursors[0].size * 0.7, 0.5) << "every proxy's ball covers the tube it sits on";
+  EXPECT_EQ(packet.cursors[0].link_active.size(), 2u);
+  EXPECT_GT(packet.cursors[0].radius * 0.7, 0.5) << "every proxy's ball covers the tube it sits on";
 
   cursor.size = 0.25;
-  EXPECT_EQ(packet_of(scene).cursors[0].size, 0.25);
+  EXPECT_EQ(packet_of(scene).cursors[0].radius, 0.25);
   cursor.probe.x = std::nan("");
   EXPECT_TRUE(packet_of(scene).cursors.empty());
 }
@@ -308,7 +309,7 @@ TEST(Extract, TheCursorShowsOnceItIsVisible) {
 TEST(Extract, TheCursorAloneIsMoved) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}],
     "cursor": {"drop_line": true}})");
-  scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
   cursor.visible = true;
   cursor.probe = {0.1, 0.2, 0.3};
   cursor.proxies = {{0.0, 0.0, 1.0}};
@@ -318,26 +319,26 @@ TEST(Extract, TheCursorAloneIsMoved) {
   cursor.proxies = {{0.0, 0.5, 1.0}};
   cursor.force_n = {0.0, 2.0, 0.0};
   const FramePacket anew = packet_of(scene);
-  move_cursors(scene, packet);
+  update_cursors(scene, packet);
   EXPECT_NE(packet.cursors, std::vector{before});
   EXPECT_EQ(packet.cursors, anew.cursors);
-  EXPECT_EQ(packet.cursors[0].size, before.size);
+  EXPECT_EQ(packet.cursors[0].radius, before.radius);
   EXPECT_EQ(packet.objects.size(), anew.objects.size());
   cursor.visible = false;
-  move_cursors(scene, packet);
+  update_cursors(scene, packet);
   EXPECT_EQ(packet.cursors, anew.cursors) << "another packet is made for that";
 }
 
 TEST(Extract, ADropLineEndsOnTheFloor) {
   const auto foot = [](const std::string& more, const Vec3& probe) {
     scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}])" + more + "}");
-    scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+    scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
     cursor.visible = true;
     cursor.probe = probe;
     const FramePacket packet = packet_of(scene);
     EXPECT_EQ(packet.cursors.size(), 1u);
-    EXPECT_TRUE(packet.cursors[0].ghost);
-    return packet.cursors[0].foot;
+    EXPECT_TRUE(packet.cursors[0].show_occluded);
+    return packet.cursors[0].foot_point;
   };
   const Vec3 probe(0.1, 0.2, 0.3);
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}]})");
@@ -353,8 +354,8 @@ TEST(Extract, ADropLineEndsOnTheFloor) {
   EXPECT_LT(foot(line + R"(, "ground": true)", probe)->z, box.lo.z);
   // nothing is drawn
   scene::Scene empty = scene_of("{\"cursor\": {\"probe\": [0, 0, 1], \"drop_line\": true, \"ghost\": false}}");
-  EXPECT_EQ(packet_of(empty).cursors[0].foot, std::nullopt);
-  EXPECT_FALSE(packet_of(empty).cursors[0].ghost);
+  EXPECT_EQ(packet_of(empty).cursors[0].foot_point, std::nullopt);
+  EXPECT_FALSE(packet_of(empty).cursors[0].show_occluded);
 }
 
 TEST(Extract, TheFittedCameraSeesEverything) {

@@ -6,9 +6,9 @@
 #include <cstdlib>
 
 #include "render/extract/extract.h"
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 #include "render/extract/widget_shapes.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace extract_widgets_test {
@@ -25,18 +25,18 @@ scene::Scene scene_of(const std::string& more = "") {
 
 const std::string kCamera = R"(, "camera": {"position": [3, -8, 4], "target": [0, 0, 0]})";
 
-scene::Entity add_widget(scene::Scene& scene, const std::string& name, Kind kind, const widget::Pose& pose, Mode mode = Mode::away,
+scene::Entity add_widget(scene::Scene& scene, const std::string& name, Kind kind, const widget::Pose& pose, Mode mode = Mode::idle,
                          int handle = -1, int held = 0) {
   scene::Widget w;
   w.spec.kind = kind;
-  w.spec.pose = w.state.pose = pose;
-  w.state.mode = mode;
-  w.state.handle = std::int8_t(handle);
-  w.state.held = std::uint8_t(held);
-  w.complete = true;
-  const scene::Entity e = scene.world.create();
-  scene.world.emplace(e, scene::Name{name});
-  scene.world.emplace(e, std::move(w));
+  w.spec.pose = w.report.pose = pose;
+  w.report.mode = mode;
+  w.report.handle = std::int8_t(handle);
+  w.report.active_planes = std::uint8_t(held);
+  w.is_complete = true;
+  const scene::Entity e = scene.entities.create();
+  scene.entities.emplace(e, scene::Name{name});
+  scene.entities.emplace(e, std::move(w));
   return e;
 }
 
@@ -50,8 +50,8 @@ double luminance(const Color& c) { return c.r + c.g + c.b; }
 
 TEST(PlaneOutline, OfAUnitBox) {
   Bounds box;
-  box.add(Vec3(0.0));
-  box.add(Vec3(1.0));
+  box.extend(Vec3(0.0));
+  box.extend(Vec3(1.0));
   const auto sizes = [&](const Vec3& p, const Vec3& n) { return plane_outline(p, n, box).size(); };
   EXPECT_EQ(sizes({0.5, 0.5, 0.5}, {1, 1, 1}), 6u);
   EXPECT_EQ(sizes({0.1, 0, 0}, {1, 1, 1}), 3u);
@@ -67,8 +67,8 @@ TEST(PlaneOutline, OfAUnitBox) {
 
 TEST(PlaneOutline, IsConvexInThePlaneAndOnTheBox) {
   Bounds box;
-  box.add({-1, -2, 0});
-  box.add({3, 1, 5});
+  box.extend({-1, -2, 0});
+  box.extend({3, 1, 5});
   unsigned seed = 7;
   const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) / 4294967296.0; };
   int found = 0;
@@ -97,7 +97,7 @@ TEST(PlaneOutline, IsConvexInThePlaneAndOnTheBox) {
 
 TEST(ExtractWidgets, ACuttingPlaneIsItsBorderItsCirclesAndItsNormal) {
   scene::Scene scene = scene_of(kCamera + R"(, "isosurfaces": [{"field": "s", "level": 1}])");
-  const Quat turn = rotation_of({0.3, -0.5, 0.2});
+  const Quat turn = rotation_from_vector({0.3, -0.5, 0.2});
   add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(0.1, 0.2, 0.3), Vec3(0.0)}, turn});
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.widgets.tubes.size(), 5u);  // border, three circles, the normal's shaft
@@ -124,7 +124,7 @@ TEST(ExtractWidgets, ACuttingPlaneIsItsBorderItsCirclesAndItsNormal) {
   EXPECT_LT(norm(direction(arrow.tip - centre) - normal), 1e-12);
   // nothing of it is clipped, all of it is one object with a name
   for (const TubeItem& tube : packet.widgets.tubes) {
-    EXPECT_FALSE(tube.clipped);
+    EXPECT_FALSE(tube.is_clipped);
     EXPECT_EQ(tube.id, arrow.id);
   }
   const auto found = std::find_if(packet.objects.begin(), packet.objects.end(), [&](const auto& o) { return o.id == arrow.id; });
@@ -136,8 +136,8 @@ TEST(ExtractWidgets, ACuttingPlaneIsItsBorderItsCirclesAndItsNormal) {
 TEST(ExtractWidgets, WithoutDataThePlaneIsASquareOfEdgeL) {
   scene::Scene scene = scene_of();
   const scene::Entity e = add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(1, 2, 3), Vec3(0.0)}});
-  scene.world.get<scene::Widget>(e).spec.length = 6;
-  scene.world.get<scene::Widget>(e).complete = true;  // or use_widget says 4
+  scene.entities.get<scene::Widget>(e).spec.length = 6;
+  scene.entities.get<scene::Widget>(e).is_complete = true;  // or resolve_widget says 4
   const FramePacket packet = packet_of(scene);
   const TubeItem& border = packet.widgets.tubes[0];
   ASSERT_EQ(border.points.size(), 5u);
@@ -165,7 +165,7 @@ TEST(ExtractWidgets, WhatIsFreeIsAnArrowAndWhatIsHeldASquare) {
     for (int axis = 0; axis < 3; ++axis) {
       if (held >> axis & 1) {
         const MeshItem& mesh = packet.widgets.meshes[plate++];
-        EXPECT_FALSE(mesh.clipped);
+        EXPECT_FALSE(mesh.is_clipped);
         for (const Vec3& p : mesh.geometry->vertices) EXPECT_NEAR(p[axis], 0, 1e-12);
         continue;
       }
@@ -187,7 +187,7 @@ TEST(ExtractWidgets, ModesAndHandlesShow) {
     return packet_of(scene).widgets.tubes;
   };
   const auto plane = [&](Mode mode, int held) { return tubes_of(Kind::cutting_plane, mode, -1, held); };
-  const auto away = plane(Mode::away, 0), explore = plane(Mode::explore, 4), rotate_ = plane(Mode::rotate, 2), turn = plane(Mode::turn, 2);
+  const auto away = plane(Mode::idle, 0), explore = plane(Mode::explore, 4), rotate_ = plane(Mode::rotate, 2), turn = plane(Mode::turn, 2);
   EXPECT_GT(explore[0].radius, 1.5 * away[0].radius);
   EXPECT_GT(luminance(explore[0].color), 1.1 * luminance(away[0].color));
   EXPECT_EQ(rotate_[0].radius, away[0].radius);
@@ -209,7 +209,7 @@ TEST(ExtractWidgets, ModesAndHandlesShow) {
         std::erase_if(tubes, [](const TubeItem& tube) { return tube.points.size() != 1; });
         return tubes;
       };
-      const auto rest = balls(Mode::away), hover = balls(Mode::hover), drag = balls(Mode::drag);
+      const auto rest = balls(Mode::idle), hover = balls(Mode::hover), drag = balls(Mode::drag);
       ASSERT_EQ(rest.size(), std::size_t(handles));
       for (std::size_t i = 0; i < rest.size(); ++i) {
         const bool mine = int(i) == handle;
@@ -236,9 +236,9 @@ TEST(ExtractWidgets, TheIsolevelsArrowFollowsTheGradient) {
   const Vec3 at(0.6, -0.7, 0.4);
   const scene::Entity e = add_widget(scene, "l", Kind::isolevel, {{at, Vec3(0.0)}});
   ASSERT_TRUE(packet_of(scene).widgets.arrows.empty()) << "no field yet";
-  const auto field = scene::use_field(scene, scene::find_field(scene, "s"), {});
+  const auto field = scene::resolve_field(scene, scene::find_field(scene, "s"), {});
   ASSERT_TRUE(field);
-  scene.world.get<scene::Widget>(e).spec.field = field->scalar;
+  scene.entities.get<scene::Widget>(e).spec.field = field->scalar;
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.widgets.arrows.size(), 1u);
   EXPECT_LT(norm(direction(packet.widgets.arrows[0].tip - at) - direction(at)), 1e-9) << "|x| rises outwards";
@@ -250,7 +250,7 @@ TEST(ExtractWidgets, ARulerSaysItsLength) {
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.overlay.labels.size(), 1u);
   EXPECT_EQ(packet.overlay.labels[0].text, "5 units");
-  EXPECT_EQ(packet.overlay.labels[0].at, Vec3(1.5, 2, 0));
+  EXPECT_EQ(packet.overlay.labels[0].position, Vec3(1.5, 2, 0));
 }
 
 TEST(ExtractWidgets, ARulerAlongACurveIsDrawnAlongIt) {
@@ -268,7 +268,7 @@ TEST(ExtractWidgets, ARulerAlongACurveIsDrawnAlongIt) {
   for (const Vec3& p : longest().points) EXPECT_NEAR(norm(p), 1, 1e-3);
   ASSERT_EQ(packet.overlay.labels.size(), 1u);
   EXPECT_EQ(packet.overlay.labels[0].text, "1.571 units");
-  EXPECT_NEAR(norm(packet.overlay.labels[0].at - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)), 0, 1e-2) << "halfway";
+  EXPECT_NEAR(norm(packet.overlay.labels[0].position - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)), 0, 1e-2) << "halfway";
   // another view keeps it
   const std::size_t before = packet.widgets.tubes.size();
   set_view(*scene, {{0, -3, 9}, {0, 0, 0}, {0, 0, 1}, 30}, packet);
@@ -306,7 +306,7 @@ TEST(ExtractWidgets, WhatIsNotFiniteIsLeftOut) {
 }
 
 // ---- pictures ----
-class WidgetPictures : public PictureTest {};
+class WidgetImages : public ImageTest {};
 
 std::uint32_t id_named(const FramePacket& packet, const std::string& name) {
   for (const ObjectName& object : packet.objects)
@@ -314,11 +314,11 @@ std::uint32_t id_named(const FramePacket& packet, const std::string& name) {
   return 0;
 }
 
-TEST_F(WidgetPictures, CirclesLieWhereTheyProjectTo) {
+TEST_F(WidgetImages, CirclesLieWhereTheyProjectTo) {
   scene::Scene scene = scene_of(kCamera);
-  const Quat turn = rotation_of({0.4, 0.1, -0.3});
+  const Quat turn = rotation_from_vector({0.4, 0.1, -0.3});
   const scene::Entity e = add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(0.0), Vec3(0.0)}, turn});
-  scene::Widget& w = scene.world.get<scene::Widget>(e);
+  scene::Widget& w = scene.entities.get<scene::Widget>(e);
   w.spec.radius = 1.2;
   w.spec.length = 0.6;  // thin lines, a small square
   FramePacket packet = packet_of(scene);
@@ -363,45 +363,45 @@ TEST_F(WidgetPictures, CirclesLieWhereTheyProjectTo) {
   EXPECT_EQ(stray, 0);
 }
 
-TEST_F(WidgetPictures, PicturesRepeatAndModesDiffer) {
+TEST_F(WidgetImages, PicturesRepeatAndModesDiffer) {
   const auto picture_of = [&](Mode mode, int held) {
     scene::Scene scene = scene_of(kCamera + R"(, "isosurfaces": [{"field": "s", "level": 1}])");
-    scene.clip.push_back({{{0, 0, 0}, {0, 0, -1}}});
+    scene.clip_planes.push_back({{{0, 0, 0}, {0, 0, -1}}});
     add_widget(scene, "cut", Kind::cutting_plane, {}, mode, -1, held);
     const FramePacket packet = packet_of(scene);
-    return draw(packet, {}, std::string(exchange::mode_word(mode)) + std::to_string(held));
+    return draw(packet, {}, std::string(to_string(mode)) + std::to_string(held));
   };
-  const Picture away = picture_of(Mode::away, 0);
-  EXPECT_EQ(away.rgba, picture_of(Mode::away, 0).rgba);
-  std::vector<Picture> all{away};
+  const Image8 away = picture_of(Mode::idle, 0);
+  EXPECT_EQ(away.rgba, picture_of(Mode::idle, 0).rgba);
+  std::vector<Image8> all{away};
   for (const auto& [mode, held] :
        {std::pair{Mode::explore, 4}, {Mode::translate, 3}, {Mode::translate, 0}, {Mode::rotate, 0}, {Mode::rotate, 1}, {Mode::turn, 1}}) {
-    const Picture one = picture_of(mode, held);
-    for (const Picture& other : all) {
+    const Image8 one = picture_of(mode, held);
+    for (const Image8& other : all) {
       int changed = 0;
       for (std::size_t i = 0; i < one.rgba.size(); i += 4) changed += std::abs(one.rgba[i] - other.rgba[i]) > 30;
-      EXPECT_GT(changed, 30) << exchange::mode_word(mode) << " " << held;
+      EXPECT_GT(changed, 30) << to_string(mode) << " " << held;
     }
     all.push_back(one);
   }
 }
 
-TEST_F(WidgetPictures, ClipPlanesDoNotTouchThem) {
+TEST_F(WidgetImages, ClipPlanesDoNotTouchThem) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "s", Kind::seed, {{Vec3(0, 0, 0), Vec3(0.0)}});
-  const Picture whole = draw(packet_of(scene));
-  scene.clip.push_back({{{0, 0, 5}, {0, 0, 1}}});
+  const Image8 whole = draw(packet_of(scene));
+  scene.clip_planes.push_back({{{0, 0, 5}, {0, 0, 1}}});
   EXPECT_EQ(draw(packet_of(scene)).rgba, whole.rgba);
 }
 
-TEST_F(WidgetPictures, EveryWidgetCanBePickedAndSeenByBothEyes) {
+TEST_F(WidgetImages, EveryWidgetCanBePickedAndSeenByBothEyes) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "seed", Kind::seed, {{Vec3(-1.2, 0, 1), Vec3(0.0)}});
   add_widget(scene, "rake", Kind::rake, {{Vec3(-1.5, 0, -0.6), Vec3(-0.5, 0, -1)}});
   add_widget(scene, "box", Kind::box, {{Vec3(0.4, -0.4, 0.2), Vec3(1.4, 0.4, 1)}}, Mode::hover, 3);
   add_widget(scene, "ruler", Kind::ruler, {{Vec3(0.2, 0, -1), Vec3(1.4, 0, -0.5)}});
   FramePacket packet = packet_of(scene);
-  const Picture mono = draw(packet, {}, "picture");
+  const Image8 mono = draw(packet, {}, "picture");
   const auto ids = renderer_->read_ids();
   ASSERT_TRUE(ids);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
@@ -422,7 +422,7 @@ TEST_F(WidgetPictures, EveryWidgetCanBePickedAndSeenByBothEyes) {
   scene.stereo = stereo->stereo;
   packet = packet_of(scene, 128, 96);
   ASSERT_EQ(packet.eyes.size(), 2u);
-  const Picture both = draw(packet, {}, "stereo");
+  const Image8 both = draw(packet, {}, "stereo");
   ASSERT_EQ(both.width, 256u);
   int left = 0, right = 0, differ = 0;
   for (std::uint32_t y = 0; y < both.height; ++y)
@@ -437,7 +437,7 @@ TEST_F(WidgetPictures, EveryWidgetCanBePickedAndSeenByBothEyes) {
 }
 
 // For looking at: CATENA_GALLERY=1 draws every widget in every mode, large, on dark and on light.
-TEST_F(WidgetPictures, Gallery) {
+TEST_F(WidgetImages, Gallery) {
   if (std::getenv("CATENA_GALLERY") == nullptr) GTEST_SKIP() << "CATENA_GALLERY is not set";
   struct Case {
     const char* name;
@@ -445,7 +445,7 @@ TEST_F(WidgetPictures, Gallery) {
     Mode mode;
     int handle, held;
   };
-  const Case cases[] = {{"plane_away", Kind::cutting_plane, Mode::away, -1, 0},
+  const Case cases[] = {{"plane_away", Kind::cutting_plane, Mode::idle, -1, 0},
                         {"plane_explore", Kind::cutting_plane, Mode::explore, -1, 4},
                         {"plane_free", Kind::cutting_plane, Mode::translate, -1, 0},
                         {"plane_two", Kind::cutting_plane, Mode::translate, -1, 3},
@@ -453,17 +453,17 @@ TEST_F(WidgetPictures, Gallery) {
                         {"plane_rotate", Kind::cutting_plane, Mode::rotate, -1, 0},
                         {"plane_rotate_x", Kind::cutting_plane, Mode::rotate, -1, 1},
                         {"plane_turn_y", Kind::cutting_plane, Mode::turn, -1, 2},
-                        {"seed", Kind::seed, Mode::away, -1, 0},
+                        {"seed", Kind::seed, Mode::idle, -1, 0},
                         {"seed_hover", Kind::seed, Mode::hover, 0, 0},
                         {"seed_drag", Kind::seed, Mode::drag, 0, 6},
-                        {"rake", Kind::rake, Mode::away, -1, 0},
+                        {"rake", Kind::rake, Mode::idle, -1, 0},
                         {"rake_hover", Kind::rake, Mode::hover, 1, 0},
                         {"rake_drag", Kind::rake, Mode::drag, 2, 3},
                         {"level", Kind::isolevel, Mode::hover, 0, 0},
                         {"level_drag", Kind::isolevel, Mode::drag, 0, 0},
                         {"box", Kind::box, Mode::hover, 2, 0},
                         {"box_drag", Kind::box, Mode::drag, 2, 5},
-                        {"ruler", Kind::ruler, Mode::away, -1, 0},
+                        {"ruler", Kind::ruler, Mode::idle, -1, 0},
                         {"ruler_drag", Kind::ruler, Mode::drag, 1, 4}};
   for (const bool light : {false, true})
     for (const Case& c : cases) {
@@ -473,17 +473,17 @@ TEST_F(WidgetPictures, Gallery) {
       const Vec3 on = 1.2 * direction(Vec3(0.3, -0.8, 0.5));
       widget::Pose pose{{on, Vec3(0.9, -1.3, 1.3)}};
       if (c.kind == Kind::cutting_plane) {
-        pose = {{Vec3(0, 0, 0.2), Vec3(0.0)}, rotation_of({0.15, -0.2, 0.1})};
-        scene.clip.push_back({pose.points[0], -1.0 * rotate(pose.orientation, {0, 0, 1})});
+        pose = {{Vec3(0, 0, 0.2), Vec3(0.0)}, rotation_from_vector({0.15, -0.2, 0.1})};
+        scene.clip_planes.push_back({pose.points[0], -1.0 * rotate(pose.orientation, {0, 0, 1})});
       }
       if (c.kind == Kind::isolevel) pose.points[0] = 1.2 * direction(Vec3(0.9, -0.5, 0.5));
       if (c.kind == Kind::rake) pose = {{Vec3(-1.2, -1.3, -0.6), Vec3(1, -1.3, 0.8)}};
       if (c.kind == Kind::box) pose = {{Vec3(-0.8, -1.4, -0.6), Vec3(1, 0.2, 1.4)}};
       const scene::Entity e = add_widget(scene, "w", c.kind, pose, c.mode, c.handle, c.held);
       if (c.kind == Kind::isolevel) {
-        auto field = scene::use_field(scene, scene::find_field(scene, "s"), {});
+        auto field = scene::resolve_field(scene, scene::find_field(scene, "s"), {});
         ASSERT_TRUE(field);
-        scene.world.get<scene::Widget>(e).spec.field = field->scalar;
+        scene.entities.get<scene::Widget>(e).spec.field = field->scalar;
       }
       draw(packet_of(scene, 640, 480), {}, std::string(c.name) + (light ? "_light" : ""));
     }

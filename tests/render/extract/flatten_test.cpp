@@ -20,7 +20,7 @@ flow::Curve circle(double radius, int knots, bool closed) {
     k.back().p = k.front().p;
     k.back().t = k.front().t;
   }
-  return flow::Curve(std::move(k), closed, flow::End::lap, flow::End::lap, 4);
+  return flow::Curve(std::move(k), closed, flow::Termination::lap, flow::Termination::lap, 4);
 }
 
 double distance_to_polyline(const Vec3& p, const std::vector<Vec3>& line) {
@@ -66,7 +66,7 @@ TEST(Flatten, AClosedCurveEndsWhereItBegins) {
 TEST(Flatten, AStraightLineNeedsTwoPoints) {
   std::vector<flow::Knot> knots;
   for (int i = 0; i <= 300; ++i) knots.push_back({0.01 * i, {0.01 * i, 0.0, 5.0}, {1.0, 0.0, 0.0}});
-  const auto points = flatten(flow::Curve(std::move(knots), false, flow::End::boundary, flow::End::boundary, 4), {0.01});
+  const auto points = flatten(flow::Curve(std::move(knots), false, flow::Termination::boundary, flow::Termination::boundary, 4), {0.01});
   EXPECT_LE(points.size(), 3u);
   EXPECT_EQ(points.back(), Vec3(3.0, 0.0, 5.0));
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/field/grid.h"
+#include "engine/field/grid/grid.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/document.h"
 #include "engine/scene/prepare.h"
@@ -83,16 +83,16 @@ TEST(ExtractGlyphs, TheShapeFollowsTheRadiusAndALineHasNoHead) {
   ASSERT_EQ(arrows.glyphs.size(), 1u);
   const GlyphItem& item = arrows.glyphs[0];
   EXPECT_EQ(item.glyphs.size(), 5u * 5 * 5);
-  EXPECT_NEAR(item.shaft, 0.04, 1e-12);
-  EXPECT_NEAR(item.head, 0.24, 1e-12);
+  EXPECT_NEAR(item.shaft_radius, 0.04, 1e-12);
+  EXPECT_NEAR(item.head_length, 0.24, 1e-12);
   EXPECT_NEAR(item.head_radius, 0.096, 1e-12);
-  EXPECT_FALSE(item.clipped);
+  EXPECT_FALSE(item.is_clipped);
   EXPECT_EQ(arrows.objects[item.id - 1].kind, "glyphs");
   EXPECT_EQ(arrows.objects[item.id - 1].name, "w");
-  EXPECT_EQ(arrows.objects[item.id - 1].item, "glyphs[0]");
+  EXPECT_EQ(arrows.objects[item.id - 1].scene_path, "glyphs[0]");
   EXPECT_NEAR(norm(item.glyphs[0].tip - item.glyphs[0].tail - Vec3(0, 0, 0.5)), 0, 1e-12);
   ASSERT_EQ(rods.glyphs.size(), 1u);
-  EXPECT_EQ(rods.glyphs[0].head, 0);
+  EXPECT_EQ(rods.glyphs[0].head_length, 0);
   const Vec3 rod = rods.glyphs[0].glyphs[0].tip - rods.glyphs[0].glyphs[0].tail;
   EXPECT_NEAR(std::fabs(rod.z), 0.5, 1e-12) << "of either sign";
   EXPECT_NEAR(packet_bounds(arrows).hi.z, 2.25, 1e-12);
@@ -114,7 +114,7 @@ TEST(ExtractGlyphs, ColoursAreThoseOfTheMap) {
     hi = std::max(hi, speed);
   }
   // the distance from the origin is the speed, too; the map lies between those that are drawn
-  const auto map = scene::named_map("magma", lo, hi);
+  const auto map = scene::make_color_map("magma", lo, hi);
   for (const Glyph& glyph : packet.glyphs[1].glyphs) {
     const double value = norm(middle(glyph));
     std::size_t k = 1;
@@ -141,9 +141,9 @@ TEST(ExtractGlyphs, WhatIsNotValidHasNone) {
     valid.push_back(i % 17 >= 8);
   }
   scene::Scene scene = scene_of(R"("glyphs": [{"field": "v", "spacing": 0.25}])");
-  scene::FieldSource& source = scene.world.get<scene::FieldSource>(scene::find_field(scene, "v"));
+  scene::FieldSource& source = scene.entities.get<scene::FieldSource>(scene::find_field(scene, "v"));
   source.loaded.vector = field::make_vector_grid("v", mapping, {17, 17, 17}, values, valid);
-  source.drawn = source.loaded;
+  source.rendered = source.loaded;
   std::size_t in_hole = 0;
   const auto glyphs = glyphs_of(scene);
   for (const Glyph& glyph : glyphs) {
@@ -180,14 +180,14 @@ TEST(ExtractGlyphs, TheyFollowWhatTheyStandOn) {
     "slices": [{"field": "s", "widget": "cut"}], "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
     "glyphs": [{"field": "w", "on": {"slice": 0}}, {"field": "w", "on": {"plane": {"widget": "cut"}}}, {"field": "w", "on": {"isosurface": 0}}])");
   const auto move = [&](const char* name, const Vec3& to) {
-    ASSERT_TRUE(scene::set_widget_pose(scene, scene::find_widget(scene, name), {{to, Vec3(0.0)}, kNoRotation}));
+    ASSERT_TRUE(scene::set_widget_pose(scene, scene::find_widget(scene, name), {{to, Vec3(0.0)}, kIdentityRotation}));
   };
   FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.glyphs.size(), 3u);
   EXPECT_NEAR(middle(packet.glyphs[0].glyphs[0]).z, 0.25, 1e-12);
   EXPECT_NEAR(middle(packet.glyphs[1].glyphs[0]).z, 0.25, 1e-12);
   EXPECT_NEAR(norm(middle(packet.glyphs[2].glyphs[0])), 1, 0.02);
-  EXPECT_TRUE(packet_of(scene).glyphs[2].glyphs.is_same(packet.glyphs[2].glyphs)) << "made once";
+  EXPECT_TRUE(packet_of(scene).glyphs[2].glyphs.shares_storage(packet.glyphs[2].glyphs)) << "made once";
   move("cut", {0, 0, -1});
   move("l", {0, 1.5, 0});
   packet = packet_of(scene);
@@ -210,12 +210,12 @@ TEST(ExtractGlyphs, AnEditOfTheSliceMovesThemAndAnotherEditKeepsThem) {
   std::string other = text;
   other.replace(other.find("\"a\""), 3, "\"b\"");
   scene::Scene same = parsed(other);
-  scene::carry_over(first, same);
-  EXPECT_TRUE(packet_of(same).glyphs[0].glyphs.is_same(before));
+  scene::transfer_state(first, same);
+  EXPECT_TRUE(packet_of(same).glyphs[0].glyphs.shares_storage(before));
   std::string moved = other;
   moved.replace(moved.find("\"at\": 0"), 7, "\"at\": 1");
   scene::Scene third = parsed(moved);
-  scene::carry_over(same, third);
+  scene::transfer_state(same, third);
   EXPECT_NEAR(middle(packet_of(third).glyphs[0].glyphs[0]).z, 1, 1e-12);
 }
 

@@ -35,22 +35,22 @@ TEST_F(LabelPacket, TheLegendHasTheTwentyLargestByTheirNames) {
       packet_of(R"("isosurfaces": [{"field": "all", "level": 0.5, "color_by": {"field": "m"}}], "scalar_bars": [{"field": "m"}])");
   ASSERT_EQ(packet.overlay.scalar_bars.size(), 1u);
   const ScalarBarItem& bar = packet.overlay.scalar_bars[0];
-  EXPECT_EQ(bar.steps, 20);
-  EXPECT_EQ(bar.more, "and 5 more");
+  EXPECT_EQ(bar.band_count, 20);
+  EXPECT_EQ(bar.overflow_text, "and 5 more");
   ASSERT_EQ(bar.ticks.size(), 20u);
   EXPECT_EQ(bar.ticks.back().text, "one") << "numbers rise from above";
   EXPECT_EQ(bar.ticks[18].text, "a name that is f…a legend");
   EXPECT_EQ(bar.ticks[17].text, "3");
   EXPECT_EQ(bar.colors.back(), (std::array<double, 4>{20, 1, 0, 0}));
   ASSERT_TRUE(packet.isosurfaces[0].color_by);
-  EXPECT_TRUE(packet.isosurfaces[0].color_by->labels);
-  EXPECT_TRUE(packet.isosurfaces[0].color_by->spread) << "the surface is that of the labels";
+  EXPECT_TRUE(packet.isosurfaces[0].color_by->is_categorical);
+  EXPECT_TRUE(packet.isosurfaces[0].color_by->spread_labels) << "the surface is that of the labels";
 }
 
 TEST_F(LabelPacket, AnotherSurfaceTakesItsColourWhereThereIsNoLabel) {
   const FramePacket packet = packet_of(R"("isosurfaces": [{"field": "ball", "level": 5, "color_by": {"field": "m"}}])");
-  EXPECT_TRUE(packet.isosurfaces.at(0).color_by->labels);
-  EXPECT_FALSE(packet.isosurfaces.at(0).color_by->spread);
+  EXPECT_TRUE(packet.isosurfaces.at(0).color_by->is_categorical);
+  EXPECT_FALSE(packet.isosurfaces.at(0).color_by->spread_labels);
 }
 
 TEST_F(LabelPacket, OfTwoSlicesInOnePlaneTheLaterLiesOver) {
@@ -60,19 +60,19 @@ TEST_F(LabelPacket, OfTwoSlicesInOnePlaneTheLaterLiesOver) {
   ASSERT_EQ(packet.slices.size(), 4u);
   const int wanted[] = {0, 1, 2, 0};
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(packet.slices[i].over, wanted[i]) << i;
-    EXPECT_EQ(packet.slices[i].hidden, i == 0 ? std::nullopt : std::optional(0.0)) << i;
+    EXPECT_EQ(packet.slices[i].stack_order, wanted[i]) << i;
+    EXPECT_EQ(packet.slices[i].hidden_label, i == 0 ? std::nullopt : std::optional(0.0)) << i;
   }
 }
 
 TEST_F(LabelPacket, AVolumeShowsTheLabelsColours) {
   const FramePacket packet = packet_of(R"("volumes": [{"field": "m"}])");
   const TransferTable& table = packet.volumes.at(0).transfer;
-  EXPECT_TRUE(table.labels);
+  EXPECT_TRUE(table.is_categorical);
   ASSERT_EQ(table.colors.size(), 50u);
   EXPECT_EQ(table.colors[0], (std::array<double, 4>{0.5, 1, 0, 0}));
-  EXPECT_EQ(piecewise(table.extinctions, 0, 1), 0);
-  EXPECT_GT(piecewise(table.extinctions, 1, 1), 0);
+  EXPECT_EQ(interpolate_piecewise(table.extinctions, 0, 1), 0);
+  EXPECT_GT(interpolate_piecewise(table.extinctions, 1, 1), 0);
 }
 
 }  // namespace labels_test

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "engine/field/load.h"
+#include "engine/io/volume/load_field.h"
 #include "engine/scene/prepare.h"
 #include "engine/scene/scene.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 #include "tests/support/support.h"
 
 namespace catena::render {
@@ -53,7 +53,7 @@ Ranges ranges_of(bool spoiled) {
   Ranges ranges;
   if (!packet) return ranges;
   for (const auto& bar : packet->overlay.scalar_bars) ranges.bars.push_back(bar.colors);
-  ranges.levels = packet->slices[0].levels;
+  ranges.levels = packet->slices[0].contour_levels;
   for (const Glyph& glyph : packet->glyphs[0].glyphs.list()) ranges.lengths.push_back(norm(glyph.tip - glyph.tail));
   return ranges;
 }

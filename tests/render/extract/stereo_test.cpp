@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 #include "render/frame/camera.h"
 
 namespace catena::render {
@@ -24,28 +24,28 @@ scene::Stereo mode(scene::StereoMode m) {
   return stereo;
 }
 
-TEST(SetEyes, LeftAndRightAreOneEyeOfThePair) {
+TEST(StereoCameras, LeftAndRightAreOneEyeOfThePair) {
   using scene::StereoMode;
   FramePacket p = packet();
-  set_eyes(p, mode(StereoMode::mono));
+  update_eyes(p, mode(StereoMode::mono));
   EXPECT_TRUE(p.eyes.empty());
-  set_eyes(p, mode(StereoMode::left));
+  update_eyes(p, mode(StereoMode::left));
   ASSERT_EQ(p.eyes.size(), 1u);
   EXPECT_NEAR(side(p, 0), -0.25, 1e-12);
-  set_eyes(p, mode(StereoMode::right));
+  update_eyes(p, mode(StereoMode::right));
   ASSERT_EQ(p.eyes.size(), 1u);
   EXPECT_NEAR(side(p, 0), 0.25, 1e-12);
   EXPECT_EQ(p.packing, Packing::single);
 }
 
-TEST(SetEyes, CrossedAndSwappedExchangeThem) {
+TEST(StereoCameras, CrossedAndSwappedExchangeThem) {
   using scene::StereoMode;
   for (const StereoMode m : {StereoMode::side_by_side, StereoMode::cross_eyed})
     for (const bool swap : {false, true}) {
       FramePacket p = packet();
       scene::Stereo stereo = mode(m);
-      stereo.swap = swap;
-      set_eyes(p, stereo);
+      stereo.swap_eyes = swap;
+      update_eyes(p, stereo);
       ASSERT_EQ(p.eyes.size(), 2u);
       const bool crossed = swap != (m == StereoMode::cross_eyed);
       EXPECT_NEAR(side(p, 0), crossed ? 0.25 : -0.25, 1e-12);
@@ -54,20 +54,20 @@ TEST(SetEyes, CrossedAndSwappedExchangeThem) {
     }
 }
 
-TEST(SetEyes, ManyViewsWhereTheModeTakesThem) {
+TEST(StereoCameras, ManyViewsWhereTheModeTakesThem) {
   using scene::StereoMode;
-  for (int i = 0; i < scene::kStereoModes; ++i) {
+  for (int i = 0; i < scene::kStereoModeCount; ++i) {
     scene::Stereo stereo = mode(static_cast<StereoMode>(i));
-    stereo.views = 5;
+    stereo.view_count = 5;
     FramePacket p = packet();
-    set_eyes(p, stereo);
-    EXPECT_EQ(std::max<std::size_t>(1, p.eyes.size()), views_of(stereo)) << scene::stereo_word(stereo.mode);
-    const bool many = i != 0 && !scene::needs_a_pair(stereo.mode);
-    EXPECT_EQ(p.eyes.size() == 5, many) << scene::stereo_word(stereo.mode);
+    update_eyes(p, stereo);
+    EXPECT_EQ(std::max<std::size_t>(1, p.eyes.size()), stereo_view_count(stereo)) << scene::to_string(stereo.mode);
+    const bool many = i != 0 && !scene::needs_two_views(stereo.mode);
+    EXPECT_EQ(p.eyes.size() == 5, many) << scene::to_string(stereo.mode);
   }
 }
 
-TEST(SetEyes, AWindowIsFilledByItsEyes) {
+TEST(StereoCameras, AWindowIsFilledByItsEyes) {
   for (const Packing packing : {Packing::single, Packing::side_by_side, Packing::top_bottom, Packing::anaglyph, Packing::rows}) {
     const PackedSize eye = view_size(packing, 2, 800, 600);
     const PackedSize whole = packed_size(packing, 2, std::uint32_t(eye.width), std::uint32_t(eye.height));

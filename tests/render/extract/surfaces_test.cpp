@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "engine/field/grid.h"
-#include "engine/field/magnitude.h"
+#include "engine/field/derived/magnitude.h"
+#include "engine/field/grid/grid.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_parts.h"
+#include "render/extract/extract_internal.h"
 #include "tests/support/support.h"
 
 namespace catena::render {
@@ -33,10 +33,10 @@ TEST(ExtractSlices, PlaneColoursAndLevelsReachThePacket) {
   EXPECT_EQ(slice.normal, Vec3(0, 0, 1));
   ASSERT_EQ(slice.colors.size(), 2u);
   EXPECT_EQ(slice.colors[1], (std::array<double, 4>{2, 0, 0, 1}));
-  EXPECT_EQ(slice.levels, (std::vector<double>{0.5, 1, 1.5}));
+  EXPECT_EQ(slice.contour_levels, (std::vector<double>{0.5, 1, 1.5}));
   EXPECT_EQ(slice.line_width, 2);
   EXPECT_EQ(slice.opacity, 0.5f);
-  EXPECT_FALSE(slice.clipped);
+  EXPECT_FALSE(slice.is_clipped);
   ASSERT_EQ(packet->objects.size(), 1u);
   EXPECT_EQ(packet->objects[0].kind, "slice");
   EXPECT_EQ(packet->objects[0].id, slice.id);
@@ -50,7 +50,7 @@ TEST(ExtractSlices, NamedColoursCoverTheFieldAndMultiplesLieWithinIt) {
   const SliceItem& slice = packet->slices[0];
   EXPECT_EQ(slice.colors.front()[0], slice.grid->min_value());
   EXPECT_EQ(slice.colors.back()[0], slice.grid->max_value());
-  EXPECT_EQ(slice.levels, (std::vector<double>{0, 0.75, 1.5, 2.25, 3}));
+  EXPECT_EQ(slice.contour_levels, (std::vector<double>{0, 0.75, 1.5, 2.25, 3}));
 }
 
 TEST(ExtractSlices, AVectorFieldIsShownByItsMagnitude) {
@@ -72,8 +72,8 @@ TEST(ExtractSlices, TheMagnitudesKeepMaskPlaceAndHoles) {
       }
   const auto mapping = field::Mapping::from_linear(Mat3(0.5), {10, 20, 30});
   const auto grid = field::make_vector_grid("v", mapping, {6, 5, 4}, xyz, valid);
-  const auto magnitude = *field::magnitude_grid(*grid, "v");
-  const auto whole = *field::magnitude_grid(*field::make_vector_grid("v", mapping, {6, 5, 4}, xyz), "v");
+  const auto magnitude = *field::make_magnitude_grid(*grid, "v");
+  const auto whole = *field::make_magnitude_grid(*field::make_vector_grid("v", mapping, {6, 5, 4}, xyz), "v");
   field::Cursor one, two, three;
   for (int z = 0; z < 3; ++z)
     for (int y = 0; y < 4; ++y)
@@ -104,7 +104,7 @@ TEST(ExtractMeshes, NormalsColoursAndOpacity) {
   auto packet = extract(fields + R"(, "shading": "smooth", "opacity": 0.25, "edges": true}]})", folder / "s.json");
   ASSERT_TRUE(packet) << packet.error().message;
   const MeshItem& item = packet->meshes[0];
-  EXPECT_TRUE(item.smooth && item.edges);
+  EXPECT_TRUE(item.smooth && item.show_edges);
   EXPECT_EQ(item.opacity, 0.25f);
   ASSERT_EQ(item.geometry->normals.size(), 6u);
   for (std::size_t v = 0; v < 6; ++v) {

@@ -14,14 +14,14 @@ TEST(Tiles, CoverEverySampleOnce) {
     for (std::uint32_t row = 0; row < plan.rows(); ++row)
       for (std::uint32_t column = 0; column < plan.columns(); ++column) {
         const TileArea a = plan.area(column, row);
-        EXPECT_EQ(a.x % kTileStep, 0u);
-        EXPECT_EQ(a.drawn_x % kTileStep, 0u);
-        EXPECT_EQ(a.drawn_y % kTileStep, 0u);
+        EXPECT_EQ(a.x % kTileAlignment, 0u);
+        EXPECT_EQ(a.render_x % kTileAlignment, 0u);
+        EXPECT_EQ(a.render_y % kTileAlignment, 0u);
         EXPECT_EQ(a.x % n + a.width % n + a.y % n + a.height % n, 0u) << "whole pixels";
-        EXPECT_LE(a.drawn_x, a.x);
-        EXPECT_GE(a.drawn_x + a.drawn_width, a.x + a.width);
-        EXPECT_LE(a.drawn_x + a.drawn_width, w * n);
-        EXPECT_LE(a.drawn_width, 4096u);
+        EXPECT_LE(a.render_x, a.x);
+        EXPECT_GE(a.render_x + a.render_width, a.x + a.width);
+        EXPECT_LE(a.render_x + a.render_width, w * n);
+        EXPECT_LE(a.render_width, 4096u);
         for (std::uint32_t y = a.y; y < a.y + a.height; ++y)
           for (std::uint32_t x = a.x; x < a.x + a.width; ++x) ++seen[std::size_t(y) * w * n + x];
       }
@@ -50,12 +50,12 @@ TEST(Tiles, ATileSeesTheSameRays) {
     const Camera whole = make_camera(packet.view, 300, 200, {});
     for (const auto& [column, row] : {std::pair{0u, 0u}, {2u, 1u}, {4u, 3u}}) {
       const TileArea a = plan.area(column, row);
-      const FramePacket part = tile_packet(packet, plan, a);
-      EXPECT_EQ(part.overlay.frame.x, a.drawn_x);
+      const FramePacket part = make_tile_packet(packet, plan, a);
+      EXPECT_EQ(part.overlay.frame.x, a.render_x);
       EXPECT_EQ(part.overlay.frame.width, 300);
       const Camera tile = make_camera(part.view, part.width, part.height, {});
       for (const double x : {0.5, 20.5}) {
-        const Ray here = ray_through(tile, x, 7.5), there = ray_through(whole, a.drawn_x + x, a.drawn_y + 7.5);
+        const Ray here = pixel_ray(tile, x, 7.5), there = pixel_ray(whole, a.render_x + x, a.render_y + 7.5);
         EXPECT_LE(norm(here.direction - there.direction), 1e-14);
         EXPECT_LE(norm(here.origin - there.origin), 1e-13);
       }

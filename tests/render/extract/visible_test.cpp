@@ -19,7 +19,7 @@ std::string scene_text(const std::string& visible) {
   return text;
 }
 
-class Visible : public testing::Test {
+class VisibleKey : public testing::Test {
  protected:
   FramePacket packet(const std::string& visible) {
     test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -33,7 +33,7 @@ class Visible : public testing::Test {
   Result<scene::Scene> scene_ = Error{""};
 };
 
-TEST_F(Visible, TrueIsAsIfItWereNotSaid) {
+TEST_F(VisibleKey, TrueIsAsIfItWereNotSaid) {
   for (const char* visible : {"", ", \"visible\": true"}) {
     const FramePacket all = packet(visible);
     EXPECT_EQ(all.volumes.size(), 2u);
@@ -45,7 +45,7 @@ TEST_F(Visible, TrueIsAsIfItWereNotSaid) {
   }
 }
 
-TEST_F(Visible, FalseHidesTheThingAndItsScalarBar) {
+TEST_F(VisibleKey, FalseHidesTheThingAndItsScalarBar) {
   const FramePacket some = packet(", \"visible\": false");
   EXPECT_EQ(some.volumes.size(), 1u);
   EXPECT_TRUE(some.isosurfaces.empty());
@@ -55,10 +55,10 @@ TEST_F(Visible, FalseHidesTheThingAndItsScalarBar) {
   // that of the slice that is seen, in its own colours
   ASSERT_EQ(some.overlay.scalar_bars.size(), 1u);
   EXPECT_EQ(some.overlay.scalar_bars[0].colors, some.slices[0].colors);
-  EXPECT_EQ(scene_->world.count<scene::Volume>(), 2u) << "it is still of the scene";
+  EXPECT_EQ(scene_->entities.count<scene::Volume>(), 2u) << "it is still of the scene";
 }
 
-TEST_F(Visible, OnlyTruthValues) {
+TEST_F(VisibleKey, OnlyTruthValues) {
   for (const char* list : {R"("volumes": [{"field": "s")", R"("isosurfaces": [{"field": "s", "level": 1)",
                            R"("slices": [{"field": "s", "axis": "z", "at": 0)"}) {
     const auto scene =

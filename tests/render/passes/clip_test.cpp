@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace clip_test {
@@ -24,15 +24,15 @@ FramePacket box_packet(double sigma) {
 
 double alpha_of(double sigma, double length) { return 255 * (1 - std::exp(-sigma * length)); }
 
-class Clip : public PictureTest {};
+class Clip : public ImageTest {};
 
 TEST_F(Clip, AnObliquePlaneLeavesTheWedgeOfAHomogeneousBox) {
   FramePacket packet = box_packet(0.1);
-  packet.clip = {{{10, 10, 10}, {0.3, 1, 0}}};  // y >= 10 - 0.3 (x - 10)
+  packet.clip_planes = {{{10, 10, 10}, {0.3, 1, 0}}};  // y >= 10 - 0.3 (x - 10)
   for (const bool fast : {false, true}) {
     RenderSettings settings;
     if (fast) settings.fast = FastSettings{1, 1, -1, -1};
-    const Picture picture = draw(packet, settings, fast ? "fast" : "exact");
+    const Image8 picture = draw(packet, settings, fast ? "fast" : "exact");
     for (std::uint32_t x = 24; x < 96; x += 3) {
       const double world = 10 + (x + 0.5 - 60) * 0.25;
       EXPECT_NEAR(picture.pixel(x, 60)[3], alpha_of(0.1, 20 - (10 - 0.3 * (world - 10))), 1.01) << x;
@@ -44,12 +44,12 @@ TEST_F(Clip, PlanesBehindAndAcrossTheViewInPerspective) {
   FramePacket packet = box_packet(0.05);
   packet.view.orthographic = false;
   packet.view.fovy_deg = 30;
-  packet.clip = {{{0, 5, 0}, {0, 1, 0}}, {{12, 0, 0}, {-1, 0, 0}}};  // y >= 5, x <= 12
-  const Picture picture = draw(packet, {}, "two");
+  packet.clip_planes = {{{0, 5, 0}, {0, 1, 0}}, {{12, 0, 0}, {-1, 0, 0}}};  // y >= 5, x <= 12
+  const Image8 picture = draw(packet, {}, "two");
   const Camera camera = make_camera(packet.view, 120, 120, {});
   for (const Vec3& p : {Vec3(11.7, 5, 10), Vec3(8, 5, 12), Vec3(12.6, 5, 10), Vec3(13.5, 5, 10)}) {
     const auto pixel = project(camera, p);
-    const Ray ray = ray_through(camera, std::floor(pixel->x) + 0.5, std::floor(pixel->y) + 0.5);
+    const Ray ray = pixel_ray(camera, std::floor(pixel->x) + 0.5, std::floor(pixel->y) + 0.5);
     // entry at y = 5, exit at y = 20 or x = 12
     const double enter = (5 - ray.origin.y) / ray.direction.y, leave = (20 - ray.origin.y) / ray.direction.y;
     double to = leave;
@@ -69,7 +69,7 @@ TEST_F(Clip, ASurfaceIsMetAtItsNextCrossingAndTrianglesAreCut) {
   tube.color = {1, 0, 0};
   tube.id = 9;
   packet.tubes.push_back(tube);
-  packet.clip = {{{0, 6, 0}, {0, 1, 0}}, {{0, 0, 2}, {0, 0, 3}}};  // y >= 6, z >= 2
+  packet.clip_planes = {{{0, 6, 0}, {0, 1, 0}}, {{0, 0, 2}, {0, 0, 3}}};  // y >= 6, z >= 2
   draw(packet, {}, "cut");
   const auto depth = renderer_->read_depth();
   const auto ids = renderer_->read_ids();
@@ -82,7 +82,7 @@ TEST_F(Clip, ASurfaceIsMetAtItsNextCrossingAndTrianglesAreCut) {
   EXPECT_EQ(id_at(2.8), 9u);
   EXPECT_EQ(id_at(1.0), 0u);
   // not clipped: whole
-  packet.isosurfaces[0].clipped = packet.tubes[0].clipped = false;
+  packet.isosurfaces[0].is_clipped = packet.tubes[0].is_clipped = false;
   draw(packet, {}, "whole");
   const auto whole = renderer_->read_depth();
   const auto whole_ids = renderer_->read_ids();
@@ -93,7 +93,7 @@ TEST_F(Clip, ASurfaceIsMetAtItsNextCrossingAndTrianglesAreCut) {
 
 TEST_F(Clip, MoreThanEightPlanesAreAnErrorInOneLine) {
   FramePacket packet = box_packet(0.1);
-  packet.clip.resize(9);
+  packet.clip_planes.resize(9);
   const auto drawn = renderer_->draw(packet);
   ASSERT_FALSE(drawn);
   EXPECT_NE(drawn.error().message.find("9 clip planes"), std::string::npos);

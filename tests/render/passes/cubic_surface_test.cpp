@@ -12,7 +12,7 @@ namespace cubic_surface_test {
 using namespace catena::render;
 using namespace cubic_rays;
 
-class CubicSurface : public PictureTest {
+class CubicSurface : public ImageTest {
  protected:
   /// Every second pixel's depth against the field's own root: within 1e-5 voxels of the surface everywhere, and along the ray where it
   /// meets the surface at more than 30 degrees for 99 of 100. Where a ray only grazes the level either answer will do.
@@ -73,28 +73,28 @@ class CubicSurface : public PictureTest {
 };
 
 TEST_F(CubicSurface, DepthsAreTheRootsOfTheFieldItself) {
-  const auto waves = noisy({37, 21, 50}, 2, 0.97);
-  FramePacket packet = seen(*waves, 110);
-  packet.isosurfaces = {surface_of(waves, 0.55)};
+  const auto waves = noisy_grid({37, 21, 50}, 2, 0.97);
+  FramePacket packet = packet_of_grid(*waves, 110);
+  packet.isosurfaces = {make_isosurface_item(waves, 0.55)};
   compare_depths(packet, {}, "waves", 800);
   RenderSettings all;
-  all.skip = false;
+  all.skip_empty = false;
   compare_depths(packet, all, "waves, every cell", 800);
 }
 
 TEST_F(CubicSurface, DepthsOfNoise) {
-  const auto noise = noisy({32, 32, 32}, 1, 0);
-  FramePacket packet = seen(*noise, 95);
-  packet.isosurfaces = {surface_of(noise, 0.5)};
+  const auto noise = noisy_grid({32, 32, 32}, 1, 0);
+  FramePacket packet = packet_of_grid(*noise, 95);
+  packet.isosurfaces = {make_isosurface_item(noise, 0.5)};
   compare_depths(packet, {}, "noise", 2000);
-  packet.isosurfaces = {surface_of(noise, 1.05)};  // above all samples
+  packet.isosurfaces = {make_isosurface_item(noise, 1.05)};  // above all samples
   compare_depths(packet, {}, "beyond the samples", 20);
 }
 
 TEST_F(CubicSurface, DepthsOfASheardGridWithHoles) {
-  const auto grid = noisy({40, 32, 28}, 3, 0.8, sheared(), 0.02);
-  FramePacket packet = seen(*grid, 120);
-  packet.isosurfaces = {surface_of(grid, 0.45)};
+  const auto grid = noisy_grid({40, 32, 28}, 3, 0.8, sheared(), 0.02);
+  FramePacket packet = packet_of_grid(*grid, 120);
+  packet.isosurfaces = {make_isosurface_item(grid, 0.45)};
   compare_depths(packet, {}, "sheared", 800);
   packet.view.orthographic = true;
   packet.view.height = 50;
@@ -105,14 +105,14 @@ TEST_F(CubicSurface, AQuadraticSurfaceIsItselfWithItsNormals) {
   // an ellipsoid, 3.2 to 6.5 voxels across
   const Vec3 c(7.3, 6.9, 8.1), scale(1.0, 0.55, 0.8);
   const auto linear = make_grid({16, 15, 17}, [&](const Vec3& p) { return dot(scale * (p - c), scale * (p - c)); });
-  const auto cubic = smooth(linear);
-  FramePacket packet = packet_of(c + Vec3(30, -24, 20), c, 20);
+  const auto cubic = smoothed_grid(linear);
+  FramePacket packet = make_packet(c + Vec3(30, -24, 20), c, 20);
   packet.lights = {{{0.2, -1, 1.5}, {1, 1, 1}, false}};
   RenderSettings settings;
-  settings.float_picture = true;
+  settings.float_image = true;
   double depth_error[2]{}, color_error[2]{};
   for (const bool smooth_one : {false, true}) {
-    packet.isosurfaces = {surface_of(smooth_one ? cubic : linear, 10.24)};
+    packet.isosurfaces = {make_isosurface_item(smooth_one ? cubic : linear, 10.24)};
     ASSERT_TRUE(renderer_->draw(packet, settings));
     const auto depth = renderer_->read_depth();
     const auto colors = renderer_->read_back_float();
@@ -146,13 +146,13 @@ TEST_F(CubicSurface, AQuadraticSurfaceIsItselfWithItsNormals) {
 }
 
 TEST_F(CubicSurface, ATranslucentSurfaceIsCrossedAsOftenAsTheField) {
-  const auto grid = noisy({24, 22, 20}, 12, 0.9);
-  FramePacket packet = seen(*grid, 70);
-  packet.isosurfaces = {surface_of(grid, 0.5)};
+  const auto grid = noisy_grid({24, 22, 20}, 12, 0.9);
+  FramePacket packet = packet_of_grid(*grid, 70);
+  packet.isosurfaces = {make_isosurface_item(grid, 0.5)};
   packet.isosurfaces[0].opacity = 0.25f;
   RenderSettings settings;
   settings.termination = 1e-4;
-  const Picture picture = draw(packet, settings, "translucent");
+  const Image8 picture = draw(packet, settings, "translucent");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   field::Cursor cursor;
   int compared = 0, different = 0;
@@ -171,13 +171,13 @@ TEST_F(CubicSurface, ATranslucentSurfaceIsCrossedAsOftenAsTheField) {
 
 TEST_F(CubicSurface, ColoursByACubicFieldAreItsValues) {
   const auto shape = make_grid({24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(11.5)); });
-  const auto values = noisy({12, 13, 11}, 13, 0.3, field::Mapping::from_linear(Mat3(2.1), {0, -1, 1}));
-  FramePacket packet = packet_of({60, -40, 40}, {11.5, 11.5, 11.5}, 20);
-  packet.isosurfaces = {surface_of(shape, 9)};
+  const auto values = noisy_grid({12, 13, 11}, 13, 0.3, field::Mapping::from_linear(Mat3(2.1), {0, -1, 1}));
+  FramePacket packet = make_packet({60, -40, 40}, {11.5, 11.5, 11.5}, 20);
+  packet.isosurfaces = {make_isosurface_item(shape, 9)};
   packet.isosurfaces[0].id = 3;
   packet.isosurfaces[0].color_by = ColorSource{values, {{-0.25, 0, 1, 0}, {1.25, 1, 0, 0}}};
   RenderSettings settings;
-  settings.float_picture = true;
+  settings.float_image = true;
   ASSERT_TRUE(renderer_->draw(packet, settings));
   const auto depth = renderer_->read_depth();
   const auto colors = renderer_->read_back_float();

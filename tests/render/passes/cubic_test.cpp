@@ -11,26 +11,26 @@ namespace cubic_picture_test {
 using namespace catena::render;
 using namespace cubic_rays;
 
-class CubicPicture : public PictureTest {};
+class CubicImage : public ImageTest {};
 
-TEST_F(CubicPicture, ASliceHasTheFieldsOwnValuesAndLines) {
-  const auto grid = noisy({20, 18, 22}, 7, 0.4, sheared(), 0.01);
-  FramePacket packet = seen(*grid, 45);
+TEST_F(CubicImage, ASliceHasTheFieldsOwnValuesAndLines) {
+  const auto grid = noisy_grid({20, 18, 22}, 7, 0.4, sheared(), 0.01);
+  FramePacket packet = packet_of_grid(*grid, 45);
   SliceItem slice;
   slice.grid = grid;
-  slice.point = middle_of(*grid) + Vec3(0.3, 0.1, 0.2);
+  slice.point = grid_center(*grid) + Vec3(0.3, 0.1, 0.2);
   slice.normal = {0.6, -0.5, 0.9};
   slice.colors = {{-0.2, 0, 1, 0}, {1.2, 1, 0, 0}};
   packet.slices = {slice};
-  const Picture plain = draw(packet, {}, "plain");
-  packet.slices[0].levels = {0.35, 0.65};
+  const Image8 plain = draw(packet, {}, "plain");
+  packet.slices[0].contour_levels = {0.35, 0.65};
   packet.slices[0].line_width = 2;
   packet.slices[0].line_color = {0, 0, 1};
-  const Picture lines = draw(packet, {}, "lines");
+  const Image8 lines = draw(packet, {}, "lines");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   field::Cursor cursor;
   const auto value_at = [&](double x, double y) -> std::optional<double> {
-    const Ray ray = ray_through(camera, x, y);
+    const Ray ray = pixel_ray(camera, x, y);
     const auto s =
         grid->sample(ray.origin + dot(slice.normal, slice.point - ray.origin) / dot(slice.normal, ray.direction) * ray.direction, cursor);
     return s.inside ? std::optional(s.value) : std::nullopt;
@@ -75,7 +75,7 @@ std::array<double, 2> integral(const VolumeItem& item, const PixelRay& ray, doub
     const auto s = item.grid->sample(ray.at(ray.from + (k + 0.5) * h), cursor);
     const double sigma = first[1] + (last[1] - first[1]) * std::clamp((s.value - first[0]) / (last[0] - first[0]), 0.0, 1.0);
     const double n = std::fabs(dot(direction(s.gradient), eye));
-    const double lit = item.shade ? 0.2 + 0.7 * n + 0.2 * std::pow(std::max(0.0, 2 * n * n - 1), 20) : 1;
+    const double lit = item.is_shaded ? 0.2 + 0.7 * n + 0.2 * std::pow(std::max(0.0, 2 * n * n - 1), 20) : 1;
     const double after = through * std::exp(-sigma * length);
     light += (through - after) * lit;
     through = after;
@@ -83,14 +83,14 @@ std::array<double, 2> integral(const VolumeItem& item, const PixelRay& ray, doub
   return {light, 1 - through};
 }
 
-TEST_F(CubicPicture, AVolumeIsTheIntegralOfTheFieldAndItsGradient) {
-  const auto grid = noisy({16, 14, 15}, 9, 0.3, sheared());
-  FramePacket packet = seen(*grid, 60, 35);
+TEST_F(CubicImage, AVolumeIsTheIntegralOfTheFieldAndItsGradient) {
+  const auto grid = noisy_grid({16, 14, 15}, 9, 0.3, sheared());
+  FramePacket packet = packet_of_grid(*grid, 60, 35);
   RenderSettings settings = reference_settings();
   for (const bool shade : {false, true}) {
     packet.volumes = {volume_item(grid, {{0.3, 0}, {1.1, 0.2}})};
-    packet.volumes[0].shade = shade;
-    const Picture picture = draw(packet, settings, shade ? "shaded" : "plain");
+    packet.volumes[0].is_shaded = shade;
+    const Image8 picture = draw(packet, settings, shade ? "shaded" : "plain");
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     int compared = 0;
     for (std::uint32_t y = 0; y < packet.height; y += 5)
@@ -108,15 +108,16 @@ TEST_F(CubicPicture, AVolumeIsTheIntegralOfTheFieldAndItsGradient) {
   }
 }
 
-TEST_F(CubicPicture, NoBrickIsPassedThatAnOvershootMakesVisible) {
+TEST_F(CubicImage, NoBrickIsPassedThatAnOvershootMakesVisible) {
   // noughts and ones in a corner, halves elsewhere; seen is only what lies beyond the samples
   std::mt19937 random(4);
-  const auto grid = smooth(make_grid({40, 33, 26}, [&](const Vec3& p) { return p.x < 14 && p.y < 15 ? double(random() & 1) : 0.5; }));
-  FramePacket packet = seen(*grid, 110);
+  const auto grid =
+      smoothed_grid(make_grid({40, 33, 26}, [&](const Vec3& p) { return p.x < 14 && p.y < 15 ? double(random() & 1) : 0.5; }));
+  FramePacket packet = packet_of_grid(*grid, 110);
   RenderSettings all;
-  all.skip = false;
+  all.skip_empty = false;
   packet.volumes = {volume_item(grid, {{1.02, 0}, {1.06, 3}})};
-  const Picture leaping = draw(packet, {}, "leaping");
+  const Image8 leaping = draw(packet, {}, "leaping");
   EXPECT_EQ(max_difference(leaping, draw(packet, all)), 0);
   int visible = 0;
   for (std::size_t i = 3; i < leaping.rgba.size(); i += 4) visible += leaping.rgba[i] > 20;
@@ -125,9 +126,9 @@ TEST_F(CubicPicture, NoBrickIsPassedThatAnOvershootMakesVisible) {
   EXPECT_EQ(max_difference(leaping, draw(packet, balanced_settings())), 0);
 }
 
-TEST_F(CubicPicture, ProjectionsFindWhatLiesBetweenSamples) {
-  const auto grid = noisy({20, 18, 16}, 10, 0.5, sheared(), 0.01);
-  FramePacket packet = seen(*grid, 60, 35);
+TEST_F(CubicImage, ProjectionsFindWhatLiesBetweenSamples) {
+  const auto grid = noisy_grid({20, 18, 16}, 10, 0.5, sheared(), 0.01);
+  FramePacket packet = packet_of_grid(*grid, 60, 35);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   for (const Projection projection : {Projection::maximum, Projection::minimum, Projection::average}) {
     VolumeItem item = volume_item(grid, {{-1, 100}, {2, 100}});
@@ -135,9 +136,9 @@ TEST_F(CubicPicture, ProjectionsFindWhatLiesBetweenSamples) {
     item.projection = projection;
     packet.volumes = {item};
     RenderSettings settings;
-    settings.texels = TexelFormat::r32f;
+    settings.texel_format = TexelFormat::r32f;
     settings.step_voxels = 0.05;
-    const Picture picture = draw(packet, settings, std::to_string(int(projection)));
+    const Image8 picture = draw(packet, settings, std::to_string(int(projection)));
     field::Cursor cursor;
     int compared = 0;
     for (std::uint32_t y = 0; y < packet.height; y += 6)

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "tests/render/support/failing.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/failure_injector.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace failure_test {
@@ -14,7 +14,7 @@ using vk::DriverCall;
 
 /// A little of everything that takes device memory.
 FramePacket everything() {
-  FramePacket packet = packet_of({45, -50, 40}, {12, 12, 12});
+  FramePacket packet = make_packet({45, -50, 40}, {12, 12, 12});
   packet.width = 64;
   packet.height = 48;
   const auto grid = make_grid({24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(12, 12, 12)) / 21; });
@@ -30,16 +30,16 @@ FramePacket everything() {
   packet.tubes = {tube};
   CursorItem cursor;
   cursor.probe = {20, 4, 12};
-  cursor.size = 1;
+  cursor.radius = 1;
   packet.cursors = {cursor};
   return packet;
 }
 
-class Failures : public PictureTest {
+class Failures : public ImageTest {
  protected:
   void SetUp() override {
-    PictureTest::SetUp();
-    failing_ = std::make_shared<Failing>();
+    ImageTest::SetUp();
+    failing_ = std::make_shared<FailureInjector>();
     start_over();
   }
   void start_over() {
@@ -64,7 +64,7 @@ class Failures : public PictureTest {
     EXPECT_TRUE(renderer_->draw(packet));
     return failing_->calls;
   }
-  std::shared_ptr<Failing> failing_;
+  std::shared_ptr<FailureInjector> failing_;
 };
 
 TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
@@ -74,18 +74,18 @@ TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
   smaller.tubes.clear();
   const int allocations = calls_of_a_frame(packet, DriverCall::allocate);
   ASSERT_GT(allocations, 12);
-  const Picture all = draw(packet, {}, "all"), few = draw(smaller, {}, "fewer");
+  const Image8 all = draw(packet, {}, "all"), few = draw(smaller, {}, "fewer");
   EXPECT_GT(max_difference(all, few), 50);
   start_over();
   for (int n = 1; n <= allocations; ++n) {
     failing_->arm(DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, n);
     const std::string message = failed(packet);
     ASSERT_NE(message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos) << n << ": " << message;
-    EXPECT_FALSE(renderer_->device().lost());
+    EXPECT_FALSE(renderer_->device().is_lost());
     // nothing of the frame is left
-    EXPECT_EQ(renderer_->device().counters().bytes, 0u) << "allocation " << n;
-    EXPECT_EQ(renderer_->device().retired(), 0u) << "allocation " << n;
-    EXPECT_EQ(renderer_->stats().mirrors, 0u);
+    EXPECT_EQ(renderer_->device().counters().allocated_bytes, 0u) << "allocation " << n;
+    EXPECT_EQ(renderer_->device().retired_count(), 0u) << "allocation " << n;
+    EXPECT_EQ(renderer_->stats().resident_grids, 0u);
     // every fourth time the same renderer goes on, with less and then with all of it
     if (n % 4 != 1 && n != allocations) continue;
     EXPECT_EQ(max_difference(draw(smaller), few), 0) << "allocation " << n;
@@ -96,18 +96,18 @@ TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
 
 TEST_F(Failures, OutOfMemoryWhileAPictureIsReadBack) {
   const FramePacket packet = everything();
-  const Picture all = draw(packet);
+  const Image8 all = draw(packet);
   failing_->arm(DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, 1);
   const auto picture = renderer_->read_back();
   ASSERT_FALSE(picture);
   EXPECT_NE(picture.error().message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos);
-  EXPECT_EQ(renderer_->device().counters().bytes, 0u);
+  EXPECT_EQ(renderer_->device().counters().allocated_bytes, 0u);
   EXPECT_EQ(max_difference(draw(packet), all), 0);
 }
 
 TEST_F(Failures, TheSceneSurvivesALostDevice) {
   const FramePacket packet = everything();
-  const Picture before = draw(packet);
+  const Image8 before = draw(packet);
   for (const DriverCall call : {DriverCall::submit, DriverCall::wait}) {
     const int calls = calls_of_a_frame(packet, call);
     ASSERT_GT(calls, 3);
@@ -117,11 +117,11 @@ TEST_F(Failures, TheSceneSurvivesALostDevice) {
       failing_->arm(call, VK_ERROR_DEVICE_LOST, n);
       const std::string message = failed(packet);
       ASSERT_NE(message.find("VK_ERROR_DEVICE_LOST"), std::string::npos) << message;
-      EXPECT_TRUE(renderer_->device().lost());
+      EXPECT_TRUE(renderer_->device().is_lost());
       // it stays lost, and says so at once
       EXPECT_NE(failed(packet).find("VK_ERROR_DEVICE_LOST"), std::string::npos);
       start_over();
-      EXPECT_FALSE(renderer_->device().lost());
+      EXPECT_FALSE(renderer_->device().is_lost());
       EXPECT_EQ(max_difference(draw(packet), before), 0) << "call " << n;
     }
   }
@@ -129,7 +129,7 @@ TEST_F(Failures, TheSceneSurvivesALostDevice) {
 
 TEST_F(Failures, ADeviceLostBetweenPicturesIsSaid) {
   const FramePacket packet = everything();
-  const Picture before = draw(packet);
+  const Image8 before = draw(packet);
   failing_->arm(DriverCall::wait, VK_ERROR_DEVICE_LOST, 1);
   const auto picture = renderer_->read_back();
   ASSERT_FALSE(picture);

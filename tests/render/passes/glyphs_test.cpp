@@ -2,18 +2,18 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace glyphs_test {
 
 using namespace catena::render;
 
-class Glyphs : public PictureTest {};
+class Glyphs : public ImageTest {};
 
 /// 5 pixels a unit, along y; (x, z) is at pixel (80 + 5 x, 60 - 5 z).
 FramePacket along_y() {
-  FramePacket packet = packet_of({0, -60, 0}, {0, 0, 0}, 20);
+  FramePacket packet = make_packet({0, -60, 0}, {0, 0, 0}, 20);
   packet.background = {0, 0, 0, 1};
   packet.view.orthographic = true;
   packet.view.height = 24;
@@ -24,8 +24,8 @@ FramePacket along_y() {
 GlyphItem arrow() {
   GlyphItem item;
   item.glyphs = {{{-8, 0, 0}, {8, 0, 0}, {1, 0, 0}}};
-  item.shaft = 1.0 / 16;
-  item.head = 0.25;
+  item.shaft_radius = 1.0 / 16;
+  item.head_length = 0.25;
   item.head_radius = 2.5 / 16;
   item.id = 7;
   return item;
@@ -34,7 +34,7 @@ GlyphItem arrow() {
 TEST_F(Glyphs, AnArrowBeginsAndEndsWhereItsVectorDoes) {
   FramePacket packet = along_y();
   packet.glyphs = {arrow()};
-  const Picture picture = draw(packet, {}, "arrow");
+  const Image8 picture = draw(packet, {}, "arrow");
   const auto ids = renderer_->read_ids();
   ASSERT_TRUE(ids);
   const auto id = [&](double x, double z) {
@@ -64,9 +64,9 @@ TEST_F(Glyphs, AnArrowBeginsAndEndsWhereItsVectorDoes) {
 TEST_F(Glyphs, WithoutAHeadItIsARod) {
   FramePacket packet = along_y();
   GlyphItem item = arrow();
-  item.head = 0;
+  item.head_length = 0;
   packet.glyphs = {item};
-  const Picture picture = draw(packet, {}, "rod");
+  const Image8 picture = draw(packet, {}, "rod");
   EXPECT_GT(picture.pixel(118, 60)[0], 60);
   EXPECT_EQ(picture.pixel(122, 60)[0], 0);
   EXPECT_EQ(picture.pixel(101, 51)[0], 0) << "where the head was";
@@ -77,7 +77,7 @@ TEST_F(Glyphs, EveryOneHasItsSizeAndColour) {
   GlyphItem item = arrow();
   item.glyphs = {{{-10, 0, 6}, {6, 0, 6}, {0, 1, 0}}, {{-10, 0, -6}, {-6, 0, -6}, {0, 0, 1}}};
   packet.glyphs = {item};
-  const Picture picture = draw(packet, {}, "two");
+  const Image8 picture = draw(packet, {}, "two");
   EXPECT_GT(picture.pixel(55, 30)[1], 100);
   EXPECT_EQ(picture.pixel(55, 30)[0], picture.pixel(55, 30)[2]);
   EXPECT_GT(picture.pixel(36, 90)[2], 100);
@@ -88,13 +88,13 @@ TEST_F(Glyphs, EveryOneHasItsSizeAndColour) {
 TEST_F(Glyphs, PlanesCutThemAndVolumesDimThem) {
   FramePacket packet = along_y();
   packet.glyphs = {arrow()};
-  packet.clip = {{{-2, 0, 0}, {1, 0, 0}}};
-  Picture picture = draw(packet, {}, "clipped");
+  packet.clip_planes = {{{-2, 0, 0}, {1, 0, 0}}};
+  Image8 picture = draw(packet, {}, "clipped");
   EXPECT_EQ(picture.pixel(62, 60)[0], 0);
   EXPECT_GT(picture.pixel(80, 60)[0], 100);
-  packet.glyphs[0].clipped = false;
+  packet.glyphs[0].is_clipped = false;
   EXPECT_GT(draw(packet).pixel(62, 60)[0], 100);
-  packet.clip.clear();
+  packet.clip_planes.clear();
   const double bare = draw(packet).pixel(80, 60)[0];
   // 7 of the mist's 15 lie before its wall
   const auto fog = make_grid(

@@ -1,14 +1,14 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace isosurface_test {
 
 using namespace catena::render;
 
-class Isosurface : public PictureTest {};
+class Isosurface : public ImageTest {};
 
 IsosurfaceItem surface_item(GridPtr grid, double level, float opacity = 1, Color color = {0.8f, 0.8f, 0.9f}) {
   IsosurfaceItem item;
@@ -49,7 +49,7 @@ void expect_depths(Renderer& renderer, const FramePacket& packet, const field::S
   int hits = 0, disagree = 0;
   for (std::uint32_t y = 0; y < packet.height; y += 2)
     for (std::uint32_t x = 0; x < packet.width; x += 2) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       // the chord's ends
       const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
       double enter = 0, leave = 1e9;
@@ -76,12 +76,12 @@ void expect_depths(Renderer& renderer, const FramePacket& packet, const field::S
 TEST_F(Isosurface, SphereDepthAgreesWithTheField) {
   const Vec3 c(15.3, 16.1, 14.7);
   const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
-  FramePacket packet = packet_of({70, -50, 55}, c, 25);
+  FramePacket packet = make_packet({70, -50, 55}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11)};
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
     RenderSettings settings;
     settings.layout = layout;
-    draw(packet, settings, layout == MirrorLayout::dense ? "dense" : "atlas");
+    draw(packet, settings, layout == GridLayout::dense ? "dense" : "atlas");
     expect_depths(*renderer_, packet, *grid, 11, 1, 700);
   }
 }
@@ -92,7 +92,7 @@ TEST_F(Isosurface, RoughFieldOnATurnedGrid) {
       {28, 24, 20}, [](const Vec3& p) { return std::sin(0.9 * p.x) + std::cos(0.8 * p.y) + std::sin(0.7 * p.z + 0.3 * p.x); },
       field::Mapping::from_linear(linear, {-500, 40, 3}));
   const Vec3 centre = grid->mapping().world_from_index({13.5, 11.5, 9.5});
-  FramePacket packet = packet_of(centre + Vec3(60, -50, 40), centre, 30);
+  FramePacket packet = make_packet(centre + Vec3(60, -50, 40), centre, 30);
   packet.isosurfaces = {surface_item(grid, 0.3)};
   draw(packet, {}, "rough");
   expect_depths(*renderer_, packet, *grid, 0.3, 0.8, 800);
@@ -101,7 +101,7 @@ TEST_F(Isosurface, RoughFieldOnATurnedGrid) {
 TEST_F(Isosurface, OrthographicDepth) {
   const Vec3 c(15.5);
   const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
-  FramePacket packet = packet_of({70, -50, 55}, c);
+  FramePacket packet = make_packet({70, -50, 55}, c);
   packet.view.orthographic = true;
   packet.view.height = 30;
   packet.isosurfaces = {surface_item(grid, 10)};
@@ -113,14 +113,14 @@ TEST_F(Isosurface, SphereIsLitByItsNormal) {
   const Vec3 c(23.5);
   const double radius = 16;
   const auto grid = make_grid({48, 48, 48}, [&](const Vec3& p) { return norm(p - c); });
-  FramePacket packet = packet_of({100, -60, 70}, c, 22);
+  FramePacket packet = make_packet({100, -60, 70}, c, 22);
   packet.isosurfaces = {surface_item(grid, radius, 1, {0.9f, 0.5f, 0.1f})};
-  const Picture picture = draw(packet);
+  const Image8 picture = draw(packet);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
   int compared = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
     for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       const Vec3 to = ray.origin - c;
       const double b = dot(to, ray.direction), q = b * b - dot(to, to) + radius * radius;
       if (q < 12) continue;  // the rim
@@ -137,9 +137,9 @@ TEST_F(Isosurface, SphereIsLitByItsNormal) {
 TEST_F(Isosurface, TranslucentShowsTwoWalls) {
   const Vec3 c(15.5);
   const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); });
-  FramePacket packet = packet_of({70, -50, 55}, c, 25);
+  FramePacket packet = make_packet({70, -50, 55}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11, 0.4f)};
-  const Picture picture = draw(packet, {}, "shell");
+  const Image8 picture = draw(packet, {}, "shell");
   EXPECT_NEAR(picture.pixel(80, 60)[3], 255 * (1 - 0.6 * 0.6), 1);
   EXPECT_EQ(picture.pixel(2, 2)[3], 0);
 }
@@ -148,11 +148,11 @@ TEST_F(Isosurface, TranslucentIsSortedWithTheVolume) {
   // a fog box of sigma s from y = 0 to 31, a plane at y = 16 of opacity 0.5, seen along +y
   const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
   const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
-  FramePacket packet = packet_of({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
+  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
   packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
   packet.isosurfaces = {surface_item(plane, 16, 0.5f, {1, 0, 0})};
   packet.background = {0, 0, 1, 1};
-  const Picture picture = draw(packet, {}, "sorted");
+  const Image8 picture = draw(packet, {}, "sorted");
   const double front = std::exp(-0.05 * 16), all = 0.5 * std::exp(-0.05 * 31);
   const std::uint8_t* p = picture.pixel(80, 60);
   // the plane faces the eye: 0.9 of its colour plus a white highlight of 0.2
@@ -163,9 +163,9 @@ TEST_F(Isosurface, TranslucentIsSortedWithTheVolume) {
 
 TEST_F(Isosurface, SeveralTranslucentSurfacesInOrder) {
   const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
-  FramePacket packet = packet_of({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
+  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
   packet.isosurfaces = {surface_item(plane, 24.5, 0.5f, {0, 0, 1}), surface_item(plane, 8.25, 0.5f, {0, 1, 0})};
-  const Picture picture = draw(packet, {}, "planes");
+  const Image8 picture = draw(packet, {}, "planes");
   const std::uint8_t* p = picture.pixel(80, 60);
   // premultiplied: near green 0.5, far blue 0.25; alpha 0.75; highlights 0.2 white each
   EXPECT_NEAR(p[3], 255 * 0.75, 1);
@@ -176,10 +176,10 @@ TEST_F(Isosurface, SeveralTranslucentSurfacesInOrder) {
 TEST_F(Isosurface, OpaqueEndsTheVolume) {
   const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
   const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
-  FramePacket packet = packet_of({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
+  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
   packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
   packet.isosurfaces = {surface_item(plane, 12.5, 1, {1, 0, 0})};
-  const Picture picture = draw(packet, {}, "cut");
+  const Image8 picture = draw(packet, {}, "cut");
   const double front = std::exp(-0.05 * 12.5);
   EXPECT_NEAR(picture.pixel(80, 60)[1], 255 * ((1 - front) + front * 0.2), 1.5);
   EXPECT_EQ(picture.pixel(80, 60)[3], 255);
@@ -190,7 +190,7 @@ TEST_F(Isosurface, MaskedCellsHaveNoSurface) {
   const auto valid = [](const Vec3& p) { return p.z < 16; };
   const auto grid = make_grid(
       {32, 32, 32}, [&](const Vec3& p) { return norm(p - c); }, {}, valid);
-  FramePacket packet = packet_of({70, -50, 40}, c, 25);
+  FramePacket packet = make_packet({70, -50, 40}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11)};
   draw(packet, {}, "bowl");
   const auto depth = renderer_->read_depth();

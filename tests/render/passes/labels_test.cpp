@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace labels_test {
 
 using namespace catena::render;
 
-class LabelPicture : public PictureTest {};
+class LabelImage : public ImageTest {};
 
 using Rgb = std::array<int, 3>;
 
@@ -30,7 +30,7 @@ std::size_t label_index(const Vec3& p) { return std::size_t(7 * int(p.x) + 5 * i
 GridPtr label_grid(const field::Mapping& mapping = {}, const field::Index3& n = {14, 12, 13}) {
   return make_grid(
              n, [](const Vec3& p) { return kLabels[label_index(p)]; }, mapping)
-      ->interpolated(field::Interpolation::nearest);
+      ->with_interpolation(field::Interpolation::nearest);
 }
 
 field::Mapping turned() {
@@ -42,7 +42,7 @@ Vec3 middle(const field::ScalarGrid& grid) {
   return grid.mapping().world_from_index(0.5 * grid.index_box().lo + 0.5 * grid.index_box().hi);
 }
 
-Rgb rgb(const Picture& picture, std::uint32_t x, std::uint32_t y) {
+Rgb rgb(const Image8& picture, std::uint32_t x, std::uint32_t y) {
   const std::uint8_t* p = picture.pixel(x, y);
   return {p[0], p[1], p[2]};
 }
@@ -53,20 +53,20 @@ SliceItem slice_of(const GridPtr& grid, const Vec3& normal) {
   item.point = middle(*grid) + Vec3(0.07, 0.03, 0.11);
   item.normal = normal;
   item.colors = label_rows();
-  item.hidden = 0;
+  item.hidden_label = 0;
   return item;
 }
 
-TEST_F(LabelPicture, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) {
+TEST_F(LabelImage, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) {
   const auto grid = label_grid(turned());
-  FramePacket packet = packet_of(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
+  FramePacket packet = make_packet(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
   packet.slices = {slice_of(grid, {0.3, -0.5, 0.8})};
-  const Picture picture = draw(packet, {}, "slice");
+  const Image8 picture = draw(packet, {}, "slice");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   int seen = 0, empty = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
     for (std::uint32_t x = 0; x < packet.width; ++x) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       const SliceItem& item = packet.slices[0];
       const Vec3 world = ray.origin + dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction) * ray.direction;
       const Vec3 index = grid->mapping().index_from_world(world);
@@ -90,14 +90,14 @@ TEST_F(LabelPicture, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) 
   EXPECT_GT(empty, 2000);
 }
 
-TEST_F(LabelPicture, AVolumeHasNoColourBetweenTwoLabels) {
+TEST_F(LabelImage, AVolumeHasNoColourBetweenTwoLabels) {
   const auto grid = make_grid({14, 12, 13}, [](const Vec3& p) {
                       return std::min(kLabels[label_index(p)], 6000.0);
-                    })->interpolated(field::Interpolation::nearest);
-  FramePacket packet = packet_of(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
+                    })->with_interpolation(field::Interpolation::nearest);
+  FramePacket packet = make_packet(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
   VolumeItem item;
   item.grid = grid;
-  item.transfer.labels = true;
+  item.transfer.is_categorical = true;
   item.transfer.extinctions = {{0.4, 0}, {0.6, 1e4}};
   // what is no label is green
   for (const double label : {3.0, 40.0, 41.0, 2035.0, 6000.0}) {
@@ -107,7 +107,7 @@ TEST_F(LabelPicture, AVolumeHasNoColourBetweenTwoLabels) {
         {{label - 0.5, 0, 1, 0}, {label - 0.5, red, 0, 1 - red}, {label + 0.5, red, 0, 1 - red}, {label + 0.5, 0, 1, 0}});
   }
   packet.volumes = {item};
-  const Picture picture = draw(packet, {}, "volume");
+  const Image8 picture = draw(packet, {}, "volume");
   int seen = 0, red = 0, blue = 0, green = 0;
   for (std::uint32_t y = 0; y < packet.height; ++y)
     for (std::uint32_t x = 0; x < packet.width; ++x) {
@@ -124,7 +124,7 @@ TEST_F(LabelPicture, AVolumeHasNoColourBetweenTwoLabels) {
 }
 
 /// A ball in one grid, coloured by labels in another that is turned: which half of the world a pixel lies in is its colour.
-TEST_F(LabelPicture, ASurfaceIsColouredByAGridOfItsOwnTransform) {
+TEST_F(LabelImage, ASurfaceIsColouredByAGridOfItsOwnTransform) {
   const auto ball = make_grid(
       {40, 40, 40}, [](const Vec3& p) { return norm(p - Vec3(19.5)); }, field::Mapping::from_linear(Mat3(0.5), {-9.75, -9.75, -9.75}));
   const field::Mapping mapping = turned();
@@ -136,8 +136,8 @@ TEST_F(LabelPicture, ASurfaceIsColouredByAGridOfItsOwnTransform) {
           n, [&](const Vec3& p) { return shifted.world_from_index(p).x > 0   ? 41
                                          : shifted.world_from_index(p).z > 2 ? 0
                                                                              : 40; }, shifted)
-          ->interpolated(field::Interpolation::nearest);
-  FramePacket packet = packet_of({0, -40, 0}, {0, 0, 0});
+          ->with_interpolation(field::Interpolation::nearest);
+  FramePacket packet = make_packet({0, -40, 0}, {0, 0, 0});
   IsosurfaceItem item;
   item.grid = ball;
   item.level = 14;
@@ -145,7 +145,7 @@ TEST_F(LabelPicture, ASurfaceIsColouredByAGridOfItsOwnTransform) {
   item.id = 1;
   item.color_by = ColorSource{halves, label_rows(), true, false};
   packet.isosurfaces = {item};
-  const Picture picture = draw(packet, {}, "turned");
+  const Image8 picture = draw(packet, {}, "turned");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
@@ -154,7 +154,7 @@ TEST_F(LabelPicture, ASurfaceIsColouredByAGridOfItsOwnTransform) {
     for (std::uint32_t x = 0; x < packet.width; ++x) {
       const double t = depth->depth[y * packet.width + x];
       if (!std::isfinite(t)) continue;
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       const Vec3 world = ray.origin + t / dot(ray.direction, -camera.back) * ray.direction;
       field::Cursor cursor;
       const Vec3 index = shifted.index_from_world(world);
@@ -172,13 +172,13 @@ TEST_F(LabelPicture, ASurfaceIsColouredByAGridOfItsOwnTransform) {
 }
 
 /// In one plane the later slice lies over the earlier one, whatever is opaque and from either side.
-TEST_F(LabelPicture, SlicesInOnePlaneLieInTheirOrder) {
+TEST_F(LabelImage, SlicesInOnePlaneLieInTheirOrder) {
   const auto one = make_grid({9, 9, 9}, [](const Vec3&) { return 1; });
   const auto two = make_grid(
       {17, 17, 17}, [](const Vec3&) { return 1; }, field::Mapping::from_linear(Mat3(0.5), Vec3(0.0)));
   for (const double side : {-1.0, 1.0})
     for (const bool first_opaque : {true, false}) {
-      FramePacket packet = packet_of(Vec3(4.0) + Vec3(7, 9, 20 * side), Vec3(4.0));
+      FramePacket packet = make_packet(Vec3(4.0) + Vec3(7, 9, 20 * side), Vec3(4.0));
       packet.background = {0, 0, 0, 1};
       SliceItem below, over;
       below.grid = one;
@@ -191,10 +191,10 @@ TEST_F(LabelPicture, SlicesInOnePlaneLieInTheirOrder) {
       over.point = {3, 2, 4.3};
       over.colors = {{0, 0, 0, 1}};
       over.opacity = 0.5f;
-      over.over = 1;
+      over.stack_order = 1;
       over.id = 2;
       packet.slices = {below, over};
-      const Picture picture = draw(packet, {}, std::string(side > 0 ? "above" : "below") + (first_opaque ? "1" : "2"));
+      const Image8 picture = draw(packet, {}, std::string(side > 0 ? "above" : "below") + (first_opaque ? "1" : "2"));
       int both = 0;
       for (std::uint32_t y = 0; y < packet.height; ++y)
         for (std::uint32_t x = 0; x < packet.width; ++x) {

@@ -4,7 +4,7 @@
 
 #include "render/passes/passes.h"
 #include "render/vk/commands.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace layers_test {
@@ -17,7 +17,7 @@ struct Sheet {
 };
 
 /// The ray's colour over the left and the right half of the picture, where `left` and `right` are met, the nearest first.
-class Layers : public PictureTest {
+class Layers : public ImageTest {
  protected:
   vk::Image image(VkFormat format, const std::vector<float>& values) {
     vk::ImageInfo info;
@@ -35,7 +35,7 @@ class Layers : public PictureTest {
 
   std::vector<float> draw_with(const std::vector<Sheet>& left, const std::vector<Sheet>& right) {
     vk::Device& device = renderer_->device();
-    Mirrors mirrors(device);
+    ResidencyManager mirrors(device);
     Targets targets;
     const RenderSettings settings;
     Frame frame{device, mirrors, targets, packet_, settings, {}};
@@ -157,7 +157,7 @@ TEST_F(Layers, AreDrawnWithoutAVolume) {
 TEST_F(Layers, MoreThanFourAreRefusedWithASentence) {
   packet_ = fog_packet(0.1);
   vk::Device& device = renderer_->device();
-  Mirrors mirrors(device);
+  ResidencyManager mirrors(device);
   Targets targets;
   Frame frame{device, mirrors, targets, packet_, {}, {}};
   frame.layers.resize(5);

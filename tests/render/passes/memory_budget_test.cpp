@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace memory_budget_test {
@@ -16,27 +16,27 @@ constexpr const char* kOwnSizes = "what an image takes is a driver's own: these 
 
 RenderSettings exact() {
   RenderSettings settings;
-  settings.texels = TexelFormat::r32f;
+  settings.texel_format = TexelFormat::r32f;
   return settings;
 }
 
-class MemoryBudget : public PictureTest {
+class MemoryBudget : public ImageTest {
  protected:
   /// `left` bytes beside what the picture itself takes.
   void limit(std::uint64_t left) {
     vk::DeviceOptions options;
     options.validation = true;
-    options.choose = test_device();
+    options.device_filter = test_device();
     options.memory_budget_bytes = kReserve + left;
     auto renderer = Renderer::create(options);
     ASSERT_TRUE(renderer) << renderer.error().message;
     renderer_ = std::move(*renderer);
   }
   int factor() const {
-    const auto list = renderer_->stats().mirror_coarsening;
+    const auto list = renderer_->stats().downsampled_grids;
     return list.empty() ? 1 : list.front().factor;
   }
-  void expect_within() const { EXPECT_LE(renderer_->device().counters().peak, renderer_->stats().gpu_budget); }
+  void expect_within() const { EXPECT_LE(renderer_->device().counters().peak_bytes, renderer_->stats().gpu_budget); }
 };
 
 GridPtr linear_grid() {
@@ -44,16 +44,16 @@ GridPtr linear_grid() {
 }
 
 TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
-  if (!on_lavapipe()) GTEST_SKIP() << kOwnSizes;
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}}, {1, 0.8f, 0.4f})};
-  const Picture whole = draw(packet, exact(), "whole");
+  const Image8 whole = draw(packet, exact(), "whole");
   EXPECT_EQ(factor(), 1);
   EXPECT_GT(whole.pixel(80, 60)[3], 100);
   // 64^3 floats are 1 MB; half the resolution an eighth of it, and so on
   for (const auto& [left, expected] : {std::pair{1'300'000, 1}, {400'000, 2}, {80'000, 4}, {30'000, 8}}) {
     limit(std::uint64_t(left));
-    const Picture coarse = draw(packet, exact(), "factor-" + std::to_string(expected));
+    const Image8 coarse = draw(packet, exact(), "factor-" + std::to_string(expected));
     EXPECT_EQ(factor(), expected) << left;
     EXPECT_LE(max_difference(whole, coarse), 2) << "factor " << expected;
     expect_within();
@@ -62,27 +62,27 @@ TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
 }
 
 TEST_F(MemoryBudget, ItIsSaidWhatIsCoarserAndWhy) {
-  if (!on_lavapipe()) GTEST_SKIP() << kOwnSizes;
+  if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   limit(400'000);
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
   draw(packet, exact());
-  const auto list = renderer_->stats().mirror_coarsening;
+  const auto list = renderer_->stats().downsampled_grids;
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].grid, "density");
-  EXPECT_EQ(list[0].words(), "density: 64^3 needs 1.3 MB of GPU memory, 0.4 MB are left: drawn at half resolution");
+  EXPECT_EQ(list[0].message(), "density: 64^3 needs 1.3 MB of GPU memory, 0.4 MB are left: drawn at half resolution");
   packet.volumes.clear();
   draw(packet, exact());
-  EXPECT_TRUE(renderer_->stats().mirror_coarsening.empty());
+  EXPECT_TRUE(renderer_->stats().downsampled_grids.empty());
 }
 
 TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneStaysInItsPlace) {
-  if (!on_lavapipe()) GTEST_SKIP() << kOwnSizes;
+  if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   IsosurfaceItem item;
   item.grid = linear_grid();
   item.level = 0.5;
   item.color = {0.8f, 0.8f, 0.9f};
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.isosurfaces = {item};
   draw(packet, {}, "whole");
   const auto whole = renderer_->read_depth();
@@ -107,17 +107,17 @@ TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneStaysInItsPlace) {
 }
 
 TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
-  if (!on_lavapipe()) GTEST_SKIP() << kOwnSizes;
+  if (!uses_lavapipe()) GTEST_SKIP() << kOwnSizes;
   const auto ball = [](const Vec3& p) { return std::max(0.0, 1 - norm(p - Vec3(40, 32, 32)) / 14); };
-  FramePacket packet = packet_of({130, -100, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({130, -100, 70}, {32, 32, 32});
   packet.volumes = {volume_item(make_grid({64, 64, 64}, ball), {{0, 0}, {1, 0.2}}, {1, 1, 1})};
   packet.background = {0, 0, 0, 1};
   RenderSettings settings = exact();
-  settings.layout = MirrorLayout::atlas;
-  const Picture whole = draw(packet, settings, "whole");
+  settings.layout = GridLayout::atlas;
+  const Image8 whole = draw(packet, settings, "whole");
   EXPECT_GT(whole.pixel(76, 60)[0], 50);
   limit(300'000);
-  const Picture half = draw(packet, settings, "half");
+  const Image8 half = draw(packet, settings, "half");
   EXPECT_EQ(factor(), 2);
   // the averages of a curved field differ a little, its place does not
   EXPECT_LE(max_difference(whole, half), 10);
@@ -135,18 +135,18 @@ TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
 
 TEST_F(MemoryBudget, TwoGridsShareWhatIsThere) {
   limit(500'000);
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
   draw(packet, exact(), "two");
-  EXPECT_EQ(renderer_->stats().mirrors, 2u);
-  EXPECT_EQ(renderer_->stats().mirror_coarsening.size(), 2u);
+  EXPECT_EQ(renderer_->stats().resident_grids, 2u);
+  EXPECT_EQ(renderer_->stats().downsampled_grids.size(), 2u);
   expect_within();
 }
 
 TEST_F(MemoryBudget, WhatFitsAgainIsWholeAgain) {
   limit(1'900'000);
   const VolumeItem one = volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), two = volume_item(linear_grid(), {{0, 0}, {1, 0.03}});
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {one, two};
   draw(packet, exact());
   EXPECT_EQ(factor(), 2);
@@ -159,7 +159,7 @@ TEST_F(MemoryBudget, WhatFitsAgainIsWholeAgain) {
 
 TEST_F(MemoryBudget, WhatFitsAtNoResolutionIsOneSentence) {
   limit(2'000);
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
   const Outcome drawn = renderer_->draw(packet, exact());
   ASSERT_FALSE(drawn);
@@ -174,7 +174,7 @@ TEST_F(MemoryBudget, WhatFitsAtNoResolutionIsOneSentence) {
 
 TEST_F(MemoryBudget, ALargerPictureKeepsWithinIt) {
   limit(1'400'000);
-  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  FramePacket packet = make_packet({110, -90, 70}, {32, 32, 32});
   packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
   draw(packet, exact());
   EXPECT_EQ(factor(), 1);

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::test {
@@ -8,7 +8,7 @@ namespace mesh_test {
 
 using namespace catena::render;
 
-class Mesh : public PictureTest {};
+class Mesh : public ImageTest {};
 
 TubeItem tube_of(const Vec3& a, const Vec3& b, double radius, Color color) {
   TubeItem tube;
@@ -19,7 +19,7 @@ TubeItem tube_of(const Vec3& a, const Vec3& b, double radius, Color color) {
 }
 
 FramePacket along_y() {
-  FramePacket packet = packet_of({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
+  FramePacket packet = make_packet({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
   packet.background = {0, 0, 0, 1};
   return packet;
 }
@@ -30,7 +30,7 @@ TEST_F(Mesh, TubeInFrontOfAndBehindTheVolume) {
     FramePacket packet = along_y();
     packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
     packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
-    const Picture picture = draw(packet, {}, "y" + std::to_string(int(y)));
+    const Image8 picture = draw(packet, {}, "y" + std::to_string(int(y)));
     // the tube's front wall is at y - 2
     const double length = std::min(31.0, std::max(0.0, y - 2)), through = std::exp(-0.05 * length);
     const std::uint8_t* p = picture.pixel(80, 60);
@@ -47,7 +47,7 @@ TEST_F(Mesh, ColoursRunAlongATube) {
   tube.points = {tube.points[0], Vec3(15.5, 10, 15.5), tube.points[1]};
   tube.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   packet.tubes = {tube};
-  const Picture picture = draw(packet, {}, "rainbow");
+  const Image8 picture = draw(packet, {}, "rainbow");
   // 5 pixels a unit; the middle faces the eye, so that a white highlight lies over it
   const auto part = [&](std::uint32_t x, int channel) {
     const std::uint8_t* p = picture.pixel(x, 60);
@@ -67,7 +67,7 @@ TEST_F(Mesh, ArrowsAndTheIndicatorAreDrawn) {
   packet.view.height = 24;
   packet.arrows = {{{5.5, 10, 15.5}, {11.5, 10, 15.5}, 3, {1, 0, 0}}};
   packet.indicators = {{tube_of({17.5, 10, 15.5}, {21.5, 10, 15.5}, 1, {0, 1, 0}), {{21.5, 10, 15.5}, {25.5, 10, 15.5}, 2.5, {0, 1, 0}}}};
-  const Picture picture = draw(packet, {}, "arrows");
+  const Image8 picture = draw(packet, {}, "arrows");
   // wide at its base, nothing beyond its tip
   EXPECT_GT(picture.pixel(33, 72)[0], 60);
   EXPECT_EQ(picture.pixel(55, 72)[0], 0);
@@ -88,7 +88,7 @@ TEST_F(Mesh, DepthOfATubeIsExact) {
   EXPECT_TRUE(std::isinf(depth->depth[2 * 160 + 80]));
 }
 
-MeshItem item_of(const mesh::Soup& soup, Color color) {
+MeshItem item_of(const mesh::TriangleSoup& soup, Color color) {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = soup.vertices;
   for (const mesh::Triangle& t : soup.triangles) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
@@ -97,12 +97,12 @@ MeshItem item_of(const mesh::Soup& soup, Color color) {
 
 /// A box seen along y, in parallel: a rectangle with sharp edges, one colour, one depth.
 TEST_F(Mesh, BoxHasItsSilhouetteColourAndDepth) {
-  FramePacket packet = packet_of({0, -10, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
   packet.view.orthographic = true;
   packet.view.height = 12;  // 0.1 a pixel
   packet.meshes = {item_of(box_soup({-2, 1, -1}, {3, 4, 1.5}), {1, 0.5, 0})};
-  const Picture picture = draw(packet, {}, "box");
+  const Image8 picture = draw(packet, {}, "box");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
   for (std::uint32_t y = 0; y < 120; ++y)
@@ -124,16 +124,16 @@ TEST_F(Mesh, BoxHasItsSilhouetteColourAndDepth) {
 
 /// Turned by 60 degrees the face is lit by its own normal: 0.2 + 0.7 cos of the colour, no smoothing over the edge.
 TEST_F(Mesh, FacesAreLitByTheirOwnNormals) {
-  FramePacket packet = packet_of({0, -10, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
   packet.background = {0, 0, 0, 1};
   packet.view.orthographic = true;
   packet.view.height = 12;
-  mesh::Soup roof;
+  mesh::TriangleSoup roof;
   const double rise = 4 * std::sqrt(3.0);
   add_quad(roof, {0, 0, -4}, {4, rise, -4}, {4, rise, 4}, {0, 0, 4});
   add_quad(roof, {0, 0, -4}, {0, 0, 4}, {-4, 0, 4}, {-4, 0, -4});
   packet.meshes = {item_of(roof, {0, 0, 1})};
-  const Picture picture = draw(packet, {}, "roof");
+  const Image8 picture = draw(packet, {}, "roof");
   for (const std::uint32_t x : {81u, 100u, 118u}) EXPECT_NEAR(picture.pixel(x, 60)[2], 255 * (0.2 + 0.7 * 0.5), 1.5) << x;
   for (const std::uint32_t x : {42u, 60u, 78u}) EXPECT_EQ(picture.pixel(x, 60)[2], 255) << x;
   EXPECT_EQ(picture.pixel(125, 60)[2], 0);
@@ -144,7 +144,7 @@ TEST_F(Mesh, NearerTubeHidesTheFartherOne) {
   const TubeItem red = tube_of({-20, 10, 15.5}, {50, 10, 15.5}, 2, {1, 0, 0}), blue = tube_of({15.5, 4, -9}, {15.5, 4, 40}, 2, {0, 0, 1});
   for (const bool red_first : {true, false}) {
     packet.tubes = red_first ? std::vector{red, blue} : std::vector{blue, red};
-    const Picture picture = draw(packet, {}, red_first ? "a" : "b");
+    const Image8 picture = draw(packet, {}, red_first ? "a" : "b");
     EXPECT_GT(picture.pixel(80, 60)[2], 200);
     EXPECT_LT(picture.pixel(80, 60)[0], 60);
     EXPECT_GT(picture.pixel(20, 60)[0], 150);
@@ -164,7 +164,7 @@ TEST_F(Mesh, TubeAndOpaqueSurfaceHideEachOther) {
       wall.color = {0, 1, 0};
       packet.isosurfaces = {wall};
       packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
-      const Picture picture = draw(packet, {}, std::string(orthographic ? "o" : "p") + std::to_string(int(y)));
+      const Image8 picture = draw(packet, {}, std::string(orthographic ? "o" : "p") + std::to_string(int(y)));
       EXPECT_EQ(picture.pixel(80, 60)[0] > 150, y < 14) << y << " " << orthographic;
       EXPECT_EQ(picture.pixel(80, 60)[1] > 150, y > 14);
     }
@@ -185,10 +185,10 @@ TEST_F(Mesh, CursorIsDrawn) {
   CursorItem cursor;
   cursor.probe = {15.5, 10, 15.5};
   cursor.proxies = {{19, 10, 15.5}};
-  cursor.active = {true};
-  cursor.size = 1;
+  cursor.link_active = {true};
+  cursor.radius = 1;
   packet.cursors = {cursor};
-  const Picture picture = draw(packet, {}, "cursor");
+  const Image8 picture = draw(packet, {}, "cursor");
   int covered = 0;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) covered += picture.rgba[i] + picture.rgba[i + 1] + picture.rgba[i + 2] > 30;
   EXPECT_GT(covered, 60);

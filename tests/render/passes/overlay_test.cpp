@@ -6,26 +6,26 @@
 #include <cmath>
 
 #include "render/passes/overlay/canvas.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace overlay_test {
 
 using namespace catena::render;
 
-class OverlayPictures : public PictureTest {
+class OverlayImages : public ImageTest {
  protected:
   /// Nothing but the overlay, on opaque black.
   static FramePacket black(std::uint32_t width = 256, std::uint32_t height = 192) {
-    FramePacket packet = packet_of({0, -10, 0}, {0, 0, 0});
+    FramePacket packet = make_packet({0, -10, 0}, {0, 0, 0});
     packet.width = width;
     packet.height = height;
     packet.background = {0, 0, 0, 1};
     return packet;
   }
-  std::vector<BarPlace> places(const FramePacket& packet) {
+  std::vector<BarLayout> places(const FramePacket& packet) {
     const Canvas canvas(packet, typesetter_);
-    return place_scalar_bars(canvas, packet.overlay);
+    return layout_scalar_bars(canvas, packet.overlay);
   }
   Typesetter typesetter_;
 };
@@ -47,12 +47,12 @@ Vec3 color_at(double v) {
 
 int brightest(const std::uint8_t* p) { return std::max({p[0], p[1], p[2]}); }
 
-TEST_F(OverlayPictures, ScalarBarsShowTheTransferFunctionRowByRow) {
+TEST_F(OverlayImages, ScalarBarsShowTheTransferFunctionRowByRow) {
   for (const Side side : {Side::right, Side::left, Side::bottom, Side::top}) {
     FramePacket packet = black();
     packet.overlay.scalar_bars = {bar_of(side)};
-    const Picture picture = draw(packet, {}, "side" + std::to_string(int(side)));
-    const BarPlace place = places(packet).front();
+    const Image8 picture = draw(packet, {}, "side" + std::to_string(int(side)));
+    const BarLayout place = places(packet).front();
     const Rect& r = place.ramp;
     ASSERT_GE(std::min(r.width, r.height), 4);
     EXPECT_EQ(place.upright, side == Side::right || side == Side::left);
@@ -71,12 +71,12 @@ TEST_F(OverlayPictures, ScalarBarsShowTheTransferFunctionRowByRow) {
   }
 }
 
-TEST_F(OverlayPictures, TicksStandAtTheirValues) {
+TEST_F(OverlayImages, TicksStandAtTheirValues) {
   FramePacket packet = black();
   packet.overlay.scalar_bars = {bar_of(Side::right)};
   packet.overlay.scalar_bars[0].ticks = {{0.5, ""}, {1.75, ""}, {3.5, ""}};
-  const Picture picture = draw(packet, {}, "ticks");
-  const BarPlace place = places(packet).front();
+  const Image8 picture = draw(packet, {}, "ticks");
+  const BarLayout place = places(packet).front();
   // the column just right of the border holds ink at the marks alone
   const auto column = std::uint32_t(place.ramp.x + place.ramp.width + 1);
   std::vector<double> rows;
@@ -86,33 +86,33 @@ TEST_F(OverlayPictures, TicksStandAtTheirValues) {
   const double values[] = {3.5, 1.75, 0.5};
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(rows[std::size_t(i)], place.ramp.y + (1 - values[i] / 4) * place.ramp.height, 0.5 + 1e-9);
-    EXPECT_EQ(tick_place(place, packet.overlay.scalar_bars[0], values[i]), place.ramp.y + (1 - values[i] / 4) * place.ramp.height);
+    EXPECT_EQ(tick_position(place, packet.overlay.scalar_bars[0], values[i]), place.ramp.y + (1 - values[i] / 4) * place.ramp.height);
   }
 }
 
-TEST_F(OverlayPictures, OneColourAndManyBarsAreDrawnBesideEachOther) {
+TEST_F(OverlayImages, OneColourAndManyBarsAreDrawnBesideEachOther) {
   FramePacket packet = black(256, 192);
   ScalarBarItem one = bar_of(Side::right);
   one.colors = {{2, 1, 0, 0}};
   one.ticks = {{2, "2"}};
   packet.overlay.scalar_bars = {bar_of(Side::right), one, bar_of(Side::left)};
-  const Picture picture = draw(packet, {}, "three");
+  const Image8 picture = draw(packet, {}, "three");
   const auto all = places(packet);
   ASSERT_EQ(all.size(), 3u);
   EXPECT_LT(all[1].ramp.x + all[1].ramp.width, all[0].ramp.x - 2);
   EXPECT_LT(all[2].ramp.x, 128);
   const std::uint8_t* p = picture.pixel(std::uint32_t(all[1].ramp.x + 2), 96);
   EXPECT_EQ((std::array<int, 3>{p[0], p[1], p[2]}), (std::array<int, 3>{255, 0, 0}));
-  EXPECT_EQ(tick_place(all[1], one, 2), all[1].ramp.y + 0.5 * all[1].ramp.height);
+  EXPECT_EQ(tick_position(all[1], one, 2), all[1].ramp.y + 0.5 * all[1].ramp.height);
 }
 
-TEST_F(OverlayPictures, TextCoversItsBox) {
+TEST_F(OverlayImages, TextCoversItsBox) {
   FramePacket packet = black();
   packet.overlay.texts = {{"HHHH", Anchor::bottom_right, {-20.0, -30.0}, 40, true, Color{1, 1, 1}}};
-  const Picture picture = draw(packet, {}, "text");
+  const Image8 picture = draw(packet, {}, "text");
   const Canvas canvas(packet, typesetter_);
   const TextExtent extent = canvas.measure("HHHH", {40, true, false, {}});
-  ASSERT_GT(extent.width, 0) << typesetter_.fault();
+  ASSERT_GT(extent.width, 0) << typesetter_.error_message();
   int left = 256, right = -1, top = 192, bottom = -1, ink = 0;
   for (int y = 0; y < 192; ++y)
     for (int x = 0; x < 256; ++x) {
@@ -131,7 +131,7 @@ TEST_F(OverlayPictures, TextCoversItsBox) {
   EXPECT_LT(ink, 0.67 * extent.width * extent.height);
 }
 
-TEST_F(OverlayPictures, LabelsLandWhereTheirPointProjects) {
+TEST_F(OverlayImages, LabelsLandWhereTheirPointProjects) {
   FramePacket packet = black();
   packet.view.position = {3, -9, 4};
   packet.view.target = {0.2, 0.1, 0.3};
@@ -143,7 +143,7 @@ TEST_F(OverlayPictures, LabelsLandWhereTheirPointProjects) {
                up = cross(right, forward);
     for (const Vec3& p : points) {
       packet.overlay.labels = {{p, "", Anchor::left, {0.0, 0.0}, 12, Color{1, 1, 1}, true, false}};
-      const Picture picture = draw(packet);
+      const Image8 picture = draw(packet);
       double sum = 0, x = 0, y = 0;
       for (std::uint32_t j = 0; j < 192; ++j)
         for (std::uint32_t i = 0; i < 256; ++i) {
@@ -160,11 +160,11 @@ TEST_F(OverlayPictures, LabelsLandWhereTheirPointProjects) {
   // behind the eye: nothing
   packet.view.orthographic = false;
   packet.overlay.labels = {{{6, -19, 8}, "X", Anchor::left, {0.0, 0.0}, 12, Color{1, 1, 1}, true, false}};
-  const Picture picture = draw(packet);
+  const Image8 picture = draw(packet);
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) ASSERT_EQ(picture.rgba[i], 0);
 }
 
-TEST_F(OverlayPictures, ALabelBehindASurfaceIsLeftOutIfItAsksForIt) {
+TEST_F(OverlayImages, ALabelBehindASurfaceIsLeftOutIfItAsksForIt) {
   FramePacket packet = black();
   auto wall = std::make_shared<MeshGeometry>();
   wall->vertices = {{-3, 0, -3}, {3, 0, -3}, {3, 0, 3}, {-3, 0, 3}};
@@ -172,7 +172,7 @@ TEST_F(OverlayPictures, ALabelBehindASurfaceIsLeftOutIfItAsksForIt) {
   packet.meshes = {{wall, {0, 0, 1}}};
   const auto red_pixels = [&](const Vec3& at, bool hidden) {
     packet.overlay.labels = {{at, "HHH", Anchor::left, {4.0, 0.0}, 60, Color{1, 0, 0}, true, hidden}};
-    const Picture picture = draw(packet);
+    const Image8 picture = draw(packet);
     int count = 0;
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 200 && picture.rgba[i + 2] < 60;
     return count;
@@ -183,7 +183,7 @@ TEST_F(OverlayPictures, ALabelBehindASurfaceIsLeftOutIfItAsksForIt) {
   EXPECT_GT(red_pixels({0, 0, 0}, true), 50) << "on the surface itself";
 }
 
-TEST_F(OverlayPictures, TheMarkersArrowsPointAlongTheAxesOfTheView) {
+TEST_F(OverlayImages, TheMarkersArrowsPointAlongTheAxesOfTheView) {
   FramePacket packet = black();
   packet.overlay.orientation_marker.emplace();
   packet.overlay.orientation_marker->size_pt = 300;
@@ -191,38 +191,38 @@ TEST_F(OverlayPictures, TheMarkersArrowsPointAlongTheAxesOfTheView) {
   const Vec3 eyes[] = {{5, -7, 4}, {-6, -3, 5}, {4, 8, -3}, {-5, 6, 7}};
   for (const Vec3& eye : eyes) {
     packet.view.position = eye;
-    const Picture picture = draw(packet, {}, "eye" + std::to_string(int(eye.x)));
-    const MarkerPlace place = place_orientation_marker(Canvas(packet, typesetter_), *packet.overlay.orientation_marker);
+    const Image8 picture = draw(packet, {}, "eye" + std::to_string(int(eye.x)));
+    const MarkerLayout place = layout_orientation_marker(Canvas(packet, typesetter_), *packet.overlay.orientation_marker);
     const Vec3 forward = direction(-eye), right = direction(cross(forward, Vec3(0, 0, 1))), up = cross(right, forward);
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 unit(0.0);
       unit[axis] = 1;
       // on the shaft and within the cone, where nothing else lies
       for (const double share : {0.55, 0.85}) {
-        const auto x = std::uint32_t(place.centre.x + share * place.arrow * dot(unit, right));
-        const auto y = std::uint32_t(place.centre.y - share * place.arrow * dot(unit, up));
+        const auto x = std::uint32_t(place.center.x + share * place.arrow_length * dot(unit, right));
+        const auto y = std::uint32_t(place.center.y - share * place.arrow_length * dot(unit, up));
         const std::uint8_t* p = picture.pixel(x, y);
         for (const int other : {(axis + 1) % 3, (axis + 2) % 3})
           EXPECT_GT(p[axis], p[other] + 25) << "axis " << axis << " share " << share << " eye " << eye.x;
       }
       // and nothing beyond the tip
-      const auto x = std::uint32_t(place.centre.x + 1.1 * place.arrow * dot(unit, right));
-      const auto y = std::uint32_t(place.centre.y - 1.1 * place.arrow * dot(unit, up));
+      const auto x = std::uint32_t(place.center.x + 1.1 * place.arrow_length * dot(unit, right));
+      const auto y = std::uint32_t(place.center.y - 1.1 * place.arrow_length * dot(unit, up));
       EXPECT_EQ(brightest(picture.pixel(x, y)), 0) << "axis " << axis;
     }
   }
 }
 
-TEST_F(OverlayPictures, StraightAlphaOverATransparentPicture) {
+TEST_F(OverlayImages, StraightAlphaOverATransparentPicture) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({30, -40, 30}, {7.5, 7.5, 7.5});
+  FramePacket packet = make_packet({30, -40, 30}, {7.5, 7.5, 7.5});
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}}, {1, 0.5f, 0})};
   packet.view.target = {9, 7.5, 10};
-  const Picture under = draw(packet);
-  packet.overlay.status = StatusItem{3, 0, {{"a", "OK", true}, {"b", "OK", true}, {"c", "OK", true}}, Anchor::centre};
+  const Image8 under = draw(packet);
+  packet.overlay.status = StatusItem{3, 0, {{"a", "OK", true}, {"b", "OK", true}, {"c", "OK", true}}, Anchor::center};
   packet.overlay.scale = 3;
   packet.overlay.scalar_bars = {bar_of(Side::bottom)};
-  const Picture over = draw(packet, {}, "panel");
+  const Image8 over = draw(packet, {}, "panel");
   // the bar on nothing is opaque
   const Rect r = places(packet).front().ramp;
   const auto* bar = over.pixel(std::uint32_t(r.x + 0.25 * r.width), std::uint32_t(r.y + 0.5 * r.height));
@@ -245,22 +245,22 @@ TEST_F(OverlayPictures, StraightAlphaOverATransparentPicture) {
   EXPECT_EQ(over.pixel(0, 0)[3], 0);
 }
 
-TEST_F(OverlayPictures, WithoutAnItemThereIsNoPass) {
+TEST_F(OverlayImages, WithoutAnItemThereIsNoPass) {
   FramePacket packet = black();
-  const Picture plain = draw(packet);
+  const Image8 plain = draw(packet);
   const std::uint64_t pipelines = renderer_->stats().pipelines;
   draw(packet);
   EXPECT_EQ(renderer_->stats().pipelines, pipelines);
   packet.overlay.orientation_marker.emplace();
   EXPECT_GT(max_difference(plain, draw(packet)), 100);
   EXPECT_EQ(renderer_->stats().pipelines, pipelines + 2) << "one to draw, one to blend";
-  EXPECT_TRUE(renderer_->stats().notes.empty());
+  EXPECT_TRUE(renderer_->stats().warnings.empty());
   EXPECT_EQ(renderer_->stats().passes.back(), "overlay");
   packet.overlay = {};
   EXPECT_EQ(max_difference(plain, draw(packet)), 0);
 }
 
-TEST_F(OverlayPictures, APictureFourTimesAsLargeLooksAlike) {
+TEST_F(OverlayImages, APictureFourTimesAsLargeLooksAlike) {
   FramePacket small = black(160, 120), large = black(640, 480);
   small.overlay.scalar_bars = large.overlay.scalar_bars = {bar_of(Side::right), bar_of(Side::bottom)};
   const auto a = places(small), b = places(large);
@@ -272,19 +272,19 @@ TEST_F(OverlayPictures, APictureFourTimesAsLargeLooksAlike) {
   }
 }
 
-TEST_F(OverlayPictures, ATileHoldsItsPartOfTheWhole) {
+TEST_F(OverlayImages, ATileHoldsItsPartOfTheWhole) {
   FramePacket whole = black();
   whole.overlay.scalar_bars = {bar_of(Side::right), bar_of(Side::bottom)};
   whole.overlay.orientation_marker.emplace();
   whole.overlay.texts = {{"A title", Anchor::top, {0.0, 10.0}, 18, true, {}}};
   whole.overlay.status = StatusItem{3, 8, {{"a", "OK", true}}, Anchor::top_left};
-  const Picture picture = draw(whole, {}, "whole");
+  const Image8 picture = draw(whole, {}, "whole");
   for (const auto& [x, y] : {std::pair{0u, 0u}, std::pair{128u, 0u}, std::pair{96u, 64u}}) {
     FramePacket tile = whole;
     tile.width = 128;
     tile.height = 96;
     tile.overlay.frame = {double(x), double(y), 256, 192};
-    const Picture part = draw(tile);
+    const Image8 part = draw(tile);
     int most = 0;
     for (std::uint32_t j = 0; j < 96; ++j)
       for (std::uint32_t i = 0; i < 128; ++i)
@@ -293,9 +293,9 @@ TEST_F(OverlayPictures, ATileHoldsItsPartOfTheWhole) {
   }
 }
 
-TEST_F(OverlayPictures, Everything) {
+TEST_F(OverlayImages, Everything) {
   const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return 1 - norm(p - Vec3(15.5)) / 16; });
-  FramePacket packet = packet_of({60, -70, 50}, {16, 16, 16});
+  FramePacket packet = make_packet({60, -70, 50}, {16, 16, 16});
   packet.volumes = {volume_item(grid, {{0, 0.0}, {0.2, 0}, {1, 0.3}}, {0.9f, 0.6f, 0.3f})};
   packet.width = 256;
   packet.height = 192;
@@ -309,7 +309,7 @@ TEST_F(OverlayPictures, Everything) {
   // ink is readable on any background, and the whole repeats to the bit
   for (const float background : {0.0f, 1.0f}) {
     packet.background = {background, background, background, 1};
-    const Picture picture = draw(packet, {}, background > 0 ? "light" : "dark");
+    const Image8 picture = draw(packet, {}, background > 0 ? "light" : "dark");
     EXPECT_EQ(max_difference(picture, draw(packet)), 0);
     int ink = 0;
     const double bright = background > 0 ? 0 : 255;

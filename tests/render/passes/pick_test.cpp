@@ -2,20 +2,20 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace pick_test {
 
 using namespace catena::render;
 
-class Pick : public PictureTest {};
+class Pick : public ImageTest {};
 
 TEST_F(Pick, ASphereAndASliceAreFoundWhereTheyAre) {
   // |x - c| on 25^3 nodes, level 8; a slice across it in front of the centre's right half
   const Vec3 centre(12.0);
   const auto grid = make_grid({25, 25, 25}, [&](const Vec3& p) { return norm(p - centre); });
-  FramePacket packet = packet_of(centre + Vec3(0, -50, 0), centre);
+  FramePacket packet = make_packet(centre + Vec3(0, -50, 0), centre);
   IsosurfaceItem surface;
   surface.grid = grid;
   surface.level = 8;
@@ -61,7 +61,7 @@ TEST_F(Pick, ASphereAndASliceAreFoundWhereTheyAre) {
 }
 
 TEST_F(Pick, WithoutAnythingSolidNothingIsFound) {
-  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   ASSERT_TRUE(renderer_->draw(packet));
   const auto picked = renderer_->pick(3, 4);
   ASSERT_TRUE(picked);
@@ -71,21 +71,21 @@ TEST_F(Pick, WithoutAnythingSolidNothingIsFound) {
 
 TEST_F(Pick, TheNextPictureIsTheSameAfterIt) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
-  FramePacket packet = packet_of({4, -20, 4}, {4, 4, 4});
+  FramePacket packet = make_packet({4, -20, 4}, {4, 4, 4});
   packet.volumes = {volume_item(grid, {{0, 0}, {8, 0.3}})};
   IsosurfaceItem surface;
   surface.grid = grid;
   surface.level = 6;
   surface.id = 1;
   packet.isosurfaces = {surface};
-  const Picture first = draw(packet);
+  const Image8 first = draw(packet);
   ASSERT_TRUE(renderer_->pick(80, 60));
   ASSERT_TRUE(renderer_->read_back());
   EXPECT_EQ(draw(packet).rgba, first.rgba);
 }
 
 TEST_F(Pick, AnAreaOfTheWindowHoldsThePictureAndBlackIsBesideIt) {
-  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.background = {0, 1, 0, 1};
   packet.width = 20;
   packet.height = 10;
@@ -97,8 +97,8 @@ TEST_F(Pick, AnAreaOfTheWindowHoldsThePictureAndBlackIsBesideIt) {
     EXPECT_TRUE(picture);
     return *picture;
   };
-  items.area = {10, 5, 30, 15};
-  const Picture window = shown(40, 20);
+  items.image_area = {10, 5, 30, 15};
+  const Image8 window = shown(40, 20);
   for (std::uint32_t y = 0; y < 20; ++y)
     for (std::uint32_t x = 0; x < 40; ++x) {
       const bool inside = x >= 10 && x < 30 && y >= 5 && y < 15;

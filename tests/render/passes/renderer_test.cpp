@@ -1,18 +1,18 @@
 #include <cmath>
 
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace renderer_test {
 
 using namespace catena::render;
 
-class Frames : public PictureTest {};
+class Frames : public ImageTest {};
 
 TEST_F(Frames, EmptyPacketIsTheBackground) {
-  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.background = {0.2f, 0.4f, 0.6f, 1};
-  const Picture picture = draw(packet);
+  const Image8 picture = draw(packet);
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
     ASSERT_EQ(picture.rgba[i], 51);
     ASSERT_EQ(picture.rgba[i + 1], 102);
@@ -20,15 +20,15 @@ TEST_F(Frames, EmptyPacketIsTheBackground) {
     ASSERT_EQ(picture.rgba[i + 3], 255);
   }
   packet.background = {1, 1, 1, 0};
-  const Picture clear = draw(packet);
+  const Image8 clear = draw(packet);
   for (const std::uint8_t byte : clear.rgba) ASSERT_EQ(byte, 0);
 }
 
 TEST_F(Frames, PassesAreMadeForWhatIsThere) {
-  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   draw(packet);
   EXPECT_EQ(renderer_->stats().pipelines, 1u);  // compose
-  EXPECT_EQ(renderer_->stats().mirrors, 0u);
+  EXPECT_EQ(renderer_->stats().resident_grids, 0u);
   const auto grid = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x / 16; });
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
   draw(packet);
@@ -40,12 +40,12 @@ TEST_F(Frames, PassesAreMadeForWhatIsThere) {
   packet.tubes = {tube};
   draw(packet);
   EXPECT_EQ(renderer_->stats().pipelines, 5u);  // mesh, compose over it
-  EXPECT_EQ(renderer_->stats().mirrors, 0u);
+  EXPECT_EQ(renderer_->stats().resident_grids, 0u);
 }
 
 TEST_F(Frames, TheSecondFrameUploadsNothing) {
   const auto grid = make_grid({40, 40, 40}, [](const Vec3& p) { return p.x / 40; });
-  FramePacket packet = packet_of({60, -70, 50}, {20, 20, 20});
+  FramePacket packet = make_packet({60, -70, 50}, {20, 20, 20});
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
   IsosurfaceItem wall;
   wall.grid = grid;
@@ -59,7 +59,7 @@ TEST_F(Frames, TheSecondFrameUploadsNothing) {
   tube.radius = 1;
   packet.tubes = {tube};
   CursorItem cursor;
-  cursor.size = 1;
+  cursor.radius = 1;
   packet.cursors = {cursor};
   draw(packet);
   const RenderStats first = renderer_->stats();
@@ -79,28 +79,28 @@ TEST_F(Frames, TheSecondFrameUploadsNothing) {
 }
 
 TEST_F(Frames, WhatIsNoLongerNamedIsFreed) {
-  FramePacket packet = packet_of({60, -70, 50}, {20, 20, 20});
+  FramePacket packet = make_packet({60, -70, 50}, {20, 20, 20});
   draw(packet);
   const std::uint64_t empty = renderer_->stats().gpu_bytes;
   packet.volumes = {volume_item(make_grid({64, 64, 64}, [](const Vec3& p) { return p.x / 64; }), {{0, 0}, {1, 0.1}})};
   draw(packet);
   const std::uint64_t full = renderer_->stats().gpu_bytes;
   EXPECT_GT(full, empty + 64 * 64 * 64 * 2);
-  EXPECT_EQ(renderer_->stats().mirrors, 1u);
+  EXPECT_EQ(renderer_->stats().resident_grids, 1u);
   packet.volumes.clear();
   draw(packet);
   draw(packet);
-  EXPECT_EQ(renderer_->stats().mirrors, 0u);
+  EXPECT_EQ(renderer_->stats().resident_grids, 0u);
   EXPECT_LT(renderer_->stats().gpu_bytes, full - 64 * 64 * 64 * 2);
 }
 
 TEST_F(Frames, TransparentPicturesKeepStraightAlpha) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0.01}, {1, 0.01}}, {1, 0.5f, 0})};
-  const Picture clear = draw(packet, {}, "clear");
+  const Image8 clear = draw(packet, {}, "clear");
   packet.background = {0, 0, 0, 1};
-  const Picture black = draw(packet, {}, "black");
+  const Image8 black = draw(packet, {}, "black");
   for (std::uint32_t y = 0; y < 120; ++y)
     for (std::uint32_t x = 0; x < 160; ++x) {
       const std::uint8_t* c = clear.pixel(x, y);
@@ -113,9 +113,9 @@ TEST_F(Frames, TransparentPicturesKeepStraightAlpha) {
 
 TEST_F(Frames, ResizeAndRepeat) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
-  const Picture first = draw(packet);
+  const Image8 first = draw(packet);
   packet.width = 33;
   packet.height = 71;
   EXPECT_EQ(draw(packet).rgba.size(), 33u * 71 * 4);
@@ -125,7 +125,7 @@ TEST_F(Frames, ResizeAndRepeat) {
 }
 
 TEST_F(Frames, ImpossibleSizesAreRefused) {
-  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  FramePacket packet = make_packet({30, -40, 30}, {8, 8, 8});
   packet.width = 1 << 20;
   const auto drawn = renderer_->draw(packet);
   ASSERT_FALSE(drawn);

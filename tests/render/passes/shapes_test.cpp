@@ -31,14 +31,14 @@ std::vector<Vec3> knotted_loop(int n) {
   return points;
 }
 
-Shape tube(std::vector<Vec3> points, double radius, int sides = 12) {
-  Shape shape;
+ShapeMesh tube(std::vector<Vec3> points, double radius, int sides = 12) {
+  ShapeMesh shape;
   add_tube(shape, {std::move(points), radius, {1, 0, 0}}, sides);
   return shape;
 }
 
 /// Closed: every edge (by position) is walked once in each direction.
-void expect_closed(const Shape& shape) {
+void expect_closed(const ShapeMesh& shape) {
   using Key = std::array<double, 3>;
   std::map<std::pair<Key, Key>, int> edges;
   const auto key = [&](std::uint32_t i) {
@@ -54,7 +54,7 @@ void expect_closed(const Shape& shape) {
   for (const auto& [edge, sum] : edges) ASSERT_EQ(sum, 0) << edge.first[0] << " " << edge.first[1] << " " << edge.first[2];
 }
 
-double volume_of(const Shape& shape) {
+double volume_of(const ShapeMesh& shape) {
   double volume = 0;
   for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
     const Vec3 &a = shape.vertices[shape.triangles[t]].position, &b = shape.vertices[shape.triangles[t + 1]].position,
@@ -65,7 +65,7 @@ double volume_of(const Shape& shape) {
 }
 
 /// The triangles' winding agrees with the vertex normals, and those are unit.
-void expect_outward(const Shape& shape) {
+void expect_outward(const ShapeMesh& shape) {
   for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(norm(v.normal), 1, 1e-12);
   for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
     const MeshVertex &a = shape.vertices[shape.triangles[t]], &b = shape.vertices[shape.triangles[t + 1]],
@@ -91,7 +91,7 @@ double distance_to(const Vec3& p, const std::vector<Vec3>& line) {
 
 TEST(Shapes, TubeIsClosedAndOutward) {
   for (const auto& points : {helix(200), knotted_loop(400), std::vector<Vec3>{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}}) {
-    const Shape shape = tube(points, 0.05);
+    const ShapeMesh shape = tube(points, 0.05);
     expect_closed(shape);
     expect_outward(shape);
     EXPECT_GT(volume_of(shape), 0);
@@ -100,13 +100,13 @@ TEST(Shapes, TubeIsClosedAndOutward) {
 
 TEST(Shapes, TubeVerticesKeepTheRadius) {
   const auto points = helix(1000, 0.25);
-  const Shape shape = tube(points, 0.05);
+  const ShapeMesh shape = tube(points, 0.05);
   for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(distance_to(v.position, points), 0.05, 1e-6 * 0.05);
 }
 
 TEST(Shapes, AStraightTubeKeepsTheRadiusThroughSharpCorners) {
   const std::vector<Vec3> corner{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
-  const Shape shape = tube(corner, 0.05);
+  const ShapeMesh shape = tube(corner, 0.05);
   expect_closed(shape);
   for (const MeshVertex& v : shape.vertices) {
     const double d = distance_to(v.position, corner);
@@ -117,13 +117,13 @@ TEST(Shapes, AStraightTubeKeepsTheRadiusThroughSharpCorners) {
 TEST(Shapes, VolumeOfATubeIsThatOfACapsule) {
   const double r = 0.1, l = 2;
   const int n = 48;
-  const Shape shape = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, l}}, r, n);
+  const ShapeMesh shape = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, l}}, r, n);
   EXPECT_NEAR(volume_of(shape), kPi * r * r * l + 4.0 / 3 * kPi * r * r * r, 0.01 * kPi * r * r * l);
 }
 
 TEST(Shapes, AClosedLineIsJoinedWithoutCaps) {
   const int n = 300, sides = 12;
-  const Shape shape = tube(knotted_loop(n), 0.1, sides);
+  const ShapeMesh shape = tube(knotted_loop(n), 0.1, sides);
   EXPECT_EQ(shape.vertices.size(), std::size_t(n) * sides);
   EXPECT_EQ(shape.triangles.size(), std::size_t(n) * sides * 6);
   expect_closed(shape);
@@ -134,13 +134,13 @@ TEST(Shapes, FramesDoNotTwist) {
   std::vector<Vec3> arc;
   for (int i = 0; i <= 100; ++i) arc.push_back({std::cos(0.03 * i), std::sin(0.03 * i), 0.0});
   const int sides = 8;
-  const Shape shape = tube(arc, 0.01, sides);
+  const ShapeMesh shape = tube(arc, 0.01, sides);
   for (int i = 1; i <= 100; ++i) EXPECT_NEAR(shape.vertices[i * sides].normal.z, shape.vertices[0].normal.z, 1e-12);
 }
 
 TEST(Shapes, TriangleCountIsBounded) {
   for (const int sides : {8, 12, 16}) {
-    const Shape shape = tube(helix(500), 0.01, sides);
+    const ShapeMesh shape = tube(helix(500), 0.01, sides);
     EXPECT_LE(shape.triangles.size() / 3, std::size_t(2 * sides * (500 + sides)));
   }
   EXPECT_EQ(tube_sides(1, 1), 0) << "a pixel: a ribbon";
@@ -152,13 +152,13 @@ TEST(Shapes, TriangleCountIsBounded) {
 TEST(Shapes, DegenerateTubes) {
   EXPECT_TRUE(tube({}, 0.1).triangles.empty());
   EXPECT_TRUE(tube(helix(10), 0).triangles.empty());
-  const Shape point = tube({{1.0, 2.0, 3.0}}, 0.1);
+  const ShapeMesh point = tube({{1.0, 2.0, 3.0}}, 0.1);
   expect_closed(point);
   EXPECT_FALSE(point.triangles.empty());
-  const Shape repeated = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 0.1);
+  const ShapeMesh repeated = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 0.1);
   expect_closed(repeated);
   expect_outward(repeated);
-  const Shape there_and_back = tube({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, 0.1);
+  const ShapeMesh there_and_back = tube({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, 0.1);
   expect_closed(there_and_back);
   for (const MeshVertex& v : there_and_back.vertices) ASSERT_TRUE(is_finite(v.position) && is_finite(v.normal));
 }
@@ -166,11 +166,11 @@ TEST(Shapes, DegenerateTubes) {
 TEST(ShapesDeathTest, NonFinitePointsAreABug) { EXPECT_DEATH(tube({{0.0, 0.0, 0.0}, {std::nan(""), 0.0, 0.0}}, 0.1), "is_finite"); }
 
 TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
-  Shape ball, cylinder, cone;
-  add_ball(ball, {1.0, 2.0, 3.0}, 0.5, {}, 40);
+  ShapeMesh ball, cylinder, cone;
+  add_sphere(ball, {1.0, 2.0, 3.0}, 0.5, {}, 40);
   add_cylinder(cylinder, {0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, 0.2, {}, 40);
   add_cone(cone, {0.0, 0.0, 0.0}, {0.0, -1.0, 0.5}, 0.3, {}, 40);
-  for (const Shape* s : {&ball, &cylinder, &cone}) {
+  for (const ShapeMesh* s : {&ball, &cylinder, &cone}) {
     expect_closed(*s);
     expect_outward(*s);
   }
@@ -178,16 +178,16 @@ TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
   EXPECT_NEAR(volume_of(cylinder), kPi * 0.04 * std::sqrt(2.0), 0.002);
   EXPECT_NEAR(volume_of(cone), kPi * 0.09 * std::sqrt(1.25) / 3, 0.002);
   for (const MeshVertex& v : ball.vertices) EXPECT_NEAR(norm(v.position - Vec3(1.0, 2.0, 3.0)), 0.5, 1e-14);
-  Shape none;
+  ShapeMesh none;
   add_cylinder(none, Vec3(1.0), Vec3(1.0), 0.1, {});
-  add_ball(none, Vec3(0.0), 0, {});
+  add_sphere(none, Vec3(0.0), 0, {});
   EXPECT_TRUE(none.vertices.empty());
 }
 
 CursorItem cursor() { return {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {1.0, 2.0, 0.0}}, {true, false}, {0.0, 0.0, 3.0}, 0.1, {}}; }
 
 TEST(Shapes, CursorShowsEveryProxyAndTheForce) {
-  Shape shape;
+  ShapeMesh shape;
   add_cursor(shape, cursor());
   expect_closed(shape);
   expect_outward(shape);
@@ -211,7 +211,7 @@ TEST(Shapes, CursorShowsEveryProxyAndTheForce) {
   EXPECT_NEAR(highest, cursor_arrow_length(3, 0.1), 1e-12);
 }
 
-int vertices_of(const Shape& shape, const Color& c) {
+int vertices_of(const ShapeMesh& shape, const Color& c) {
   int count = 0;
   for (const MeshVertex& v : shape.vertices) count += v.color.r == c.r && v.color.g == c.g && v.color.b == c.b;
   return count;
@@ -219,26 +219,26 @@ int vertices_of(const Shape& shape, const Color& c) {
 
 TEST(Shapes, ALinkThatTheHandIsLeavingIsSeen) {
   CursorItem item = cursor();
-  Shape calm, near, gone;
+  ShapeMesh calm, near, gone;
   add_cursor(calm, item);
-  item.leaving = {0.5, 0};
+  item.release_ratios = {0.5, 0};
   add_cursor(near, item);
-  item.leaving = {0, 1};  // link 1 is not active: it has let go
+  item.release_ratios = {0, 1};  // link 1 is not active: it has let go
   add_cursor(gone, item);
-  EXPECT_GT(vertices_of(calm, leaving_color(0)), 0);
-  EXPECT_EQ(vertices_of(near, leaving_color(0)), 0);
-  EXPECT_GT(vertices_of(near, leaving_color(0.5)), 0);
-  EXPECT_EQ(vertices_of(calm, leaving_color(1)), 0);
-  EXPECT_GT(vertices_of(gone, leaving_color(1)), 100) << "rings around the place";
+  EXPECT_GT(vertices_of(calm, release_color(0)), 0);
+  EXPECT_EQ(vertices_of(near, release_color(0)), 0);
+  EXPECT_GT(vertices_of(near, release_color(0.5)), 0);
+  EXPECT_EQ(vertices_of(calm, release_color(1)), 0);
+  EXPECT_GT(vertices_of(gone, release_color(1)), 100) << "rings around the place";
   expect_closed(gone);
   expect_outward(gone);
-  EXPECT_GT(leaving_color(1).r - leaving_color(1).g, 0.5f);
+  EXPECT_GT(release_color(1).r - release_color(1).g, 0.5f);
 }
 
 TEST(Shapes, ADropLineEndsInACross) {
   CursorItem item = cursor();
-  item.foot = Vec3(0.0, 0.0, -5.0);
-  Shape shape;
+  item.foot_point = Vec3(0.0, 0.0, -5.0);
+  ShapeMesh shape;
   add_cursor(shape, item);
   expect_closed(shape);
   expect_outward(shape);
@@ -251,8 +251,8 @@ TEST(Shapes, ADropLineEndsInACross) {
   EXPECT_NEAR(lowest, -5.015, 1e-6);
   EXPECT_NEAR(widest, std::hypot(0.15, 0.015), 1e-6);
   EXPECT_NEAR(thickest, 0.015, 1e-6);
-  item.foot = item.probe;
-  Shape none, plain;
+  item.foot_point = item.probe;
+  ShapeMesh none, plain;
   add_cursor(none, item);
   add_cursor(plain, cursor());
   EXPECT_EQ(none.vertices.size(), plain.vertices.size());
@@ -260,13 +260,13 @@ TEST(Shapes, ADropLineEndsInACross) {
 
 TEST(Shapes, ACrosshairIsThreeRodsAndTellsNothingOfWhatIsFelt) {
   CursorItem item = cursor();
-  item.crosshair = true;
-  Shape held, free;
+  item.is_crosshair = true;
+  ShapeMesh held, free;
   add_cursor(held, item);
   item.proxies.clear();
-  item.active.clear();
+  item.link_active.clear();
   item.force_n = Vec3(0.0);
-  item.strain = 0.7;
+  item.force_ratio = 0.7;
   add_cursor(free, item);
   expect_closed(held);
   expect_outward(held);
@@ -284,8 +284,8 @@ TEST(Shapes, ACrosshairIsThreeRodsAndTellsNothingOfWhatIsFelt) {
 
 TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
   CursorItem item = cursor();
-  item.active = {true, true};
-  const auto reddest_far_from = [](const Shape& shape, const Vec3& probe) {
+  item.link_active = {true, true};
+  const auto reddest_far_from = [](const ShapeMesh& shape, const Vec3& probe) {
     float most = -1;
     for (const MeshVertex& v : shape.vertices) {
       const bool of_a_link = v.color.r == link_color(0, true).r || v.color.r == link_color(1, true).r;
@@ -293,12 +293,12 @@ TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
     }
     return most;
   };
-  Shape calm, half, most;
-  item.strain = 0;
+  ShapeMesh calm, half, most;
+  item.force_ratio = 0;
   add_cursor(calm, item);
-  item.strain = 0.5;
+  item.force_ratio = 0.5;
   add_cursor(half, item);
-  item.strain = 1;
+  item.force_ratio = 1;
   add_cursor(most, item);
   // the cursor is where the last link holds it, the probe is the small ball of the two
   double at_proxy = 0, at_probe = 0, highest = 0;
@@ -308,7 +308,7 @@ TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
     if (from_probe < 0.09) at_probe = std::max(at_probe, from_probe);
     highest = std::max(highest, v.position.z);
   }
-  EXPECT_NEAR(highest, cursor_arrow_length(norm(item.force_n), item.size), 1e-9) << "the arrow begins where the hand is held";
+  EXPECT_NEAR(highest, cursor_arrow_length(norm(item.force_n), item.radius), 1e-9) << "the arrow begins where the hand is held";
   EXPECT_NEAR(at_proxy, 0.1, 1e-6);
   EXPECT_NEAR(at_probe, 0.045, 1e-3);
   expect_closed(most);
@@ -328,9 +328,9 @@ TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
 }
 
 TEST(Shapes, ACursorWithoutSizeOrPlaceIsNotDrawn) {
-  Shape shape;
+  ShapeMesh shape;
   CursorItem item = cursor();
-  item.size = 0;
+  item.radius = 0;
   add_cursor(shape, item);
   item = cursor();
   item.probe.x = std::nan("");
@@ -348,7 +348,7 @@ TEST(Shapes, LinkColoursDiffer) {
 }
 
 TEST(Tube, EveryRingHasItsPointsColour) {
-  Shape shape;
+  ShapeMesh shape;
   TubeItem item{helix(20), 0.05, {0.5f, 0.5f, 0.5f}};
   for (std::size_t i = 0; i < item.points.size(); ++i) item.colors.push_back({static_cast<float>(i), 0, 0});
   add_tube(shape, item, 8);

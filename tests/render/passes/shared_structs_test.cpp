@@ -6,7 +6,7 @@
 #include "shaders/shared/frame.h"
 #include "shaders/shared/layers.h"
 #include "shaders/shared/overlay.h"
-#include "shaders/shared/pack.h"
+#include "shaders/shared/stereo_compose.h"
 #include "shaders/shared/tube.h"
 #include "shaders/shared/ui.h"
 #include "shaders/shared/vignette.h"
@@ -42,17 +42,17 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, world_gradient);
       EXPECT_OFFSET(GridData, value_offset);
       EXPECT_OFFSET(GridData, value_scale);
-      EXPECT_OFFSET(GridData, look);
-      EXPECT_OFFSET(GridData, factors);
+      EXPECT_OFFSET(GridData, value_table);
+      EXPECT_OFFSET(GridData, gradient_table);
       EXPECT_OFFSET(GridData, bound_lo);
       EXPECT_OFFSET(GridData, bound_per_code);
       EXPECT_OFFSET(GridData, level);
       EXPECT_OFFSET(GridData, opacity);
       EXPECT_OFFSET(GridData, color);
-      EXPECT_OFFSET(GridData, clipped);
+      EXPECT_OFFSET(GridData, is_clipped);
       EXPECT_OFFSET(GridData, id);
       EXPECT_OFFSET(GridData, nearest);
-      EXPECT_OFFSET(GridData, spread);
+      EXPECT_OFFSET(GridData, spread_labels);
       EXPECT_EQ(found.at("[]"), sizeof(GridData));
       EXPECT_EQ(found.size(), compared + 1);
     }
@@ -61,10 +61,10 @@ TEST(SharedStructs, FrameAndGridData) {
       const auto& found = all["TableData"];
       EXPECT_OFFSET(TableData, start);
       EXPECT_OFFSET(TableData, last);
-      EXPECT_OFFSET(TableData, points);
+      EXPECT_OFFSET(TableData, control_points);
       EXPECT_OFFSET(TableData, per_linear);
       EXPECT_OFFSET(TableData, lo);
-      EXPECT_OFFSET(TableData, per_unit);
+      EXPECT_OFFSET(TableData, entries_per_unit);
       EXPECT_OFFSET(TableData, first_value);
       EXPECT_OFFSET(TableData, last_value);
       EXPECT_EQ(found.size(), compared);
@@ -83,7 +83,7 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, up);
     EXPECT_OFFSET(FrameData, forward);
     EXPECT_OFFSET(FrameData, reference_depth);
-    EXPECT_OFFSET(FrameData, front);
+    EXPECT_OFFSET(FrameData, front_depth);
     EXPECT_OFFSET(FrameData, depth_near);
     EXPECT_OFFSET(FrameData, depth_far);
     EXPECT_OFFSET(FrameData, orthographic);
@@ -112,9 +112,9 @@ TEST(SharedStructs, TubeRingData) {
   auto all = struct_offsets(shader_words("tube.vert"));
   const auto& found = all["TubeRingData"];
   std::size_t compared = 0;
-  EXPECT_OFFSET(TubeRingData, centre);
+  EXPECT_OFFSET(TubeRingData, center);
   EXPECT_OFFSET(TubeRingData, radius);
-  EXPECT_OFFSET(TubeRingData, lean);
+  EXPECT_OFFSET(TubeRingData, normal_tilt);
   EXPECT_OFFSET(TubeRingData, tangent);
   EXPECT_OFFSET(TubeRingData, normal);
   EXPECT_OFFSET(TubeRingData, color);
@@ -145,16 +145,16 @@ TEST(SharedStructs, MeshFrameData) {
 }
 
 TEST(SharedStructs, PackAndAnaglyphData) {
-  auto pack = struct_offsets(shader_words("pack.frag"));
+  auto pack = struct_offsets(shader_words("stereo_compose.frag"));
   auto anaglyph = struct_offsets(shader_words("anaglyph.frag"));
   std::size_t compared = 0;
   {
     const auto& found = pack["PackData"];
-    EXPECT_OFFSET(PackData, first);
-    EXPECT_OFFSET(PackData, block_x);
-    EXPECT_OFFSET(PackData, block_y);
-    EXPECT_OFFSET(PackData, view);
-    EXPECT_OFFSET(PackData, views);
+    EXPECT_OFFSET(StereoComposeData, first);
+    EXPECT_OFFSET(StereoComposeData, block_x);
+    EXPECT_OFFSET(StereoComposeData, block_y);
+    EXPECT_OFFSET(StereoComposeData, view);
+    EXPECT_OFFSET(StereoComposeData, views);
     EXPECT_EQ(found.size(), compared);
   }
   const auto& found = anaglyph["AnaglyphData"];
@@ -189,13 +189,13 @@ TEST(SharedStructs, SliceData) {
   EXPECT_OFFSET(SliceData, plane);
   EXPECT_OFFSET(SliceData, normal);
   EXPECT_OFFSET(SliceData, clip_slack);
-  EXPECT_OFFSET(SliceData, lit);
+  EXPECT_OFFSET(SliceData, is_lit);
   EXPECT_OFFSET(SliceData, color_last);
   EXPECT_OFFSET(SliceData, level_count);
   EXPECT_OFFSET(SliceData, line_color);
   EXPECT_OFFSET(SliceData, half_width);
-  EXPECT_OFFSET(SliceData, nearer);
-  EXPECT_OFFSET(SliceData, hidden);
+  EXPECT_OFFSET(SliceData, depth_bias);
+  EXPECT_OFFSET(SliceData, hidden_label);
   EXPECT_EQ(found.size(), compared);
 }
 
@@ -221,7 +221,7 @@ TEST(SharedStructs, Overlay) {
     EXPECT_OFFSET(OverlayShape, last_stop);
     EXPECT_OFFSET(OverlayShape, kind);
     EXPECT_OFFSET(OverlayShape, anchor);
-    EXPECT_OFFSET(OverlayShape, hide_depth);
+    EXPECT_OFFSET(OverlayShape, occlusion_depth);
     EXPECT_EQ(found.at("[]"), sizeof(OverlayShape));
     EXPECT_EQ(found.size(), compared + 1);
   }
@@ -229,7 +229,7 @@ TEST(SharedStructs, Overlay) {
   auto all = struct_offsets(shader_words("overlay.frag"));
   {
     const auto& found = all["OverlayStop"];
-    EXPECT_OFFSET(OverlayStop, place);
+    EXPECT_OFFSET(OverlayStop, position);
     EXPECT_OFFSET(OverlayStop, color);
     EXPECT_EQ(found.at("[]"), sizeof(OverlayStop));
   }

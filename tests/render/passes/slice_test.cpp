@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace slice_test {
 
 using namespace catena::render;
 
-class SlicePicture : public PictureTest {};
+class SliceImage : public ImageTest {};
 
 const std::vector<std::array<double, 4>> kTable{{-4, 0.1, 0.0, 0.9}, {-1, 0.9, 0.2, 0.1}, {0.5, 0.2, 1.0, 0.3}, {6, 1.0, 0.9, 0.0}};
 
@@ -59,7 +59,7 @@ struct Met {
   double inside = 0, view_depth = 0;
 };
 Met meet(const Camera& camera, const SliceItem& item, double x, double y) {
-  const Ray ray = ray_through(camera, x, y);
+  const Ray ray = pixel_ray(camera, x, y);
   const double s = dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction);
   Met met;
   met.world = ray.origin + s * ray.direction;
@@ -71,15 +71,15 @@ Met meet(const Camera& camera, const SliceItem& item, double x, double y) {
   return met;
 }
 
-TEST_F(SlicePicture, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
+TEST_F(SliceImage, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
   const auto grid = wavy_grid();
   for (const bool orthographic : {false, true}) {
-    FramePacket packet = packet_of(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
+    FramePacket packet = make_packet(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
     packet.view.orthographic = orthographic;
     packet.view.height = 3;
     packet.slices = {slice_of(grid, centre_of(*grid) + Vec3(0.1, 0, 0.05), {0.5, -0.6, 0.9})};
     packet.slices[0].id = 17;
-    const Picture picture = draw(packet, {}, orthographic ? "orthographic" : "perspective");
+    const Image8 picture = draw(packet, {}, orthographic ? "orthographic" : "perspective");
     const auto depth = renderer_->read_depth();
     const auto ids = renderer_->read_ids();
     ASSERT_TRUE(depth && ids);
@@ -114,7 +114,7 @@ TEST_F(SlicePicture, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
 }
 
 /// Of a line one pixel and more wide: its darkness along a row or a column, as a place.
-double centroid(const Picture& picture, std::uint32_t from, std::uint32_t to, std::uint32_t row, double* sum_out = nullptr) {
+double centroid(const Image8& picture, std::uint32_t from, std::uint32_t to, std::uint32_t row, double* sum_out = nullptr) {
   double sum = 0, moment = 0;
   for (std::uint32_t x = from; x < to; ++x) {
     const double dark = 1 - picture.pixel(x, row)[1] / 255.0;
@@ -126,20 +126,20 @@ double centroid(const Picture& picture, std::uint32_t from, std::uint32_t to, st
 }
 
 /// x + 2 y on a plane seen at right angles: lines at x = level - 2 y, of the asked width across.
-TEST_F(SlicePicture, LinesOfALinearFieldAreWhereTheyBelongAndAsWideAsAsked) {
+TEST_F(SliceImage, LinesOfALinearFieldAreWhereTheyBelongAndAsWideAsAsked) {
   const auto grid = make_grid({33, 33, 9}, [](const Vec3& p) { return p.x + 2 * p.y; });
-  FramePacket packet = packet_of({16, 16, 40}, {16, 16, 0});
+  FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
   packet.view.height = 30;  // 0.25 a pixel
   packet.background = {1, 1, 1, 1};
   packet.slices = {slice_of(grid, {0, 0, 4}, {0, 0, 1})};
   packet.slices[0].colors = {{0, 1, 1, 1}};
-  packet.slices[0].levels = {30.1, 48.33, 63};
+  packet.slices[0].contour_levels = {30.1, 48.33, 63};
   for (const double width : {1.0, 2.0, 5.0}) {
     packet.slices[0].line_width = float(width);
-    const Picture picture = draw(packet, {}, "w" + std::to_string(int(width)));
-    for (const double level : packet.slices[0].levels)
+    const Image8 picture = draw(packet, {}, "w" + std::to_string(int(width)));
+    for (const double level : packet.slices[0].contour_levels)
       for (std::uint32_t row = 30; row < 90; row += 7) {
         const double y = 16 + (59.5 - row) * 0.25, x = level - 2 * y, px = 80 + (x - 16) / 0.25;
         if (px < 20 || px > 140) continue;
@@ -152,15 +152,15 @@ TEST_F(SlicePicture, LinesOfALinearFieldAreWhereTheyBelongAndAsWideAsAsked) {
 }
 
 /// In perspective and askew: the darkest pixels lie where the plane, the level and the row meet.
-TEST_F(SlicePicture, LinesInPerspectiveAreWithinATenthOfAPixel) {
+TEST_F(SliceImage, LinesInPerspectiveAreWithinATenthOfAPixel) {
   const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return p.x - 0.3 * p.y + 0.5 * p.z; });
-  FramePacket packet = packet_of({-10, -45, 40}, {15.5, 15.5, 15.5}, 40);
+  FramePacket packet = make_packet({-10, -45, 40}, {15.5, 15.5, 15.5}, 40);
   packet.background = {1, 1, 1, 1};
   packet.slices = {slice_of(grid, {15.5, 15.5, 15.5}, {0.2, -0.5, 0.8})};
   packet.slices[0].colors = {{0, 1, 1, 1}};
-  packet.slices[0].levels = {12.3, 18.9, 24};
+  packet.slices[0].contour_levels = {12.3, 18.9, 24};
   packet.slices[0].line_width = 2;
-  const Picture picture = draw(packet, {}, "lines");
+  const Image8 picture = draw(packet, {}, "lines");
   const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
   const auto value = [&](double x, double y) {
     const Met met = meet(camera, packet.slices[0], x, y);
@@ -169,7 +169,7 @@ TEST_F(SlicePicture, LinesInPerspectiveAreWithinATenthOfAPixel) {
   int found = 0;
   for (std::uint32_t row = 20; row < 110; row += 3)
     for (std::uint32_t x = 12; x < 148; ++x)
-      for (const double level : packet.slices[0].levels) {
+      for (const double level : packet.slices[0].contour_levels) {
         const double a = value(x, row + 0.5), b = value(x + 1, row + 0.5);
         if (std::isnan(value(x - 10, row + 0.5)) || std::isnan(value(x + 10, row + 0.5)) || (a - level) * (b - level) >= 0) continue;
         // flat lines blur along a row
@@ -181,18 +181,18 @@ TEST_F(SlicePicture, LinesInPerspectiveAreWithinATenthOfAPixel) {
 }
 
 /// A cone of trilinear cells: its line is a circle within what the grid itself leaves of one, and keeps its width.
-TEST_F(SlicePicture, ACurvedLineKeepsItsWidthOverTheCells) {
+TEST_F(SliceImage, ACurvedLineKeepsItsWidthOverTheCells) {
   const auto grid = make_grid({33, 33, 5}, [](const Vec3& p) { return norm(Vec3(p.x - 16.2, p.y - 15.7, 0)); });
-  FramePacket packet = packet_of({16, 16, 40}, {16, 16, 0});
+  FramePacket packet = make_packet({16, 16, 40}, {16, 16, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
   packet.view.height = 30;
   packet.background = {1, 1, 1, 1};
   packet.slices = {slice_of(grid, {0, 0, 2}, {0, 0, 1})};
   packet.slices[0].colors = {{0, 1, 1, 1}};
-  packet.slices[0].levels = {9};
+  packet.slices[0].contour_levels = {9};
   packet.slices[0].line_width = 2;
-  const Picture picture = draw(packet, {}, "circle");
+  const Image8 picture = draw(packet, {}, "circle");
   for (int i = 0; i < 72; ++i) {
     const double angle = 2 * M_PI * i / 72;
     const auto dark_at = [&](double r) {  // bilinear
@@ -213,25 +213,25 @@ TEST_F(SlicePicture, ACurvedLineKeepsItsWidthOverTheCells) {
 }
 
 /// The line of a level on a slice is where the isosurface of that level is cut.
-TEST_F(SlicePicture, ALineLiesOnTheCutOfTheIsosurface) {
+TEST_F(SliceImage, ALineLiesOnTheCutOfTheIsosurface) {
   const auto grid = wavy_grid();
-  FramePacket packet = packet_of(centre_of(*grid) + Vec3(0, 0, 8), centre_of(*grid));
+  FramePacket packet = make_packet(centre_of(*grid) + Vec3(0, 0, 8), centre_of(*grid));
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
   packet.view.height = 3;
   const Vec3 point = centre_of(*grid) + Vec3(0, 0, 0.3);
   SliceItem slice = slice_of(grid, point, {0, 0, 1});
   slice.colors = {{0, 1, 1, 1}};
-  slice.levels = {1.5};
+  slice.contour_levels = {1.5};
   packet.slices = {slice};
-  const Picture lines = draw(packet, {}, "line");
+  const Image8 lines = draw(packet, {}, "line");
   packet.slices.clear();
   IsosurfaceItem surface;
   surface.grid = grid;
   surface.level = 1.5;
   surface.color = {1, 0, 0};
   packet.isosurfaces = {surface};
-  packet.clip = {{point, {0, 0, -1}}};  // from the plane downwards
+  packet.clip_planes = {{point, {0, 0, -1}}};  // from the plane downwards
   draw(packet, {}, "cut");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
@@ -251,11 +251,11 @@ TEST_F(SlicePicture, ALineLiesOnTheCutOfTheIsosurface) {
   EXPECT_GT(checked, 5);
 }
 
-TEST_F(SlicePicture, MaskedAndUndefinedCellsAreTransparent) {
+TEST_F(SliceImage, MaskedAndUndefinedCellsAreTransparent) {
   const auto masked = make_grid(
       {16, 16, 16}, [](const Vec3& p) { return p.x; }, {}, [](const Vec3& p) { return p.x < 8; });
   const auto holed = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x == 11 && p.y == 7 ? NAN : p.x; });
-  FramePacket packet = packet_of({7.5, 7.5, 40}, {7.5, 7.5, 0});
+  FramePacket packet = make_packet({7.5, 7.5, 40}, {7.5, 7.5, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
   packet.view.height = 24;  // 0.2 a pixel
@@ -264,61 +264,61 @@ TEST_F(SlicePicture, MaskedAndUndefinedCellsAreTransparent) {
   for (const float opacity : {1.0f, 0.5f}) {
     packet.slices = {slice_of(masked, {0, 0, 7.5}, {0, 0, 1})};
     packet.slices[0].opacity = opacity;
-    const Picture left = draw(packet, {}, "masked");
+    const Image8 left = draw(packet, {}, "masked");
     const int alpha = opacity == 1 ? 255 : 128;
     EXPECT_NEAR(left.pixel(column(6.8), 60)[3], alpha, 1);
     EXPECT_EQ(left.pixel(column(7.3), 60)[3], 0);
     EXPECT_EQ(left.pixel(column(12), 60)[3], 0);
     packet.slices[0].grid = holed;
-    const Picture hole = draw(packet, {}, "hole");
+    const Image8 hole = draw(packet, {}, "hole");
     for (const double y : {6.2, 7.8}) EXPECT_EQ(hole.pixel(column(10.3), row(y))[3], 0);
     EXPECT_NEAR(hole.pixel(column(9.8), row(7.5))[3], alpha, 1);
     EXPECT_NEAR(hole.pixel(column(11), row(8.3))[3], alpha, 1);
   }
 }
 
-TEST_F(SlicePicture, PlanesInTheDomainsFacesAndTheirCornersAreDrawn) {
+TEST_F(SliceImage, PlanesInTheDomainsFacesAndTheirCornersAreDrawn) {
   const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
-  FramePacket packet = packet_of({4, 4, 40}, {4, 4, 0});
+  FramePacket packet = make_packet({4, 4, 40}, {4, 4, 0});
   packet.view.up = {0, 1, 0};
   packet.view.orthographic = true;
   packet.view.height = 12;  // 0.1 a pixel
   for (const double z : {0.0, 8.0}) {
     packet.slices = {slice_of(grid, {0, 0, z}, {0, 0, z > 4 ? 1.0 : -1.0})};
-    const Picture picture = draw(packet, {}, "z" + std::to_string(int(z)));
+    const Image8 picture = draw(packet, {}, "z" + std::to_string(int(z)));
     int covered = 0;
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) covered += picture.rgba[i] == 255;
     EXPECT_EQ(covered, 80 * 80) << z;
   }
   packet.slices = {slice_of(grid, {0, 0, 8.01}, {0, 0, 1})};
-  const Picture beyond = draw(packet);
+  const Image8 beyond = draw(packet);
   for (std::size_t i = 3; i < beyond.rgba.size(); i += 4) ASSERT_EQ(beyond.rgba[i], 0);
 }
 
 /// The clip planes cut it unless it says no; one that lies in a clip plane stays.
-TEST_F(SlicePicture, ClipPlanesCutASliceAndKeepOneThatLiesInThem) {
+TEST_F(SliceImage, ClipPlanesCutASliceAndKeepOneThatLiesInThem) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return p.x; });
-  FramePacket packet = packet_of({2, -14, 34}, {8, 8, 8}, 40);
+  FramePacket packet = make_packet({2, -14, 34}, {8, 8, 8}, 40);
   packet.slices = {slice_of(grid, {8, 8, 8}, {0.3, 0.2, 1})};
-  const auto covered = [](const Picture& picture) {
+  const auto covered = [](const Image8& picture) {
     int n = 0;
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) n += picture.rgba[i] == 255;
     return n;
   };
   const int whole = covered(draw(packet, {}, "whole"));
-  packet.clip = {{{8, 8, 8}, {-0.3, -0.2, -1}}};
+  packet.clip_planes = {{{8, 8, 8}, {-0.3, -0.2, -1}}};
   EXPECT_EQ(covered(draw(packet, {}, "in_plane")), whole);
-  packet.clip = {{{8, 8, 8}, {1, 0, 0}}};
+  packet.clip_planes = {{{8, 8, 8}, {1, 0, 0}}};
   const int half = covered(draw(packet, {}, "half"));
   EXPECT_LT(half, 0.7 * whole);
   EXPECT_GT(half, 0.3 * whole);
-  packet.slices[0].clipped = false;
+  packet.slices[0].is_clipped = false;
   EXPECT_EQ(covered(draw(packet, {}, "unclipped")), whole);
 }
 
-TEST_F(SlicePicture, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
+TEST_F(SliceImage, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({8, -30, 8}, {8, 8, 8});
+  FramePacket packet = make_packet({8, -30, 8}, {8, 8, 8});
   packet.view.orthographic = true;
   packet.view.height = 24;
   packet.slices = {slice_of(grid, {8, 8, 8}, {std::sqrt(3.0), 1, 0})};
@@ -330,7 +330,7 @@ TEST_F(SlicePicture, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
   packet.slices.push_back(red);
   for (const bool turned : {false, true}) {
     if (turned) std::swap(packet.slices[0], packet.slices[1]);
-    const Picture cross = draw(packet, {}, "cross");
+    const Image8 cross = draw(packet, {}, "cross");
     // the blue one comes nearer on the right, the red one on the left
     EXPECT_GT(cross.pixel(90, 60)[2], 100);
     EXPECT_EQ(cross.pixel(90, 60)[0], 0);
@@ -352,7 +352,7 @@ MeshItem square_at_8() {
 
 /// Where a surface lies in a slice's plane the slice is over it at every pixel, from either side, whatever is opaque: the picture is that
 /// of the slice alone over that of the surface alone.
-TEST_F(SlicePicture, ASliceLiesOverWhatLiesInItsPlane) {
+TEST_F(SliceImage, ASliceLiesOverWhatLiesInItsPlane) {
   const auto rising = make_grid({17, 17, 17}, [](const Vec3& p) { return p.z; });
   const auto even = make_grid({17, 17, 17}, [](const Vec3&) { return 1; });
   struct Eye {
@@ -365,7 +365,7 @@ TEST_F(SlicePicture, ASliceLiesOverWhatLiesInItsPlane) {
                               {"far", {2100, -2900, 1830}, {8, 8, 8}, 0.3, 0},
                               {"orthographic", {25, -31, 22}, {8, 8, 8}, 30, 22}};
   for (const Eye& eye : eyes) {
-    FramePacket empty = packet_of(eye.position, eye.target, eye.fovy_deg);
+    FramePacket empty = make_packet(eye.position, eye.target, eye.fovy_deg);
     empty.width = 96;
     empty.height = 72;
     empty.view.up = {0, 0, 1};
@@ -373,7 +373,7 @@ TEST_F(SlicePicture, ASliceLiesOverWhatLiesInItsPlane) {
     empty.view.height = eye.height;
     empty.background = {0, 0, 0, 1};
     std::vector<FramePacket> surfaces;
-    std::vector<Picture> under;
+    std::vector<Image8> under;
     for (const float opacity : {1.f, 0.6f}) {
       surfaces.push_back(empty);
       surfaces.back().meshes = {square_at_8()};
@@ -389,12 +389,12 @@ TEST_F(SlicePicture, ASliceLiesOverWhatLiesInItsPlane) {
       slice.id = 2;
       FramePacket packet = empty;
       packet.slices = {slice};
-      const Picture alone = draw(packet);
+      const Image8 alone = draw(packet);
       for (std::size_t k = 0; k < surfaces.size(); ++k) {
         packet = surfaces[k];
         packet.slices = {slice};
         const std::string name = fmt::format("{}_{}_{:.0f}", eye.name, k, 10 * opacity);
-        const Picture both = draw(packet, {}, name);
+        const Image8 both = draw(packet, {}, name);
         int covered = 0, wrong = 0;
         for (std::size_t i = 0; i < both.rgba.size(); i += 4) {
           if (alone.rgba[i] == 0 || under[k].rgba[i + 2] == 0) continue;
@@ -412,14 +412,14 @@ TEST_F(SlicePicture, ASliceLiesOverWhatLiesInItsPlane) {
 }
 
 /// The atlas layout and the dense one draw the same.
-TEST_F(SlicePicture, BricksAndDenseImagesAgree) {
+TEST_F(SliceImage, BricksAndDenseImagesAgree) {
   const auto grid = wavy_grid();
-  FramePacket packet = packet_of(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
+  FramePacket packet = make_packet(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
   packet.slices = {slice_of(grid, centre_of(*grid), {0.5, -0.6, 0.9})};
-  packet.slices[0].levels = {-1, 0, 1, 2};
+  packet.slices[0].contour_levels = {-1, 0, 1, 2};
   RenderSettings dense, atlas;
-  dense.layout = MirrorLayout::dense;
-  atlas.layout = MirrorLayout::atlas;
+  dense.layout = GridLayout::dense;
+  atlas.layout = GridLayout::atlas;
   EXPECT_LE(max_difference(draw(packet, dense, "dense"), draw(packet, atlas, "atlas")), 1);
 }
 

@@ -4,19 +4,19 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "render/stereo/eyes.h"
-#include "tests/render/support/frames.h"
+#include "render/stereo/stereo_views.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace stereo_test {
 
 using namespace catena::render;
 
-class StereoPicture : public PictureTest {
+class StereoImage : public ImageTest {
  protected:
   /// The pictures of the packet's eyes, each drawn alone.
-  std::vector<Picture> each_eye(const FramePacket& packet) {
-    std::vector<Picture> pictures;
+  std::vector<Image8> each_eye(const FramePacket& packet) {
+    std::vector<Image8> pictures;
     for (const View& eye : packet.eyes) {
       FramePacket one = packet;
       one.view = eye;
@@ -32,7 +32,7 @@ constexpr double kVoxel = 0.02;
 constexpr int kNodes = 33;
 constexpr double kRadius = 0.15;
 
-/// Balls about `centre`: f = 1 in the middle, 0.5 at the radius, smooth.
+/// SphereSet about `centre`: f = 1 in the middle, 0.5 at the radius, smooth.
 GridPtr ball_grid(const Vec3& centre) {
   const Vec3 origin = centre - Vec3(0.5 * kVoxel * (kNodes - 1));
   return make_grid(
@@ -48,7 +48,7 @@ struct Centroid {
   double x = 0, y = 0, weight = 0;
 };
 /// Of the alpha.
-Centroid centroid(const Picture& picture) {
+Centroid centroid(const Image8& picture) {
   Centroid c;
   for (std::uint32_t y = 0; y < picture.height; ++y)
     for (std::uint32_t x = 0; x < picture.width; ++x) {
@@ -87,7 +87,7 @@ void add_ball(FramePacket& packet, Kind kind, const Vec3& centre, const Camera& 
 }
 
 FramePacket oblique_packet(bool orthographic) {
-  FramePacket packet = packet_of({4.0, -7.0, 3.0}, {0.1, 0.2, -0.1}, 10);
+  FramePacket packet = make_packet({4.0, -7.0, 3.0}, {0.1, 0.2, -0.1}, 10);
   packet.width = 256;
   packet.height = 192;
   packet.view.orthographic = orthographic;
@@ -97,12 +97,12 @@ FramePacket oblique_packet(bool orthographic) {
 
 double aspect(const FramePacket& packet) { return frustum_aspect(packet.view, packet.width, packet.height); }
 
-TEST_F(StereoPicture, ABallHasTheDisparityOfItsDepthAndNoVerticalParallax) {
+TEST_F(StereoImage, ABallHasTheDisparityOfItsDepthAndNoVerticalParallax) {
   for (const bool orthographic : {false, true}) {
     FramePacket packet = oblique_packet(orthographic);
     const Camera c = make_camera(packet.view, packet.width, packet.height, {});
     constexpr double zero = 8.0, separation = 0.2;
-    const std::vector<View> pair = eyes(packet.view, aspect(packet), {2, separation, zero});
+    const std::vector<View> pair = make_stereo_views(packet.view, aspect(packet), {2, separation, zero});
     for (const Kind kind : kKinds)
       for (const double depth : {6.0, zero, 11.0}) {
         FramePacket one = packet;
@@ -127,12 +127,12 @@ TEST_F(StereoPicture, ABallHasTheDisparityOfItsDepthAndNoVerticalParallax) {
   }
 }
 
-TEST_F(StereoPicture, VolumeSurfaceAndTubeCoincideInEachEye) {
+TEST_F(StereoImage, VolumeSurfaceAndTubeCoincideInEachEye) {
   for (const bool orthographic : {false, true}) {
     FramePacket packet = oblique_packet(orthographic);
     const Camera c = make_camera(packet.view, packet.width, packet.height, {});
     const Vec3 centre = c.position - 9.5 * c.back + 0.3 * c.right - 0.2 * c.up;
-    for (const View& eye : eyes(packet.view, aspect(packet), {3, 0.3, 7.0})) {
+    for (const View& eye : make_stereo_views(packet.view, aspect(packet), {3, 0.3, 7.0})) {
       packet.view = eye;
       const auto expected = project(make_camera(eye, packet.width, packet.height, {}), centre);
       ASSERT_TRUE(expected);
@@ -174,7 +174,7 @@ double linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055)
 double display(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055; }
 
 using Rgba = std::array<double, 4>;
-Rgba at(const Picture& p, std::size_t x, std::size_t y) {
+Rgba at(const Image8& p, std::size_t x, std::size_t y) {
   const std::uint8_t* c = p.pixel(std::uint32_t(x), std::uint32_t(y));
   return {c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, c[3] / 255.0};
 }
@@ -199,7 +199,7 @@ constexpr double kGreyLeft[3][3] = {{0.2126, 0.7152, 0.0722}, {0, 0, 0}, {0, 0, 
 constexpr double kGreyRight[3][3] = {{0, 0, 0}, {0.2126, 0.7152, 0.0722}, {0.2126, 0.7152, 0.0722}};
 
 /// The mean of a block of pixels, weighted with alpha.
-Rgba mean(const Picture& p, std::size_t x0, std::size_t y0, std::size_t nx, std::size_t ny) {
+Rgba mean(const Image8& p, std::size_t x0, std::size_t y0, std::size_t nx, std::size_t ny) {
   Rgba sum{};
   for (std::size_t y = y0; y < y0 + ny; ++y)
     for (std::size_t x = x0; x < x0 + nx; ++x) {
@@ -214,7 +214,7 @@ Rgba mean(const Picture& p, std::size_t x0, std::size_t y0, std::size_t nx, std:
 }
 
 /// What the packed picture must show at (x, y).
-Rgba expected(Packing packing, const std::vector<Picture>& e, std::size_t x, std::size_t y) {
+Rgba expected(Packing packing, const std::vector<Image8>& e, std::size_t x, std::size_t y) {
   const std::size_t n = e.size(), w = e[0].width, h = e[0].height;
   switch (packing) {
     case Packing::single:
@@ -229,7 +229,7 @@ Rgba expected(Packing packing, const std::vector<Picture>& e, std::size_t x, std
       return mean(e[y / (h / n)], x, n * (y % (h / n)), 1, n);
     case Packing::anaglyph:
       return anaglyph(at(e[0], x, y), at(e[1], x, y), kDuboisLeft, kDuboisRight);
-    case Packing::anaglyph_grey:
+    case Packing::anaglyph_gray:
       return anaglyph(at(e[0], x, y), at(e[1], x, y), kGreyLeft, kGreyRight);
     case Packing::rows:
       return at(e[y % n], x, y);
@@ -252,12 +252,12 @@ constexpr Named kPackings[] = {{Packing::single, "single", 1, 1},
                                {Packing::top_bottom, "top-bottom", 1, 2},
                                {Packing::top_bottom_half, "top-bottom-half", 1, 1},
                                {Packing::anaglyph, "anaglyph", 1, 1},
-                               {Packing::anaglyph_grey, "anaglyph-grey", 1, 1},
+                               {Packing::anaglyph_gray, "anaglyph-grey", 1, 1},
                                {Packing::rows, "rows", 1, 1},
                                {Packing::columns, "columns", 1, 1},
                                {Packing::checkerboard, "checkerboard", 1, 1}};
 
-void expect_packed(Packing packing, const Picture& picture, const std::vector<Picture>& each, const char* name) {
+void expect_packed(Packing packing, const Image8& picture, const std::vector<Image8>& each, const char* name) {
   double worst = 0;
   for (std::uint32_t y = 0; y < picture.height; ++y)
     for (std::uint32_t x = 0; x < picture.width; ++x) {
@@ -266,22 +266,22 @@ void expect_packed(Packing packing, const Picture& picture, const std::vector<Pi
       // the colour of what can hardly be seen is rounded away
       for (std::size_t i = 0; i < 3; ++i) worst = std::max(worst, std::fabs(want[i] - have[i]) * (want[3] > 0 ? 1 : 0));
     }
-  const bool computed = packing == Packing::anaglyph || packing == Packing::anaglyph_grey || packing == Packing::side_by_side_half ||
+  const bool computed = packing == Packing::anaglyph || packing == Packing::anaglyph_gray || packing == Packing::side_by_side_half ||
                         packing == Packing::top_bottom_half;
   // how halves of 1/255 are rounded is a driver's choice
-  EXPECT_LE(255 * worst, !computed ? 0 : on_lavapipe() ? 0.51 : 0.6) << name;
+  EXPECT_LE(255 * worst, !computed ? 0 : uses_lavapipe() ? 0.51 : 0.6) << name;
 }
 
-TEST_F(StereoPicture, EveryPackingIsMadeOfTheEyesOwnPictures) {
+TEST_F(StereoImage, EveryPackingIsMadeOfTheEyesOwnPictures) {
   for (const bool transparent : {true, false}) {
     FramePacket packet = busy_packet();
     if (!transparent) packet.background = {0.1f, 0.15f, 0.3f, 1};
-    packet.eyes = eyes(packet.view, aspect(packet), {2, 0.3, 8.0});
-    const std::vector<Picture> each = each_eye(packet);
+    packet.eyes = make_stereo_views(packet.view, aspect(packet), {2, 0.3, 8.0});
+    const std::vector<Image8> each = each_eye(packet);
     ASSERT_GT(max_difference(each[0], each[1]), 100) << "the eyes see the same";
     for (const Named& named : kPackings) {
       packet.packing = named.packing;
-      const Picture picture = draw(packet, {}, std::string(named.name) + (transparent ? "-transparent" : ""));
+      const Image8 picture = draw(packet, {}, std::string(named.name) + (transparent ? "-transparent" : ""));
       ASSERT_EQ(picture.width, packet.width * named.width_factor) << named.name;
       ASSERT_EQ(picture.height, packet.height * named.height_factor) << named.name;
       expect_packed(named.packing, picture, each, named.name);
@@ -289,16 +289,16 @@ TEST_F(StereoPicture, EveryPackingIsMadeOfTheEyesOwnPictures) {
   }
 }
 
-TEST_F(StereoPicture, ThreeViewsAndOddSizes) {
+TEST_F(StereoImage, ThreeViewsAndOddSizes) {
   FramePacket packet = busy_packet();
   packet.width = 95;
   packet.height = 71;
-  packet.eyes = eyes(packet.view, aspect(packet), {3, 0.2, 8.0});
-  const std::vector<Picture> each = each_eye(packet);
+  packet.eyes = make_stereo_views(packet.view, aspect(packet), {3, 0.2, 8.0});
+  const std::vector<Image8> each = each_eye(packet);
   for (const Packing packing : {Packing::side_by_side, Packing::side_by_side_half, Packing::top_bottom, Packing::top_bottom_half,
                                 Packing::rows, Packing::columns, Packing::checkerboard}) {
     packet.packing = packing;
-    const Picture picture = draw(packet, {}, "three-" + std::to_string(int(packing)));
+    const Image8 picture = draw(packet, {}, "three-" + std::to_string(int(packing)));
     const PackedSize size = packed_size(packing, 3, 95, 71);
     ASSERT_EQ(picture.width, size.width);
     ASSERT_EQ(picture.height, size.height);
@@ -310,19 +310,19 @@ TEST_F(StereoPicture, ThreeViewsAndOddSizes) {
   EXPECT_NE(drawn.error().message.find("3 views"), std::string::npos) << drawn.error().message;
 }
 
-TEST_F(StereoPicture, ThePlainViewComesBackAfterAPair) {
+TEST_F(StereoImage, ThePlainViewComesBackAfterAPair) {
   FramePacket packet = busy_packet();
-  const Picture before = draw(packet);
-  packet.eyes = eyes(packet.view, aspect(packet), {2, 0.3, 8.0});
+  const Image8 before = draw(packet);
+  packet.eyes = make_stereo_views(packet.view, aspect(packet), {2, 0.3, 8.0});
   packet.packing = Packing::side_by_side;
   draw(packet);
   packet.eyes.clear();
   EXPECT_EQ(max_difference(before, draw(packet)), 0);
 }
 
-TEST_F(StereoPicture, DepthIsTheFirstEyes) {
+TEST_F(StereoImage, DepthIsTheFirstEyes) {
   FramePacket packet = busy_packet();
-  packet.eyes = eyes(packet.view, aspect(packet), {2, 0.3, 8.0});
+  packet.eyes = make_stereo_views(packet.view, aspect(packet), {2, 0.3, 8.0});
   FramePacket left = packet;
   left.view = packet.eyes[0];
   left.eyes.clear();
@@ -337,22 +337,22 @@ TEST_F(StereoPicture, DepthIsTheFirstEyes) {
   EXPECT_EQ(alone->depth, pair->depth);
 }
 
-TEST_F(StereoPicture, GridsAndTablesAreMadeOnce) {
+TEST_F(StereoImage, GridsAndTablesAreMadeOnce) {
   FramePacket packet = busy_packet();
   draw(packet);
   const RenderStats mono = renderer_->stats();
-  packet.eyes = eyes(packet.view, aspect(packet), {4, 0.3, 8.0});
+  packet.eyes = make_stereo_views(packet.view, aspect(packet), {4, 0.3, 8.0});
   packet.packing = Packing::side_by_side;
   draw(packet);
   EXPECT_EQ(renderer_->stats().upload_bytes, mono.upload_bytes) << "another eye uploads nothing";
-  EXPECT_EQ(renderer_->stats().mirrors, mono.mirrors);
+  EXPECT_EQ(renderer_->stats().resident_grids, mono.resident_grids);
 }
 
-TEST_F(StereoPicture, AScreenInTheRoomShowsWhatLiesOnItAtItsPlace) {
+TEST_F(StereoImage, AScreenInTheRoomShowsWhatLiesOnItAtItsPlace) {
   // pixels that are not square, the eye off the screen's middle
   constexpr double half_width = 0.9, half_height = 0.6;
-  const auto view =
-      screen_view({{-half_width, 0.0, -half_height}, {half_width, 0.0, -half_height}, {-half_width, 0.0, half_height}}, {1.2, -6.0, 0.3});
+  const auto view = make_screen_view({{-half_width, 0.0, -half_height}, {half_width, 0.0, -half_height}, {-half_width, 0.0, half_height}},
+                                     {1.2, -6.0, 0.3});
   ASSERT_TRUE(view);
   FramePacket packet;
   packet.width = 120;

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace surface_depth_test {
@@ -25,7 +25,7 @@ struct Voxels {
     values.resize(std::size_t(n.x) * n.y * n.z);
     valid.resize(values.size());
     grid.read_block({0, 0, 0}, n, values);
-    grid.read_cell_valid({0, 0, 0}, n, valid);
+    grid.read_cell_validity({0, 0, 0}, n, valid);
   }
   std::size_t at(int x, int y, int z) const { return (std::size_t(z) * n.y + y) * n.x + x; }
   double value(const field::Index3& cell, const Vec3& p) const {
@@ -111,7 +111,7 @@ class Truth {
   double level_;
 };
 
-class SurfaceDepth : public PictureTest {
+class SurfaceDepth : public ImageTest {
  protected:
   /// Draws and compares every pixel. A grazing pixel (within 1e-5 of the values' range of the level, but beyond it or not only in exact
   /// arithmetic) may take either answer; there may be few of them.
@@ -127,7 +127,7 @@ class SurfaceDepth : public PictureTest {
     double worst = 0;
     for (std::uint32_t y = 0; y < packet.height; ++y)
       for (std::uint32_t x = 0; x < packet.width; ++x) {
-        const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+        const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
         const Vec3 forward = -camera.back;
         const double per_depth = 1 / dot(ray.direction, forward);
         // index position by view depth
@@ -196,7 +196,7 @@ GridPtr random_grid(const field::Index3& n, unsigned seed, double smooth, const 
 
 FramePacket packet_of_surface(GridPtr grid, double level, const Vec3& towards_eye, double distance, double fovy_deg = 30) {
   const Vec3 centre = grid->mapping().world_from_index(0.5 * (grid->index_box().lo + grid->index_box().hi));
-  FramePacket packet = packet_of(centre + distance * direction(towards_eye), centre, fovy_deg);
+  FramePacket packet = make_packet(centre + distance * direction(towards_eye), centre, fovy_deg);
   IsosurfaceItem item;
   item.grid = std::move(grid);
   item.level = level;
@@ -210,17 +210,17 @@ TEST_F(SurfaceDepth, WhiteNoise) {
   compare(packet_of_surface(grid, 0.5, {1, -0.7, 0.6}, 190), {}, "dense", 8000);
   compare(packet_of_surface(grid, 0.97, {-0.3, -1, 0.4}, 190), {}, "sparse level", 100);
   RenderSettings atlas;
-  atlas.layout = MirrorLayout::atlas;
+  atlas.layout = GridLayout::atlas;
   compare(packet_of_surface(grid, 0.9, {1, 0.8, -0.5}, 190), atlas, "atlas", 2000);
 }
 
 TEST_F(SurfaceDepth, WithoutTheMapOfCells) {
   const auto grid = random_grid({37, 21, 50}, 6, 0.9);
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
     RenderSettings settings;
-    settings.skip = false;
+    settings.skip_empty = false;
     settings.layout = layout;
-    compare(packet_of_surface(grid, 0.85, {-1, -0.7, 0.3}, 110), settings, layout == MirrorLayout::dense ? "dense" : "atlas", 1000);
+    compare(packet_of_surface(grid, 0.85, {-1, -0.7, 0.3}, 110), settings, layout == GridLayout::dense ? "dense" : "atlas", 1000);
   }
 }
 
@@ -252,10 +252,10 @@ TEST_F(SurfaceDepth, EyeInside) {
 
 TEST_F(SurfaceDepth, MaskedCells) {
   const auto grid = random_grid({48, 40, 44}, 5, 0.9, {}, 0.02);
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
     RenderSettings settings;
     settings.layout = layout;
-    compare(packet_of_surface(grid, 0.5, {1, -0.7, 0.6}, 140), settings, layout == MirrorLayout::dense ? "dense" : "atlas", 4000);
+    compare(packet_of_surface(grid, 0.5, {1, -0.7, 0.6}, 140), settings, layout == GridLayout::dense ? "dense" : "atlas", 4000);
   }
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::test {
@@ -10,7 +10,7 @@ namespace translucent_test {
 
 using namespace catena::render;
 
-class Translucent : public PictureTest {};
+class Translucent : public ImageTest {};
 
 /// Along y from -40, orthographic; one pixel is 0.25 units, the middle is (10, 10).
 FramePacket along_y() {
@@ -28,7 +28,7 @@ GridPtr cube() {
   return make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
 }
 
-MeshItem mesh_item(const mesh::Soup& soup, Color color, float opacity, std::uint32_t id = 1) {
+MeshItem mesh_item(const mesh::TriangleSoup& soup, Color color, float opacity, std::uint32_t id = 1) {
   auto geometry = std::make_shared<MeshGeometry>();
   geometry->vertices = soup.vertices;
   for (const mesh::Triangle& t : soup.triangles) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
@@ -49,8 +49,8 @@ SliceItem slice_at(GridPtr grid, double y, Color color, float opacity, std::uint
 }
 
 /// A wall y = 10 + slope (x - 10) over the cube's face.
-mesh::Soup wall(double slope) {
-  mesh::Soup soup;
+mesh::TriangleSoup wall(double slope) {
+  mesh::TriangleSoup soup;
   const double a = 10 - 10 * slope, b = 10 + 10 * slope;
   add_quad(soup, {0, a, 0}, {20, b, 0}, {20, b, 20}, {0, a, 20});
   return soup;
@@ -73,8 +73,8 @@ struct Ray {
   void fog(double sigma, double length) { meet({1, 1, 1}, 1 - std::exp(-sigma * length)); }
 };
 
-/// Straight alpha, as pictures are.
-void expect_pixel(const Picture& picture, std::uint32_t x, std::uint32_t y, const Ray& ray, double tolerance = 2) {
+/// LineSegment alpha, as pictures are.
+void expect_pixel(const Image8& picture, std::uint32_t x, std::uint32_t y, const Ray& ray, double tolerance = 2) {
   const std::uint8_t* p = picture.pixel(x, y);
   const double alpha = 1 - ray.through;
   EXPECT_NEAR(p[3], 255 * alpha, tolerance) << x << " " << y;
@@ -96,7 +96,7 @@ TEST_F(Translucent, TwoWallsThatCrossWithinAFogAreInOrderOnBothSides) {
       if (fog) packet.volumes = {volume_item(cube(), {{0, sigma}, {20, sigma}})};
       packet.meshes = {mesh_item(wall(slope), {1, 0, 0}, float(a), 1), mesh_item(wall(-slope), {0, 0, 1}, float(b), 2)};
       if (turned) std::swap(packet.meshes[0], packet.meshes[1]);
-      const Picture picture = draw(packet, {}, std::string(fog ? "fog" : "clear") + (turned ? "_turned" : ""));
+      const Image8 picture = draw(packet, {}, std::string(fog ? "fog" : "clear") + (turned ? "_turned" : ""));
       for (std::uint32_t x = 24; x < 98; x += 3) {
         const double offset = (x + 0.5 - 60) * 0.25 * slope;  // of the red wall, from y = 10
         if (std::fabs(offset) < 0.1) continue;
@@ -121,21 +121,21 @@ TEST_F(Translucent, AClosedMeshCountsTwice) {
   Ray both, once;
   both.meet(green, 0.4), both.meet(green, 0.4);
   once.meet(green, 0.4);
-  const Picture whole = draw(packet, {}, "whole");
+  const Image8 whole = draw(packet, {}, "whole");
   expect_pixel(whole, 60, 60, both);
   expect_pixel(whole, 45, 70, both);
   expect_pixel(whole, 20, 60, {});
   // cut open: the inside is seen and lit as well
-  packet.clip = {{{0, 8, 0}, {0, 1, 0}}};
+  packet.clip_planes = {{{0, 8, 0}, {0, 1, 0}}};
   expect_pixel(draw(packet, {}, "open"), 60, 60, once);
   packet.meshes[0].opacity = 1;
-  const Picture solid = draw(packet, {}, "solid");
+  const Image8 solid = draw(packet, {}, "solid");
   const auto depth = renderer_->read_depth();
   ASSERT_TRUE(depth);
   EXPECT_NEAR(depth->depth[60 * 120 + 60], 55, 1e-4);
   EXPECT_NEAR(solid.pixel(60, 60)[1], 255 * 0.65, 1);
   EXPECT_EQ(solid.pixel(60, 60)[3], 255);
-  packet.meshes[0].clipped = false;
+  packet.meshes[0].is_clipped = false;
   draw(packet, {}, "unclipped");
   const auto before = renderer_->read_depth();
   ASSERT_TRUE(before);
@@ -151,10 +151,10 @@ TEST_F(Translucent, AnOpaqueSurfaceHidesWhatLiesBehindAndShowsThroughWhatLiesBef
     surface.level = 10;
     surface.color = {0.5f, 0.5f, 0.5f};
     packet.isosurfaces = {surface};
-    mesh::Soup soup;
+    mesh::TriangleSoup soup;
     add_quad(soup, {0, at, 0}, {20, at, 0}, {20, at, 20}, {0, at, 20});
     packet.meshes = {mesh_item(soup, {1, 0, 0}, 0.5f)};
-    const Picture picture = draw(packet, {}, "mesh" + std::to_string(int(at)));
+    const Image8 picture = draw(packet, {}, "mesh" + std::to_string(int(at)));
     const auto grey = lit_color({0.5, 0.5, 0.5}, light(1));
     Ray ray;
     if (at < 10) ray.meet(red, 0.5);
@@ -229,12 +229,12 @@ TEST_F(Translucent, FourLayersAreExactAndTheRestIsTheirMean) {
       for (double& m : mean) m /= weight;
       ray.meet(mean, 1 - through);
     }
-    const Picture picture = draw(packet, {}, std::to_string(count));
+    const Image8 picture = draw(packet, {}, std::to_string(count));
     expect_pixel(picture, 60, 60, ray, 1.5);
     std::reverse(packet.slices.begin(), packet.slices.end());
     EXPECT_LE(max_difference(picture, draw(packet)), 1) << count;
     // a mesh far off at the side: the same number of layers for every scene with meshes, the same colours
-    mesh::Soup aside;
+    mesh::TriangleSoup aside;
     add_quad(aside, {-4, 3, 8}, {-3, 3, 8}, {-3, 3, 12}, {-4, 3, 12});
     packet.meshes = {mesh_item(aside, {1, 1, 1}, 0.5f, 99)};
     expect_pixel(draw(packet, {}, std::to_string(count) + "_mesh"), 60, 60, ray, 1.5);
@@ -247,7 +247,7 @@ TEST_F(Translucent, CoincidentThingsAreBothKept) {
     FramePacket packet = along_y();
     packet.slices = {slice_at(grid, 10, {1, 0, 0}, 0.5f, 1), slice_at(grid, 10, {0, 1, 0}, 0.5f, 2)};
     if (turned) std::swap(packet.slices[0], packet.slices[1]);
-    const Picture picture = draw(packet, {}, turned ? "turned" : "same");
+    const Image8 picture = draw(packet, {}, turned ? "turned" : "same");
     int off = 0;
     for (std::uint32_t y = 21; y < 99; ++y)
       for (std::uint32_t x = 21; x < 99; ++x) off += std::abs(picture.pixel(x, y)[3] - 191) > 1;
@@ -274,46 +274,46 @@ TEST_F(Translucent, LayersExistOnlyWhereSomethingIsTranslucent) {
   EXPECT_FALSE(has("slices"));
   packet.meshes[0].opacity = 0;
   packet.slices[0].opacity = 0;
-  const Picture nothing = draw(packet, {}, "nothing");
+  const Image8 nothing = draw(packet, {}, "nothing");
   EXPECT_FALSE(has("layers") || has("slices") || has("meshes"));
   for (const std::uint8_t v : nothing.rgba) ASSERT_EQ(v, 0);
   // the lines of an invisible slice are seen
-  packet.slices[0].levels = {10};
+  packet.slices[0].contour_levels = {10};
   packet.slices[0].normal = {0, 0.6, 0.8};
   packet.slices[0].point = {10, 10, 10};
   packet.slices[0].line_width = 3;
   packet.slices[0].line_color = {1, 1, 1};
-  const Picture lines = draw(packet, {}, "lines");
+  const Image8 lines = draw(packet, {}, "lines");
   EXPECT_TRUE(has("layers"));
   EXPECT_EQ(lines.pixel(60, 60)[3], 255);
   EXPECT_EQ(lines.pixel(60, 52)[3], 0);
   packet.slices[0].opacity = 1;
   packet.meshes[0].opacity = 1;
-  packet.slices[0].levels.clear();
+  packet.slices[0].contour_levels.clear();
   packet.slices[0].point = {0, 10, 0};
   packet.slices[0].normal = {0, 1, 0};
   draw(packet);
-  const std::uint64_t rounding = on_lavapipe() ? 0 : 1 << 16;  // of a GPU's images
+  const std::uint64_t rounding = uses_lavapipe() ? 0 : 1 << 16;  // of a GPU's images
   EXPECT_LE(renderer_->stats().gpu_bytes, before + 16 * 120 * 120 + rounding) << "the target of the raycast alone stays";
 }
 
 /// Tiles and eyes: a part of the frustum draws the same part of the picture.
 TEST_F(Translucent, AWindowShowsItsPartOfThePicture) {
-  FramePacket packet = packet_of({-14, -30, 26}, {10, 10, 10}, 40);
+  FramePacket packet = make_packet({-14, -30, 26}, {10, 10, 10}, 40);
   packet.volumes = {volume_item(cube(), {{0, 0.02}, {20, 0.05}})};
   packet.meshes = {mesh_item(sphere_soup(4, 7, {10, 10, 10}), {1, 0.4f, 0.1f}, 0.4f, 1)};
-  packet.meshes[0].edges = true;
+  packet.meshes[0].show_edges = true;
   SliceItem slice = slice_at(cube(), 10, {0, 1, 0}, 0.6f, 2);
   slice.normal = {0.2, 0.5, 0.8};
   slice.point = {10, 10, 10};
   slice.colors = {{0, 0, 0, 1}, {20, 1, 1, 0}};
-  slice.levels = {4, 8, 12, 16};
+  slice.contour_levels = {4, 8, 12, 16};
   packet.slices = {slice};
-  const Picture whole = draw(packet, {}, "whole");
+  const Image8 whole = draw(packet, {}, "whole");
   packet.width /= 2;
   packet.height /= 2;
   packet.view.window = {0, 1, 0, 1};  // right and upper half
-  const Picture part = draw(packet, {}, "part");
+  const Image8 part = draw(packet, {}, "part");
   int most = 0;
   for (std::uint32_t y = 0; y < part.height; ++y)
     for (std::uint32_t x = 0; x < part.width; ++x)

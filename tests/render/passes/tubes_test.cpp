@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace tubes_test {
 
 using namespace catena::render;
 
-class TubesTest : public PictureTest {};
+class TubesTest : public ImageTest {};
 
 TubeItem bent(double radius, const Vec3& middle, double turns, int count) {
   TubeItem tube;
@@ -46,7 +46,7 @@ std::vector<TubeItem> some_tubes() {
 std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
   std::vector<MeshItem> meshes;
   for (const TubeItem& tube : tubes) {
-    Shape shape;
+    ShapeMesh shape;
     add_tube(shape, tube, 24);
     MeshGeometry geometry;
     for (const MeshVertex& v : shape.vertices) {
@@ -76,14 +76,14 @@ TEST_F(TubesTest, ThePictureIsThatOfRoundTubes) {
       packet.background = {0.1f, 0.1f, 0.15f, 1};
       // cut open: into the tubes can be seen; lit from the side
       if (clipped) {
-        packet.clip = {{Vec3(0, 0.1, 0), Vec3(0.1, 1, 0)}};
-        packet.lights = {{.direction = {1, -0.5, 0.3}, .color = {1, 1, 1}, .with_camera = true}};
+        packet.clip_planes = {{Vec3(0, 0.1, 0), Vec3(0.1, 1, 0)}};
+        packet.lights = {{.direction = {1, -0.5, 0.3}, .color = {1, 1, 1}, .camera_relative = true}};
       }
       FramePacket meshes = packet;
       packet.tubes = some_tubes();
       meshes.meshes = as_meshes(packet.tubes);
       const std::string name = (clipped ? "clipped-" : "whole-") + std::to_string(width);
-      const Picture a = draw(packet, {}, name), b = draw(meshes, {}, name + "-triangles");
+      const Image8 a = draw(packet, {}, name), b = draw(meshes, {}, name + "-triangles");
       double sum = 0;
       int other = 0, drawn = 0;
       for (std::uint32_t y = 0; y < a.height; ++y)

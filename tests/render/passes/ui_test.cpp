@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "render/passes/ui.h"
-#include "tests/render/support/failing.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/failure_injector.h"
+#include "tests/render/support/image_fixture.h"
 #include "tests/support/resident.h"
 #include "tests/support/support.h"
 
@@ -33,33 +33,33 @@ void add_rectangle(UiItems& ui, std::array<float, 4> box, std::uint32_t color, s
   ui.indices.insert(ui.indices.end(), {0, 1, 2, 0, 2, 3});
 }
 
-void expect_pixel(const Picture& p, std::uint32_t x, std::uint32_t y, const Color& want) {
+void expect_pixel(const Image8& p, std::uint32_t x, std::uint32_t y, const Color& want) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(p.pixel(x, y)[c], want[c], 1) << "channel " << c << " at " << x << " " << y;
   EXPECT_EQ(p.pixel(x, y)[3], 255) << x << " " << y;
 }
 
-class Ui : public PictureTest {
+class Ui : public ImageTest {
  protected:
   /// One colour everywhere.
   void draw_plain(std::uint32_t width, std::uint32_t height, const Color& color) {
-    FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+    FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
     packet.width = width;
     packet.height = height;
     packet.background = {float(color[0]) / 255, float(color[1]) / 255, float(color[2]) / 255, 1};
     ASSERT_TRUE(renderer_->draw(packet));
   }
   /// A ball on a dark ground.
-  Picture draw_ball(std::uint32_t width, std::uint32_t height) {
-    FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  Image8 draw_ball(std::uint32_t width, std::uint32_t height) {
+    FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
     packet.width = width;
     packet.height = height;
     packet.background = {0.1f, 0.1f, 0.2f, 1};
     CursorItem cursor;
-    cursor.size = 1;
+    cursor.radius = 1;
     packet.cursors = {cursor};
     return draw(packet);
   }
-  Picture paint(std::uint32_t width, std::uint32_t height, const UiItems& ui, const std::string& name = "") {
+  Image8 paint(std::uint32_t width, std::uint32_t height, const UiItems& ui, const std::string& name = "") {
     const auto painted = renderer_->paint_window(width, height, ui);
     EXPECT_TRUE(painted) << (painted ? "" : painted.error().message);
     auto picture = renderer_->read_back_window();
@@ -75,8 +75,8 @@ class Ui : public PictureTest {
 };
 
 TEST_F(Ui, WithoutItemsTheWindowIsThePicture) {
-  const Picture below = draw_ball(64, 48);
-  const Picture window = paint(64, 48, {});
+  const Image8 below = draw_ball(64, 48);
+  const Image8 window = paint(64, 48, {});
   EXPECT_EQ(window.rgba, below.rgba);
   UiItems nothing;
   nothing.draws.push_back({nullptr, kAll, 0, 0, 0});
@@ -89,7 +89,7 @@ TEST_F(Ui, SolidAndHalfTransparentRectanglesAreBlendedStraight) {
   add_rectangle(ui, {4, 5, 14, 25}, rgba(10, 250, 60));
   add_rectangle(ui, {20, 5, 30, 25}, rgba(10, 250, 60, 128));
   add_rectangle(ui, {32, 5, 36, 25}, rgba(10, 250, 60, 0));
-  const Picture p = paint(40, 30, ui, "window");
+  const Image8 p = paint(40, 30, ui, "window");
   const auto half = [](int over, int below) { return int(std::lround((128.0 * over + 127.0 * below) / 255)); };
   for (std::uint32_t y = 0; y < 30; ++y)
     for (std::uint32_t x = 0; x < 40; ++x) {
@@ -108,7 +108,7 @@ TEST_F(Ui, LaterDrawsLieOverEarlierOnes) {
   UiItems ui;
   add_rectangle(ui, {0, 0, 8, 8}, rgba(255, 0, 0));
   add_rectangle(ui, {4, 0, 12, 8}, rgba(0, 0, 255, 128));
-  Picture p = paint(12, 8, ui);
+  Image8 p = paint(12, 8, ui);
   expect_pixel(p, 2, 4, {255, 0, 0});
   expect_pixel(p, 6, 4, {127, 0, 128});
   expect_pixel(p, 10, 4, {0, 0, 128});
@@ -127,7 +127,7 @@ TEST_F(Ui, AClipKeepsThePixelsWhoseCentresLieWithin) {
   add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {-1e30f, -5, -2, 100});  // nothing of these three
   add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {8, 8, 8, 16});
   add_rectangle(ui, {0, 0, 20, 16}, rgba(0, 255, 0), {kNan, kNan, kNan, kNan});
-  const Picture p = paint(20, 16, ui, "window");
+  const Image8 p = paint(20, 16, ui, "window");
   for (std::uint32_t y = 0; y < 16; ++y)
     for (std::uint32_t x = 0; x < 20; ++x) {
       if (x >= 3 && x < 7 && y >= 3 && y < 6)
@@ -146,7 +146,7 @@ TEST_F(Ui, TexturesAreSampledAtTheirTexelsAndBetweenThem) {
   add_rectangle(ui, {0, 0, 2, 2}, rgba(255, 255, 255), kAll, texture);
   add_rectangle(ui, {4, 0, 6, 2}, rgba(128, 128, 255, 128), kAll, texture);  // colours multiply
   add_rectangle(ui, {8, 0, 24, 16}, rgba(255, 255, 255), kAll, texture);
-  const Picture p = paint(24, 16, ui, "window");
+  const Image8 p = paint(24, 16, ui, "window");
   expect_pixel(p, 0, 0, {255, 0, 0});
   expect_pixel(p, 1, 0, {0, 255, 0});
   expect_pixel(p, 0, 1, {0, 0, 255});
@@ -167,7 +167,7 @@ TEST_F(Ui, IndicesCountFromTheFirstVertexOn) {
   ui.vertices.resize(70'000 - 4);
   add_rectangle(ui, {10, 10, 50, 50}, rgba(1, 200, 3));
   ASSERT_EQ(ui.draws[0].first_vertex, 69'996u);
-  const Picture p = paint(64, 64, ui);
+  const Image8 p = paint(64, 64, ui);
   expect_pixel(p, 9, 30, {0, 0, 0});
   expect_pixel(p, 10, 10, {1, 200, 3});
   expect_pixel(p, 49, 49, {1, 200, 3});
@@ -186,7 +186,7 @@ TEST_F(Ui, ThreeThousandQuadsInOneDraw) {
   for (std::uint32_t i = 0; i < 3000; ++i)
     for (std::uint32_t k = 0; k < 6; ++k) ui.indices[6 * i + k] = std::uint16_t(ui.indices[6 * i + k] + 4 * i);
   ui.draws = {{nullptr, kAll, 0, 18'000, 0}};
-  const Picture p = paint(240, 200, ui, "window");
+  const Image8 p = paint(240, 200, ui, "window");
   for (std::uint32_t i = 0; i < 3000; ++i) {
     const std::uint32_t c = color(i);
     expect_pixel(p, 4 * (i % 60) + 1, 4 * (i / 60) + 2, {int(c & 255), int(c >> 8 & 255), int(c >> 16 & 255)});
@@ -196,10 +196,10 @@ TEST_F(Ui, ThreeThousandQuadsInOneDraw) {
 
 TEST_F(Ui, ASmallPictureIsScaledAndTheUiIsNot) {
   // left half dark, right half bright, as a clipped rectangle over a plain picture cannot say: the ball's own picture
-  const Picture small = draw_ball(32, 24);
+  const Image8 small = draw_ball(32, 24);
   UiItems ui;
   add_rectangle(ui, {1, 1, 2, 2}, rgba(255, 255, 0));
-  const Picture p = paint(64, 48, ui, "window");
+  const Image8 p = paint(64, 48, ui, "window");
   ASSERT_EQ(p.width, 64u);
   expect_pixel(p, 1, 1, {255, 255, 0});
   expect_pixel(p, 2, 1, {26, 26, 51});
@@ -221,13 +221,13 @@ TEST_F(Ui, ASmallPictureIsScaledAndTheUiIsNot) {
 }
 
 TEST_F(Ui, AnotherUiOverTheSamePictureNeedsNoNewOne) {
-  const Picture below = draw_ball(64, 48);
+  const Image8 below = draw_ball(64, 48);
   UiItems first, second;
   add_rectangle(first, {0, 0, 64, 20}, rgba(255, 0, 0, 200));
   add_rectangle(second, {10, 10, 30, 40}, rgba(0, 255, 0));
-  const Picture one = paint(64, 48, first);
+  const Image8 one = paint(64, 48, first);
   const std::uint64_t pipelines = renderer_->stats().pipelines;
-  const Picture two = paint(64, 48, second);
+  const Image8 two = paint(64, 48, second);
   EXPECT_EQ(renderer_->stats().pipelines, pipelines);
   EXPECT_GT(max_difference(one, two), 200);
   expect_pixel(two, 20, 20, {0, 255, 0});
@@ -245,7 +245,7 @@ TEST_F(Ui, WindowsOfEverySize) {
   for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 40u}, {333u, 1u}, {17u, 31u}, {256u, 192u}, {1u, 1u}}) {
     UiItems ui;
     add_rectangle(ui, {-20, -20, 1, 1}, rgba(250, 0, 0));
-    const Picture p = paint(width, height, ui);
+    const Image8 p = paint(width, height, ui);
     ASSERT_EQ(p.width, width);
     ASSERT_EQ(p.height, height);
     expect_pixel(p, 0, 0, {250, 0, 0});
@@ -260,7 +260,7 @@ TEST_F(Ui, WindowsOfEverySize) {
 }
 
 TEST_F(Ui, OverPackedEyesAndFloatPictures) {
-  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.width = 20;
   packet.height = 16;
   packet.background = {0.2f, 0.4f, 0.6f, 1};
@@ -269,12 +269,12 @@ TEST_F(Ui, OverPackedEyesAndFloatPictures) {
   ASSERT_TRUE(renderer_->draw(packet));
   UiItems ui;
   add_rectangle(ui, {30, 2, 38, 10}, rgba(255, 0, 255));
-  Picture p = paint(40, 16, ui);
+  Image8 p = paint(40, 16, ui);
   expect_pixel(p, 35, 5, {255, 0, 255});
   expect_pixel(p, 5, 5, {51, 102, 153});
   packet.eyes.clear();
   RenderSettings settings;
-  settings.float_picture = true;
+  settings.float_image = true;
   ASSERT_TRUE(renderer_->draw(packet, settings));
   p = paint(40, 16, ui);
   expect_pixel(p, 35, 5, {255, 0, 255});
@@ -292,7 +292,7 @@ TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
     return ui;
   };
   const auto uploads = [&] { return renderer_->stats().uploads; };
-  const auto held = [&] { return renderer_->device().counters().bytes; };
+  const auto held = [&] { return renderer_->device().counters().allocated_bytes; };
   auto kept = made(255);
   paint(32, 32, with(kept));
   const std::uint64_t uploads_before = uploads(), bytes_before = held();
@@ -303,22 +303,22 @@ TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
   for (int k = 0; k < 40; ++k) {
     UiItems ui = with(kept);
     add_rectangle(ui, {0, 0, 16, 16}, rgba(255, 0, 0), kAll, made(std::uint8_t(100 + k)));
-    const Picture p = paint(32, 32, ui);
+    const Image8 p = paint(32, 32, ui);
     const double alpha = (100 + k) / 255.0;
     EXPECT_NEAR(p.pixel(4, 4)[0], 255 * (alpha * alpha + 1 - alpha), 1.5);
-    EXPECT_LE(held(), bytes_before + (WindowPainter::kTextureRest + 1) * 65536);
+    EXPECT_LE(held(), bytes_before + (WindowPainter::kTextureIdlePaints + 1) * 65536);
   }
   EXPECT_EQ(uploads(), uploads_before + 40);
-  for (std::uint64_t k = 0; k <= WindowPainter::kTextureRest; ++k) paint(32, 32, with(kept));
+  for (std::uint64_t k = 0; k <= WindowPainter::kTextureIdlePaints; ++k) paint(32, 32, with(kept));
   EXPECT_EQ(held(), bytes_before);
 }
 
 TEST_F(Ui, AThousandPaintsHoldNoMore) {
   vk::DeviceOptions options;  // without the validation layer: it keeps books of its own
-  options.choose = test_device();
+  options.device_filter = test_device();
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer) << renderer.error().message;
-  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.width = packet.height = 16;
   ASSERT_TRUE((*renderer)->draw(packet));
   const auto paint_frames = [&](int from, int to) {
@@ -335,20 +335,20 @@ TEST_F(Ui, AThousandPaintsHoldNoMore) {
   const auto settled = [&] { paint_frames(41, 50); };
   paint_frames(0, 200);
   settled();
-  const std::uint64_t device_before = (*renderer)->device().counters().bytes, host_before = resident_bytes();
+  const std::uint64_t device_before = (*renderer)->device().counters().allocated_bytes, host_before = resident_bytes();
   paint_frames(200, 1200);
   settled();
-  EXPECT_EQ((*renderer)->device().counters().bytes, device_before);
-  EXPECT_EQ((*renderer)->device().retired(), 0u);
-  if (kResidentCounts) {
+  EXPECT_EQ((*renderer)->device().counters().allocated_bytes, device_before);
+  EXPECT_EQ((*renderer)->device().retired_count(), 0u);
+  if (kResidentIsReliable) {
     EXPECT_LT(resident_bytes(), host_before + 4'000'000);
   }
 }
 
 TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
   use_lavapipe();
-  const auto failing = std::make_shared<Failing>();
-  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  const auto failing = std::make_shared<FailureInjector>();
+  FramePacket packet = make_packet({0, -5, 0}, {0, 0, 0});
   packet.width = packet.height = 16;
   packet.background = {1, 1, 1, 1};
   UiItems ui;
@@ -368,14 +368,14 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
   const int allocations = failing->calls - 1;  // less the read-back's
   ASSERT_GE(allocations, 6);
   renderer = start();
-  const std::uint64_t held = renderer->device().counters().bytes;
+  const std::uint64_t held = renderer->device().counters().allocated_bytes;
   for (int n = 1; n <= allocations; ++n) {
     failing->arm(vk::DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, n);
     const auto painted = renderer->paint_window(32, 32, ui);
     ASSERT_FALSE(painted) << n;
     EXPECT_NE(painted.error().message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos);
-    EXPECT_EQ(renderer->device().counters().bytes, held) << n;
-    EXPECT_EQ(renderer->device().retired(), 0u) << n;
+    EXPECT_EQ(renderer->device().counters().allocated_bytes, held) << n;
+    EXPECT_EQ(renderer->device().retired_count(), 0u) << n;
     failing->arm(vk::DriverCall::allocate, VK_SUCCESS, 0);
     if (n % 2 == 0) continue;
     ASSERT_TRUE(renderer->paint_window(32, 32, ui)) << n;
@@ -391,7 +391,7 @@ TEST(UiFailures, OutOfMemoryAndALostDeviceAreSaidAndThePictureStays) {
       const auto painted = renderer->paint_window(32, 32, ui);
       ASSERT_FALSE(painted);
       EXPECT_NE(painted.error().message.find("VK_ERROR_DEVICE_LOST"), std::string::npos);
-      EXPECT_TRUE(renderer->device().lost());
+      EXPECT_TRUE(renderer->device().is_lost());
     }
   for (const std::string& text : renderer->validation_texts()) ADD_FAILURE() << text;
 }
@@ -400,24 +400,24 @@ TEST(UiFailures, MirrorsMakeRoomForTheWindow) {
   use_lavapipe();
   vk::DeviceOptions options;
   options.validation = true;
-  options.choose = test_device();
+  options.device_filter = test_device();
   options.memory_budget_bytes = 4'000'000;
   auto renderer = Renderer::create(options);
   ASSERT_TRUE(renderer);
-  FramePacket packet = packet_of({200, -250, 200}, {48, 48, 48});
+  FramePacket packet = make_packet({200, -250, 200}, {48, 48, 48});
   packet.width = 64;
   packet.height = 48;
   const auto grid = make_grid({96, 96, 96}, [](const Vec3& p) { return norm(p - Vec3(48.0)) / 84; });
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0}})};
   ASSERT_TRUE((*renderer)->draw(packet));
-  const std::uint64_t left = (*renderer)->device().memory_left();
-  ASSERT_EQ((*renderer)->stats().mirrors, 1u);
+  const std::uint64_t left = (*renderer)->device().memory_available();
+  ASSERT_EQ((*renderer)->stats().resident_grids, 1u);
   ASSERT_LT(left, 2'500'000u);
   UiItems ui;
   add_rectangle(ui, {0, 0, 9, 9}, rgba(9, 99, 9));
   const Outcome painted = (*renderer)->paint_window(900, 800, ui);  // 2.9 MB
   ASSERT_TRUE(painted) << painted.error().message;
-  EXPECT_EQ((*renderer)->stats().mirrors, 0u);
+  EXPECT_EQ((*renderer)->stats().resident_grids, 0u);
   // the picture is still there, and the next one, and its window
   ASSERT_TRUE((*renderer)->read_back());
   ASSERT_TRUE((*renderer)->draw(packet));

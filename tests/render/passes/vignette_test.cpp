@@ -3,14 +3,14 @@
 
 #include "render/frame/camera.h"
 #include "render/passes/passes.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace vignette_test {
 
 using namespace catena::render;
 
-class VignettePicture : public PictureTest {};
+class VignetteImage : public ImageTest {};
 
 FramePacket packet_of(double strength) {
   FramePacket packet;
@@ -23,17 +23,17 @@ FramePacket packet_of(double strength) {
   return packet;
 }
 
-TEST_F(VignettePicture, DarkensByTheAngleFromTheEyesAxis) {
+TEST_F(VignetteImage, DarkensByTheAngleFromTheEyesAxis) {
   for (const double shift : {0.0, 0.5}) {
     FramePacket packet = packet_of(0.75);
     packet.view.window = {-1 + shift, 1 + shift, -1, 1};  // an eye whose axis is not in the middle
-    const Picture picture = draw(packet, {}, "vignette");
+    const Image8 picture = draw(packet, {}, "vignette");
     const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
     const Vec3 axis = -camera.back;
     int inside = 0, between = 0, outside = 0;
     for (std::uint32_t y = 0; y < packet.height; ++y)
       for (std::uint32_t x = 0; x < packet.width; ++x) {
-        const double angle = std::acos(std::min(1.0, dot(axis, ray_through(camera, x + 0.5, y + 0.5).direction)));
+        const double angle = std::acos(std::min(1.0, dot(axis, pixel_ray(camera, x + 0.5, y + 0.5).direction)));
         const double inner = std::tan(kVignetteInner_deg * M_PI / 180), outer = std::tan(kVignetteOuter_deg * M_PI / 180);
         const double t = std::clamp((std::tan(angle) - inner) / (outer - inner), 0.0, 1.0), light = 1 - 0.75 * t * t * (3 - 2 * t);
         (t <= 0 ? inside : t >= 1 ? outside : between) += 1;
@@ -48,8 +48,8 @@ TEST_F(VignettePicture, DarkensByTheAngleFromTheEyesAxis) {
   }
 }
 
-TEST_F(VignettePicture, WithoutOneOrWithoutAnglesThePictureIsAsItWas) {
-  const Picture plain = draw(packet_of(0), {}, "vignette_none");
+TEST_F(VignetteImage, WithoutOneOrWithoutAnglesThePictureIsAsItWas) {
+  const Image8 plain = draw(packet_of(0), {}, "vignette_none");
   EXPECT_EQ(plain.pixel(0, 0)[0], 255);
   FramePacket flat = packet_of(1);
   flat.view.orthographic = true;

@@ -1,7 +1,7 @@
 /// The estimate against the truth, and goals that are reached.
 #include "render/quality/quality.h"
 
-#include "render/image/measure.h"
+#include "render/image/image_error.h"
 #include "render/quality/refinement.h"
 
 #include <algorithm>
@@ -10,24 +10,24 @@
 #include <random>
 #include <thread>
 
-#include "render/vk/stopwatch.h"
-#include "tests/render/support/frames.h"
+#include "render/vk/timestamp_query.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace quality_test {
 
 using namespace catena::render;
 
-class Quality : public PictureTest {
+class Quality : public ImageTest {
  protected:
   static FramePacket scene(bool shade = false) {
     const auto grid = make_grid(
         {64, 60, 56}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.42 * p.x + 0.1 * p.y) * std::cos(0.37 * p.y + 0.3 * p.z); });
-    FramePacket packet = packet_of({130, -100, 90}, {31.5, 29.5, 27.5}, 32);
+    FramePacket packet = make_packet({130, -100, 90}, {31.5, 29.5, 27.5}, 32);
     packet.background = {0, 0, 0, 1};
     VolumeItem item = volume_item(grid, {{0, 0}, {0.4, 0}, {1, 0.15}});
     item.transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
-    item.shade = shade;
+    item.is_shaded = shade;
     packet.volumes = {item};
     return packet;
   }
@@ -48,7 +48,7 @@ class Quality : public PictureTest {
   double true_rmse(FramePacket packet, const RenderSettings& settings) {
     const std::array<float, 4> b = packet.background;
     packet.background[3] = 0;
-    const Picture converged = draw(packet, reference_settings());
+    const Image8 converged = draw(packet, reference_settings());
     return measure_error(draw(packet, settings), converged, {b[0], b[1], b[2]}).rmse;
   }
 };
@@ -83,7 +83,7 @@ TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
   for (const double e : {0.7, 1.5, 5.0}) {
     const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
     ASSERT_TRUE(choice);
-    EXPECT_TRUE(choice->reached);
+    EXPECT_TRUE(choice->goal_reached);
     EXPECT_LE(choice->estimated_rmse, e);
     EXPECT_LT(true_rmse(packet, choice->settings), 1.05 * e) << describe(choice->settings);
     ASSERT_TRUE(choice->settings.fast);
@@ -95,22 +95,22 @@ TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
 
 /// The device's own clock sees the work of a picture and nothing else: not the processor's, not other programs'.
 TEST_F(Quality, TheDevicesClockTimesItsWorkAlone) {
-  if (!renderer_->device().stopwatch().measures()) GTEST_SKIP() << "this device has no timestamps";
+  if (!renderer_->device().timestamps().is_supported()) GTEST_SKIP() << "this device has no timestamps";
   const FramePacket packet = scene();
-  ASSERT_TRUE(renderer_->draw(packet, exact_rung(1)));
-  const DrawingClock idle(*renderer_, DrawingClock::By::device), wall(*renderer_, DrawingClock::By::wall);
+  ASSERT_TRUE(renderer_->draw(packet, exact_level(1)));
+  const RenderTimer idle(*renderer_, RenderTimer::ClockSource::gpu), wall(*renderer_, RenderTimer::ClockSource::wall);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(idle.ms(), 0);
+  EXPECT_EQ(idle.elapsed_ms(), 0);
   const auto ms_of = [&](double step) {
-    const DrawingClock clock(*renderer_, DrawingClock::By::device);
-    EXPECT_TRUE(renderer_->draw(packet, exact_rung(step)));
-    return clock.ms();
+    const RenderTimer clock(*renderer_, RenderTimer::ClockSource::gpu);
+    EXPECT_TRUE(renderer_->draw(packet, exact_level(step)));
+    return clock.elapsed_ms();
   };
   const double coarse = ms_of(4), fine = ms_of(0.1);
   EXPECT_GT(coarse, 0);
   EXPECT_GT(fine, 2 * coarse);
-  EXPECT_NEAR(idle.ms(), coarse + fine, 1e-6);
-  EXPECT_LE(idle.ms() + 19, wall.ms()) << "the pause was none of its work";
+  EXPECT_NEAR(idle.elapsed_ms(), coarse + fine, 1e-6);
+  EXPECT_LE(idle.elapsed_ms() + 19, wall.elapsed_ms()) << "the pause was none of its work";
 }
 
 /// A thin shell in a small picture: all error is in a few pixels, which a sparse lattice misses.
@@ -134,19 +134,19 @@ TEST_F(Quality, WhatIsThinIsKept) {
   const FramePacket packet = threads();
   FramePacket alone = packet;
   alone.background[3] = 0;
-  const Picture converged = draw(alone, reference_settings(), "converged");
+  const Image8 converged = draw(alone, reference_settings(), "converged");
   const auto once = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2, true});
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
   for (const auto* one : {&choice, &once}) {
     ASSERT_TRUE(*one);
-    const PictureError error = measure_error(draw(alone, (*one)->settings, "chosen"), converged);
-    EXPECT_GE(error.thin_parts, 1);
-    EXPECT_GT(error.least_kept, 0.6) << describe((*one)->settings);
+    const ImageError error = measure_error(draw(alone, (*one)->settings, "chosen"), converged);
+    EXPECT_GE(error.thin_feature_count, 1);
+    EXPECT_GT(error.min_thin_retained, 0.6) << describe((*one)->settings);
     EXPECT_LE(error.rmse, 2.2);
   }
   RenderSettings coarse;
   coarse.fast = FastSettings{1, 4, -1, -1};
-  EXPECT_LT(measure_error(draw(alone, coarse, "coarse"), converged).least_kept, 0.5);  // or it would prove nothing
+  EXPECT_LT(measure_error(draw(alone, coarse, "coarse"), converged).min_thin_retained, 0.5);  // or it would prove nothing
   // nor does a stricter goal cost less
   const auto stricter = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 1});
   ASSERT_TRUE(stricter);
@@ -162,9 +162,9 @@ TEST_F(Quality, TransparentPicturesAreJudgedOverAnyBackground) {
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.60, 0}, {0.65, 0.4}, {0.70, 0}};
   const auto once = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2, true});
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
-  const Picture converged = draw(packet, reference_settings());
+  const Image8 converged = draw(packet, reference_settings());
   const auto over_white = [&](const RenderSettings& settings) { return measure_error(draw(packet, settings), converged, {1, 1, 1}).rmse; };
-  EXPECT_GT(over_white(fast_rung(8, 4, -1, -1)), 4);  // or it would prove nothing
+  EXPECT_GT(over_white(fast_level(8, 4, -1, -1)), 4);  // or it would prove nothing
   for (const auto* one : {&choice, &once}) {
     ASSERT_TRUE(*one);
     EXPECT_LT(over_white((*one)->settings), 2.1) << describe((*one)->settings);
@@ -179,12 +179,12 @@ TEST_F(Quality, OnePictureIsNotSearchedFor) {
     for (const double e : {0.7, 2.0, 5.0}) {
       const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e, true});
       ASSERT_TRUE(choice);
-      EXPECT_TRUE(choice->reached);
-      EXPECT_LE(choice->pictures, 1);
+      EXPECT_TRUE(choice->goal_reached);
+      EXPECT_LE(choice->images_rendered, 1);
       EXPECT_LE(choice->estimated_rmse, e);
       const double truth = true_rmse(packet, choice->settings);
       EXPECT_LT(truth, 1.05 * choice->estimated_rmse + 0.05) << describe(choice->settings);
-      EXPECT_GT(truth, 0.4 * choice->estimated_rmse - kLeastTold) << describe(choice->settings);
+      EXPECT_GT(truth, 0.4 * choice->estimated_rmse - kMinReportedRmse) << describe(choice->settings);
     }
   }
 }
@@ -193,14 +193,14 @@ TEST_F(Quality, EmptyPicturesAreSaid) {
   for (const bool once : {false, true}) {
     const QualityGoal goal{QualityGoal::Kind::error, 2, once};
     FramePacket packet = scene();
-    EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().empty);
+    EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().is_empty);
     packet.view.position = {5e3, -5e3, 0};  // a few pixels
-    EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().empty);
+    EXPECT_FALSE(choose_quality(*renderer_, packet, goal).value().is_empty);
     packet.view.target = {2e5, 0, 0};
-    EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().empty);
+    EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().is_empty);
     packet = scene();
     packet.volumes[0].transfer.extinctions = {{0, 0}, {1, 0}};
-    EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().empty);
+    EXPECT_TRUE(choose_quality(*renderer_, packet, goal).value().is_empty);
   }
 }
 
@@ -227,7 +227,7 @@ TEST_F(Quality, SteepTransferFunctionsAreJudgedByRaysThatHaveConverged) {
   packet.background[3] = 0;
   RenderSettings converged = reference_settings();
   converged.step_voxels = 0.02;
-  const Picture truth = draw(packet, converged);
+  const Image8 truth = draw(packet, converged);
   EXPECT_LE(measure_error(draw(packet, choice->settings), truth).rmse, 2.2) << describe(choice->settings);
   EXPECT_LE(measure_error(draw(packet, once->settings), truth).rmse, 2.2) << describe(once->settings);
 }
@@ -261,9 +261,9 @@ TEST_F(Quality, TimeTakesTheBestOfWhatIsQuickEnough) {
   const auto plenty = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e6});
   const auto none = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e-6});
   ASSERT_TRUE(plenty && none);
-  EXPECT_TRUE(plenty->reached);
-  EXPECT_FALSE(none->reached);
-  EXPECT_EQ(none->pictures, 1);
+  EXPECT_TRUE(plenty->goal_reached);
+  EXPECT_FALSE(none->goal_reached);
+  EXPECT_EQ(none->images_rendered, 1);
   EXPECT_LT(plenty->estimated_rmse, 0.6);
   EXPECT_LT(plenty->estimated_rmse, none->estimated_rmse);
 }
@@ -272,12 +272,12 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
   // times by the ladder's own costs: the same on every machine
   for (const bool shade : {false, true}) {
     const FramePacket packet = scene(shade);
-    const DrawTimer timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
+    const RenderTimeFn timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
     double last = 1e9;
     for (const double ms : {8.0, 14.0, 30.0, 400.0}) {
       const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, nullptr, timer);
       ASSERT_TRUE(choice);
-      EXPECT_TRUE(choice->reached) << ms;
+      EXPECT_TRUE(choice->goal_reached) << ms;
       EXPECT_LE(choice->expected_ms, ms);
       EXPECT_DOUBLE_EQ(choice->expected_ms, 100 * relative_cost(choice->settings, shade));
       EXPECT_LE(choice->estimated_rmse, last) << ms;
@@ -289,7 +289,7 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
 
 /// Refinement marches nearly all of what is thin, and more: where it takes too long, every pixel's rays may not.
 TEST_F(Quality, WhatTheLadderLeavesUnusedGoesToEveryPixel) {
-  const DrawTimer timer = [](const RenderSettings& s) -> Result<double> {
+  const RenderTimeFn timer = [](const RenderSettings& s) -> Result<double> {
     if (!s.fast) return 500.0;
     if (s.fast->spacing == 1) return 30 + 20 / s.fast->step_voxels;
     return s.fast->refine_full_255 >= 0 ? 200.0 : 20.0;
@@ -299,13 +299,13 @@ TEST_F(Quality, WhatTheLadderLeavesUnusedGoesToEveryPixel) {
   ASSERT_TRUE(choice->settings.fast);
   EXPECT_EQ(choice->settings.fast->spacing, 1U) << describe(choice->settings);
   EXPECT_EQ(choice->settings.fast->step_voxels, 1) << describe(choice->settings);
-  const auto coarse = estimate_rmse(*renderer_, threads(), fast_rung(1, 2, 0, -1));
+  const auto coarse = estimate_rmse(*renderer_, threads(), fast_level(1, 2, 0, -1));
   ASSERT_TRUE(coarse);
   EXPECT_LT(choice->estimated_rmse, 0.5 * *coarse);
 }
 
 TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {
-  const std::vector<TimedPicture> tried{{10, 3}, {20, 1}, {15, 2}, {40, 0.5}, {60, 0.6}};
+  const std::vector<SettingsTrial> tried{{10, 3}, {20, 1}, {15, 2}, {40, 0.5}, {60, 0.6}};
   EXPECT_EQ(best_within(tried, 5), 0u);
   EXPECT_EQ(best_within(tried, 16), 2u);
   EXPECT_EQ(best_within(tried, 39), 1u);
@@ -313,7 +313,7 @@ TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {
 }
 
 TEST_F(Quality, ScenesWithoutVolumesAreExactAlready) {
-  FramePacket packet = packet_of({20, -20, 20}, {4, 4, 4});
+  FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.isosurfaces = {{make_grid({8, 8, 8}, [](const Vec3& p) { return p.x; }), 3.5, {1, 1, 1}, 1}};
   const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 0.5});
   ASSERT_TRUE(choice);

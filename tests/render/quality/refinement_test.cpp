@@ -19,15 +19,15 @@ RefinementStep settle(Refinement& refinement, double unit_ms, bool shaded = fals
   RefinementStep step;
   for (int k = 0; k < 60; ++k) {
     step = *refinement.next(true);
-    refinement.drawn(time_of(step.settings, unit_ms, shaded));
+    refinement.record_render_ms(time_of(step.settings, unit_ms, shaded));
   }
   return step;
 }
 
-TEST(Ladder, RisesInCostAndEndsWithExactRays) {
+TEST(QualityLevels, RisesInCostAndEndsWithExactRays) {
   for (const bool fast : {false, true})
     for (const bool shaded : {false, true}) {
-      const auto ladder = quality_ladder({fast, shaded});
+      const auto ladder = quality_levels({fast, shaded});
       ASSERT_GE(ladder.size(), 4u);
       for (std::size_t i = 1; i < ladder.size(); ++i) EXPECT_GE(relative_cost(ladder[i], shaded), relative_cost(ladder[i - 1], shaded));
       EXPECT_FALSE(ladder.back().fast);
@@ -35,7 +35,7 @@ TEST(Ladder, RisesInCostAndEndsWithExactRays) {
     }
 }
 
-TEST(Ladder, CostsFollowRaysStepsAndShading) {
+TEST(QualityLevels, CostsFollowRaysStepsAndShading) {
   RenderSettings coarse, fine;
   coarse.fast = FastSettings{4, 4, -1, -1};
   fine.fast = FastSettings{4, 1, 0, -1};
@@ -50,37 +50,37 @@ TEST(Ladder, CostsFollowRaysStepsAndShading) {
 }
 
 /// Long steps are lit by the gradient of the cell, which is as good there; no rung after the first smooth one is.
-TEST(Ladder, TheCheapestLitRungsGoByTheGradientOfTheCell) {
-  const auto ladder = quality_ladder({true, true});
+TEST(QualityLevels, TheCheapestLitRungsGoByTheGradientOfTheCell) {
+  const auto ladder = quality_levels({true, true});
   const auto smooth = [](const RenderSettings& s) { return !s.fast || s.fast->smooth_gradients; };
   EXPECT_FALSE(smooth(ladder.front()));
   EXPECT_TRUE(std::ranges::is_partitioned(ladder, [&](const RenderSettings& s) { return !smooth(s); }));
-  for (const RenderSettings& plain : quality_ladder({true, false})) EXPECT_FALSE(plain.fast && plain.fast->smooth_gradients);
+  for (const RenderSettings& plain : quality_levels({true, false})) EXPECT_FALSE(plain.fast && plain.fast->smooth_gradients);
 }
 
 TEST(TimeModel, FollowsTheMachineAndForgetsPipelines) {
   TimeModel times({0.1, 1}, 100);
   EXPECT_DOUBLE_EQ(times.expected_ms(0), 10);
-  times.measured(0, 80);  // the first picture made a pipeline
+  times.add_measurement(0, 80);  // the first picture made a pipeline
   EXPECT_DOUBLE_EQ(times.expected_ms(0), 10);
-  for (int k = 0; k < 20; ++k) times.measured(0, 20);
+  for (int k = 0; k < 20; ++k) times.add_measurement(0, 20);
   EXPECT_NEAR(times.expected_ms(0), 20, 1e-6);
   EXPECT_GT(times.expected_ms(1), 110);  // what one rung says of the machine holds for the others
-  times.measured(0, 20);
+  times.add_measurement(0, 20);
   EXPECT_NEAR(times.expected_ms(0), 20, 1e-6);
   TimeModel quick({0.1, 1}, 100);
-  quick.measured(0, 5);  // quicker than expected: that is no pipeline
+  quick.add_measurement(0, 5);  // quicker than expected: that is no pipeline
   EXPECT_LT(quick.expected_ms(0), 10);
 }
 
 TEST(TimeModel, WhatWasNeverDrawnIsLikeItsNeighbour) {
   TimeModel times({1, 2, 4, 8}, 10);
-  for (int k = 0; k < 20; ++k) times.measured(1, 5);  // four times as quick as guessed
+  for (int k = 0; k < 20; ++k) times.add_measurement(1, 5);  // four times as quick as guessed
   EXPECT_NEAR(times.expected_ms(1), 5, 1e-6);
   EXPECT_NEAR(times.expected_ms(2), 10, 1e-6);
   EXPECT_NEAR(times.expected_ms(0), 2.5, 1e-6);
   // between two of which one is slow for its cost: as slow
-  for (int k = 0; k < 40; ++k) times.measured(3, 40), times.measured(1, 5);
+  for (int k = 0; k < 40; ++k) times.add_measurement(3, 40), times.add_measurement(1, 5);
   EXPECT_NEAR(times.expected_ms(3), 40, 0.1);
   EXPECT_NEAR(times.expected_ms(2), 20, 0.1);
 }
@@ -120,8 +120,8 @@ TEST(Refinement, AStillPictureGoesFromQuarterToHalfToEveryPixelAndEnds) {
       EXPECT_GT(relative_cost(step->settings, shaded), cost);
       cost = relative_cost(step->settings, shaded);
       spacings.push_back(step->settings.fast->spacing);
-      finished = step->finished;
-      refinement.drawn(time_of(step->settings, 600, shaded));
+      finished = step->is_final;
+      refinement.record_render_ms(time_of(step->settings, 600, shaded));
     }
     EXPECT_TRUE(finished);
     EXPECT_FALSE(refinement.next(false));
@@ -143,7 +143,7 @@ TEST(Refinement, TheSettingDoesNotComeAndGo) {
   for (int k = 0; k < 200; ++k) {
     const RefinementStep step = *refinement.next(true);
     const double wavering = 1 + 0.1 * (k % 3 - 1);
-    refinement.drawn(time_of(step.settings, 600) * wavering);
+    refinement.record_render_ms(time_of(step.settings, 600) * wavering);
     if (k >= 100) ++seen[relative_cost(step.settings, false)];
   }
   EXPECT_LE(seen.size(), 2u);
@@ -157,7 +157,7 @@ TEST(Refinement, WithoutTheFastRaycastStepsAreRefined) {
   std::vector<double> steps;
   while (const auto step = refinement.next(false)) {
     steps.push_back(step->settings.step_voxels);
-    refinement.drawn(100);
+    refinement.record_render_ms(100);
   }
   EXPECT_EQ(steps, (std::vector<double>{2, 1, 0.5}));
 }

@@ -3,15 +3,15 @@
 #include <numbers>
 
 #include "render/frame/camera.h"
-#include "render/image/measure.h"
-#include "tests/render/support/frames.h"
+#include "render/image/image_error.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace fast_volume_test {
 
 using namespace catena::render;
 
-class FastVolume : public PictureTest {
+class FastVolume : public ImageTest {
  protected:
   static RenderSettings fast(double step, std::uint32_t spacing, double refine_half = 0.2, double refine_full = 0.2) {
     RenderSettings settings;
@@ -21,25 +21,25 @@ class FastVolume : public PictureTest {
 };
 
 /// The worst difference between alpha and 1 - exp(-tau(ray)) over the pixels.
-double worst_alpha(const Picture& picture, const FramePacket& packet, const std::function<double(const Ray&)>& depth) {
+double worst_alpha(const Image8& picture, const FramePacket& packet, const std::function<double(const Ray&)>& depth) {
   Bounds none;
   const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
   double worst = 0;
   for (std::uint32_t y = 0; y < picture.height; ++y)
     for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const double expected = 255 * (1 - std::exp(-depth(ray_through(camera, x + 0.5, y + 0.5))));
+      const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
       worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] - expected));
     }
   return worst;
 }
 
-double rmse(const Picture& a, const Picture& b) {
+double rmse(const Image8& a, const Image8& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += (double(a.rgba[i]) - b.rgba[i]) * (double(a.rgba[i]) - b.rgba[i]);
   return std::sqrt(sum / double(a.rgba.size()));
 }
 
-int covered(const Picture& picture) {
+int covered(const Image8& picture) {
   int count = 0;
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 0;
   return count;
@@ -52,18 +52,18 @@ GridPtr waves() {
 VolumeItem coloured(GridPtr grid, bool shade = false) {
   VolumeItem item = volume_item(std::move(grid), {{0, 0}, {0.3, 0}, {1, 0.2}});
   item.transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
-  item.shade = shade;
+  item.is_shaded = shade;
   return item;
 }
 
 TEST_F(FastVolume, HomogeneousBoxWhateverTheStep) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({52, -41, 37}, {9.5, 16, 5.5}, 40);
+  FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const double sigma : {0.02, 0.1, 1.0}) {
     packet.volumes = {volume_item(grid, {{0, sigma}, {1, sigma}}, {0.2f, 0.5f, 0.9f})};
     for (const double step : {0.5, 4.0}) {
-      const Picture picture = draw(packet, fast(step, 1), step == 4 && sigma == 0.1 ? "box" : "");
-      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord(*grid, ray.origin, ray.direction); }), 1);
+      const Image8 picture = draw(packet, fast(step, 1), step == 4 && sigma == 0.1 ? "box" : "");
+      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1);
       EXPECT_GT(covered(picture), 2500);
       for (std::uint32_t y = 0; y < picture.height; ++y)
         for (std::uint32_t x = 0; x < picture.width; ++x)
@@ -78,51 +78,52 @@ TEST_F(FastVolume, HomogeneousBoxWhateverTheStep) {
 /// A ray that ends early says of the rest what it has met: it shows no less of an even body, and no edge where rays begin to end early.
 TEST_F(FastVolume, WhatAnEndedRayLeavesOutIsTold) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({52, -41, 37}, {9.5, 16, 5.5}, 40);
+  FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   for (const bool shade : {false, true})
     for (const double sigma : {0.2, 0.4, 1.0}) {
       packet.volumes = {volume_item(grid, {{0, sigma}, {1, sigma}}, {0.2f, 0.5f, 0.9f})};
-      packet.volumes[0].shade = shade;
+      packet.volumes[0].is_shaded = shade;
       RenderSettings settings = fast(0.5, 1);
       settings.fast->termination = 1.0 / 16;
-      const Picture picture = draw(packet, settings);
-      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord(*grid, ray.origin, ray.direction); }), 1) << sigma;
-      const Picture whole = draw(packet, fast(0.5, 1));
+      const Image8 picture = draw(packet, settings);
+      EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return sigma * chord_length(*grid, ray.origin, ray.direction); }), 1)
+          << sigma;
+      const Image8 whole = draw(packet, fast(0.5, 1));
       int most = 0;
       for (std::size_t i = 0; i < whole.rgba.size(); ++i) most = std::max(most, std::abs(int(whole.rgba[i]) - int(picture.rgba[i])));
       EXPECT_LE(most, 2) << sigma;
     }
   // and of what is not even it says no more than a part of what is left
-  packet = packet_of({120, -90, 80}, {23.5, 19.5, 21.5}, 30);
+  packet = make_packet({120, -90, 80}, {23.5, 19.5, 21.5}, 30);
   packet.volumes = {coloured(waves())};
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.3, 0}, {1, 0.6}};
   RenderSettings settings = fast(1, 1);
-  const Picture whole = draw(packet, settings);
+  const Image8 whole = draw(packet, settings);
   settings.fast->termination = 1.0 / 32;
   EXPECT_LT(measure_error(draw(packet, settings), whole).rmse, 255.0 / 32 / 4);
 }
 
 TEST_F(FastVolume, BoxFromCoarseRaysRefinedAtItsEdges) {
   const auto grid = make_grid({40, 33, 32}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({92, -71, 67}, {19.5, 16, 15.5}, 35);
+  FramePacket packet = make_packet({92, -71, 67}, {19.5, 16, 15.5}, 35);
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}})};
-  const auto depth = [&](const Ray& ray) { return 0.05 * chord(*grid, ray.origin, ray.direction); };
+  const auto depth = [&](const Ray& ray) { return 0.05 * chord_length(*grid, ray.origin, ray.direction); };
   for (const std::uint32_t spacing : {2u, 4u}) {
-    const Picture picture = draw(packet, fast(4, spacing, 0, 0), "box");
+    const Image8 picture = draw(packet, fast(4, spacing, 0, 0), "box");
     EXPECT_LE(worst_alpha(picture, packet, depth), 1);  // threshold 0: every block that is not flat is marched
-    const Picture rough = draw(packet, fast(4, spacing, -1, -1), "unrefined");
+    const Image8 rough = draw(packet, fast(4, spacing, -1, -1), "unrefined");
     EXPECT_GT(worst_alpha(rough, packet, depth), 4);  // or the refinement would prove nothing
   }
 }
 
 TEST_F(FastVolume, LinearSigmaIsExact) {
   const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return (p.x + 2 * p.y + 3 * p.z) / 96; });
-  FramePacket packet = packet_of({40, -30, 35}, {8, 8, 8});
+  FramePacket packet = make_packet({40, -30, 35}, {8, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.2}})};
   for (const double step : {0.5, 2.0, 7.0})
     EXPECT_LE(worst_alpha(draw(packet, fast(step, 1)), packet,
                           [&](const Ray& ray) {
-                            const double length = chord(*grid, ray.origin, ray.direction);
+                            const double length = chord_length(*grid, ray.origin, ray.direction);
                             if (!(length > 0)) return 0.0;
                             double enter = 0, leave = 1000;
                             for (int k = 0; k < 3; ++k) {
@@ -141,7 +142,7 @@ TEST_F(FastVolume, GaussianMatchesItsIntegralAtEverySpacing) {
   const double s = 4.5;  // 9 voxels wide
   const Vec3 c(31.5);
   const auto grid = make_grid({64, 64, 64}, [&](const Vec3& p) { return std::exp(-dot(p - c, p - c) / (2 * s * s)); });
-  FramePacket packet = packet_of({120, -80, 90}, c, 25);
+  FramePacket packet = make_packet({120, -80, 90}, c, 25);
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.15}})};
   const auto depth = [&](const Ray& ray) {
     const Vec3 to = c - ray.origin;
@@ -155,9 +156,9 @@ TEST_F(FastVolume, GaussianMatchesItsIntegralAtEverySpacing) {
 
 TEST_F(FastVolume, EyeInside) {
   const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
-  FramePacket packet = packet_of({11.3, 9.7, 12.1}, {20, 14, 9}, 90);
+  FramePacket packet = make_packet({11.3, 9.7, 12.1}, {20, 14, 9}, 90);
   packet.volumes = {volume_item(grid, {{0, 0.07}, {1, 0.07}})};
-  const auto depth = [&](const Ray& ray) { return 0.07 * chord(*grid, ray.origin, ray.direction); };
+  const auto depth = [&](const Ray& ray) { return 0.07 * chord_length(*grid, ray.origin, ray.direction); };
   EXPECT_LE(worst_alpha(draw(packet, fast(2, 1)), packet, depth), 1);
   EXPECT_LE(worst_alpha(draw(packet, fast(2, 4), "box"), packet, depth), 2);
 }
@@ -168,21 +169,21 @@ TEST_F(FastVolume, OrthographicRotatedAnisotropic) {
   const auto grid = make_grid(
       {30, 14, 9}, [](const Vec3&) { return 1.0; }, field::Mapping::from_linear(linear, {-820.5, 100, 77.25}));
   const Vec3 centre = grid->mapping().world_from_index({14.5, 6.5, 4});
-  FramePacket packet = packet_of(centre + Vec3(31, -44, 25), centre, 35);
+  FramePacket packet = make_packet(centre + Vec3(31, -44, 25), centre, 35);
   packet.view.orthographic = true;
   packet.view.height = 45;
   packet.volumes = {volume_item(grid, {{0, 0.08}, {1, 0.08}})};
-  const Picture picture = draw(packet, fast(1, 1), "box");
-  EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return 0.08 * chord(*grid, ray.origin, ray.direction); }), 1);
+  const Image8 picture = draw(packet, fast(1, 1), "box");
+  EXPECT_LE(worst_alpha(picture, packet, [&](const Ray& ray) { return 0.08 * chord_length(*grid, ray.origin, ray.direction); }), 1);
   EXPECT_GT(covered(picture), 2000);
 }
 
 TEST_F(FastVolume, AgreesWithTheExactOne) {
-  FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
+  FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0.2f, 0.3f, 0.1f, 1};
   for (const bool shade : {false, true}) {
     packet.volumes = {coloured(waves(), shade)};
-    const Picture exact = draw(packet, reference_settings(), shade ? "shaded" : "plain");
+    const Image8 exact = draw(packet, reference_settings(), shade ? "shaded" : "plain");
     for (const std::uint32_t spacing : {1u, 2u, 4u}) {
       EXPECT_LT(rmse(draw(packet, fast(2, spacing), shade ? "shaded-fast" : "plain-fast"), exact), shade ? 1.3 : 0.6)
           << spacing << shade;  // lit by the cell's gradient
@@ -192,10 +193,10 @@ TEST_F(FastVolume, AgreesWithTheExactOne) {
 }
 
 TEST_F(FastVolume, SmoothGradientsShadeAsTheExactOne) {
-  FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
+  FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0, 0, 0, 1};
   packet.volumes = {coloured(waves(), true)};
-  const Picture exact = draw(packet, reference_settings());
+  const Image8 exact = draw(packet, reference_settings());
   RenderSettings settings = fast(1, 1);
   const double by_cell = rmse(draw(packet, settings), exact);
   settings.fast->smooth_gradients = true;
@@ -204,7 +205,7 @@ TEST_F(FastVolume, SmoothGradientsShadeAsTheExactOne) {
   EXPECT_LT(smooth, 0.7 * by_cell);
   // where nothing varies only the ambient share is left
   packet.volumes = {volume_item(make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; }), {{0, 0.5}, {1, 0.5}})};
-  packet.volumes[0].shade = true;
+  packet.volumes[0].is_shaded = true;
   EXPECT_LE(max_difference(draw(packet, settings), draw(packet)), 1);
 }
 
@@ -221,12 +222,12 @@ TEST_F(FastVolume, LightOfOpaqueThingsConvergesToTheExactOne) {
     return std::exp(-a * a / 3) + std::exp(-b * b / 3) + 0.04 * grain(p);
   });
   for (const auto& grid : {head, tubes}) {
-    FramePacket packet = packet_of({110, -80, 70}, {23.5, 23.5, 23.5}, 28);
+    FramePacket packet = make_packet({110, -80, 70}, {23.5, 23.5, 23.5}, 28);
     VolumeItem item = volume_item(grid, {{0, 0}, {0.35, 0}, {0.6, 0.8}});
     item.transfer.colors = {{0, 0.5, 0.3, 0.2}, {1, 1, 0.9, 0.8}};
-    item.shade = true;
+    item.is_shaded = true;
     packet.volumes = {item};
-    const Picture truth = draw(packet, reference_settings());
+    const Image8 truth = draw(packet, reference_settings());
     const auto error_at = [&](double step) {
       RenderSettings settings = fast(step, 1);
       settings.fast->smooth_gradients = true;
@@ -245,11 +246,11 @@ TEST_F(FastVolume, LongStepsFindThinWalls) {
     const double off = norm(p - Vec3(23.5)) - 16;
     return std::exp(-off * off);
   });
-  FramePacket packet = packet_of({110, -80, 70}, {23.5, 23.5, 23.5}, 28);
+  FramePacket packet = make_packet({110, -80, 70}, {23.5, 23.5, 23.5}, 28);
   packet.volumes = {volume_item(shell, {{0, 0}, {0.4, 0}, {0.6, 6}})};
   for (const bool shade : {false, true}) {
-    packet.volumes[0].shade = shade;
-    const Picture truth = draw(packet, reference_settings());
+    packet.volumes[0].is_shaded = shade;
+    const Image8 truth = draw(packet, reference_settings());
     RenderSettings settings = fast(6, 1);
     settings.fast->smooth_gradients = shade;
     EXPECT_LT(measure_error(draw(packet, settings), truth).rmse, 6) << shade;  // 80 and more without what is found
@@ -260,12 +261,12 @@ TEST_F(FastVolume, LeapsChangeLittle) {
   const Vec3 c(20, 40, 30);
   const auto grid =
       make_grid({64, 56, 48}, [&](const Vec3& p) { return std::max(0.0, 1 - norm(p - c) / 11) + (p.x > 55 && p.z < 9 ? 0.7 : 0.0); });
-  FramePacket packet = packet_of({110, -90, 80}, {31, 27, 23}, 28);
+  FramePacket packet = make_packet({110, -90, 80}, {31, 27, 23}, 28);
   packet.background = {0, 0, 0, 1};
   packet.volumes = {coloured(grid)};
   RenderSettings settings = fast(1, 1);
-  const Picture with = draw(packet, settings, "leaping");
-  settings.fast->skip = false;
+  const Image8 with = draw(packet, settings, "leaping");
+  settings.fast->skip_empty = false;
   EXPECT_LT(rmse(with, draw(packet, settings)), 0.5);
   EXPECT_LT(rmse(with, draw(packet, reference_settings())), 0.6);
   EXPECT_GT(covered(with), 500);
@@ -275,17 +276,17 @@ TEST_F(FastVolume, MarchesEndAtTheOpaqueDepth) {
   // a plane of value 20 inside a haze: what is behind it must not be seen, whatever is interpolated
   const auto haze = make_grid({40, 40, 40}, [](const Vec3&) { return 0.5; });
   const auto plane = make_grid({40, 40, 40}, [](const Vec3& p) { return p.x > 12 && p.x < 27 ? p.y : 0.0; });
-  FramePacket packet = packet_of({19.5, -70, 19.5}, {19.5, 19.5, 19.5});
+  FramePacket packet = make_packet({19.5, -70, 19.5}, {19.5, 19.5, 19.5});
   packet.view.orthographic = true;
   packet.view.height = 50;
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(haze, {{0, 0.04}, {1, 0.04}})};
   packet.isosurfaces = {{plane, 19.5, {0, 0, 0}, 1}};
-  const Picture exact = draw(packet, {}, "exact");
+  const Image8 exact = draw(packet, {}, "exact");
   for (const std::uint32_t spacing : {1u, 2u, 4u}) {
     EXPECT_LE(max_difference(draw(packet, fast(4, spacing, 0.2, 0.2), "fast"), exact), 2) << spacing;
     // unrefined too, around the plane; the box's own outline is another matter
-    const Picture coarse = draw(packet, fast(4, spacing, -1, -1), "unrefined");
+    const Image8 coarse = draw(packet, fast(4, spacing, -1, -1), "unrefined");
     for (std::uint32_t y = 22; y < 98; ++y)
       for (std::uint32_t x = 50; x < 110; ++x)
         ASSERT_NEAR(coarse.pixel(x, y)[0], exact.pixel(x, y)[0], 2) << spacing << " " << x << " " << y;
@@ -293,7 +294,7 @@ TEST_F(FastVolume, MarchesEndAtTheOpaqueDepth) {
 }
 
 TEST_F(FastVolume, WhatItCannotDrawIsDrawnExactly) {
-  FramePacket packet = packet_of({55, -40, 35}, {10, 8, 8});
+  FramePacket packet = make_packet({55, -40, 35}, {10, 8, 8});
   const auto plain = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
   packet.volumes = {volume_item(plain, {{0, 0.2}, {1, 0.2}}), volume_item(plain, {{0, 0.1}, {1, 0.1}})};
   EXPECT_EQ(max_difference(draw(packet, fast(4, 4)), draw(packet)), 0);
@@ -305,49 +306,49 @@ TEST_F(FastVolume, PlateausBesideEdgesAreLitAsTheExactOneLightsThem) {
     const double edge = std::sqrt((p.x - 24) * (p.x - 24) + (p.y - 24) * (p.y - 24) + (p.z - 24) * (p.z - 24)) - 17;
     return 0.8 / (1 + std::exp(4 * edge)) + 0.002 * std::sin(0.3 * p.x) * std::sin(0.35 * p.y + 0.2) * std::sin(0.25 * p.z + 1);
   });
-  FramePacket packet = packet_of({110, -80, 70}, {23.5, 23.5, 23.5});
+  FramePacket packet = make_packet({110, -80, 70}, {23.5, 23.5, 23.5});
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(grid, {{0, 0}, {0.75, 0}, {0.79, 0.1}, {1, 0.1}}, {0.9f, 0.7f, 0.4f})};
-  packet.volumes[0].shade = true;
-  const Picture exact = draw(packet, reference_settings(), "plateau");
+  packet.volumes[0].is_shaded = true;
+  const Image8 exact = draw(packet, reference_settings(), "plateau");
   RenderSettings settings = fast(0.5, 1);
   settings.fast->smooth_gradients = true;
   EXPECT_LT(rmse(draw(packet, settings, "plateau-fast"), exact), 1);
 }
 
 TEST_F(FastVolume, WhatDoesNotFitInMemoryIsDrawnExactlyAndSaid) {
-  FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
+  FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.volumes = {coloured(waves(), true)};
-  const Picture exact = draw(packet);
+  const Image8 exact = draw(packet);
   RenderSettings settings = fast(4, 4);
   EXPECT_GT(max_difference(draw(packet, settings), exact), 0);
-  EXPECT_TRUE(renderer_->stats().notes.empty());
-  settings.fast->most_bytes = 4 * 48 * 40 * 44 - 1;
+  EXPECT_TRUE(renderer_->stats().warnings.empty());
+  settings.fast->max_bytes = 4 * 48 * 40 * 44 - 1;
   EXPECT_EQ(max_difference(draw(packet, settings), exact), 0);
-  ASSERT_EQ(renderer_->stats().notes.size(), 1u);
-  EXPECT_NE(renderer_->stats().notes[0].find("\"density\" is drawn by exact rays"), std::string::npos) << renderer_->stats().notes[0];
-  EXPECT_FALSE(renderer_->draws_fast(packet));
+  ASSERT_EQ(renderer_->stats().warnings.size(), 1u);
+  EXPECT_NE(renderer_->stats().warnings[0].find("\"density\" is drawn by exact rays"), std::string::npos) << renderer_->stats().warnings[0];
+  EXPECT_FALSE(renderer_->can_draw_fast(packet));
   // it fits without gradients of its own, but not with them
-  settings.fast->most_bytes += 1;
+  settings.fast->max_bytes += 1;
   EXPECT_GT(max_difference(draw(packet, settings), exact), 0);
-  EXPECT_TRUE(renderer_->stats().notes.empty());
-  EXPECT_TRUE(renderer_->draws_fast(packet));
+  EXPECT_TRUE(renderer_->stats().warnings.empty());
+  EXPECT_TRUE(renderer_->can_draw_fast(packet));
   settings.fast->smooth_gradients = true;
   EXPECT_EQ(max_difference(draw(packet, settings), exact), 0);
-  EXPECT_EQ(renderer_->stats().notes.size(), 1u);
+  EXPECT_EQ(renderer_->stats().warnings.size(), 1u);
   draw(packet);  // exact rays were asked for: nothing to say
-  EXPECT_TRUE(renderer_->stats().notes.empty());
+  EXPECT_TRUE(renderer_->stats().warnings.empty());
 }
 
 TEST_F(FastVolume, LitPlainRegionsAreNotLeaptOver) {
   // one colour and density all through, so that the light alone varies
   const auto grid =
       make_grid({40, 40, 40}, [](const Vec3& p) { return 0.5 + 0.3 * std::sin(0.5 * p.x) * std::sin(0.4 * p.y + 0.3 * p.z); });
-  FramePacket packet = packet_of({100, -70, 60}, {19.5, 19.5, 19.5});
+  FramePacket packet = make_packet({100, -70, 60}, {19.5, 19.5, 19.5});
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}}, {0.9f, 0.7f, 0.4f})};
-  packet.volumes[0].shade = true;
-  const Picture exact = draw(packet, reference_settings(), "exact");
+  packet.volumes[0].is_shaded = true;
+  const Image8 exact = draw(packet, reference_settings(), "exact");
   EXPECT_LT(rmse(draw(packet, fast(1, 1), "fast"), exact), 1);
   EXPECT_LT(rmse(draw(packet, fast(2, 1)), exact), 1.2);
 }
@@ -355,19 +356,19 @@ TEST_F(FastVolume, LitPlainRegionsAreNotLeaptOver) {
 TEST_F(FastVolume, LightIsThatOfTheDerivativeAlongTheRay) {
   // five codes a voxel along x: the light is one number a ray, the cosine of ray and x
   const auto grid = make_grid({52, 41, 41}, [](const Vec3& p) { return p.x / 51; });
-  FramePacket packet = packet_of({95, -60, 40}, {25, 20, 20}, 35);
+  FramePacket packet = make_packet({95, -60, 40}, {25, 20, 20}, 35);
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(grid, {{0, 0.5}, {1, 0.5}})};  // nothing gets through
-  packet.volumes[0].shade = true;
+  packet.volumes[0].is_shaded = true;
   Bounds none;
   const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
   for (const bool smooth : {false, true}) {
     RenderSettings settings = fast(3, 1);
     settings.fast->smooth_gradients = smooth;
-    const Picture picture = draw(packet, settings, smooth ? "smooth" : "cell");
+    const Image8 picture = draw(packet, settings, smooth ? "smooth" : "cell");
     for (std::uint32_t y = 40; y < 80; ++y)
       for (std::uint32_t x = 60; x < 100; ++x) {
-        const double n = std::fabs(ray_through(camera, x + 0.5, y + 0.5).direction.x);
+        const double n = std::fabs(pixel_ray(camera, x + 0.5, y + 0.5).direction.x);
         const double light = 0.2 + 0.7 * n + 0.2 * std::pow(std::max(0.0, 2 * n * n - 1), 20);
         ASSERT_NEAR(picture.pixel(x, y)[1], 255 * std::min(1.0, light), 2) << x << " " << y << smooth;
       }
@@ -375,10 +376,10 @@ TEST_F(FastVolume, LightIsThatOfTheDerivativeAlongTheRay) {
 }
 
 TEST_F(FastVolume, TransferFunctionsAndGridsMayChange) {
-  FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
+  FramePacket packet = make_packet({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0, 0, 0, 1};
   packet.volumes = {coloured(waves())};
-  const Picture first = draw(packet, fast(2, 2));
+  const Image8 first = draw(packet, fast(2, 2));
   packet.volumes[0].transfer.extinctions = {{0, 0}, {0.7, 0}, {0.8, 0.5}, {0.9, 0}};
   EXPECT_GT(rmse(draw(packet, fast(2, 2), "shell"), first), 3);
   EXPECT_LT(rmse(draw(packet, fast(1, 2)), draw(packet, reference_settings())), 2);

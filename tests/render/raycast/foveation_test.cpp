@@ -2,20 +2,20 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace foveation_test {
 
 using namespace catena::render;
 
-class Foveation : public PictureTest {
+class Foveation : public ImageTest {
  protected:
   void SetUp() override {
-    PictureTest::SetUp();
+    ImageTest::SetUp();
     const auto grid =
         make_grid({48, 40, 44}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(1.1 * p.x) * std::cos(0.9 * p.y + 0.8 * p.z); });
-    packet_ = packet_of({40, -6, 30}, {23.5, 19.5, 21.5});
+    packet_ = make_packet({40, -6, 30}, {23.5, 19.5, 21.5});
     packet_.view.fovy_deg = 80;
     packet_.width = 192;
     packet_.height = 144;
@@ -34,27 +34,27 @@ struct Counts {
   int outside = 0, outside_refined = 0, outside_interpolated = 0;  ///< where the refined and the interpolated picture differ
 };
 
-bool same(const Picture& a, const Picture& b, std::uint32_t x, std::uint32_t y) {
+bool same(const Image8& a, const Image8& b, std::uint32_t x, std::uint32_t y) {
   return std::equal(a.pixel(x, y), a.pixel(x, y) + 4, b.pixel(x, y));
 }
 
 TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
   for (const auto& [spacing, half, full] : {std::tuple{2u, 0.0, 0.3}, std::tuple{4u, 0.3, 0.3}}) {
-    const Picture refined = draw(packet_, settings(spacing, half, full), "everywhere");
-    const Picture rough = draw(packet_, settings(spacing, half > 0 ? -1 : 0, -1), "nowhere");
+    const Image8 refined = draw(packet_, settings(spacing, half, full), "everywhere");
+    const Image8 rough = draw(packet_, settings(spacing, half > 0 ? -1 : 0, -1), "nowhere");
     for (const auto& [right, up] : {std::pair{0.0, 0.0}, std::pair{0.5, -0.3}}) {
       RenderSettings some = settings(spacing, half, full);
-      some.fast->fovea = std::tan(12 * M_PI / 180);
+      some.fast->fovea_tangent = std::tan(12 * M_PI / 180);
       some.fast->gaze_right = right;
       some.fast->gaze_up = up;
-      const Picture picture = draw(packet_, some, right > 0 ? "gaze" : "middle");
+      const Image8 picture = draw(packet_, some, right > 0 ? "gaze" : "middle");
       const Camera camera = make_camera(packet_.view, packet_.width, packet_.height, {});
       Counts c;
       for (std::uint32_t y = 0; y < packet_.height; ++y)
         for (std::uint32_t x = 0; x < packet_.width; ++x) {
-          const Vec3 d = ray_through(camera, x + 0.5, y + 0.5).direction;
+          const Vec3 d = pixel_ray(camera, x + 0.5, y + 0.5).direction;
           const double ahead = -dot(d, camera.back);
-          const double off = std::hypot(dot(d, camera.right) / ahead - right, dot(d, camera.up) / ahead - up) / some.fast->fovea;
+          const double off = std::hypot(dot(d, camera.right) / ahead - right, dot(d, camera.up) / ahead - up) / some.fast->fovea_tangent;
           // a block's middle counts for all of it, of either lattice
           if (off < 0.6) {
             ++c.inside;
@@ -77,9 +77,9 @@ TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
 TEST_F(Foveation, WithoutAFoveaOrWithoutAnglesItIsThePictureAsItWas) {
   packet_.view.orthographic = true;
   packet_.view.height = 40;
-  const Picture plain = draw(packet_, settings(2, 0, 0.3), "flat");
+  const Image8 plain = draw(packet_, settings(2, 0, 0.3), "flat");
   RenderSettings some = settings(2, 0, 0.3);
-  some.fast->fovea = 0.1;
+  some.fast->fovea_tangent = 0.1;
   EXPECT_EQ(max_difference(draw(packet_, some, "flat_fovea"), plain), 0);
 }
 

@@ -2,16 +2,16 @@
 /// by it.
 #include <cmath>
 
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace raycast_outliers_test {
 
 using namespace catena::render;
 
-class RaycastOutliers : public PictureTest {};
+class RaycastOutliers : public ImageTest {};
 
-int different_pixels(const Picture& a, const Picture& b) {
+int different_pixels(const Image8& a, const Image8& b) {
   int count = 0;
   for (std::uint32_t y = 0; y < a.height; ++y)
     for (std::uint32_t x = 0; x < a.width; ++x) count += std::abs(a.pixel(x, y)[3] - b.pixel(x, y)[3]) > 8;
@@ -27,11 +27,11 @@ TEST_F(RaycastOutliers, ThePictureStaysAsItIs) {
     const auto spoiled = make_grid({24, 24, 24}, [&](const Vec3& p) { return p.x == 4 && p.y == 5 && p.z == 20 ? outlier : wave(p); });
     for (const bool shade : {false, true})
       for (const bool exact : {true, false}) {
-        FramePacket packet = packet_of({60, -40, 45}, {11.5, 11.5, 11.5});
+        FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
         packet.volumes = {volume_item(clean, {{0, 0}, {1, 0.3}})};
-        packet.volumes[0].shade = shade;
+        packet.volumes[0].is_shaded = shade;
         const RenderSettings settings = exact ? RenderSettings{} : fast;
-        const Picture expected = draw(packet, settings);
+        const Image8 expected = draw(packet, settings);
         packet.volumes[0].grid = spoiled;
         // the outlier's cells are two voxels wide, a fiftieth of the picture of the box
         EXPECT_LT(different_pixels(draw(packet, settings, exact ? "exact" : "fast"), expected), 250) << outlier << shade << exact;

@@ -37,9 +37,9 @@ TEST(Preintegrated, AnEmptyCodeIsEmptyAndASpikeBetweenIsSeen) {
   EXPECT_EQ(sigma(t, 0, 127), 0);
   EXPECT_EQ(sigma(t, 140, 255), 0);
   EXPECT_NEAR(sigma(t, 0, 255), 0.04, 0.004);  // its area over the range
-  EXPECT_EQ(t.looks.look[0], t.looks.look[127]);
-  EXPECT_EQ(t.looks.look[133], t.looks.look[255]);
-  EXPECT_NE(t.looks.look[127], t.looks.look[133]);
+  EXPECT_EQ(t.appearance.appearance_id[0], t.appearance.appearance_id[127]);
+  EXPECT_EQ(t.appearance.appearance_id[133], t.appearance.appearance_id[255]);
+  EXPECT_NE(t.appearance.appearance_id[127], t.appearance.appearance_id[133]);
 }
 
 TEST(Preintegrated, WhatIsNarrowerThanACodeCountsByItsArea) {
@@ -47,7 +47,7 @@ TEST(Preintegrated, WhatIsNarrowerThanACodeCountsByItsArea) {
   EXPECT_NEAR(sigma(t, 0, 255), 0.4, 1e-6);
   EXPECT_NEAR(sigma(t, 120, 135), 0.4 * 255 / 15, 1e-5);
   EXPECT_EQ(sigma(t, 130, 255), 0);
-  EXPECT_EQ(t.greatest_sigma, 4e5);
+  EXPECT_EQ(t.max_sigma, 4e5);
 }
 
 TEST(Preintegrated, CodesDoNotShowARiseBesideWhichTheValuesLie) {
@@ -57,17 +57,17 @@ TEST(Preintegrated, CodesDoNotShowARiseBesideWhichTheValuesLie) {
     decades.push_back(float(std::pow(10, i / 100.0 - 3)));
     even.push_back(float(i) * 1000 / 599);
   }
-  EXPECT_GT(changed_by_codes(rise, {0.01, 1000}, decades, 1), 0.1);
-  EXPECT_LT(changed_by_codes(rise, {0.01, 1000}, even, 1), 0.01);
-  EXPECT_EQ(changed_by_codes(rise, {3, 3}, even, 1), 0);
+  EXPECT_GT(quantization_change(rise, {0.01, 1000}, decades, 1), 0.1);
+  EXPECT_LT(quantization_change(rise, {0.01, 1000}, even, 1), 0.01);
+  EXPECT_EQ(quantization_change(rise, {3, 3}, even, 1), 0);
 }
 
 TEST(Preintegrated, ActiveIsWhereThePictureDependsOnTheValue) {
   auto active = active_interval(table_of({{0, 0}, {0.25, 0}, {0.5, 1}, {1, 1}}), {0, 1}, false);
-  EXPECT_NEAR(active.least, 0.25, 1e-3);
-  EXPECT_NEAR(active.greatest, 1, 1e-3);  // the colour goes on changing
+  EXPECT_NEAR(active.min, 0.25, 1e-3);
+  EXPECT_NEAR(active.max, 1, 1e-3);  // the colour goes on changing
   active = active_interval(table_of({{0, 0}, {0.25, 0}, {0.5, 1}, {0.6, 0}}), {0, 1}, false);
-  EXPECT_NEAR(active.greatest, 0.6, 1e-3);
+  EXPECT_NEAR(active.max, 0.6, 1e-3);
 }
 
 TEST(Preintegrated, ShadedNothingVisibleIsPlainOrLeftOut) {
@@ -75,13 +75,13 @@ TEST(Preintegrated, ShadedNothingVisibleIsPlainOrLeftOut) {
   TransferTable grey = flat;
   for (auto& c : grey.colors) c = {c[0], 0.5, 0.5, 0.5};
   const auto unlit = make_preintegrated(grey, 0, 1 / 255.0, false), lit = make_preintegrated(grey, 0, 1 / 255.0, true);
-  EXPECT_EQ(unlit.looks.look[90], unlit.looks.look[200]);
-  EXPECT_NE(lit.looks.look[90], lit.looks.look[200]);
-  EXPECT_EQ(lit.looks.look[10], lit.looks.look[70]);  // nothing is seen there
+  EXPECT_EQ(unlit.appearance.appearance_id[90], unlit.appearance.appearance_id[200]);
+  EXPECT_NE(lit.appearance.appearance_id[90], lit.appearance.appearance_id[200]);
+  EXPECT_EQ(lit.appearance.appearance_id[10], lit.appearance.appearance_id[70]);  // nothing is seen there
   EXPECT_EQ(unlit.entries, lit.entries);
-  EXPECT_LT(active_interval(grey, {0, 1}, false).greatest, 0.32);
-  EXPECT_EQ(active_interval(grey, {0, 1}, true).greatest, 1);
-  EXPECT_NEAR(active_interval(grey, {0, 1}, true).least, 0.3, 1e-3);
+  EXPECT_LT(active_interval(grey, {0, 1}, false).max, 0.32);
+  EXPECT_EQ(active_interval(grey, {0, 1}, true).max, 1);
+  EXPECT_NEAR(active_interval(grey, {0, 1}, true).min, 0.3, 1e-3);
 }
 
 }  // namespace preintegrated_test

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace projection_test {
@@ -56,7 +56,7 @@ GridPtr rough_grid(const std::function<bool(const Vec3&)>& valid = nullptr) {
 VolumeItem grey_item(GridPtr grid, Projection projection) {
   VolumeItem item = volume_item(std::move(grid), {{0, std::log(4.0)}, {1, std::log(4.0)}});
   item.transfer.colors = {{0, 0, 0, 0}, {1, 1, 1, 1}};
-  item.transfer.opacity_unit = 0.5;
+  item.transfer.opacity_length = 0.5;
   item.projection = projection;
   return item;
 }
@@ -65,16 +65,16 @@ const char* name_of(Projection projection) {
   return projection == Projection::maximum ? "maximum" : projection == Projection::minimum ? "minimum" : "average";
 }
 
-class ProjectionTest : public PictureTest {
+class ProjectionTest : public ImageTest {
  protected:
   /// Largest difference of colours, over rays that meet something; alpha is checked on all.
-  double worst(const Picture& picture, const FramePacket& packet, Projection projection, const std::function<Found(const Ray&)>& found) {
+  double worst(const Image8& picture, const FramePacket& packet, Projection projection, const std::function<Found(const Ray&)>& found) {
     const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
     double worst = 0;
     int hits = 0, disagree = 0;
     for (std::uint32_t y = 0; y < packet.height; y += 2)
       for (std::uint32_t x = 0; x < packet.width; x += 2) {
-        const Found f = found(ray_through(camera, x + 0.5, y + 0.5));
+        const Found f = found(pixel_ray(camera, x + 0.5, y + 0.5));
         const int alpha = picture.pixel(x, y)[3];
         if (f.any != (alpha > 0)) {
           ++disagree;  // grazing rays
@@ -94,15 +94,15 @@ class ProjectionTest : public PictureTest {
 TEST_F(ProjectionTest, ExtremesAreExactWhateverTheStep) {
   const auto grid = rough_grid();
   const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
-  FramePacket packet = packet_of(centre + Vec3(70, -60, 50), centre, 32);
+  FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
   RenderSettings settings;
-  settings.texels = TexelFormat::r32f;
+  settings.texel_format = TexelFormat::r32f;
   settings.step_voxels = 4;
   for (const Projection projection : {Projection::maximum, Projection::minimum})
-    for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+    for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
       settings.layout = layout;
       packet.volumes = {grey_item(grid, projection)};
-      const Picture picture = draw(packet, settings, name_of(projection));
+      const Image8 picture = draw(packet, settings, name_of(projection));
       EXPECT_LE(worst(picture, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 1.01) << name_of(projection);
     }
 }
@@ -110,27 +110,27 @@ TEST_F(ProjectionTest, ExtremesAreExactWhateverTheStep) {
 TEST_F(ProjectionTest, TheMeanIsThatOfTheRay) {
   const auto grid = rough_grid();
   const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
-  FramePacket packet = packet_of(centre + Vec3(70, -60, 50), centre, 32);
+  FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
   packet.view.orthographic = true;
   packet.view.height = 60;
   RenderSettings settings;
-  settings.texels = TexelFormat::r32f;
+  settings.texel_format = TexelFormat::r32f;
   settings.step_voxels = 0.25;
   packet.volumes = {grey_item(grid, Projection::average)};
-  const Picture picture = draw(packet, settings, "average");
+  const Image8 picture = draw(packet, settings, "average");
   EXPECT_LE(worst(picture, packet, Projection::average, [&](const Ray& ray) { return along(*grid, ray); }), 1.01);
 }
 
 TEST_F(ProjectionTest, InvalidCellsDoNotCount) {
   const auto grid = rough_grid([](const Vec3& p) { return p.x < 26 || p.y < 12; });
   const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
-  FramePacket packet = packet_of(centre + Vec3(70, -60, 50), centre, 32);
+  FramePacket packet = make_packet(centre + Vec3(70, -60, 50), centre, 32);
   RenderSettings settings;
-  settings.texels = TexelFormat::r32f;
+  settings.texel_format = TexelFormat::r32f;
   settings.step_voxels = 0.05;
   for (const Projection projection : {Projection::maximum, Projection::average}) {
     packet.volumes = {grey_item(grid, projection)};
-    const Picture picture = draw(packet, settings, name_of(projection));
+    const Image8 picture = draw(packet, settings, name_of(projection));
     EXPECT_LE(worst(picture, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 2.01) << name_of(projection);
   }
 }
@@ -145,7 +145,7 @@ TEST_F(ProjectionTest, EndsAtOpaqueThingsAndClipPlanes) {
   packet.view.target = {10, 10, 10};
   packet.view.orthographic = true;
   packet.view.height = 16;
-  packet.clip = {{{0, 3, 0}, {0, 1, 0}}};
+  packet.clip_planes = {{{0, 3, 0}, {0, 1, 0}}};
   const auto blocker = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y + 0.2 * (p.x - 10); });
   IsosurfaceItem wall;
   wall.grid = blocker;
@@ -155,7 +155,7 @@ TEST_F(ProjectionTest, EndsAtOpaqueThingsAndClipPlanes) {
   const double lambert = 1 / std::sqrt(1.04), mirrored = 2 * lambert * lambert - 1, behind = 0.2 * std::pow(mirrored, 20);
   for (const Projection projection : {Projection::maximum, Projection::minimum, Projection::average}) {
     packet.volumes = {grey_item(grid, projection)};
-    const Picture picture = draw(packet, {}, name_of(projection));
+    const Image8 picture = draw(packet, {}, name_of(projection));
     for (std::uint32_t x = 4; x < 64; x += 8) {
       const double world = 10 + (x + 0.5 - 32) * 0.25, end = 14 - 0.2 * (world - 10);
       const double value = projection == Projection::maximum ? end : projection == Projection::minimum ? 3 : 0.5 * (3 + end);
@@ -166,7 +166,7 @@ TEST_F(ProjectionTest, EndsAtOpaqueThingsAndClipPlanes) {
 
 TEST_F(ProjectionTest, StandsAloneOrIsRefusedWithASentence) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return p.x / 8; });
-  FramePacket packet = packet_of({20, -20, 20}, {4, 4, 4});
+  FramePacket packet = make_packet({20, -20, 20}, {4, 4, 4});
   packet.volumes = {grey_item(grid, Projection::maximum), grey_item(grid, Projection::composite)};
   const auto drawn = renderer_->draw(packet);
   ASSERT_FALSE(drawn);

@@ -3,11 +3,11 @@
 #include <cstring>
 #include <random>
 
-#include "render/mirror/brick_map.h"
+#include "render/residency/brick_map.h"
 #include "render/vk/commands.h"
 #include "shaders/shared/frame.h"
 #include "tests/render/support/device_fixture.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
@@ -17,15 +17,15 @@ using namespace catena::render;
 
 class Sampling : public DeviceFixture {
  protected:
-  void TearDown() override { expect_silence(); }
+  void TearDown() override { expect_no_validation_messages(); }
 
-  std::vector<float> sample(const GridMirror& mirror, const std::vector<glm::vec3>& local) {
+  std::vector<float> sample(const ResidentGrid& mirror, const std::vector<glm::vec3>& local) {
     const auto words = shader_words("sample.comp");
     EXPECT_FALSE(words.empty());
     vk::ComputeInfo info;
     info.shader = words;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer},   {2, vk::Resource::buffer},
-                  {3, vk::Resource::sampled}, {11, vk::Resource::texture}, {19, vk::Resource::texture}};
+    info.layout_bindings = {{0, vk::DescriptorKind::uniform}, {1, vk::DescriptorKind::buffer},   {2, vk::DescriptorKind::buffer},
+                            {3, vk::DescriptorKind::sampled}, {11, vk::DescriptorKind::texture}, {19, vk::DescriptorKind::texture}};
     info.constants = {(mirror.atlas ? 1u : 0u) | (mirror.masked ? 2u : 0u) | (mirror.cubic ? 4u : 0u)};
     auto pipeline = vk::Pipeline::create(*device_, info);
     EXPECT_TRUE(pipeline);
@@ -47,10 +47,12 @@ class Sampling : public DeviceFixture {
     auto commands = vk::Commands::begin(*device_);
     EXPECT_TRUE(commands);
     const vk::Image& mask = mirror.masked ? mirror.mask : map->image;
-    const vk::Binding bindings[] = {
-        {0, vk::Resource::uniform, &*uniform, nullptr, nullptr},    {1, vk::Resource::buffer, &*positions, nullptr, nullptr},
-        {2, vk::Resource::buffer, &*values, nullptr, nullptr},      {3, vk::Resource::sampled, nullptr, &mirror.values, &*linear},
-        {11, vk::Resource::texture, nullptr, &map->image, nullptr}, {19, vk::Resource::texture, nullptr, &mask, nullptr}};
+    const vk::Binding bindings[] = {{0, vk::DescriptorKind::uniform, &*uniform, nullptr, nullptr},
+                                    {1, vk::DescriptorKind::buffer, &*positions, nullptr, nullptr},
+                                    {2, vk::DescriptorKind::buffer, &*values, nullptr, nullptr},
+                                    {3, vk::DescriptorKind::sampled, nullptr, &mirror.values, &*linear},
+                                    {11, vk::DescriptorKind::texture, nullptr, &map->image, nullptr},
+                                    {19, vk::DescriptorKind::texture, nullptr, &mask, nullptr}};
     commands->bind(*pipeline, bindings);
     commands->dispatch((std::uint32_t(local.size()) + 63) / 64, 1, 1);
     commands->barrier(*values, vk::kComputeWrite, vk::kHostRead);
@@ -62,17 +64,17 @@ class Sampling : public DeviceFixture {
 
   /// What the filter of a GPU may be off by, which weighs in 256ths along each axis. Cubic cells and lavapipe weigh in floats.
   static double of_weights(const field::ScalarGrid& grid, const Vec3& index, field::Cursor& cursor) {
-    if (on_lavapipe() || grid.interpolation() != field::Interpolation::linear) return 0;
-    const field::ScalarCell cell = grid.cell(grid.base_of(index), cursor);
+    if (uses_lavapipe() || grid.interpolation() != field::Interpolation::linear) return 0;
+    const field::ScalarCell cell = grid.cell(grid.cell_base(index), cursor);
     const auto [least, most] = std::minmax_element(std::begin(cell.corner), std::end(cell.corner));
     return 3.0 / 512 * (*most - *least);
   }
 
   /// The worst error at 10,000 random points of the domain, against `tolerance(value)`.
-  void expect_close(const field::ScalarGrid& grid, const MirrorOptions& options, const std::function<double(double)>& tolerance) {
-    auto mirror = make_grid_mirror(*device_, grid, options);
+  void expect_close(const field::ScalarGrid& grid, const ResidencyOptions& options, const std::function<double(double)>& tolerance) {
+    auto mirror = make_resident_grid(*device_, grid, options);
     ASSERT_TRUE(mirror);
-    ASSERT_EQ(mirror->atlas, options.layout == MirrorLayout::atlas);
+    ASSERT_EQ(mirror->atlas, options.layout == GridLayout::atlas);
     ASSERT_EQ(mirror->cubic, grid.interpolation() == field::Interpolation::cubic);
     std::mt19937 random(7);
     std::vector<glm::vec3> local;
@@ -124,14 +126,14 @@ TEST_F(Sampling, ALayerOfMaskedCellsBetweenValidVoxelsIsAHole) {
       }
   const auto grid = field::make_scalar_grid("g", {}, n, values, std::vector<std::uint8_t>(values.size(), 1), cells);
   ASSERT_TRUE(grid->has_cell_mask());
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas})
     expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * 80; });
 }
 
 TEST_F(Sampling, Float32) {
   const auto grid = make_grid({64, 64, 64}, wavy);
   const double range = grid->max_value() - grid->min_value();
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas})
     expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * range; });
 }
 
@@ -139,33 +141,32 @@ TEST_F(Sampling, HalfRounding) {
   const auto grid = make_grid({64, 64, 64}, wavy);
   const double largest = std::max(std::fabs(grid->min_value()), std::fabs(grid->max_value()));
   // half an ulp of the largest corner: 2^-12 of the power of two above it
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas})
     expect_close(*grid, {false, layout}, [&](double) { return std::exp2(std::ceil(std::log2(largest)) - 12) + 1e-6 * largest; });
 }
 
 TEST_F(Sampling, HalfOfASmallRangeFarFromZero) {
   const auto grid = make_grid({40, 33, 21}, [](const Vec3& p) { return 300000 + 0.5 * wavy(p); });
   const double range = grid->max_value() - grid->min_value();
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas})
     expect_close(*grid, {false, layout}, [&](double) { return range / 4096 + 0.04; });
 }
 
 TEST_F(Sampling, HalfOfHugeAndTinyValues) {
   for (const double scale : {1e30, 1e-30}) {
     const auto grid = make_grid({20, 20, 20}, [&](const Vec3& p) { return scale * (p.x - 3); });
-    expect_close(*grid, {false, MirrorLayout::dense}, [&](double) { return scale * 16 / 2048; });
+    expect_close(*grid, {false, GridLayout::dense}, [&](double) { return scale * 16 / 2048; });
   }
 }
 
 TEST_F(Sampling, AnOddBoxInTheAtlas) {
   const auto grid = make_grid({17, 9, 25}, wavy);
-  expect_close(*grid, {true, MirrorLayout::atlas}, [&](double) { return 1e-3; });
+  expect_close(*grid, {true, GridLayout::atlas}, [&](double) { return 1e-3; });
 }
 
 TEST_F(Sampling, MaskedCells) {
   const auto grid = make_grid({40, 40, 40}, wavy, {}, [](const Vec3& p) { return norm(p - Vec3(17, 20, 22)) < 19; });
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
-    expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
+  for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
 }
 
 TEST_F(Sampling, CubicIsThatOfTheFieldPaddedAndMasked) {
@@ -173,10 +174,10 @@ TEST_F(Sampling, CubicIsThatOfTheFieldPaddedAndMasked) {
   std::uniform_real_distribution<double> uniform(0, 1);
   const auto rough = [&](const Vec3&) { return uniform(random); };
   for (const field::Index3& size : {field::Index3{21, 9, 26}, field::Index3{2, 2, 2}, field::Index3{16, 17, 18}}) {
-    const auto whole = make_grid(size, rough)->cubic(),
-               holed = make_grid(size, rough, {}, [&](const Vec3&p) { return p.x < 12 || uniform(random) < 0.97; })->cubic();
+    const auto whole = make_grid(size, rough)->as_cubic(),
+               holed = make_grid(size, rough, {}, [&](const Vec3&p) { return p.x < 12 || uniform(random) < 0.97; })->as_cubic();
     ASSERT_TRUE(whole && holed);
-    for (const MirrorLayout layout : {MirrorLayout::automatic, MirrorLayout::dense}) {
+    for (const GridLayout layout : {GridLayout::automatic, GridLayout::dense}) {
       expect_close(**whole, {true, layout}, [](double) { return 3e-6; });
       expect_close(**whole, {false, layout}, [](double) { return 2e-3; });
       expect_close(**holed, {true, layout}, [](double) { return 3e-6; });
@@ -185,9 +186,9 @@ TEST_F(Sampling, CubicIsThatOfTheFieldPaddedAndMasked) {
 }
 
 TEST_F(Sampling, CubicOfEqualSamplesIsThem) {
-  const auto grid = make_grid({9, 9, 9}, [](const Vec3&) { return 0.1f; })->cubic();
+  const auto grid = make_grid({9, 9, 9}, [](const Vec3&) { return 0.1f; })->as_cubic();
   ASSERT_TRUE(grid);
-  expect_close(**grid, {true, MirrorLayout::dense}, [](double) { return 1e-30; });
+  expect_close(**grid, {true, GridLayout::dense}, [](double) { return 1e-30; });
 }
 
 /// The range of a brick holds every value that its cells can take.
@@ -198,9 +199,9 @@ TEST_F(Sampling, RangesOfCubicBricksHoldWhatGoesBeyondTheSamples) {
     const auto grid = make_grid(
                           {27, 18, 33}, [&](const Vec3&) { return uniform(random) < 0.5 ? 0.0 : 1.0; }, {},
                           [&](const Vec3&) { return uniform(random) >= masked; })
-                          ->cubic();
+                          ->as_cubic();
     ASSERT_TRUE(grid);
-    const auto mirror = make_grid_mirror(*device_, **grid, {true, MirrorLayout::automatic});
+    const auto mirror = make_resident_grid(*device_, **grid, {true, GridLayout::automatic});
     ASSERT_TRUE(mirror && mirror->cubic && !mirror->atlas);
     ASSERT_EQ(mirror->bricks, (std::array<std::int32_t, 3>{4, 3, 5}));
     field::Cursor cursor;
@@ -209,8 +210,9 @@ TEST_F(Sampling, RangesOfCubicBricksHoldWhatGoesBeyondTheSamples) {
       const Vec3 local = mirror->box_lo + (mirror->box_hi - mirror->box_lo) * Vec3(uniform(random), uniform(random), uniform(random));
       const auto s = (*grid)->sample(local + Vec3(mirror->origin.x, mirror->origin.y, mirror->origin.z), cursor);
       if (!s.inside) continue;
-      const BrickRange& r = mirror->ranges[mirror->brick_index(int(local.x) / kBrick, int(local.y) / kBrick, int(local.z) / kBrick)];
-      ASSERT_TRUE(r.least <= s.value && s.value <= r.greatest);
+      const BrickRange& r =
+          mirror->brick_ranges[mirror->brick_index(int(local.x) / kBrickSize, int(local.y) / kBrickSize, int(local.z) / kBrickSize)];
+      ASSERT_TRUE(r.min <= s.value && s.value <= r.max);
       if (s.value < 0 || s.value > 1) ++beyond;
     }
     EXPECT_GT(beyond, 10000);

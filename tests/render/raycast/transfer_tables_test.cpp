@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/base/value_scale.h"
+#include "engine/base/symlog_scale.h"
 
 namespace catena::test {
 namespace transfer_tables_test {
@@ -16,17 +16,17 @@ using namespace catena::render;
 /// As the shader reads it (shaders/lib/tables.glsl).
 double read(const TransferLut& lut, double value, int channel) {
   const float v = float(value);
-  const float x = std::fmin(std::fmax((float(scaled(v, lut.linear_below)) - lut.lo) * lut.per_unit, 0.0f), float(lut.last()));
-  auto at = std::size_t(std::min(std::uint32_t(x), lut.last() - 1));
+  const float x = std::fmin(std::fmax((float(symlog(v, lut.linear_below)) - lut.lo) * lut.entries_per_unit, 0.0f), float(lut.last_index()));
+  auto at = std::size_t(std::min(std::uint32_t(x), lut.last_index() - 1));
   float way = x - float(at);
   const bool marked = std::signbit(lut.entries[at].a);
   if (marked) {
-    std::size_t before = 0, after = lut.points.size() - 1;
-    while (after - before > 1) (lut.values[(before + after) / 2] <= v ? before : after) = (before + after) / 2;
+    std::size_t before = 0, after = lut.control_points.size() - 1;
+    while (after - before > 1) (lut.control_values[(before + after) / 2] <= v ? before : after) = (before + after) / 2;
     at = before;
-    way = std::fmin(std::fmax((v - lut.values[at]) / (lut.values[at + 1] - lut.values[at]), 0.0f), 1.0f);
+    way = std::fmin(std::fmax((v - lut.control_values[at]) / (lut.control_values[at + 1] - lut.control_values[at]), 0.0f), 1.0f);
   }
-  const std::vector<glm::vec4>& from = marked ? lut.points : lut.entries;
+  const std::vector<glm::vec4>& from = marked ? lut.control_points : lut.entries;
   return std::fabs(from[at][channel]) * (1 - way) + std::fabs(from[at + 1][channel]) * way;
 }
 
@@ -77,7 +77,7 @@ TEST(TransferLut, ErrsNowhereByMoreThanItSays) {
       t.extinctions.push_back({at, random() % 2 == 0 ? 0 : in(0, 10) / length});
     }
     const TransferLut lut = make_transfer_lut(t, {float(lo), float(hi)}, length);
-    with_points += lut.has_points();
+    with_points += lut.has_control_points();
     std::vector<double> values;
     for (std::size_t i = 0; i < knots.size(); ++i) {
       const auto f = float(knots[i]);
@@ -86,32 +86,32 @@ TEST(TransferLut, ErrsNowhereByMoreThanItSays) {
     }
     for (const double v : values) {
       const double sigma = table_value(t, v, 3), depth = sigma * length;
-      ASSERT_LE(std::fabs(read(lut, v, 3) - sigma) * length, 2.0 * kTableError * (1 + depth)) << k << " at " << v;
+      ASSERT_LE(std::fabs(read(lut, v, 3) - sigma) * length, 2.0 * kTableTolerance * (1 + depth)) << k << " at " << v;
       for (int c = 0; c < 3; ++c)
-        ASSERT_LE(std::fabs(read(lut, v, c) - table_value(t, v, c)) * std::min(1.0, depth), 2.0 * kTableError) << k << " at " << v;
+        ASSERT_LE(std::fabs(read(lut, v, c) - table_value(t, v, c)) * std::min(1.0, depth), 2.0 * kTableTolerance) << k << " at " << v;
     }
   }
   EXPECT_GT(with_points, 100);
   TransferTable wide;
   wide.extinctions = {{0, 0}, {0.5, 1}, {1, 2}};
-  EXPECT_FALSE(make_transfer_lut(wide, {0, 1}, 1).has_points()) << "samples suffice";
+  EXPECT_FALSE(make_transfer_lut(wide, {0, 1}, 1).has_control_points()) << "samples suffice";
   // a foot beside which few values lie may err a little; a rise within a sample may not
   const std::vector<float> there(100, 0.4001f);
   TransferTable tent;
   tent.extinctions = {{0, 0}, {0.4001, 0}, {0.45, 4}, {0.5, 0}, {1, 0}};
   std::vector<float> spread;
   for (int i = 0; i < 4000; ++i) spread.push_back(float(i) / 3999);
-  EXPECT_FALSE(make_transfer_lut(tent, {0, 1}, 2, spread).has_points());
-  EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2, there).has_points());
-  EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2).has_points());
+  EXPECT_FALSE(make_transfer_lut(tent, {0, 1}, 2, spread).has_control_points());
+  EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2, there).has_control_points());
+  EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2).has_control_points());
   tent.extinctions[2][0] = 0.40011;
-  EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2, spread).has_points());
+  EXPECT_TRUE(make_transfer_lut(tent, {0, 1}, 2, spread).has_control_points());
 }
 
-/// Numbers of an atlas: too far apart for an entry each.
+/// NumberArray of an atlas: too far apart for an entry each.
 TEST(TransferLut, LabelsFarApartKeepTheirColours) {
   TransferTable t;
-  t.labels = true;
+  t.is_categorical = true;
   for (const double label : {1.0, 2.0, 7.0, 997.0, 312782546.0, 614454277.0}) {
     const double c = std::fmod(label, 10) / 10;
     for (const double side : {-0.5, 0.5}) {
@@ -131,30 +131,30 @@ TEST(TransferLut, PointsSayWhatIsVisibleAndWhatIsAlike) {
   t.colors = {{0, 0, 0, 0}, {20, 1, 0.5, 0}, {400, 0, 1, 0.5}};
   t.extinctions = {{0.01, 0}, {0.02, 3}, {0.03, 0}, {200, 0}, {200, 1}, {365, 1}};
   const TransferLut lut = make_transfer_lut(t, {1e-6f, 365}, 1);
-  ASSERT_TRUE(lut.has_points());
-  EXPECT_TRUE(lut.visible({0.011f, 0.012f}));
-  EXPECT_FALSE(lut.visible({0.04f, 150}));
-  EXPECT_EQ(lut.look({0.04f, 150}), 1);
-  EXPECT_EQ(lut.look({210, 300}), 0);
-  EXPECT_EQ(lut.look({0.011f, 0.015f}), 0);
-  EXPECT_EQ(lut.look({0.011f, 0.011f}), 0) << "two values of a marked interval would count as one";
-  EXPECT_GT(lut.look({300, 300}), 1);
+  ASSERT_TRUE(lut.has_control_points());
+  EXPECT_TRUE(lut.any_visible({0.011f, 0.012f}));
+  EXPECT_FALSE(lut.any_visible({0.04f, 150}));
+  EXPECT_EQ(lut.appearance({0.04f, 150}), 1);
+  EXPECT_EQ(lut.appearance({210, 300}), 0);
+  EXPECT_EQ(lut.appearance({0.011f, 0.015f}), 0);
+  EXPECT_EQ(lut.appearance({0.011f, 0.011f}), 0) << "two values of a marked interval would count as one";
+  EXPECT_GT(lut.appearance({300, 300}), 1);
 }
 
 TEST(TransferLut, AConstantFieldHasOneColour) {
   const TransferLut lut = make_transfer_lut(table(), {0.45f, 0.45f}, 1);
   EXPECT_NEAR(read(lut, 0.45, 3), 3, 1e-5);
-  EXPECT_TRUE(lut.visible({0.45f, 0.45f}));
+  EXPECT_TRUE(lut.any_visible({0.45f, 0.45f}));
 }
 
 TEST(TransferLut, VisibleRanges) {
   const TransferLut lut = make_transfer_lut(table(), {0, 1}, 1);
-  EXPECT_FALSE(lut.visible({0, 0.3f}));
-  EXPECT_FALSE(lut.visible({0.1f, 0.1f}));
-  EXPECT_TRUE(lut.visible({0.3f, 0.42f}));
-  EXPECT_TRUE(lut.visible({0, 1}));
-  EXPECT_TRUE(lut.visible({0.95f, 1}));
-  EXPECT_TRUE(lut.visible({0.44f, 0.441f}));
+  EXPECT_FALSE(lut.any_visible({0, 0.3f}));
+  EXPECT_FALSE(lut.any_visible({0.1f, 0.1f}));
+  EXPECT_TRUE(lut.any_visible({0.3f, 0.42f}));
+  EXPECT_TRUE(lut.any_visible({0, 1}));
+  EXPECT_TRUE(lut.any_visible({0.95f, 1}));
+  EXPECT_TRUE(lut.any_visible({0.44f, 0.441f}));
 }
 
 TEST(TransferLut, LooksAreEqualWhereTheyAreAlike) {
@@ -162,22 +162,22 @@ TEST(TransferLut, LooksAreEqualWhereTheyAreAlike) {
   t.colors = {{0, 0.5, 0.5, 0.5}, {1, 0.5, 0.5, 0.5}};
   t.extinctions = {{0, 0}, {0.2, 0}, {0.4, 2}, {0.6, 2}, {1, 3}};
   const TransferLut lut = make_transfer_lut(t, {0, 1}, 1);
-  EXPECT_EQ(lut.look({0, 0.15f}), 1);
-  EXPECT_EQ(lut.look({0.1f, 0.3f}), 0);
-  EXPECT_GT(lut.look({0.42f, 0.58f}), 1);
-  EXPECT_EQ(lut.look({0.42f, 0.45f}), lut.look({0.5f, 0.58f})) << "on one level stretch";
-  EXPECT_EQ(lut.look({0.55f, 0.7f}), 0);
-  EXPECT_GT(lut.look({0.7f, 0.7f}), 1) << "one value is plain on a slope too";
-  EXPECT_NE(lut.look({0.7f, 0.7f}), lut.look({0.8f, 0.8f}));
-  EXPECT_NE(lut.look({0.7f, 0.7f}), lut.look({0.5f, 0.5f}));
+  EXPECT_EQ(lut.appearance({0, 0.15f}), 1);
+  EXPECT_EQ(lut.appearance({0.1f, 0.3f}), 0);
+  EXPECT_GT(lut.appearance({0.42f, 0.58f}), 1);
+  EXPECT_EQ(lut.appearance({0.42f, 0.45f}), lut.appearance({0.5f, 0.58f})) << "on one level stretch";
+  EXPECT_EQ(lut.appearance({0.55f, 0.7f}), 0);
+  EXPECT_GT(lut.appearance({0.7f, 0.7f}), 1) << "one value is plain on a slope too";
+  EXPECT_NE(lut.appearance({0.7f, 0.7f}), lut.appearance({0.8f, 0.8f}));
+  EXPECT_NE(lut.appearance({0.7f, 0.7f}), lut.appearance({0.5f, 0.5f}));
 }
 
 TEST(TransferLut, FactorsAreHeldBeyondTheirEndsAndNarrowOnesAreKept) {
-  const TransferLut lut = make_factor_lut({{1, 0.2}, {3, 1}, {5, 0.5}});
+  const TransferLut lut = make_gradient_factor_lut({{1, 0.2}, {3, 1}, {5, 0.5}});
   for (const auto& [g, factor] : {std::pair{0.0, 0.2}, {1.0, 0.2}, {2.0, 0.6}, {4.0, 0.75}, {5.0, 0.5}, {50.0, 0.5}})
     EXPECT_NEAR(read(lut, g, 0), factor, 1e-3) << g;
-  EXPECT_EQ(make_factor_lut({{2, 0.5}}).entries.front().x, 0.5f);
-  const TransferLut rise = make_factor_lut({{0, 0}, {0.01, 0}, {0.05, 1}, {1000, 1}});
+  EXPECT_EQ(make_gradient_factor_lut({{2, 0.5}}).entries.front().x, 0.5f);
+  const TransferLut rise = make_gradient_factor_lut({{0, 0}, {0.01, 0}, {0.05, 1}, {1000, 1}});
   for (const auto& [g, factor] : {std::pair{0.005, 0.0}, {0.03, 0.5}, {0.06, 1.0}, {0.2, 1.0}})
     EXPECT_NEAR(read(rise, g, 0), factor, 1e-3) << g;
 }

@@ -4,26 +4,26 @@
 #include <numeric>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test {
 namespace volume_modes_test {
 
 using namespace catena::render;
 
-class VolumeModes : public PictureTest {};
+class VolumeModes : public ImageTest {};
 
 using OfRay = std::function<double(const Ray&)>;
 
 Camera camera_of(const FramePacket& packet) { return make_camera(packet.view, packet.width, packet.height, Bounds{}); }
 
-void expect_alpha(const Picture& picture, const FramePacket& packet, double tolerance_255, const OfRay& depth) {
+void expect_alpha(const Image8& picture, const FramePacket& packet, double tolerance_255, const OfRay& depth) {
   const Camera camera = camera_of(packet);
   double worst = 0;
   int seen = 0;
   for (std::uint32_t y = 0; y < picture.height; ++y)
     for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const double expected = 255 * (1 - std::exp(-depth(ray_through(camera, x + 0.5, y + 0.5))));
+      const double expected = 255 * (1 - std::exp(-depth(pixel_ray(camera, x + 0.5, y + 0.5))));
       worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] - expected));
       seen += expected > 5;
     }
@@ -62,7 +62,7 @@ Mat3 turned(double a, double b) {
 RenderSettings fine_settings(double step = 0.25) {
   RenderSettings settings;
   settings.step_voxels = step;
-  settings.texels = TexelFormat::r32f;
+  settings.texel_format = TexelFormat::r32f;
   return settings;
 }
 
@@ -73,14 +73,14 @@ TEST_F(VolumeModes, TheFactorFollowsTheGradientInWorldUnits) {
   const auto grid = make_grid(
       {33, 20, 20}, [](const Vec3& p) { return 0.02 * std::min(p.x, 16.0); },
       field::Mapping::from_linear(Mat3(0.5, 0, 0, 0, 1, 0, 0, 0, 2), {}));
-  FramePacket packet = packet_of({-60, 9.5, 19}, {8, 9.5, 19});
+  FramePacket packet = make_packet({-60, 9.5, 19}, {8, 9.5, 19});
   packet.view.orthographic = true;
   packet.view.height = 30;
   packet.volumes = {volume_item(grid, {{0, 0.3}, {1, 0.3}})};
   packet.volumes[0].transfer.gradient_factors = {{0, 0}, {0.08, 1}};
   for (const bool shade : {false, true}) {
-    packet.volumes[0].shade = shade;
-    const Picture picture = draw(packet, fine_settings(), shade ? "shaded" : "plain");
+    packet.volumes[0].is_shaded = shade;
+    const Image8 picture = draw(packet, fine_settings(), shade ? "shaded" : "plain");
     // the factor falls from one half to zero over x = 15 .. 17: half of it counts
     expect_alpha(picture, packet, 1, [&](const Ray& ray) { return length_of(interval_of(*grid, ray)) > 0 ? 0.3 * 0.5 * 8 : 0; });
   }
@@ -94,17 +94,17 @@ TEST_F(VolumeModes, TheFactorFollowsTheGradientInWorldUnits) {
 TEST_F(VolumeModes, TheFastPathLeavesThemToTheExactOne) {
   const auto grid =
       make_grid({24, 24, 24}, [](const Vec3& p) { return 0.5 + 0.4 * std::sin(0.5 * p.x) * std::cos(0.4 * p.y + 0.3 * p.z); });
-  FramePacket packet = packet_of({60, -40, 45}, {11.5, 11.5, 11.5});
+  FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
   RenderSettings fast;
   fast.fast = FastSettings{1, 1, -1, -1};
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.3}})};
-  EXPECT_TRUE(renderer_->draws_fast(packet));
+  EXPECT_TRUE(renderer_->can_draw_fast(packet));
   FramePacket factors = packet, colored = packet, projected = packet;
   factors.volumes[0].transfer.gradient_factors = {{0, 0}, {0.3, 1}};
   colored.volumes[0].color_by = ColorSource{grid, {{0, 1, 0, 0}, {1, 0, 0, 1}}};
   projected.volumes[0].projection = Projection::maximum;
   for (const FramePacket& p : {factors, colored, projected}) {
-    EXPECT_FALSE(renderer_->draws_fast(p));
+    EXPECT_FALSE(renderer_->can_draw_fast(p));
     EXPECT_EQ(max_difference(draw(p, fast), draw(p)), 0);
   }
 }
@@ -118,16 +118,16 @@ TEST_F(VolumeModes, AVolumeIsColouredByAnotherFieldAtTheSamePlace) {
       {30, 26, 28}, [](const Vec3& p) { return (p.x + 2 * p.y - p.z + 27) / 106; },
       field::Mapping::from_linear(turned(0.5, -0.3) * Mat3(0.6), {8, 2, 3}));
   const auto factor = [](double v) { return std::clamp(v, 0.0, 1.0); };
-  FramePacket packet = packet_of({60, -40, 45}, {11.5, 11.5, 11.5});
+  FramePacket packet = make_packet({60, -40, 45}, {11.5, 11.5, 11.5});
   packet.volumes = {volume_item(grid, {{0, 0.06}, {1, 0.06}}, {0, 1, 0})};
   packet.volumes[0].color_by = ColorSource{other, {{0, 1, 0, 0}, {1, 0, 0, 1}}};
-  const Picture picture = draw(packet, fine_settings(0.1), "by other");
+  const Image8 picture = draw(packet, fine_settings(0.1), "by other");
   const Camera camera = camera_of(packet);
   int both = 0;
   double worst = 0;
   for (std::uint32_t y = 0; y < picture.height; y += 3)
     for (std::uint32_t x = 0; x < picture.width; x += 3) {
-      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const Ray ray = pixel_ray(camera, x + 0.5, y + 0.5);
       const auto [enter, leave] = interval_of(*grid, ray);
       const int steps = 2000;
       const double h = (leave - enter) / steps;
@@ -171,7 +171,7 @@ TEST_F(VolumeModes, ASurfaceIsColouredByAnotherField) {
   for (const float opacity : {1.0f, 0.5f}) {
     item.opacity = opacity;
     packet.isosurfaces = {item};
-    const Picture picture = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
+    const Image8 picture = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
     for (std::uint32_t x = 22; x < 98; x += 3) {
       const double world = 10 + (x + 0.5 - 60) * 0.25;
       const auto lit = [](double c) { return 255 * std::min(1.0, 0.9 * c + 0.2); };
@@ -189,16 +189,16 @@ TEST_F(VolumeModes, JitterLeavesHomogeneousFogAsItIs) {
   const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
   const auto second = make_grid(
       {12, 12, 12}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(turned(0.4, 0.9) * Mat3(1.3), {4, 9, -5}));
-  FramePacket packet = packet_of({52, -41, 37}, {9.5, 16, 5.5}, 40);
+  FramePacket packet = make_packet({52, -41, 37}, {9.5, 16, 5.5}, 40);
   packet.jitter = true;
   for (const double step : {0.3, 1.0, 4.0, 50.0}) {
     RenderSettings settings;
     settings.step_voxels = step;
     packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
-    expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) { return 0.1 * chord(*grid, ray.origin, ray.direction); });
+    expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) { return 0.1 * chord_length(*grid, ray.origin, ray.direction); });
     packet.volumes.push_back(volume_item(second, {{0, 0.05}, {1, 0.05}}));
     expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) {
-      return 0.1 * chord(*grid, ray.origin, ray.direction) + 0.05 * chord(*second, ray.origin, ray.direction);
+      return 0.1 * chord_length(*grid, ray.origin, ray.direction) + 0.05 * chord_length(*second, ray.origin, ray.direction);
     });
   }
 }
@@ -206,18 +206,18 @@ TEST_F(VolumeModes, JitterLeavesHomogeneousFogAsItIs) {
 TEST_F(VolumeModes, JitterTurnsRingsIntoGrain) {
   const Vec3 c(23.5);
   const auto grid = make_grid({48, 48, 48}, [&](const Vec3& p) { return std::exp(-0.3 * std::pow(norm(p - c) - 17, 2)); });
-  FramePacket packet = packet_of({120, -80, 90}, c, 22);
+  FramePacket packet = make_packet({120, -80, 90}, c, 22);
   packet.volumes = {volume_item(grid, {{0, 0}, {0.3, 0}, {1, 0.2}})};
-  const Picture truth = draw(packet, reference_settings(), "reference");
+  const Image8 truth = draw(packet, reference_settings(), "reference");
   RenderSettings coarse;
   coarse.step_voxels = 4;
-  const Picture rings = draw(packet, coarse, "rings");
+  const Image8 rings = draw(packet, coarse, "rings");
   packet.jitter = true;
-  const Picture grain = draw(packet, coarse, "grain");
+  const Image8 grain = draw(packet, coarse, "grain");
   EXPECT_EQ(max_difference(grain, draw(packet, coarse)), 0) << "the same picture every time";
   EXPECT_GT(max_difference(grain, rings), 20);
   // what is left after a blur over 8 x 8 pixels
-  const auto blurred_error = [&](const Picture& p) {
+  const auto blurred_error = [&](const Image8& p) {
     double sum = 0;
     for (std::uint32_t y = 0; y + 8 <= p.height; y += 8)
       for (std::uint32_t x = 0; x + 8 <= p.width; x += 8) {
@@ -238,29 +238,29 @@ TEST_F(VolumeModes, LeapsOverPlainBricksChangeNothing) {
     const double s = norm(p - Vec3(30, 28, 24));
     return s < 14 ? 1.0 : s < 17 ? 1 - 0.5 * (s - 14) / 3 : p.x < 20 ? 0.25 : p.x < 22 ? 0.25 + 0.125 * (p.x - 20) : 0.5;
   });
-  FramePacket packet = packet_of({110, -90, 80}, {31, 27, 23}, 28);
+  FramePacket packet = make_packet({110, -90, 80}, {31, 27, 23}, 28);
   packet.volumes = {volume_item(grid, {{0, 0.01}, {0.4, 0.01}, {0.45, 0.02}, {0.8, 0.02}, {0.9, 0.1}, {1, 0.1}})};
   packet.volumes[0].transfer.colors = {{0, 0.1, 0.2, 0.9}, {0.3, 0.1, 0.2, 0.9}, {0.45, 0.9, 0.8, 0.1}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
   const auto small = make_grid(
       {24, 24, 24}, [](const Vec3&) { return 1.0; }, field::Mapping::from_linear(turned(0.2, 0.7), {20, 10, 5}));
   for (const bool two : {false, true})
     for (const bool jitter : {false, true})
-      for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+      for (const GridLayout layout : {GridLayout::dense, GridLayout::atlas}) {
         if (two) packet.volumes.resize(1), packet.volumes.push_back(volume_item(small, {{0, 0.01}, {1, 0.01}}));
         packet.jitter = jitter;
         RenderSettings settings;
         settings.layout = layout;
         settings.termination = 0;
-        const Picture with = draw(packet, settings, two ? "two" : "one");
-        settings.skip = false;
+        const Image8 with = draw(packet, settings, two ? "two" : "one");
+        settings.skip_empty = false;
         EXPECT_LE(max_difference(with, draw(packet, settings)), 1);
       }
   // shaded volumes and those with a factor are not plain where their value is
   packet.volumes.resize(1);
-  packet.volumes[0].shade = true;
+  packet.volumes[0].is_shaded = true;
   packet.volumes[0].transfer.gradient_factors = {{0, 0.3}, {0.2, 1}};
   RenderSettings all;
-  all.skip = false;
+  all.skip_empty = false;
   EXPECT_EQ(max_difference(draw(packet, {}, "shaded"), draw(packet, all)), 0);
 }
 
@@ -277,16 +277,16 @@ TEST_F(VolumeModes, EachVolumeHasItsTransformAndItsClipping) {
       make_grid(
           {16, 16, 16}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(-1, 0, 0, 0, 0.5, 0, 0, 0, 1.5), {22, 6, 0}))};
   const double sigmas[] = {0.04, 0.03, 0.05, 0.02};
-  FramePacket packet = packet_of({90, -70, 60}, {12, 10, 10});
-  packet.clip = {{{12, 9, 9}, {1, 0.5, -0.2}}, {{0, 0, 16}, {0, 0, -1}}};
+  FramePacket packet = make_packet({90, -70, 60}, {12, 10, 10});
+  packet.clip_planes = {{{12, 9, 9}, {1, 0.5, -0.2}}, {{0, 0, 16}, {0, 0, -1}}};
   for (std::size_t i = 0; i < 4; ++i) {
     packet.volumes.push_back(volume_item(grids[i], {{0, sigmas[i]}, {1, sigmas[i]}}));
-    packet.volumes.back().clipped = i % 2 == 0;
+    packet.volumes.back().is_clipped = i % 2 == 0;
   }
   const OfRay depth = [&](const Ray& ray) {
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i)
-      sum += sigmas[i] * length_of(interval_of(*grids[i], ray, packet.volumes[i].clipped ? packet.clip : std::vector<Plane>{}));
+      sum += sigmas[i] * length_of(interval_of(*grids[i], ray, packet.volumes[i].is_clipped ? packet.clip_planes : std::vector<Plane>{}));
     return sum;
   };
   expect_alpha(draw(packet, {}, "four"), packet, 1, depth);
@@ -307,16 +307,16 @@ TEST_F(VolumeModes, AClippedSurfaceShowsTheVolumeBehindIt) {
   packet.view.orthographic = true;
   packet.view.height = 30;
   packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 0, 1})};
-  packet.volumes[0].clipped = false;
+  packet.volumes[0].is_clipped = false;
   IsosurfaceItem item;
   item.grid = plane;
   item.level = 5;
   item.color = {1, 0, 0};
-  packet.clip = {{{10, 0, 0}, {1, 0, 0}}};
+  packet.clip_planes = {{{10, 0, 0}, {1, 0, 0}}};
   for (const float opacity : {1.0f, 0.4f}) {
     item.opacity = opacity;
     packet.isosurfaces = {item};
-    const Picture picture = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
+    const Image8 picture = draw(packet, {}, opacity < 1 ? "translucent" : "opaque");
     EXPECT_NEAR(picture.pixel(40, 60)[3], 255 * (1 - std::exp(-0.05 * 20)), 1);
     EXPECT_NEAR(picture.pixel(80, 60)[3], 255 * (1 - std::exp(-0.05 * (opacity < 1 ? 20 : 5)) * (1 - opacity)), 1);
     const double behind = opacity < 1 ? std::exp(-0.25) * (1 - opacity) * (1 - std::exp(-0.75)) : 0;
@@ -351,7 +351,7 @@ TEST_F(VolumeModes, EightTranslucentSurfacesInOrder) {
     red += through * (0.1 + 0.05 * i) * (0.9 * 0.1 * i + 0.2);
     through *= 1 - (0.1 + 0.05 * i);
   }
-  const Picture picture = draw(packet);
+  const Image8 picture = draw(packet);
   EXPECT_NEAR(picture.pixel(32, 32)[3], 255 * (1 - through), 1);
   EXPECT_NEAR(picture.pixel(32, 32)[0], 255 * red / (1 - through), 1.5);
   packet.volumes = {volume_item(plane, {{0, 0.1}, {1, 0.1}})};

@@ -1,5 +1,5 @@
 /// Kooima's projection and a headset's tangents against their printed formulae and against where points must land.
-#include "render/stereo/eyes.h"
+#include "render/stereo/stereo_views.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ TEST(ScreenView, CornersOfTheScreenAreCornersOfThePictureFromAnyEye) {
   const Vec3 vr = direction(screen.lower_right - screen.lower_left), vu = direction(screen.upper_left - screen.lower_left);
   const Vec3 vn = direction(cross(vr, vu)), middle = 0.5 * (screen.lower_right + screen.upper_left);
   for (const Vec3& eye : {middle + 1.5 * vn, middle + 0.4 * vn + 0.3 * vr - 0.2 * vu, middle + 2.0 * vn + 3.0 * vr + 1.0 * vu}) {
-    const auto view = screen_view(screen, eye);
+    const auto view = make_screen_view(screen, eye);
     ASSERT_TRUE(view) << view.error().message;
     // pixels that are not square: the screen decides what is seen, not the picture
     const Camera c = make_camera(*view, 500, 700, {});
@@ -29,10 +29,10 @@ TEST(ScreenView, CornersOfTheScreenAreCornersOfThePictureFromAnyEye) {
     EXPECT_NEAR(upper_left->y, 0, 1e-9);
     // the printed formula, at n = 1
     const double d = -dot(vn, screen.lower_left - eye);
-    EXPECT_NEAR(c.centre_x - c.half_width, dot(vr, screen.lower_left - eye) / d, 1e-12);
-    EXPECT_NEAR(c.centre_x + c.half_width, dot(vr, screen.lower_right - eye) / d, 1e-12);
-    EXPECT_NEAR(c.centre_y - c.half_height, dot(vu, screen.lower_left - eye) / d, 1e-12);
-    EXPECT_NEAR(c.centre_y + c.half_height, dot(vu, screen.upper_left - eye) / d, 1e-12);
+    EXPECT_NEAR(c.center_x - c.half_width, dot(vr, screen.lower_left - eye) / d, 1e-12);
+    EXPECT_NEAR(c.center_x + c.half_width, dot(vr, screen.lower_right - eye) / d, 1e-12);
+    EXPECT_NEAR(c.center_y - c.half_height, dot(vu, screen.lower_left - eye) / d, 1e-12);
+    EXPECT_NEAR(c.center_y + c.half_height, dot(vu, screen.upper_left - eye) / d, 1e-12);
   }
 }
 
@@ -41,8 +41,8 @@ TEST(ScreenView, ADesktopAtTheZeroParallaxDistanceIsTheOffAxisPair) {
   constexpr double aspect = 1.5, zero = 8.0;
   const double half = zero * std::tan(20 * std::acos(-1.0) / 180);
   const Screen screen{{-aspect * half, 0.0, 1 - half}, {aspect * half, 0.0, 1 - half}, {-aspect * half, 0.0, 1 + half}};
-  for (const View& eye : eyes(centre, aspect, {2, 0.5, zero})) {
-    const auto view = screen_view(screen, eye.position);
+  for (const View& eye : make_stereo_views(centre, aspect, {2, 0.5, zero})) {
+    const auto view = make_screen_view(screen, eye.position);
     ASSERT_TRUE(view);
     const Camera a = make_camera(eye, 300, 200, {}), b = make_camera(*view, 300, 200, {});
     const Mat4 difference = clip_from_world(a) - clip_from_world(b);
@@ -53,28 +53,28 @@ TEST(ScreenView, ADesktopAtTheZeroParallaxDistanceIsTheOffAxisPair) {
 
 TEST(ScreenView, RefusesWhatIsNoScreenAndAnEyeBehindIt) {
   const Screen screen{{-1.0, 0.0, -1.0}, {1.0, 0.0, -1.0}, {-1.0, 0.0, 1.0}};
-  EXPECT_TRUE(screen_view(screen, {0.0, -2.0, 0.0}));
-  EXPECT_FALSE(screen_view(screen, {0.0, 0.0, 0.0}));
-  EXPECT_FALSE(screen_view(screen, {0.0, 2.0, 0.0}));
-  EXPECT_TRUE(screen_view(screen, {9e5, -2.0, -9e5}));
+  EXPECT_TRUE(make_screen_view(screen, {0.0, -2.0, 0.0}));
+  EXPECT_FALSE(make_screen_view(screen, {0.0, 0.0, 0.0}));
+  EXPECT_FALSE(make_screen_view(screen, {0.0, 2.0, 0.0}));
+  EXPECT_TRUE(make_screen_view(screen, {9e5, -2.0, -9e5}));
   for (const double far : {1.1e6, 1e15, 1e308}) {
-    EXPECT_FALSE(screen_view(screen, {far, -2.0, 0.0})) << far;
-    EXPECT_FALSE(screen_view(screen, {0.0, -2.0, -far})) << far;
+    EXPECT_FALSE(make_screen_view(screen, {far, -2.0, 0.0})) << far;
+    EXPECT_FALSE(make_screen_view(screen, {0.0, -2.0, -far})) << far;
   }
-  EXPECT_FALSE(screen_view({{-1.0, 0.0, -1.0}, {1.0, 0.0, -1.0}, {0.0, 0.0, 1.0}}, {0.0, -2.0, 0.0}));
-  EXPECT_FALSE(screen_view({Vec3(1.0), Vec3(1.0), {-1.0, 0.0, 1.0}}, {0.0, -2.0, 0.0}));
+  EXPECT_FALSE(make_screen_view({{-1.0, 0.0, -1.0}, {1.0, 0.0, -1.0}, {0.0, 0.0, 1.0}}, {0.0, -2.0, 0.0}));
+  EXPECT_FALSE(make_screen_view({Vec3(1.0), Vec3(1.0), {-1.0, 0.0, 1.0}}, {0.0, -2.0, 0.0}));
 }
 
 TEST(HeadsetView, TheMatrixIsTheOneOfTheTangents) {
   // canted, asymmetric both ways, pixels not square
-  const Tangents t{-1.37, 0.83, 0.96, -1.21};
+  const FovTangents t{-1.37, 0.83, 0.96, -1.21};
   const double angle = 0.2, c = std::cos(angle), s = std::sin(angle);
   const Mat3 pose(Vec3(c, 0.0, -s), Vec3(0.0, 1.0, 0.0), Vec3(s, 0.0, c));
   const Vec3 position(0.03, 1.6, -0.4);
-  const auto view = headset_view(position, pose, t);
+  const auto view = make_headset_view(position, pose, t);
   ASSERT_TRUE(view);
   Bounds bounds;
-  bounds.add(position - 5.0 * pose[2], 2);
+  bounds.extend(position - 5.0 * pose[2], 2);
   const Camera camera = make_camera(*view, 1440, 1600, bounds);
   const Mat4 m = clip_from_view(camera);
   const double n = camera.near, f = camera.far;
@@ -94,10 +94,10 @@ TEST(HeadsetView, TheMatrixIsTheOneOfTheTangents) {
 }
 
 TEST(HeadsetView, RefusesEdgesOutOfOrder) {
-  EXPECT_TRUE(headset_view(Vec3(0.0), Mat3(1.0), {}));
-  EXPECT_FALSE(headset_view(Vec3(0.0), Mat3(1.0), {1, -1, 1, -1}));
-  EXPECT_FALSE(headset_view(Vec3(0.0), Mat3(1.0), {-1, 1, -1, 1}));
-  EXPECT_FALSE(headset_view(Vec3(0.0), Mat3(1.0), {-1, NAN, 1, -1}));
+  EXPECT_TRUE(make_headset_view(Vec3(0.0), Mat3(1.0), {}));
+  EXPECT_FALSE(make_headset_view(Vec3(0.0), Mat3(1.0), {1, -1, 1, -1}));
+  EXPECT_FALSE(make_headset_view(Vec3(0.0), Mat3(1.0), {-1, 1, -1, 1}));
+  EXPECT_FALSE(make_headset_view(Vec3(0.0), Mat3(1.0), {-1, NAN, 1, -1}));
 }
 
 }  // namespace projections_test

@@ -5,23 +5,23 @@
 #include <random>
 
 #include "render/frame/camera.h"
-#include "tests/render/support/frames.h"
+#include "tests/render/support/image_fixture.h"
 
 namespace catena::test::cubic_rays {
 
-inline GridPtr smooth(const GridPtr& grid) {
-  auto made = grid->cubic();
+inline GridPtr smoothed_grid(const GridPtr& grid) {
+  auto made = grid->as_cubic();
   EXPECT_TRUE(made);
   return made ? *made : nullptr;
 }
 
 /// Noise and waves in 0..1; `waves` is the share of these.
-inline GridPtr noisy(const field::Index3& n, unsigned seed, double waves, const field::Mapping& mapping = {}, double masked = 0) {
+inline GridPtr noisy_grid(const field::Index3& n, unsigned seed, double waves, const field::Mapping& mapping = {}, double masked = 0) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::function<bool(const Vec3&)> valid;
   if (masked > 0) valid = [&](const Vec3&) { return uniform(random) >= masked; };
-  return smooth(make_grid(
+  return smoothed_grid(make_grid(
       n,
       [&](const Vec3& p) {
         const double wave = std::sin(0.4 * p.x) * std::sin(0.5 * p.y + 1) * std::sin(0.45 * p.z + 2 + 0.1 * p.x);
@@ -32,15 +32,15 @@ inline GridPtr noisy(const field::Index3& n, unsigned seed, double waves, const 
 
 inline field::Mapping sheared() { return field::Mapping::from_linear(Mat3(0.8, 0.3, 0.1, -0.4, 1.1, 0.2, 0.1, 0.05, 1.7), {-300, 40, 3}); }
 
-inline Vec3 middle_of(const field::ScalarGrid& grid) {
+inline Vec3 grid_center(const field::ScalarGrid& grid) {
   return grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
 }
 
-inline render::FramePacket seen(const field::ScalarGrid& grid, double distance, double fovy_deg = 30) {
-  return packet_of(middle_of(grid) + distance * direction(Vec3(1, -0.7, 0.6)), middle_of(grid), fovy_deg);
+inline render::FramePacket packet_of_grid(const field::ScalarGrid& grid, double distance, double fovy_deg = 30) {
+  return make_packet(grid_center(grid) + distance * direction(Vec3(1, -0.7, 0.6)), grid_center(grid), fovy_deg);
 }
 
-inline render::IsosurfaceItem surface_of(GridPtr grid, double level) {
+inline render::IsosurfaceItem make_isosurface_item(GridPtr grid, double level) {
   render::IsosurfaceItem item;
   item.grid = std::move(grid);
   item.level = level;
@@ -54,7 +54,7 @@ struct PixelRay {
   double from = 0, to = HUGE_VAL, voxels = 1;  ///< voxels a unit of depth
 
   PixelRay(const field::ScalarGrid& grid, const render::Camera& camera, std::uint32_t x, std::uint32_t y) {
-    const render::Ray ray = render::ray_through(camera, x + 0.5, y + 0.5);
+    const render::Ray ray = render::pixel_ray(camera, x + 0.5, y + 0.5);
     direction = ray.direction / dot(ray.direction, -camera.back);
     origin = ray.origin - dot(ray.origin - camera.position, -camera.back) * direction;
     const Vec3 d = grid.mapping().index_from_world_linear * direction, o = grid.mapping().index_from_world(origin);

@@ -17,7 +17,7 @@ class DeviceFixture : public testing::Test {
     ASSERT_TRUE(device) << device.error().message;
     device_ = std::move(*device);
   }
-  void expect_silence() const {
+  void expect_no_validation_messages() const {
     EXPECT_EQ(device_->messages().count(), 0u);
     for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
   }

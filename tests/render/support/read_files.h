@@ -47,16 +47,16 @@ inline DeepPng read_deep_png(const std::string& path) {
   return picture;
 }
 
-struct ExrPicture {
+struct ExrImage {
   int width = 0, height = 0;
   std::map<std::string, std::vector<float>> channels;
   std::string comments;
 };
 
-inline ExrPicture read_exr(const std::string& path) {
+inline ExrImage read_exr(const std::string& path) {
   Imf::InputFile file(path.c_str());
   const auto box = file.header().dataWindow();
-  ExrPicture picture{box.max.x - box.min.x + 1, box.max.y - box.min.y + 1, {}, {}};
+  ExrImage picture{box.max.x - box.min.x + 1, box.max.y - box.min.y + 1, {}, {}};
   if (Imf::hasComments(file.header())) picture.comments = Imf::comments(file.header());
   Imf::FrameBuffer frame;
   const Imf::ChannelList& list = file.header().channels();

@@ -19,8 +19,8 @@ struct Ink {
 
 Ink ink_of(Typesetter& typesetter, std::string_view text, const TextStyle& style) {
   Ink ink;
-  for (const SetGlyph& g : typesetter.set(text, style).glyphs) {
-    const GlyphBitmap bitmap = typesetter.font(style.bold)->rasterise(g.glyph, style.size_px, 0, 0);
+  for (const PlacedGlyph& g : typesetter.layout(text, style).glyphs) {
+    const GlyphBitmap bitmap = typesetter.font(style.bold)->rasterize(g.glyph, style.size_px, 0, 0);
     for (int y = 0; y < bitmap.height; ++y)
       for (int x = 0; x < bitmap.width; ++x) {
         if (bitmap.coverage[std::size_t(y) * std::size_t(bitmap.width) + std::size_t(x)] < 128) continue;
@@ -34,13 +34,13 @@ Ink ink_of(Typesetter& typesetter, std::string_view text, const TextStyle& style
 }
 
 TEST(Utf8, DecodesEveryLengthAndMarksWhatIsNone) {
-  EXPECT_EQ(code_points("aé€𝄞"), (std::vector<char32_t>{U'a', U'é', U'€', U'\U0001d11e'}));
-  EXPECT_EQ(code_points("\xff"
+  EXPECT_EQ(decode_utf8("aé€𝄞"), (std::vector<char32_t>{U'a', U'é', U'€', U'\U0001d11e'}));
+  EXPECT_EQ(decode_utf8("\xff"
                         "a\xc3"),
             (std::vector<char32_t>{0xfffd, U'a', 0xfffd}));
-  EXPECT_EQ(code_points("\xe2\x82"), (std::vector<char32_t>{0xfffd, 0xfffd}));
-  EXPECT_EQ(code_points("\xc0\xaf"), (std::vector<char32_t>{0xfffd, 0xfffd})) << "overlong";
-  EXPECT_EQ(code_points("\xed\xa0\x80").front(), char32_t(0xfffd)) << "a surrogate";
+  EXPECT_EQ(decode_utf8("\xe2\x82"), (std::vector<char32_t>{0xfffd, 0xfffd}));
+  EXPECT_EQ(decode_utf8("\xc0\xaf"), (std::vector<char32_t>{0xfffd, 0xfffd})) << "overlong";
+  EXPECT_EQ(decode_utf8("\xed\xa0\x80").front(), char32_t(0xfffd)) << "a surrogate";
 }
 
 TEST(Typesetter, TheBoxIsTheCapitalsHeightAndTheAdvances) {
@@ -48,7 +48,7 @@ TEST(Typesetter, TheBoxIsTheCapitalsHeightAndTheAdvances) {
   for (const double size : {12.0, 20.5, 60.0}) {
     const TextStyle style{size, false, 0};
     const TextExtent extent = typesetter.measure("HEIH", style);
-    ASSERT_GT(extent.width, 0) << typesetter.fault();
+    ASSERT_GT(extent.width, 0) << typesetter.error_message();
     const Ink ink = ink_of(typesetter, "HEIH", style);
     // the outlines' height is hinted to whole pixels
     EXPECT_NEAR(ink.top, 0, 1.5);
@@ -76,9 +76,9 @@ TEST(Typesetter, WidthsAddUpAndKerningTakesAway) {
 
 TEST(Typesetter, LinesAreAlignedUnderEachOther) {
   Typesetter typesetter;
-  const SetText one = typesetter.set("H", {20, false, 0});
+  const TextLayout one = typesetter.layout("H", {20, false, 0});
   for (const double align : {0.0, 0.5, 1.0}) {
-    const SetText two = typesetter.set("HHH\nH", {20, false, align});
+    const TextLayout two = typesetter.layout("HHH\nH", {20, false, align});
     ASSERT_EQ(two.glyphs.size(), 4u);
     EXPECT_NEAR(two.glyphs[3].x, align * 2 * one.extent.width, 1e-9);
     EXPECT_GT(two.glyphs[3].y - two.glyphs[0].y, 20);
@@ -90,12 +90,12 @@ TEST(Typesetter, LinesAreAlignedUnderEachOther) {
 TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullImageStartsAnew) {
   Typesetter typesetter;
   const Font* font = typesetter.font(false);
-  ASSERT_NE(font, nullptr) << typesetter.fault();
+  ASSERT_NE(font, nullptr) << typesetter.error_message();
   GlyphAtlas& atlas = typesetter.atlas();
   const auto check = [&](char32_t code, double size, int quarter, double halo) {
-    const GlyphAtlas::Entry* entry = atlas.get(*font, font->glyph_of(code), size, quarter, halo);
+    const GlyphAtlas::Entry* entry = atlas.get(*font, font->glyph_index(code), size, quarter, halo);
     ASSERT_NE(entry, nullptr);
-    const GlyphBitmap bitmap = font->rasterise(font->glyph_of(code), size, 0.25 * quarter, halo);
+    const GlyphBitmap bitmap = font->rasterize(font->glyph_index(code), size, 0.25 * quarter, halo);
     ASSERT_EQ(entry->width, bitmap.width);
     ASSERT_LE(entry->y + entry->height, atlas.height());
     for (int y = 0; y < bitmap.height; ++y)
@@ -112,12 +112,12 @@ TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullImageStartsAnew) {
   check(U'A', 30, 0, 0);
   EXPECT_EQ(atlas.version(), version) << "made once";
   // a halo is as much wider as it says
-  const GlyphBitmap plain = font->rasterise(font->glyph_of(U'H'), 30, 0, 0), wide = font->rasterise(font->glyph_of(U'H'), 30, 0, 2);
+  const GlyphBitmap plain = font->rasterize(font->glyph_index(U'H'), 30, 0, 0), wide = font->rasterize(font->glyph_index(U'H'), 30, 0, 2);
   EXPECT_NEAR(wide.width, plain.width + 4, 1);
   EXPECT_NEAR(wide.height, plain.height + 4, 1);
 
   for (double size = 300; atlas.generation() == 0 && size < 400; ++size)
-    for (char32_t c = U'A'; c <= U'Z'; ++c) ASSERT_NE(atlas.get(*font, font->glyph_of(c), size, 0, 0), nullptr);
+    for (char32_t c = U'A'; c <= U'Z'; ++c) ASSERT_NE(atlas.get(*font, font->glyph_index(c), size, 0, 0), nullptr);
   EXPECT_EQ(atlas.generation(), 1u);
   EXPECT_EQ(atlas.height(), GlyphAtlas::kMaxHeight);
   check(U'Q', 30, 1, 0);
@@ -128,13 +128,13 @@ TEST(Typesetter, WithoutAFontOneSentenceAndNoText) {
   write_file(folder / "fonts.conf", "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig></fontconfig>");
   ::setenv("FONTCONFIG_FILE", (folder / "fonts.conf").c_str(), 1);
   Typesetter typesetter;
-  const SetText set = typesetter.set("text", {20, false, 0});
+  const TextLayout set = typesetter.layout("text", {20, false, 0});
   ::unsetenv("FONTCONFIG_FILE");
   EXPECT_TRUE(set.glyphs.empty());
   EXPECT_EQ(set.extent.width, 0);
-  EXPECT_NE(typesetter.fault().find("text is left out"), std::string::npos) << typesetter.fault();
-  EXPECT_NE(typesetter.fault().find("fonts-dejavu-core"), std::string::npos);
-  EXPECT_EQ(typesetter.fault().find('\n'), std::string::npos);
+  EXPECT_NE(typesetter.error_message().find("text is left out"), std::string::npos) << typesetter.error_message();
+  EXPECT_NE(typesetter.error_message().find("fonts-dejavu-core"), std::string::npos);
+  EXPECT_EQ(typesetter.error_message().find('\n'), std::string::npos);
 
   // a file that is no font
   write_file(folder / "no.ttf", "no font");
@@ -146,10 +146,10 @@ TEST(Typesetter, WithoutAFontOneSentenceAndNoText) {
 TEST(Typesetter, AnUnknownFamilyFallsBackAndAnotherOneStartsAnew) {
   Typesetter typesetter;
   const double width = typesetter.measure("Hamburg", {20, false, 0}).width;
-  typesetter.use_family("No Such Family 4711");
-  EXPECT_GT(typesetter.measure("Hamburg", {20, false, 0}).width, 0) << typesetter.fault();
-  EXPECT_TRUE(typesetter.fault().empty());
-  typesetter.use_family("DejaVu Sans");
+  typesetter.set_family("No Such Family 4711");
+  EXPECT_GT(typesetter.measure("Hamburg", {20, false, 0}).width, 0) << typesetter.error_message();
+  EXPECT_TRUE(typesetter.error_message().empty());
+  typesetter.set_family("DejaVu Sans");
   EXPECT_EQ(typesetter.measure("Hamburg", {20, false, 0}).width, width);
 }
 

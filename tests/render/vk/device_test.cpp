@@ -17,7 +17,7 @@ class Device : public DeviceFixture {};
 TEST_F(Device, SaysWhatItIs) {
   EXPECT_FALSE(device_->info().name.empty());
   EXPECT_FALSE(device_->info().driver.empty());
-  EXPECT_EQ(device_->info().is_cpu(), on_lavapipe());
+  EXPECT_EQ(device_->info().is_cpu(), uses_lavapipe());
   EXPECT_GT(device_->info().memory_bytes, 0u);
   const auto lines = vk::list_devices();
   ASSERT_TRUE(lines);
@@ -50,22 +50,22 @@ TEST_F(Device, UploadAndReadBack) {
   for (std::size_t i = 0; i < from->bytes().size(); ++i) from->bytes()[i] = std::byte(i);
   auto commands = vk::Commands::begin(*device_);
   ASSERT_TRUE(commands);
-  commands->use(*image, vk::kTransferWrite);
+  commands->transition(*image, vk::kTransferWrite);
   commands->copy(*from, 0, *image, {0, 0, 0}, {7, 5, 1});
   commands->copy(*image, *to);
   ASSERT_TRUE(commands->finish());
   EXPECT_EQ(std::memcmp(from->bytes().data(), to->bytes().data(), 7 * 5 * 4), 0);
   EXPECT_EQ(device_->counters().uploads, 1u);
   EXPECT_EQ(device_->counters().upload_bytes, 7u * 5 * 4);
-  expect_silence();
+  expect_no_validation_messages();
 }
 
 TEST_F(Device, ResourcesWaitForTheTimeline) {
-  const std::uint64_t before = device_->counters().bytes;
+  const std::uint64_t before = device_->counters().allocated_bytes;
   auto from = vk::Buffer::create(*device_, 1 << 20, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, vk::Memory::upload);
   auto to = vk::Buffer::create(*device_, 1 << 20, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::device);
   ASSERT_TRUE(from && to);
-  EXPECT_GE(device_->counters().bytes, before + (2 << 20));
+  EXPECT_GE(device_->counters().allocated_bytes, before + (2 << 20));
   auto commands = vk::Commands::begin(*device_);
   ASSERT_TRUE(commands);
   commands->copy(*from, *to, 1 << 20);
@@ -74,12 +74,12 @@ TEST_F(Device, ResourcesWaitForTheTimeline) {
   *from = vk::Buffer();
   *to = vk::Buffer();
   // moved-from temporaries carry the old ones away; they are held until the copy has passed
-  EXPECT_GE(device_->retired(), 2u);
-  EXPECT_GE(device_->counters().bytes, before + (2 << 20));
+  EXPECT_GE(device_->retired_count(), 2u);
+  EXPECT_GE(device_->counters().allocated_bytes, before + (2 << 20));
   ASSERT_TRUE(device_->wait(*value));
-  EXPECT_EQ(device_->retired(), 0u);
-  EXPECT_EQ(device_->counters().bytes, before);
-  expect_silence();
+  EXPECT_EQ(device_->retired_count(), 0u);
+  EXPECT_EQ(device_->counters().allocated_bytes, before);
+  expect_no_validation_messages();
 }
 
 TEST_F(Device, AnImpossibleImageIsOneSentence) {
@@ -92,7 +92,7 @@ TEST_F(Device, AnImpossibleImageIsOneSentence) {
   ASSERT_FALSE(image);
   EXPECT_NE(image.error().message.find("100000 x 2 x 2"), std::string::npos);
   EXPECT_EQ(image.error().message.find('\n'), std::string::npos);
-  expect_silence();
+  expect_no_validation_messages();
 }
 
 }  // namespace device_test

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "render/vk/commands.h"
-#include "tests/render/support/frames.h"
-#include "tests/render/xr/rig.h"
+#include "tests/render/support/image_fixture.h"
+#include "tests/render/xr/xr_fixture.h"
 
 namespace catena::test {
 namespace layers_test {
@@ -14,7 +14,7 @@ class HeadsetLayers : public HeadsetFixture {
  protected:
   void SetUp() override {
     HeadsetFixture::SetUp();
-    if (runtime_.found()) runtime_.script().keep_pictures = true;
+    if (runtime_.found()) runtime_.script().capture_images = true;
   }
 };
 
@@ -26,12 +26,12 @@ TEST_F(HeadsetLayers, DepthsAreMetresWhateverTheWorldsUnit) {
   runtime_.script().width = runtime_.script().height = 65;
   ASSERT_TRUE(open());
   Placement placement;
-  placement.metres_per_unit = 0.01;
+  placement.meters_per_unit = 0.01;
   for (const double metres : {0.3, 1.0, 8.0}) {
     FramePacket packet = ball_packet({0.0, 0.0, -100.0 * metres}, 100 * 0.2 * metres);
-    ASSERT_TRUE(turn(packet, placement, 3));
+    ASSERT_TRUE(run_frames(packet, placement, 3));
     ASSERT_GT(runtime_.record().depths, 0u);
-    const xr_runtime::KeptPicture& picture = runtime_.record().last[0];
+    const xr_runtime::CapturedImage& picture = runtime_.record().last_images[0];
     ASSERT_EQ(picture.depth.size(), 65u * 65u);
     const double n = picture.near_z, f = picture.far_z, d = picture.depth[32 * 65 + 32];
     EXPECT_EQ(picture.min_depth, 0.0f);
@@ -43,7 +43,7 @@ TEST_F(HeadsetLayers, DepthsAreMetresWhateverTheWorldsUnit) {
 }
 
 /// Of a submitted picture, metres along the eye's axis; infinite where nothing is.
-double metres_at(const xr_runtime::KeptPicture& picture, int i, int j) {
+double metres_at(const xr_runtime::CapturedImage& picture, int i, int j) {
   const double n = picture.near_z, f = picture.far_z, d = picture.depth[std::size_t(j) * picture.width + std::size_t(i)];
   return d >= 1 ? HUGE_VAL : n * f / (f - d * (f - n));
 }
@@ -80,7 +80,7 @@ TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
     for (const bool fast : {false, true}) {
       SCOPED_TRACE(std::string(due.name) + (fast ? ", fast" : ", exact"));
       Placement placement;
-      placement.metres_per_unit = kScale;
+      placement.meters_per_unit = kScale;
       placement.world_origin = {kExtent / 2, kExtent / 2, kExtent + due.front_m / kScale};
       FramePacket packet;
       if (due.ball_m > 0) packet = ball_packet(placement.to_world({0.0, 0.0, -due.ball_m - 0.02}), 0.02 / kScale);
@@ -94,7 +94,7 @@ TEST_F(HeadsetLayers, AVolumeIsAsDeepAsHalfItsAlpha) {
         const Outcome shown = headset_->show(*frame, *renderer_, packet, settings, placement);
         ASSERT_TRUE(shown) << shown.error().message;
       }
-      const xr_runtime::KeptPicture& picture = runtime_.record().last[0];
+      const xr_runtime::CapturedImage& picture = runtime_.record().last_images[0];
       ASSERT_EQ(picture.depth.size(), std::size_t(kSize) * kSize);
       for (const int place : {24, 32, 40}) {  // of rays that were marched
         const double tangent = (place + 0.5 - kSize / 2) / (kSize / 2) * std::tan(0.4), slant = std::hypot(1, tangent);
@@ -124,11 +124,11 @@ TEST_F(HeadsetLayers, AProjectionHasNoDepth) {
   packet.volumes.push_back(volume_item(make_grid({17, 17, 17}, [](const Vec3& at) { return at.z; }), {{0, 0}, {16, 1}}));
   packet.volumes.back().projection = Projection::maximum;
   Placement placement;
-  placement.metres_per_unit = 0.05;
+  placement.meters_per_unit = 0.05;
   placement.world_origin = {8.0, 8.0, 30.0};
-  const Outcome turned = turn(packet, placement, 3);
+  const Outcome turned = run_frames(packet, placement, 3);
   ASSERT_TRUE(turned) << turned.error().message;
-  EXPECT_GT(runtime_.record().pictures, 0u);
+  EXPECT_GT(runtime_.record().projection_frames, 0u);
   EXPECT_EQ(runtime_.record().depths, 0u);
 }
 
@@ -136,12 +136,12 @@ TEST_F(HeadsetLayers, WithoutTheExtensionOrItsFormatThereAreNoDepths) {
   for (const bool by_format : {false, true}) {
     runtime_.reset();
     if (by_format) runtime_.script().formats.pop_back();
-    if (!by_format) runtime_.script().without.insert(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
+    if (!by_format) runtime_.script().unsupported.insert(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
     ASSERT_TRUE(open());
     FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
-    ASSERT_TRUE(turn(packet, {}, 3));
+    ASSERT_TRUE(run_frames(packet, {}, 3));
     EXPECT_EQ(runtime_.record().depths, 0u);
-    EXPECT_GT(runtime_.record().pictures, 0u);
+    EXPECT_GT(runtime_.record().projection_frames, 0u);
     headset_->stop();
     renderer_.reset();
     headset_.reset();
@@ -152,11 +152,11 @@ TEST_F(HeadsetLayers, WithoutTheExtensionOrItsFormatThereAreNoDepths) {
 TEST_F(HeadsetLayers, WhatTheLensesHideIsNotDrawn) {
   std::vector<std::vector<std::uint8_t>> pictures;
   for (const bool masked : {false, true}) {
-    if (masked) runtime_.script().without.clear();
+    if (masked) runtime_.script().unsupported.clear();
     ASSERT_TRUE(open());
     FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.5);
-    ASSERT_TRUE(turn(packet, {}, 3));
-    pictures.push_back(runtime_.record().last[0].rgba);
+    ASSERT_TRUE(run_frames(packet, {}, 3));
+    pictures.push_back(runtime_.record().last_images[0].rgba);
     headset_->stop();
     renderer_.reset();
     headset_.reset();
@@ -182,21 +182,21 @@ TEST_F(HeadsetLayers, WhatTheLensesHideIsNotDrawn) {
 TEST_F(HeadsetLayers, APanelIsAQuadOverThePicture) {
   ASSERT_TRUE(open());
   FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
-  ASSERT_TRUE(turn(packet, {}, 3));
+  ASSERT_TRUE(run_frames(packet, {}, 3));
   auto panel = xr::QuadLayer::create(headset_->session(), {96, 80});
   ASSERT_TRUE(panel) << panel.error().message;
   headset_->show_panel(panel->get());
-  ASSERT_TRUE(turn(packet, {}, 1));
+  ASSERT_TRUE(run_frames(packet, {}, 1));
   EXPECT_EQ(runtime_.record().quads, 0u);  // it has no picture yet
-  (*panel)->place({{{0.1, -0.2, -0.6}, kNoRotation}, 0.4, 0.3});
-  ASSERT_TRUE((*panel)->take(renderer_->picture()));
-  ASSERT_TRUE(turn(packet, {}, 1));
+  (*panel)->set_quad({{{0.1, -0.2, -0.6}, kIdentityRotation}, 0.4, 0.3});
+  ASSERT_TRUE((*panel)->submit_image(renderer_->output_image()));
+  ASSERT_TRUE(run_frames(packet, {}, 1));
   ASSERT_EQ(runtime_.record().quads, 1u);
-  EXPECT_EQ(runtime_.record().last_quads[0].rgba, runtime_.record().last[0].rgba);
-  EXPECT_EQ(runtime_.record().last_quads[0].pose.position.z, -0.6f);
+  EXPECT_EQ(runtime_.record().last_quad_images[0].rgba, runtime_.record().last_images[0].rgba);
+  EXPECT_EQ(runtime_.record().last_quad_images[0].pose.position.z, -0.6f);
   headset_->show_panel(nullptr);
   panel->reset();
-  ASSERT_TRUE(turn(packet, {}, 1));
+  ASSERT_TRUE(run_frames(packet, {}, 1));
   EXPECT_EQ(runtime_.record().quads, 1u);
 }
 

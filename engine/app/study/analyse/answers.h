@@ -7,16 +7,18 @@
 
 namespace catena::app::analysis {
 
-struct Answered {
+struct SubjectAnswers {
   int subject = 1;
-  std::vector<std::string> given;  ///< to the study's first questions: who was cut off has not answered the rest
+  std::vector<std::string> answers;  ///< to the study's first questions: who was cut off has not answered the rest
 };
 
 /// Of these subjects of a data folder; whoever answered nothing is not there.
-Result<std::vector<Answered>> read_questionnaires(const study::Study& study, const std::string& folder, const std::vector<int>& subjects);
+Result<std::vector<SubjectAnswers>> read_questionnaires(const study::Study& study, const std::string& folder,
+                                                        const std::vector<int>& subjects);
 
-std::string answers_csv(const study::Study& study, const std::vector<Answered>& answers);   ///< "subject,question,answer"
-std::string answers_json(const study::Study& study, const std::vector<Answered>& answers);  ///< a list of objects with the same members
-std::string answers_html(const study::Study& study, const std::vector<Answered>& answers);  ///< a section; "" where nobody answered
+std::string answers_csv(const study::Study& study, const std::vector<SubjectAnswers>& answers);  ///< "subject,question,answer"
+std::string answers_json(const study::Study& study,
+                         const std::vector<SubjectAnswers>& answers);  ///< a list of objects with the same members
+std::string answers_html(const study::Study& study, const std::vector<SubjectAnswers>& answers);  ///< a section; "" where nobody answered
 
 }  // namespace catena::app::analysis

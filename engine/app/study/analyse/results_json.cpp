@@ -21,7 +21,7 @@ class Members {
   std::string text_;
 };
 
-Members members_of(const Study& study, const Place& p) {
+Members members_of(const Study& study, const TaskCondition& p) {
   return Members()
       .word("task", study.tasks[static_cast<std::size_t>(p.task)].name)
       .word("condition", study.conditions[static_cast<std::size_t>(p.condition)].name);
@@ -35,44 +35,44 @@ std::string json_of(const statistics::Summary& s) {
   return Members().number("n", s.n).number("mean", s.mean).number("sd", s.sd).number("low", s.low()).number("high", s.high()).text();
 }
 
-std::string json_of(const Study& study, const Paired& p) {
+std::string json_of(const Study& study, const PairedComparison& p) {
   Members m;
-  m.word("measure", quantity_word(p.quantity))
+  m.word("measure", to_string(p.quantity))
       .raw("first", members_of(study, p.first).text())
       .raw("second", members_of(study, p.second).text());
-  m.raw("left_out", numbers_list(p.left_out));
-  if (!p.test) return m.word("why_not", p.why_not).text();
+  m.raw("left_out", numbers_list(p.excluded_subjects));
+  if (!p.test) return m.word("why_not", p.skip_reason).text();
   const statistics::PairedTest& t = *p.test;
-  m.raw("of_first", json_of(p.of_first)).raw("of_second", json_of(p.of_second));
+  m.raw("of_first", json_of(p.first_summary)).raw("of_second", json_of(p.second_summary));
   m.number("n", t.n).number("difference", t.difference).number("low", t.low).number("high", t.high).number("sd", t.sd);
-  m.number("t", t.t).number("df", t.df).number("p", t.p).number("p_holm", p.corrected);
+  m.number("t", t.t).number("df", t.df).number("p", t.p).number("p_holm", p.corrected_p);
   m.number("d_z", t.effect).number("d_z_low", t.effect_low).number("d_z_high", t.effect_high);
-  if (p.flips) m.number("p_sign_flips", p.flips->p).raw("sign_flips_exact", p.flips->exact ? "true" : "false");
+  if (p.sign_flip_test) m.number("p_sign_flips", p.sign_flip_test->p).raw("sign_flips_exact", p.sign_flip_test->exact ? "true" : "false");
   return m.text();
 }
 
-std::string json_of(const Study& study, const Mean& mean) {
-  Members m = members_of(study, mean.place);
-  m.word("measure", quantity_word(mean.quantity));
-  if (!mean.of) return m.word("why_not", mean.why_not).text();
-  m.raw("of_subjects", json_of(*mean.of));
-  if (mean.overlaps) m.raw("overlaps_baseline", *mean.overlaps ? "true" : "false");
+std::string json_of(const Study& study, const ConditionMean& mean) {
+  Members m = members_of(study, mean.task_condition);
+  m.word("measure", to_string(mean.quantity));
+  if (!mean.result) return m.word("why_not", mean.skip_reason).text();
+  m.raw("of_subjects", json_of(*mean.result));
+  if (mean.overlaps_baseline) m.raw("overlaps_baseline", *mean.overlaps_baseline ? "true" : "false");
   return m.text();
 }
 
-std::string json_of(const Study& study, const Correlated& x) {
-  Members m = members_of(study, x.place);
-  m.raw("left_out", numbers_list(x.left_out));
-  if (!x.of) return m.word("why_not", x.why_not).text();
-  m.number("n", x.of->n).number("r", x.of->r).number("low", x.of->low).number("high", x.of->high);
-  return m.number("t", x.of->t).number("df", x.of->df).number("p", x.of->p).number("p_holm", x.corrected).text();
+std::string json_of(const Study& study, const ConditionCorrelation& x) {
+  Members m = members_of(study, x.task_condition);
+  m.raw("left_out", numbers_list(x.excluded_subjects));
+  if (!x.result) return m.word("why_not", x.skip_reason).text();
+  m.number("n", x.result->n).number("r", x.result->r).number("low", x.result->low).number("high", x.result->high);
+  return m.number("t", x.result->t).number("df", x.result->df).number("p", x.result->p).number("p_holm", x.corrected_p).text();
 }
 
-std::string json_of(const Study& study, const Change& x) {
-  Members m = members_of(study, x.place);
-  if (!x.of) return m.word("why_not", x.why_not).text();
-  m.number("n", x.of->n).number("r_baseline", x.of->first).number("r", x.of->second);
-  return m.number("z", x.of->z).number("p", x.of->p).number("p_holm", x.corrected).text();
+std::string json_of(const Study& study, const CorrelationChange& x) {
+  Members m = members_of(study, x.task_condition);
+  if (!x.result) return m.word("why_not", x.skip_reason).text();
+  m.number("n", x.result->n).number("r_baseline", x.result->first).number("r", x.result->second);
+  return m.number("z", x.result->z).number("p", x.result->p).number("p_holm", x.corrected_p).text();
 }
 
 /// A list with a line an item.
@@ -83,50 +83,50 @@ std::string lines(const Items& items, const Print& print) {
   return "[" + text + "]";
 }
 
-std::string json_of_finding(const study::Finding& f, const Judged& judged) {
+std::string json_of_finding(const study::Finding& f, const FindingResult& judged) {
   return Members()
-      .word("paper", f.paper)
+      .word("paper", f.claim)
       .word("reported", f.reported)
-      .word("test", study::asks_word(f.asks))
-      .word("verdict", verdict_word(judged.verdict))
+      .word("test", study::to_string(f.test))
+      .word("verdict", to_string(judged.verdict))
       .word("numbers", judged.text())
       .text();
 }
 
 }  // namespace
 
-std::string to_json(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source,
-                    const std::vector<Answered>& answers) {
+std::string to_json(const Study& study, const study::AnalysisPlan& inquiry, const Analysis& analysis, const DataSource& source,
+                    const std::vector<SubjectAnswers>& answers) {
   std::string rejections, findings;
-  for (int t = 0; t < static_cast<int>(analysis.tasks_count); ++t)
-    for (int c = 0; c < static_cast<int>(analysis.conditions_count); ++c) {
-      const Rejections& r = analysis.rejected({t, c});
+  for (int t = 0; t < static_cast<int>(analysis.task_count); ++t)
+    for (int c = 0; c < static_cast<int>(analysis.condition_count); ++c) {
+      const Rejections& r = analysis.rejections_in({t, c});
       Members m = members_of(study, {t, c});
       m.number("trials", r.trials).number("error", r.error).number("time", r.time).number("both", r.both);
       rejections += (rejections.empty() ? "\n   " : ",\n   ") + m.number("unfinished", r.unfinished).text();
     }
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i)
     findings += (findings.empty() ? "\n   " : ",\n   ") + json_of_finding(inquiry.findings[i], analysis.findings[i]);
-  const auto paired = [&](const Paired& p) { return json_of(study, p); };
+  const auto paired = [&](const PairedComparison& p) { return json_of(study, p); };
   const auto plain = [&](const auto& item) { return json_of(study, item); };
-  const Rejections all = analysis.all_rejected();
+  const Rejections all = analysis.total_rejections();
   std::string text = fmt::format("{{\"catena_study_analysis\": 1,\n \"study\": {}, \"simulated\": {}, \"alpha\": {}, \"confidence\": {},\n",
-                                 json_string(study.name), source.simulated, kAlpha, kConfidence);
-  if (source.simulated) text += fmt::format(" \"note\": {},\n", json_string(kModelSentence));
+                                 json_string(study.name), source.is_simulated, kAlpha, kConfidence);
+  if (source.is_simulated) text += fmt::format(" \"note\": {},\n", json_string(kSimulatedDataNotice));
   text += fmt::format(" \"subjects\": {}, \"trials\": {}, \"rejected\": {}, \"training\": {},\n", numbers_list(analysis.subjects),
-                      all.trials, all.rejected(), analysis.training);
-  text += fmt::format(" \"gaps\": {},\n", json_list(analysis.gaps, json_string));
+                      all.trials, all.total(), analysis.training_count);
+  text += fmt::format(" \"gaps\": {},\n", json_list(analysis.missing_data, json_string));
   text += fmt::format(" \"notes\": {},\n", json_list(analysis.notes, json_string));
   const auto part = [&](const char* key, const std::string& json) { text += fmt::format(" \"{}\": {},\n", key, json); };
   part("findings", "[" + findings + "]");
   part("rejections", "[" + rejections + "]");
   part("answers", answers_json(study, answers));
   part("means", lines(analysis.means, plain));
-  part("conditions", lines(analysis.conditions, paired));
-  part("tasks", lines(analysis.tasks, paired));
+  part("conditions", lines(analysis.condition_comparisons, paired));
+  part("tasks", lines(analysis.task_comparisons, paired));
   part("correlations", lines(analysis.correlations, plain));
-  part("changes", lines(analysis.changes, plain));
-  return text + " \"trade\": " + lines(analysis.trade, paired) + "}\n";
+  part("changes", lines(analysis.correlation_changes, plain));
+  return text + " \"trade\": " + lines(analysis.tradeoff_comparisons, paired) + "}\n";
 }
 
 }  // namespace catena::app::analysis

@@ -14,17 +14,17 @@ namespace catena::app {
 using TextEdits = std::vector<scene::Document::Edit>;
 
 /// "/volumes/2" for the item that was read from there (its label is "volumes[2]"); empty where it is no item of a list.
-std::string pointer_of(const json::Node& item);
+std::string item_pointer(const json::Node& item);
 
 /// Items of the scene by their components, for panels: where they stand in the text, what belongs together. Pure, frame thread.
-std::string name_of(const scene::Scene& scene, scene::Entity entity);
+std::string entity_name(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
 
 /// A copy of the component that was read from `item` ("slices[1]"): loading a field may move the others.
 template <class T>
-std::optional<T> item_of(const scene::Scene& scene, const std::string& item, scene::Entity* entity = nullptr) {
+std::optional<T> find_item(const scene::Scene& scene, const std::string& item, scene::Entity* entity = nullptr) {
   std::optional<T> found;
-  scene.world.each<T>([&](scene::Entity e, const T& part) {
+  scene.entities.each<T>([&](scene::Entity e, const T& part) {
     if (found || part.where.label != item) return;
     found = part;
     if (entity != nullptr) *entity = e;
@@ -34,32 +34,32 @@ std::optional<T> item_of(const scene::Scene& scene, const std::string& item, sce
 
 /// Pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of whatever type (isosurface, friction,
 /// texture): the same field, the same number.
-std::vector<std::string> felt_levels(const scene::Scene& scene, const std::string& field, double level);
+std::vector<std::string> find_link_levels(const scene::Scene& scene, const std::string& field, double level);
 /// The same of the isosurfaces that are drawn or hidden.
-std::vector<std::string> seen_levels(const scene::Scene& scene, const std::string& field, double level);
+std::vector<std::string> find_isosurface_levels(const scene::Scene& scene, const std::string& field, double level);
 /// What gives a drawn isosurface another level: the links that lie on it go along.
-TextEdits level_edits(const scene::Scene& scene, const scene::Isosurface& surface, double level);
+TextEdits make_level_edits(const scene::Scene& scene, const scene::Isosurface& surface, double level);
 
 /// The level of the field's surface that is drawn, as JSON text: a number, or {"widget": NAME} where it follows a widget. Of several, the
 /// one that is nearest to `value`. Empty: none is drawn.
-std::string drawn_level(const scene::Scene& scene, const std::string& field, double value);
+std::string visible_surface_level(const scene::Scene& scene, const std::string& field, double value);
 /// The same of the links that lie on a level of the field: of several, the first one's.
-std::string felt_level(const scene::Scene& scene, const std::string& field);
+std::string first_link_level(const scene::Scene& scene, const std::string& field);
 /// The field of the first surface that is drawn; empty: none is.
-std::string drawn_field(const scene::Scene& scene);
+std::string visible_surface_field(const scene::Scene& scene);
 
 /// When the hand lets go of a widget, where it stands becomes an edit of the scene's text: one step of undo. Frame thread.
 class WidgetEdits {
  public:
-  struct Ended {
-    std::string what;  ///< "move cut"
+  struct FinishedMove {
+    std::string undo_label;  ///< "move cut"
     std::vector<scene::Document::Edit> edits;
   };
   /// What ended since the last call.
-  std::vector<Ended> take(const scene::Scene& scene);
+  std::vector<FinishedMove> take_finished(const scene::Scene& scene);
 
  private:
-  std::map<std::string, bool> held_;  ///< by the widget's place in the text
+  std::map<std::string, bool> grabbed_;  ///< by the widget's place in the text
 };
 
 }  // namespace catena::app

@@ -5,22 +5,21 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/app/viewer/edit/chain_edit.h"
-#include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/app/viewer/panels/panel.h"
-#include "engine/scene/write_values.h"
+#include "engine/app/viewer/panels/property_widgets.h"
+#include "engine/scene/to_json.h"
 
 namespace catena::app {
 
 namespace {
 
-using schema::Form;
 using schema::Role;
+using schema::ValueType;
 
-ImVec4 color_of(exchange::Status status, bool active) {
-  using exchange::Status;
-  if (status == Status::ok) return active ? ImVec4(0.5f, 0.9f, 0.5f, 1) : ImVec4(0.6f, 0.6f, 0.6f, 1);
-  if (status == Status::free || status == Status::released) return {0.65f, 0.75f, 0.9f, 1};
+ImVec4 color_of(LinkStatus status, bool active) {
+  if (status == LinkStatus::ok) return active ? ImVec4(0.5f, 0.9f, 0.5f, 1) : ImVec4(0.6f, 0.6f, 0.6f, 1);
+  if (status == LinkStatus::free || status == LinkStatus::released) return {0.65f, 0.75f, 0.9f, 1};
   return {1, 0.7f, 0.35f, 1};
 }
 
@@ -28,35 +27,35 @@ ImVec4 color_of(exchange::Status status, bool active) {
 struct StatusWords {
   const char *plain, *meaning;
 };
-StatusWords words_of(exchange::Status status) {
+StatusWords words_of(LinkStatus status) {
   switch (status) {
-    case exchange::Status::ok:
+    case LinkStatus::ok:
       return {"holds", "the link holds the hand, or is ready to"};
-    case exchange::Status::free:
+    case LinkStatus::free:
       return {"free", "the hand moves freely here, or the link is switched off"};
-    case exchange::Status::released:
+    case LinkStatus::released:
       return {"let go", "it has let go, or has not taken hold yet"};
-    case exchange::Status::budget:
+    case LinkStatus::budget:
       return {"searching", "the best place that one tick could find; it goes on in the next"};
-    case exchange::Status::critical:
+    case LinkStatus::critical:
       return {"no direction", "held at a critical point, or where the field says nothing"};
-    case exchange::Status::boundary:
+    case LinkStatus::boundary:
       return {"at the end", "held at the end of the domain"};
-    case exchange::Status::no_surface:
+    case LinkStatus::no_surface:
       return {"out of reach", "nothing to hold within reach"};
-    case exchange::Status::bad_probe:
+    case LinkStatus::bad_probe:
       return {"no place", "the probe is not finite"};
   }
   return {"", ""};
 }
 
-void draw_live(const exchange::LinkReport& link, const std::string& name, double most_n, const std::string& unit_length) {
+void draw_live(const LinkReport& link, const std::string& name, double most_n, const std::string& unit_length) {
   const double share = norm(link.force_n);
   ImGui::ProgressBar(static_cast<float>(most_n > 0 ? share / most_n : 0), {-1, 0.8f * ImGui::GetFrameHeight()},
                      fmt::format("{:.2f} N", share).c_str());
-  tip(name + ": its share of the force, of the most that the coupling allows");
+  show_tooltip(name + ": its share of the force, of the most that the coupling allows");
   ImGui::TextDisabled("%.3g%s from the hand", link.gap, unit_length.empty() ? "" : (" " + unit_length).c_str());
-  tip(
+  show_tooltip(
       fmt::format("the gap: from the link's proxy to its probe, the proxy before it. The proxy is off its constraint by {:.2g}; weight "
                   "{:.2f}, stiffness {:.0f} N/m, {} field evaluations in the last tick",
                   link.residual, link.weight, link.stiffness_n_per_m, static_cast<int>(link.evaluations)));
@@ -69,19 +68,19 @@ double length_of(const PanelContext& context) {
 }
 
 Vec3 probe_of(const PanelContext& context) {
-  const exchange::HapticState& felt = context.hand.felt();
-  return felt.tick > 0 && is_finite(felt.probe) ? felt.probe : context.hand.first_probe();
+  const HapticState& felt = context.haptic_session.latest_state();
+  return felt.tick > 0 && is_finite(felt.probe) ? felt.probe : context.haptic_session.initial_probe();
 }
 
 void draw_name_choice(PanelContext& context, const ChainRow& row, const schema::Key& key, const std::vector<std::string>& words,
                       const std::string& now) {
   std::string chosen = now;
-  if (!choose(key.name.c_str(), words, chosen)) return;
+  if (!choose_from_list(key.name.c_str(), words, chosen)) return;
   const bool field = key.role == Role::scalar_field || key.role == Role::vector_field;
   if (field)
-    context.edits.set(changed_field(context.scene.scene(), row, key, chosen, probe_of(context)), key.name);
+    context.edits.set(make_change_field_edits(context.scene.scene(), row, key, chosen, probe_of(context)), key.name);
   else
-    context.edits.set(row.pointer(key.name), scene::text_of(chosen), key.name);
+    context.edits.set(row.pointer(key.name), scene::to_json(chosen), key.name);
 }
 
 /// One key that the link states.
@@ -89,31 +88,31 @@ void draw_stated(PanelContext& context, const ChainRow& row, const schema::Key& 
   const std::string pointer = row.pointer(key.name);
   const bool number = value.kind == json::Kind::number, word = value.kind == json::Kind::string;
   const double speed = key.name == "stiffness" ? 2 : key.name == "level" ? 0 : 0.001 * length;
-  if (key.form == Form::number && number) {
+  if (key.value_type == ValueType::number && number) {
     NumberItem item{key.name.c_str(), pointer, value.number, 0, 0, speed};
     if (key.limits.lo == 0.0) item.hi = 1e9;
-    if (key.name == "level") item.along = levels_along(context.scene.scene(), row);
+    if (key.name == "level") item.coupled_pointers = find_coupled_levels(context.scene.scene(), row);
     edit_number(context.edits, item);
-  } else if (key.form == Form::vector && key.count == 3 && value.items.size() == 3) {
+  } else if (key.value_type == ValueType::vector && key.count == 3 && value.items.size() == 3) {
     if (const auto v = json::as_vec3(value, key.name)) {
       edit_vector(context.edits, key.name.c_str(), pointer, *v, speed);
-      const bool place = (key.unit == "world" && !key.begin.ends_with(" L")) || key.begin.starts_with("hand");
+      const bool place = (key.unit == "world" && !key.initial_value.ends_with(" L")) || key.initial_value.starts_with("hand");
       if (place && ImGui::SmallButton(("to the probe##" + key.name).c_str()))
-        context.edits.set(pointer, scene::text_of(probe_of(context)), key.name);
+        context.edits.set(pointer, scene::to_json(probe_of(context)), key.name);
     }
-  } else if (key.form == Form::word && word) {
-    draw_name_choice(context, row, key, key.words, value.string);
-  } else if (key.form == Form::boolean && value.kind == json::Kind::boolean) {
+  } else if (key.value_type == ValueType::choice && word) {
+    draw_name_choice(context, row, key, key.options, value.string);
+  } else if (key.value_type == ValueType::boolean && value.kind == json::Kind::boolean) {
     bool on = value.boolean;
     if (ImGui::Checkbox(key.name.c_str(), &on)) context.edits.set(pointer, on ? "true" : "false", key.name);
   } else if ((key.role == Role::scalar_field || key.role == Role::vector_field) && word) {
-    draw_name_choice(context, row, key, fields_of(context.scene.scene(), key.role == Role::vector_field), value.string);
+    draw_name_choice(context, row, key, list_field_names(context.scene.scene(), key.role == Role::vector_field), value.string);
   } else if (key.role == Role::mesh && word) {
-    draw_name_choice(context, row, key, meshes_of(context.scene.scene()), value.string);
+    draw_name_choice(context, row, key, list_mesh_names(context.scene.scene()), value.string);
   } else if (key.role == Role::curves && word) {
-    draw_name_choice(context, row, key, curves_of(context.scene.scene()), value.string);
+    draw_name_choice(context, row, key, list_curve_names(context.scene.scene()), value.string);
   } else if (key.role == Role::points && word) {
-    draw_name_choice(context, row, key, points_of(context.scene.scene()), value.string);
+    draw_name_choice(context, row, key, list_point_set_names(context.scene.scene()), value.string);
   } else {
     ImGui::TextDisabled("%s: in the text", key.name.c_str());
   }
@@ -122,29 +121,29 @@ void draw_stated(PanelContext& context, const ChainRow& row, const schema::Key& 
 void draw_keys(PanelContext& context, const ChainRow& row) {
   const double length = length_of(context);
   schema::Keys absent;
-  for (const schema::Key& key : keys_of(row.type)) {
+  for (const schema::Key& key : link_type_keys(row.type)) {
     const json::Node* value = row.node.find(key.name);
     if (value == nullptr) {
       absent.push_back(key);
       continue;
     }
     draw_stated(context, row, key, *value, length);
-    tip(key.help);
+    show_tooltip(key.help);
     if (key.is_required) continue;
     ImGui::SameLine();
     if (ImGui::SmallButton(("x##" + key.name).c_str())) context.edits.remove(row.pointer(key.name), "remove " + key.name);
-    tip("the default again");
+    show_tooltip("the default again");
   }
   if (absent.empty() || !ImGui::BeginCombo("##key", "add a key", ImGuiComboFlags_HeightLarge)) return;
   for (const schema::Key& key : absent) {
     if (ImGui::Selectable(key.name.c_str())) {
-      const auto edits = added_key(context.scene.scene(), row, key, probe_of(context), length);
+      const auto edits = make_add_key_edits(context.scene.scene(), row, key, probe_of(context), length);
       if (edits.empty())
-        context.state.say("\"" + key.name + "\" has no value to begin with here; write it into the scene's text", true);
+        context.state.show_message("\"" + key.name + "\" has no value to begin with here; write it into the scene's text", true);
       else
         context.edits.set(edits, key.name);
     }
-    tip(key.help);
+    show_tooltip(key.help);
   }
   ImGui::EndCombo();
 }
@@ -157,7 +156,7 @@ struct Move {
 
 std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::size_t count, double most_n) {
   std::optional<Move> move;
-  const exchange::HapticState& felt = context.hand.felt();
+  const HapticState& felt = context.haptic_session.latest_state();
   ImGui::PushID(row.name.c_str());
   bool enabled = row.enabled;
   if (ImGui::Checkbox("##on", &enabled)) {
@@ -166,32 +165,32 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
     else
       context.edits.set(row.pointer("enabled"), "false", row.name + " off");
   }
-  tip("off for a try: the others go on as they are");
+  show_tooltip("off for a try: the others go on as they are");
   ImGui::SameLine();
   const bool open = ImGui::TreeNodeEx("##keys", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", row.name.c_str());
-  tip(row.name + ", " + row.type + ": opens its keys");
+  show_tooltip(row.name + ", " + row.type + ": opens its keys");
   for (const std::size_t link : row.links) {
     if (link >= static_cast<std::size_t>(felt.link_count)) continue;
-    const exchange::LinkReport& report = felt.links[link];
+    const LinkReport& report = felt.links[link];
     const StatusWords words = words_of(report.status);
     const char* word = row.enabled ? words.plain : "off";
     if (row.links.size() == 1) {
       ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
     } else {
-      ImGui::TextDisabled("%s", context.hand.link_names()[link].c_str());
+      ImGui::TextDisabled("%s", context.haptic_session.link_names()[link].c_str());
       ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
     }
     ImGui::TextColored(row.enabled ? color_of(report.status, report.active) : ImVec4(0.6f, 0.6f, 0.6f, 1), "%s", word);
-    tip(row.enabled ? std::string(words.meaning) + " (" + exchange::status_word(report.status) + ")"
-                    : "switched off by the box before its name");
-    draw_live(report, context.hand.link_names()[link], most_n, context.state.unit_length);
+    show_tooltip(row.enabled ? std::string(words.meaning) + " (" + to_string(report.status) + ")"
+                             : "switched off by the box before its name");
+    draw_live(report, context.haptic_session.link_names()[link], most_n, context.state.unit_length);
   }
   if (open) {
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && row.index > 0) move = Move{row.index, -1};
-    tip("earlier in the chain");
+    show_tooltip("earlier in the chain");
     ImGui::SameLine();
     if (ImGui::ArrowButton("##down", ImGuiDir_Down) && row.index + 1 < count) move = Move{row.index, 1};
-    tip("later in the chain");
+    show_tooltip("later in the chain");
     ImGui::SameLine();
     if (ImGui::Button("Remove")) move = Move{row.index, 0};
     ImGui::SameLine();
@@ -205,25 +204,26 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
 }
 
 void draw_sum(const PanelContext& context, double most_n) {
-  const exchange::HapticState& felt = context.hand.felt();
+  const HapticState& felt = context.haptic_session.latest_state();
   Vec3 sum(0.0);
   for (int i = 0; i < felt.link_count; ++i) sum += felt.links[static_cast<std::size_t>(i)].force_n;
   ImGui::Text("Force %.2f N, of the links %.2f N", norm(felt.force_n), norm(sum));
-  tip(fmt::format("what the hand gets after damping, fading and all limits, at most {:g} N; and the sum of the links' shares", most_n));
-  if (felt.force_state == exchange::ForceState::on) return;
+  show_tooltip(
+      fmt::format("what the hand gets after damping, fading and all limits, at most {:g} N; and the sum of the links' shares", most_n));
+  if (felt.force_state == ForceState::on) return;
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", exchange::force_state_word(felt.force_state));
+  ImGui::TextDisabled("%s", to_string(felt.force_state));
 }
 
 void draw_add(PanelContext& context) {
   if (!ImGui::BeginCombo("##add", "Add a link", ImGuiComboFlags_HeightLarge)) return;
   for (const std::string& type : link_types()) {
     if (!ImGui::Selectable(type.c_str())) continue;
-    const auto link = new_link(context.scene.scene(), type, probe_of(context), length_of(context));
+    const auto link = make_link_json(context.scene.scene(), type, probe_of(context), length_of(context));
     if (link)
       context.edits.set("/chain/-", *link, "add " + type);
     else
-      context.state.say(link.error().message, true);
+      context.state.show_message(link.error().message, true);
   }
   ImGui::EndCombo();
 }
@@ -232,14 +232,14 @@ void draw_coupling(PanelContext& context) {
   const scene::Coupling c = context.scene.scene().coupling;
   ImGui::TextUnformatted("Coupling");
   edit_number(context.edits, {"stiffness", "/coupling/stiffness", c.stiffness_n_per_m, 0, 5000, 2, "%.4g N/m"});
-  tip("of links that do not say; a device may allow less");
+  show_tooltip("of links that do not say; a device may allow less");
   edit_number(context.edits, {"damping", "/coupling/damping", c.damping_ns_per_m, 0, 100, 0.02, "%.3g N s/m"});
   edit_number(context.edits, {"maximum force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
 }
 
 void draw_chain(PanelContext& context) {
   const double most_n = context.scene.scene().coupling.max_force_n;
-  const std::vector<ChainRow> rows = chain_rows(context.scene.scene(), context.hand.link_names());
+  const std::vector<ChainRow> rows = make_chain_rows(context.scene.scene(), context.haptic_session.link_names());
   if (rows.empty()) {
     ImGui::TextWrapped("Nothing is felt yet: click Feel beside a surface, or point at it in the picture and press H.");
   } else {
@@ -258,7 +258,7 @@ void draw_chain(PanelContext& context) {
     return;
   }
   const ChainRow& other = rows[move->row + static_cast<std::size_t>(move->by)];
-  context.edits.set(swapped(row, other), "move " + row.name);
+  context.edits.set(make_swap_edits(row, other), "move " + row.name);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Points from tables, and curves from files: one colour, those of the directions, or those of values; their plain keys.
 #include "engine/app/viewer/edit/scene_items.h"
-#include "engine/app/viewer/panels/look_parts.h"
-#include "engine/scene/hidden.h"
+#include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::app {
 
@@ -10,18 +10,18 @@ namespace {
 void draw_curves(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::DrawnCurves>([&](scene::Entity e, const scene::DrawnCurves& curves) {
-    if (!begin_item(edits, curves.where, !is_hidden(scene.world, e), "curves", name_of(scene, e))) return;
-    const std::string pointer = pointer_of(curves.where) + "/color";
+  scene.entities.each<scene::CurvesSource>([&](scene::Entity e, const scene::CurvesSource& curves) {
+    if (!begin_item(edits, curves.where, !is_hidden(scene.entities, e), "curves", entity_name(scene, e))) return;
+    const std::string pointer = item_pointer(curves.where) + "/color";
     bool directions = !curves.color;
     if (curves.color_by) {
       edit_color_scale(edits, curves.where, *curves.color_by);
     } else if (ImGui::Checkbox("by direction", &directions)) {
-      directions ? edits.remove(pointer, "colour") : edits.set(pointer, scene::text_of(Color{1.0f, 0.3f, 0.2f}), "colour");
+      directions ? edits.remove(pointer, "colour") : edits.set(pointer, scene::to_json(Color{1.0f, 0.3f, 0.2f}), "colour");
     } else if (curves.color) {
       edit_color(edits, "colour", *curves.color, pointer);
     }
-    edit_plain_keys(edits, "curves", curves.where, {});
+    edit_simple_keys(edits, "curves", curves.where, {});
     end_item();
   });
 }
@@ -29,20 +29,20 @@ void draw_curves(PanelContext& context) {
 void draw_points(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints& points) {
-    if (!begin_item(edits, points.where, !is_hidden(scene.world, e), "points", name_of(scene, e))) return;
+  scene.entities.each<scene::PointsSource>([&](scene::Entity e, const scene::PointsSource& points) {
+    if (!begin_item(edits, points.where, !is_hidden(scene.entities, e), "points", entity_name(scene, e))) return;
     if (points.color_by)
       edit_color_scale(edits, points.where, *points.color_by);
     else
-      edit_color(edits, "colour", points.color, pointer_of(points.where) + "/color");
-    edit_plain_keys(edits, "points", points.where, {});
+      edit_color(edits, "colour", points.color, item_pointer(points.where) + "/color");
+    edit_simple_keys(edits, "points", points.where, {});
     end_item();
   });
 }
 
 }  // namespace
 
-Panel points_panel() { return {"Points", false, draw_points, has_any<scene::DrawnPoints>}; }
-Panel curves_panel() { return {"Curves", false, draw_curves, has_any<scene::DrawnCurves>}; }
+Panel points_panel() { return {"Points", false, draw_points, has_any<scene::PointsSource>}; }
+Panel curves_panel() { return {"Curves", false, draw_curves, has_any<scene::CurvesSource>}; }
 
 }  // namespace catena::app

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "engine/app/hand/open_hand.h"
-#include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/haptics/haptic_device_setup.h"
 #include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/panels/property_widgets.h"
 
 namespace catena::app {
 
@@ -12,29 +12,29 @@ namespace {
 
 void draw_choice(PanelContext& context) {
   static std::vector<haptics::DeviceInfo> found;  // the bus is looked at when the list opens, not with every picture
-  const std::string& now = context.hand.device_name();
+  const std::string& now = context.haptic_session.device_name();
   if (ImGui::BeginCombo("##device", now.c_str(), ImGuiComboFlags_HeightLarge)) {
     if (ImGui::IsWindowAppearing()) found = haptics::list_devices();
     for (const haptics::DeviceInfo& info : found) {
       if (info.name.find(".csv") != std::string::npos) continue;  // needs a file: --device
       // the window itself is the mouse's
-      const bool present = info.present || info.name == "mouse";
+      const bool present = info.available || info.name == "mouse";
       if (ImGui::Selectable(info.name.c_str(), info.name == now, present ? 0 : ImGuiSelectableFlags_Disabled))
-        context.ask(ChooseDevice{info.name});
+        context.push_command(SelectDevice{info.name});
       if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", info.detail.c_str());
     }
     ImGui::EndCombo();
   }
-  tip("what holds the probe; a click looks at what is plugged in. Its forces are off at first");
+  show_tooltip("what holds the probe; a click looks at what is plugged in. Its forces are off at first");
 }
 
 void draw_capabilities(const haptics::DeviceCapabilities& c) {
   ImGui::Text("%s", c.name.c_str());
-  std::string text = fmt::format("{:.3g} cm, {} button{}", 100 * c.workspace_m, c.buttons, c.buttons == 1 ? "" : "s");
+  std::string text = fmt::format("{:.3g} cm, {} button{}", 100 * c.workspace_m, c.button_count, c.button_count == 1 ? "" : "s");
   text += c.max_force_n > 0 ? fmt::format(", {:.3g} N", c.max_force_n) : ", no force";
   if (c.has_orientation) text += c.max_torque_nm > 0 ? fmt::format(", turns, {:.2g} N m", c.max_torque_nm) : ", turns";
   ImGui::TextDisabled("%s", text.c_str());
-  tip("edge of the cube that the hand reaches, buttons, the maximum force");
+  show_tooltip("edge of the cube that the hand reaches, buttons, the maximum force");
 }
 
 void draw_buttons(std::uint32_t pressed, int count) {
@@ -52,41 +52,40 @@ void draw_buttons(std::uint32_t pressed, int count) {
 }
 
 void draw_device(PanelContext& context) {
-  HandHost& hand = context.hand;
-  const haptics::DeviceCapabilities& c = hand.hand().device->capabilities();
-  const exchange::HapticState& felt = hand.felt();
+  HapticSession& hand = context.haptic_session;
+  const haptics::DeviceCapabilities& c = hand.device().device->capabilities();
+  const HapticState& felt = hand.latest_state();
   draw_choice(context);
   draw_capabilities(c);
-  if (const std::string text = hand.hand().device->status_text(); !text.empty()) ImGui::TextWrapped("%s", text.c_str());
-  if (!hand.note().empty()) ImGui::TextWrapped("%s", hand.note().c_str());
+  if (const std::string text = hand.device().device->status_text(); !text.empty()) ImGui::TextWrapped("%s", text.c_str());
+  if (!hand.open_notice().empty()) ImGui::TextWrapped("%s", hand.open_notice().c_str());
 
   if (!hand.is_mouse() && c.max_force_n > 0) {
-    bool on = hand.forces();
-    if (ImGui::Checkbox("Forces (F)", &on)) context.ask(Action::forces);
-    tip("the device may push; what a force does is felt at once");
+    bool on = hand.forces_enabled();
+    if (ImGui::Checkbox("Forces (F)", &on)) context.push_command(Action::toggle_forces);
+    show_tooltip("the device may push; what a force does is felt at once");
   }
-  if (haptics::has_place(haptics::device_type_of(hand.device_name()))) {
-    if (ImGui::Button("Register in the room (G)")) context.ask(Action::register_device);
-    tip(hand.room() ? "where it stands in the headset's room is known; touch three places again"
-                    : "with a headset: touch three places, which says where it stands");
+  if (haptics::is_stationary(haptics::parse_device_type(hand.device_name()))) {
+    if (ImGui::Button("Register in the room (G)")) context.push_command(Action::register_device);
+    show_tooltip(hand.room() ? "where it stands in the headset's room is known; touch three places again"
+                             : "with a headset: touch three places, which says where it stands");
   }
   const Vec3 at = device_from_world(context.scene.scene().workspace, felt.probe);
   ImGui::Text("At %.1f %.1f %.1f mm", 1e3 * at.x, 1e3 * at.y, 1e3 * at.z);
-  tip("the probe in the device's own axes");
+  show_tooltip("the probe in the device's own axes");
   ImGui::Text("Force %.2f N  (%.2f %.2f %.2f)", norm(felt.force_n), felt.force_n.x, felt.force_n.y, felt.force_n.z);
-  tip("on the hand now, world axes");
+  show_tooltip("on the hand now, world axes");
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", exchange::force_state_word(felt.force_state));
-  draw_buttons(felt.buttons, c.buttons);
+  ImGui::TextDisabled("%s", to_string(felt.force_state));
+  draw_buttons(felt.buttons, c.button_count);
 
   ImGui::Separator();
-  const haptics::ServoReport servo = hand.servo().report();
+  const haptics::ServoStats servo = hand.servo().stats();
   ImGui::Text("%.0f Hz, %.0f us median", servo.rate_hz, servo.compute.p50_us);
-  tip("ticks a second; what one takes");
+  show_tooltip("ticks a second; what one takes");
   ImGui::Text("%llu deadlines missed, %llu watchdog trips", static_cast<unsigned long long>(servo.missed_deadlines),
               static_cast<unsigned long long>(servo.watchdog_trips));
-  if (felt.condition != exchange::Condition::normal)
-    ImGui::TextColored({1, 0.7f, 0.35f, 1}, "%s", exchange::condition_word(felt.condition));
+  if (felt.condition != TickCondition::normal) ImGui::TextColored({1, 0.7f, 0.35f, 1}, "%s", to_string(felt.condition));
   const haptics::RealtimeReport& r = servo.realtime;
   ImGui::TextDisabled("%s priority, memory %s, %s", r.fifo ? "fixed" : "normal", r.locked ? "locked" : "not locked",
                       r.cpu >= 0 ? fmt::format("core {}", r.cpu).c_str() : "any core");

@@ -19,7 +19,7 @@ void draw_help(ViewState& state) {
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   centre_next();
   ImGui::SetNextWindowSizeConstraints({0, 0}, view.WorkSize);
-  if (ImGui::Begin("Keys and buttons", &state.help, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+  if (ImGui::Begin("Keys and buttons", &state.show_help, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
     std::string_view section;
     for (const KeyHelp& key : key_list()) {
       if (section != key.section) {
@@ -29,7 +29,7 @@ void draw_help(ViewState& state) {
       }
       ImGui::TextUnformatted(key.keys.c_str());
       ImGui::SameLine(190);
-      ImGui::TextUnformatted(key.does.c_str());
+      ImGui::TextUnformatted(key.description.c_str());
     }
   }
   ImGui::End();
@@ -53,12 +53,12 @@ bool button(const char* label, ImGuiKey_ key) {
 /// A button that answers the question: the command is asked for, and the question goes.
 void answer(PanelContext& context, const char* label, ImGuiKey_ key, Command command) {
   if (!button(label, key)) return;
-  context.ask(std::move(command));
+  context.push_command(std::move(command));
   ImGui::CloseCurrentPopup();
 }
 
 void draw_unsaved(PanelContext& context) {
-  const std::optional<Leaving>& leaving = context.state.ask.unsaved;
+  const std::optional<PendingLeave>& leaving = context.state.dialogs.unsaved_changes;
   if (!begin_question("Before this scene is left", leaving.has_value())) return;
   if (!leaving) {
     ImGui::CloseCurrentPopup();
@@ -66,20 +66,20 @@ void draw_unsaved(PanelContext& context) {
   }
   const bool modified = context.scene.document().is_modified();
   if (modified) ImGui::Text("%s has changes that are not saved.", file_name_of(context.scene.document().path()).c_str());
-  if (leaving->ends() && context.hand.recording().running())
-    ImGui::Text("%s is being recorded: quitting ends it.", file_name_of(context.hand.recording().path()).c_str());
+  if (leaving->quits() && context.haptic_session.recording().is_recording())
+    ImGui::Text("%s is being recorded: quitting ends it.", file_name_of(context.haptic_session.recording().path()).c_str());
   ImGui::Spacing();
   if (modified) {
-    answer(context, "Save", ImGuiKey_Enter, AnswerToUnsaved::save);
+    answer(context, "Save", ImGuiKey_Enter, UnsavedChangesChoice::save);
     ImGui::SetItemDefaultFocus();
     ImGui::SameLine();
-    answer(context, "Discard", kNoKey, AnswerToUnsaved::discard);
+    answer(context, "Discard", kNoKey, UnsavedChangesChoice::discard);
   } else {
-    answer(context, "Quit", ImGuiKey_Enter, AnswerToUnsaved::discard);
+    answer(context, "Quit", ImGuiKey_Enter, UnsavedChangesChoice::discard);
     ImGui::SetItemDefaultFocus();
   }
   ImGui::SameLine();
-  answer(context, "Cancel", ImGuiKey_Escape, AnswerToUnsaved::cancel);
+  answer(context, "Cancel", ImGuiKey_Escape, UnsavedChangesChoice::cancel);
   ImGui::EndPopup();
 }
 
@@ -92,55 +92,55 @@ std::string words_of_time(std::int64_t at_s) {
 }
 
 void draw_left(PanelContext& context, bool wanted) {
-  const std::optional<LeftDraft>& left = context.state.ask.left;
+  const std::optional<OrphanedAutosave>& left = context.state.dialogs.recovery;
   if (!begin_question("Unsaved changes of an earlier run", wanted)) return;
   if (!left) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
   ImGui::Text("%s had changes that were not saved when its window ended", file_name_of(context.scene.document().path()).c_str());
-  ImGui::Text("(%s).", words_of_time(left->at_s).c_str());
+  ImGui::Text("(%s).", words_of_time(left->saved_at_s).c_str());
   ImGui::Spacing();
-  answer(context, "Restore", ImGuiKey_Enter, AnswerToLeft::restore);
+  answer(context, "Restore", ImGuiKey_Enter, RecoveryChoice::restore);
   ImGui::SetItemDefaultFocus();
   ImGui::SameLine();
-  answer(context, "Discard", kNoKey, AnswerToLeft::discard);
+  answer(context, "Discard", kNoKey, RecoveryChoice::discard);
   ImGui::SameLine();
-  answer(context, "Later", ImGuiKey_Escape, AnswerToLeft::later);
+  answer(context, "Later", ImGuiKey_Escape, RecoveryChoice::later);
   ImGui::EndPopup();
 }
 
 void draw_changed(PanelContext& context, bool wanted) {
-  using OnDisk = scene::Document::OnDisk;
-  const std::optional<OnDisk> changed = context.state.ask.changed;
+  using OnDisk = scene::Document::DiskState;
+  const std::optional<OnDisk> changed = context.state.dialogs.file_conflict;
   if (!begin_question("The file is not as it was read", wanted)) return;
   if (!changed) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
   const std::string name = file_name_of(context.scene.document().path());
-  const char* const what = *changed == OnDisk::changed ? "%s was changed by another program."
-                           : *changed == OnDisk::gone  ? "%s was removed, or renamed, by another program."
-                                                       : "%s is no file any more that can be read.";
+  const char* const what = *changed == OnDisk::changed   ? "%s was changed by another program."
+                           : *changed == OnDisk::missing ? "%s was removed, or renamed, by another program."
+                                                         : "%s is no file any more that can be read.";
   ImGui::Text(what, name.c_str());
   ImGui::Spacing();
-  if (*changed != OnDisk::no_file) {
-    answer(context, *changed == OnDisk::changed ? "Keep mine" : "Write it again", kNoKey, AnswerToChanged::keep_mine);
+  if (*changed != OnDisk::not_a_file) {
+    answer(context, *changed == OnDisk::changed ? "Keep mine" : "Write it again", kNoKey, FileConflictChoice::overwrite);
     ImGui::SameLine();
   }
   if (*changed == OnDisk::changed) {
-    answer(context, "Take theirs", kNoKey, AnswerToChanged::take_theirs);
+    answer(context, "Take theirs", kNoKey, FileConflictChoice::take_disk_version);
     ImGui::SameLine();
   }
-  answer(context, "Save as ..", ImGuiKey_Enter, AnswerToChanged::save_as);
+  answer(context, "Save as ..", ImGuiKey_Enter, FileConflictChoice::save_as);
   ImGui::SetItemDefaultFocus();
   ImGui::SameLine();
-  answer(context, "Cancel", ImGuiKey_Escape, AnswerToChanged::cancel);
+  answer(context, "Cancel", ImGuiKey_Escape, FileConflictChoice::cancel);
   ImGui::EndPopup();
 }
 
 void draw_dropped(PanelContext& context, bool wanted) {
-  const std::optional<std::string>& dropped = context.state.ask.dropped;
+  const std::optional<std::string>& dropped = context.state.dialogs.dropped_file;
   if (!begin_question("A file was dropped", wanted)) return;
   if (!dropped) {
     ImGui::CloseCurrentPopup();
@@ -148,25 +148,26 @@ void draw_dropped(PanelContext& context, bool wanted) {
   }
   ImGui::TextUnformatted(file_name_of(*dropped).c_str());
   ImGui::Spacing();
-  answer(context, "Add to the scene", ImGuiKey_Enter, AnswerToDropped::add);
+  answer(context, "Add to the scene", ImGuiKey_Enter, DroppedFileChoice::add);
   ImGui::SetItemDefaultFocus();
   ImGui::SameLine();
-  answer(context, "Open instead", kNoKey, AnswerToDropped::open);
+  answer(context, "Open instead", kNoKey, DroppedFileChoice::open);
   ImGui::SameLine();
-  answer(context, "Cancel", ImGuiKey_Escape, AnswerToDropped::cancel);
+  answer(context, "Cancel", ImGuiKey_Escape, DroppedFileChoice::cancel);
   ImGui::EndPopup();
 }
 
 }  // namespace
 
 void draw_dialogs(PanelContext& context) {
-  if (context.state.help) draw_help(context.state);
+  if (context.state.show_help) draw_help(context.state);
   // one question at a time
   const ViewState& state = context.state;
   draw_unsaved(context);
-  draw_changed(context, state.ask.changed && !state.ask.unsaved);
-  draw_dropped(context, state.ask.dropped && !state.ask.unsaved && !state.ask.changed);
-  draw_left(context, state.ask.left && !state.ask.unsaved && !state.ask.dropped && !state.ask.changed);
+  draw_changed(context, state.dialogs.file_conflict && !state.dialogs.unsaved_changes);
+  draw_dropped(context, state.dialogs.dropped_file && !state.dialogs.unsaved_changes && !state.dialogs.file_conflict);
+  draw_left(context,
+            state.dialogs.recovery && !state.dialogs.unsaved_changes && !state.dialogs.dropped_file && !state.dialogs.file_conflict);
 }
 
 }  // namespace catena::app

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/app/viewer/edit/new_items.h"
+#include "engine/app/viewer/edit/item_templates.h"
 #include "engine/app/viewer/edit/scene_items.h"
-#include "engine/app/viewer/panels/look_parts.h"
-#include "engine/field/display_range.h"
+#include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/field/field_display_range.h"
 
 namespace catena::app {
 
@@ -22,7 +22,7 @@ std::string bytes_text(std::size_t bytes) {
 
 std::string range_text(const field::AnyField& field) {
   if (field.vector && field.vector->grid() == nullptr) return {};
-  return (field.vector ? "|v| " : "") + catena::range_text(field::display_range(field));
+  return (field.vector ? "|v| " : "") + catena::format_range(field::display_range(field));
 }
 
 void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) {
@@ -34,7 +34,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
   };
   if (source.file) {
     row("file", std::filesystem::path(source.file->path).filename().string());
-    short_tip(source.file->path.c_str());
+    show_short_tooltip(source.file->path.c_str());
   } else {
     row("formula", source.analytic);
   }
@@ -51,25 +51,25 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
 }
 
 /// Its place is kept while the values are being sorted.
-void draw_histogram(const SortedValues& values, const field::AnyField& shown) {
+void draw_histogram(const SortedSamples& values, const field::AnyField& shown) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
   ImGui::Dummy(size);
-  short_tip("how often values occur, logarithmic");
+  show_short_tooltip("how often values occur, logarithmic");
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
   if (!values || values->empty()) return;
   const DisplayRange values_range = field::display_range(shown);
-  const auto range = plot_range(values_range.lo, values_range.hi);
-  draw_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+  const auto range = make_plot_range(values_range.lo, values_range.hi);
+  draw_histogram_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
 }
 
 /// Loads it if need be, then adds the item.
 void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   scene::Scene& scene = context.scene.scene();
-  const auto drawn = scene::use_drawn_field(scene, entity, scene.world.get<scene::FieldSource>(entity).where);
-  if (!drawn) return context.state.say(drawn.error().message, true);
-  const SortedValues values = context.state.look.values.of(scene, entity);
-  const std::string item = new_item(scene, entity, *drawn, as, values ? *values : std::vector<float>());
-  context.edits.set(pointer_of_new(as), item, std::string("new ") + word_of(as));
+  const auto drawn = scene::resolve_rendered_field(scene, entity, scene.entities.get<scene::FieldSource>(entity).where);
+  if (!drawn) return context.state.show_message(drawn.error().message, true);
+  const SortedSamples values = context.state.appearance.histograms.find_or_request(scene, entity);
+  const std::string item = make_item_json(scene, entity, *drawn, as, values ? *values : std::vector<float>());
+  context.edits.set(new_item_pointer(as), item, std::string("new ") + to_string(as));
 }
 
 void draw_buttons(PanelContext& context, scene::Entity entity, const field::AnyField& shown) {
@@ -78,27 +78,27 @@ void draw_buttons(PanelContext& context, scene::Entity entity, const field::AnyF
     if (!can_show(shown, as)) continue;
     if (!first) ImGui::SameLine();
     first = false;
-    if (ImGui::SmallButton(fmt::format("+ {}", word_of(as)).c_str())) show_as(context, entity, as);
-    short_tip(fmt::format("show the field as {}{}",
-                          as == ShowAs::streamlines || as == ShowAs::glyphs ? ""
-                          : as == ShowAs::isosurface                        ? "an "
-                                                                            : "a ",
-                          word_of(as))
-                  .c_str());
+    if (ImGui::SmallButton(fmt::format("+ {}", to_string(as)).c_str())) show_as(context, entity, as);
+    show_short_tooltip(fmt::format("show the field as {}{}",
+                                   as == ShowAs::streamlines || as == ShowAs::glyphs ? ""
+                                   : as == ShowAs::isosurface                        ? "an "
+                                                                                     : "a ",
+                                   to_string(as))
+                           .c_str());
   }
 }
 
 void draw_fields(PanelContext& context) {
   scene::Scene& scene = context.scene.scene();
-  LookState& look = context.state.look;
-  look.values.tidy(scene);
+  AppearanceState& look = context.state.appearance;
+  look.histograms.prune(scene);
   std::vector<scene::Entity> fields;
-  scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource&) { fields.push_back(e); });
+  scene.entities.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource&) { fields.push_back(e); });
   if (fields.empty()) ImGui::TextDisabled("the scene has none");
   for (const scene::Entity e : fields) {
-    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(e);
-    const field::AnyField shown = source.drawn.get() != nullptr ? source.drawn : source.loaded;
-    const std::string name = name_of(scene, e);
+    const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(e);
+    const field::AnyField shown = source.rendered.get() != nullptr ? source.rendered : source.loaded;
+    const std::string name = entity_name(scene, e);
     const char* kind = shown.scalar ? "scalar" : shown.vector ? "vector" : "not loaded";
     ImGui::PushID(name.c_str());
     const bool open = ImGui::TreeNodeEx("##field", fields.size() == 1 ? ImGuiTreeNodeFlags_DefaultOpen : 0, "%s", name.c_str());
@@ -108,9 +108,10 @@ void draw_fields(PanelContext& context) {
       draw_facts(source, shown);
       if (shown.get() == nullptr) {
         if (ImGui::SmallButton("load"))
-          if (auto loaded = scene::use_drawn_field(scene, e, source.where); !loaded) context.state.say(loaded.error().message, true);
+          if (auto loaded = scene::resolve_rendered_field(scene, e, source.where); !loaded)
+            context.state.show_message(loaded.error().message, true);
       } else {
-        if (shown.get()->is_grid()) draw_histogram(look.values.of(scene, e), shown);
+        if (shown.get()->is_grid()) draw_histogram(look.histograms.find_or_request(scene, e), shown);
         draw_buttons(context, e, shown);
       }
       ImGui::TreePop();

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "engine/app/viewer/panels/panel.h"
-#include "engine/app/viewer/shell/file_list.h"
+#include "engine/app/viewer/scene/file_browser.h"
 
 namespace catena::app {
 
@@ -54,7 +54,7 @@ std::string start_folder(const PanelContext& context, bool saves = false) {
 int complete(ImGuiInputTextCallbackData* data) {
   if (data->EventFlag != ImGuiInputTextFlags_CallbackCompletion) return 0;
   const Browser& browser = *static_cast<const Browser*>(data->UserData);
-  const std::string longer = completed(browser.folder, std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen)));
+  const std::string longer = complete_path(browser.folder, std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen)));
   data->DeleteChars(0, data->BufTextLen);
   data->InsertChars(0, longer.c_str());
   return 0;
@@ -118,7 +118,7 @@ bool cancelled() {
 /// A typed folder is gone to; what is no folder is the answer.
 bool is_answer(Browser& browser, std::string& path) {
   if (browser.typed[0] == '\0') return false;
-  path = typed_path(browser.folder, browser.typed.data());
+  path = resolve_typed_path(browser.folder, browser.typed.data());
   std::error_code code;
   if (!fs::is_directory(path, code)) return true;
   browser.go(path.size() > 1 && path.ends_with('/') ? path.substr(0, path.size() - 1) : path);
@@ -130,7 +130,7 @@ bool is_answer(Browser& browser, std::string& path) {
 void draw_open(PanelContext& context) {
   static Browser browser;
   ViewState& state = context.state;
-  if (!begin("Open", state.ask.open, browser, context, "")) return;
+  if (!begin("Open", state.dialogs.show_open, browser, context, "")) return;
   bool chosen = draw_list(browser);
   chosen = draw_typed(browser) || chosen;
   chosen = ImGui::Button("Open", {110, 0}) || chosen;
@@ -138,7 +138,7 @@ void draw_open(PanelContext& context) {
   const bool leaves = cancelled();
   std::string path;
   if (chosen && is_answer(browser, path)) {
-    context.ask(OpenFile{path});
+    context.push_command(OpenFile{path});
     ImGui::CloseCurrentPopup();
   } else if (leaves) {
     ImGui::CloseCurrentPopup();
@@ -150,8 +150,9 @@ void draw_save(PanelContext& context) {
   static Browser browser;
   browser.scenes_only = true;
   ViewState& state = context.state;
-  if (state.ask.save_as) browser.folder = start_folder(context, true);
-  if (!begin("Save as", state.ask.save_as, browser, context, fs::path(context.scene.document().path()).filename().string())) return;
+  if (state.dialogs.show_save_as) browser.folder = start_folder(context, true);
+  if (!begin("Save as", state.dialogs.show_save_as, browser, context, fs::path(context.scene.document().path()).filename().string()))
+    return;
   bool chosen = draw_list(browser);
   chosen = draw_typed(browser) || chosen;
   std::string path;
@@ -165,15 +166,15 @@ void draw_save(PanelContext& context) {
   ImGui::SameLine();
   const bool leaves = cancelled();
   if (chosen && is_answer(browser, path)) {
-    if (!is_scene_name(path)) path += ".json";
+    if (!is_scene_path(path)) path += ".json";
     if (!browser.asks_overwrite && fs::exists(path, code)) {
       browser.asks_overwrite = true;
     } else {
-      context.ask(SaveAs{path});
+      context.push_command(SaveAs{path});
       ImGui::CloseCurrentPopup();
     }
   } else if (leaves) {
-    context.ask(GiveUpSaving{});
+    context.push_command(CancelSave{});
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

@@ -1,9 +1,9 @@
 // Arrows of vectors: of which field, where they stand, how far apart, how long, their colours.
-#include "engine/app/viewer/edit/chain_edit.h"
-#include "engine/app/viewer/panels/look_parts.h"
-#include "engine/field/display_range.h"
-#include "engine/field/grid.h"
-#include "engine/scene/hidden.h"
+#include "engine/app/viewer/edit/chain_editing.h"
+#include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/field/field_display_range.h"
+#include "engine/field/grid/grid.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::app {
 
@@ -17,9 +17,9 @@ struct Stand {
 template <class T>
 void add_stands(const scene::Scene& scene, const std::string& word, const auto& field_of, std::vector<Stand>& stands) {
   int index = 0;
-  scene.world.each<T>([&](scene::Entity, const T& item) {
-    stands.push_back(
-        {"{\"" + word + "\": " + std::to_string(index) + "}", word + " " + std::to_string(index) + ", " + name_of(scene, field_of(item))});
+  scene.entities.each<T>([&](scene::Entity, const T& item) {
+    stands.push_back({"{\"" + word + "\": " + std::to_string(index) + "}",
+                      word + " " + std::to_string(index) + ", " + entity_name(scene, field_of(item))});
     ++index;
   });
 }
@@ -27,42 +27,42 @@ void add_stands(const scene::Scene& scene, const std::string& word, const auto& 
 std::vector<Stand> stands_of(const scene::Scene& scene, const Vec3& middle) {
   std::vector<Stand> stands{{"", "the domain"}};
   add_stands<scene::Slice>(
-      scene, "slice", [](const scene::Slice& slice) { return slice.shown.field; }, stands);
+      scene, "slice", [](const scene::Slice& slice) { return slice.color_by.field; }, stands);
   add_stands<scene::Isosurface>(
       scene, "isosurface", [](const scene::Isosurface& surface) { return surface.field; }, stands);
-  scene.world.each<scene::MeshSource>([&](scene::Entity e, const scene::MeshSource&) {
-    stands.push_back({"{\"mesh\": " + scene::text_of(name_of(scene, e)) + "}", "mesh " + name_of(scene, e)});
+  scene.entities.each<scene::MeshSource>([&](scene::Entity e, const scene::MeshSource&) {
+    stands.push_back({"{\"mesh\": " + scene::to_json(entity_name(scene, e)) + "}", "mesh " + entity_name(scene, e)});
   });
-  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+  scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (widget.spec.kind == widget::Kind::cutting_plane)
-      stands.push_back({"{\"plane\": {\"widget\": " + scene::text_of(name_of(scene, e)) + "}}", "plane of " + name_of(scene, e)});
+      stands.push_back({"{\"plane\": {\"widget\": " + scene::to_json(entity_name(scene, e)) + "}}", "plane of " + entity_name(scene, e)});
   });
   for (int a = 0; a < 3; ++a)
-    stands.push_back({"{\"plane\": {\"axis\": \"" + std::string(1, "xyz"[a]) + "\", \"at\": " + scene::text_of(middle[a]) + "}}",
+    stands.push_back({"{\"plane\": {\"axis\": \"" + std::string(1, "xyz"[a]) + "\", \"at\": " + scene::to_json(middle[a]) + "}}",
                       std::string("plane across ") + "xyz"[a]});
   return stands;
 }
 
 std::string words_of(const scene::Scene& scene, const scene::GlyphSet& set) {
-  using On = scene::GlyphSet::On;
-  switch (set.on) {
+  using On = scene::GlyphSet::Support;
+  switch (set.support) {
     case On::box:
       return set.box ? "a box" : "the domain";
     case On::plane:
-      return set.widget ? "plane of " + name_of(scene, set.widget) : "a plane";
+      return set.widget ? "plane of " + entity_name(scene, set.widget) : "a plane";
     case On::slice:
-      return "slice, " + name_of(scene, scene.world.get<scene::Slice>(set.base).shown.field);
+      return "slice, " + entity_name(scene, scene.entities.get<scene::Slice>(set.support_entity).color_by.field);
     case On::isosurface:
-      return "isosurface, " + name_of(scene, scene.world.get<scene::Isosurface>(set.base).field);
+      return "isosurface, " + entity_name(scene, scene.entities.get<scene::Isosurface>(set.support_entity).field);
     case On::mesh:
-      return "mesh " + name_of(scene, set.base);
+      return "mesh " + entity_name(scene, set.support_entity);
   }
   return {};
 }
 
 void choose_stand(Edits& edits, const scene::Scene& scene, const scene::GlyphSet& set, const Vec3& middle) {
   if (!ImGui::BeginCombo("on", words_of(scene, set).c_str())) return;
-  const std::string pointer = pointer_of(set.where) + "/on";
+  const std::string pointer = item_pointer(set.where) + "/on";
   for (const Stand& stand : stands_of(scene, middle)) {
     if (!ImGui::Selectable(stand.words.c_str())) continue;
     if (!stand.text.empty())
@@ -75,9 +75,9 @@ void choose_stand(Edits& edits, const scene::Scene& scene, const scene::GlyphSet
 
 /// Of a plane or a box of their own.
 void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
-  const std::string pointer = pointer_of(set.where) + "/on";
+  const std::string pointer = item_pointer(set.where) + "/on";
   const double speed = length / 500;
-  if (set.on == scene::GlyphSet::On::box && set.box) {
+  if (set.support == scene::GlyphSet::Support::box && set.box) {
     edit_vector(edits, "lo", pointer + "/box/lo", set.box->lo, speed);
     edit_vector(edits, "hi", pointer + "/box/hi", set.box->hi, speed);
   }
@@ -94,30 +94,31 @@ void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
 
 /// A speed of the field, for the step of a drag.
 double fastest(const scene::Scene& scene, const scene::GlyphSet& set) {
-  const auto& vector = scene.world.get<scene::FieldSource>(set.field).loaded.vector;
+  const auto& vector = scene.entities.get<scene::FieldSource>(set.field).loaded.vector;
   return vector && vector->grid() != nullptr ? field::display_range(*vector->grid()).hi : 1;
 }
 
 void draw_glyphs(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
-    if (!begin_item(edits, set.where, !is_hidden(scene.world, e), "glyphs", name_of(scene, set.field))) return;
-    const std::string pointer = pointer_of(set.where);
-    std::string field = name_of(scene, set.field);
-    if (choose("field", fields_of(scene, true), field)) edits.set(pointer + "/field", scene::text_of(field), "field");
-    const field::Field* loaded = scene.world.get<scene::FieldSource>(set.field).loaded.get();
-    const double length = loaded != nullptr ? loaded->length() : 1;
-    choose_stand(edits, scene, set, loaded != nullptr ? loaded->world_bounds().centre() : Vec3(0.0));
+  scene.entities.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
+    if (!begin_item(edits, set.where, !is_hidden(scene.entities, e), "glyphs", entity_name(scene, set.field))) return;
+    const std::string pointer = item_pointer(set.where);
+    std::string field = entity_name(scene, set.field);
+    if (choose_from_list("field", list_field_names(scene, true), field)) edits.set(pointer + "/field", scene::to_json(field), "field");
+    const field::Field* loaded = scene.entities.get<scene::FieldSource>(set.field).loaded.get();
+    const double length = loaded != nullptr ? loaded->domain_length() : 1;
+    choose_stand(edits, scene, set, loaded != nullptr ? loaded->world_bounds().center() : Vec3(0.0));
     edit_stand(edits, set, length);
-    edit_fitted(edits, "spacing", set.where, set.spacing, 0.25 * length,
-                "of neighbours, world units; at the left end: fitted to the domain");
-    edit_fitted(edits, "length", set.where, set.length, 0.5 * length, "of the longest, world units; at the left end: the spacing");
-    edit_fitted(edits, "radius", set.where, set.radius, 0.05 * length, "of the longest one's shaft, world units; at the left end: fitted");
+    edit_auto_length(edits, "spacing", set.where, set.spacing, 0.25 * length,
+                     "of neighbours, world units; at the left end: fitted to the domain");
+    edit_auto_length(edits, "length", set.where, set.length, 0.5 * length, "of the longest, world units; at the left end: the spacing");
+    edit_auto_length(edits, "radius", set.where, set.radius, 0.05 * length,
+                     "of the longest one's shaft, world units; at the left end: fitted");
     edit_number(edits, {"min_speed", pointer + "/min_speed", set.min_speed, 0, 1e30, 0.005 * fastest(scene, set)});
-    short_tip("slower vectors have no arrow");
+    show_short_tooltip("slower vectors have no arrow");
     edit_colors(edits, scene, set.where, set.color, set.color_by, {"speed"});
-    edit_plain_keys(edits, "glyphs", set.where);
+    edit_simple_keys(edits, "glyphs", set.where);
     end_item();
   });
 }

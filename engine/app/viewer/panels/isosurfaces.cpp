@@ -1,8 +1,8 @@
 // Isosurfaces: the level on the field's histogram, colour, opacity. The hand's surface follows the one that is seen.
 #include "engine/app/viewer/edit/scene_items.h"
-#include "engine/app/viewer/panels/look_parts.h"
-#include "engine/field/display_range.h"
-#include "engine/scene/hidden.h"
+#include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/field/field_display_range.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::app {
 
@@ -15,38 +15,38 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
     return;
   }
   scene::Scene& scene = context.scene.scene();
-  const scene::FieldSource& source = scene.world.get<scene::FieldSource>(surface.field);
-  const field::AnyField& field = source.drawn.get() != nullptr ? source.drawn : source.loaded;
+  const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(surface.field);
+  const field::AnyField& field = source.rendered.get() != nullptr ? source.rendered : source.loaded;
   double level = surface.level;
   bool moved = false;
   if (field.scalar) {
     const DisplayRange range = field::display_range(*field.scalar);
-    moved =
-        histogram_slider(context, "##level", context.state.look.values.of(scene, surface.field), range.lo, range.hi, surface.color, level);
+    moved = histogram_slider(context, "##level", context.state.appearance.histograms.find_or_request(scene, surface.field), range.lo,
+                             range.hi, surface.color, level);
   }
-  moved = typed_number("level", level, "the field's value on the surface; Enter") || moved;
-  const std::vector<std::string> felt = felt_levels(scene, name_of(scene, surface.field), surface.level);
+  moved = input_number("level", level, "the field's value on the surface; Enter") || moved;
+  const std::vector<std::string> felt = find_link_levels(scene, entity_name(scene, surface.field), surface.level);
   if (!felt.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("felt");
-    short_tip("a link of the chain lies on this surface: its level goes along");
+    show_short_tooltip("a link of the chain lies on this surface: its level goes along");
   }
   if (!moved) return;
-  edits.drag(level_edits(scene, surface, level), "isolevel");
+  edits.drag(make_level_edits(scene, surface, level), "isolevel");
 }
 
 void draw_isosurfaces(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
-    if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "isosurface", name_of(scene, surface.field))) return;
-    const std::string pointer = pointer_of(surface.where);
+  scene.entities.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
+    if (!begin_item(edits, surface.where, !is_hidden(scene.entities, e), "isosurface", entity_name(scene, surface.field))) return;
+    const std::string pointer = item_pointer(surface.where);
     draw_level(context, edits, surface);
     if (surface.color_by)
-      ImGui::TextDisabled("coloured by %s", name_of(scene, surface.color_by->field).c_str());
+      ImGui::TextDisabled("coloured by %s", entity_name(scene, surface.color_by->field).c_str());
     else
       edit_color(edits, "colour", surface.color, pointer + "/color");
-    edit_plain_keys(edits, "isosurfaces", surface.where);
+    edit_simple_keys(edits, "isosurfaces", surface.where);
     end_item();
   });
 }

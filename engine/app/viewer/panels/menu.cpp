@@ -9,22 +9,22 @@ namespace {
 
 /// Another word than the command's own: "Undo isolevel".
 void entry(PanelContext& context, Action action, const std::string& words, bool checked = false, bool enabled = true) {
-  if (ImGui::MenuItem(words.c_str(), key_words(action).c_str(), checked, enabled)) context.ask(action);
+  if (ImGui::MenuItem(words.c_str(), shortcut_label(action).c_str(), checked, enabled)) context.push_command(action);
 }
-void entry(PanelContext& context, Action action, bool checked = false) { entry(context, action, menu_words(action), checked); }
+void entry(PanelContext& context, Action action, bool checked = false) { entry(context, action, menu_label(action), checked); }
 
 void draw_file_menu(PanelContext& context) {
   if (!ImGui::BeginMenu("File")) return;
   entry(context, Action::open);
-  if (ImGui::BeginMenu("Open recent", !context.state.recent.empty())) {
-    draw_recent(context);
+  if (ImGui::BeginMenu("Open recent", !context.state.recent_files.empty())) {
+    draw_recent_files(context);
     ImGui::EndMenu();
   }
   entry(context, Action::save);
   entry(context, Action::save_as);
   ImGui::Separator();
-  entry(context, Action::picture);
-  entry(context, Action::window_picture);
+  entry(context, Action::save_image);
+  entry(context, Action::save_window_image);
   ImGui::Separator();
   entry(context, Action::quit);
   ImGui::EndMenu();
@@ -33,32 +33,33 @@ void draw_file_menu(PanelContext& context) {
 void draw_edit_menu(PanelContext& context) {
   if (!ImGui::BeginMenu("Edit")) return;
   const scene::Document& document = context.scene.document();
-  const auto with = [](Action action, bool can, const std::string& what) { return menu_words(action) + (can ? " " + what : ""); };
+  const auto with = [](Action action, bool can, const std::string& what) { return menu_label(action) + (can ? " " + what : ""); };
   const bool undo = document.can_undo(), redo = document.can_redo();
-  entry(context, Action::undo, with(Action::undo, undo, document.undo_what()), false, undo);
-  entry(context, Action::redo, with(Action::redo, redo, document.redo_what()), false, redo);
+  entry(context, Action::undo, with(Action::undo, undo, document.undo_label()), false, undo);
+  entry(context, Action::redo, with(Action::redo, redo, document.redo_label()), false, redo);
   ImGui::EndMenu();
 }
 
 void draw_view_menu(PanelContext& context) {
   const ViewState& state = context.state;
-  const Controls& controls = context.controls;
+  const Navigation& controls = context.navigation;
   if (!ImGui::BeginMenu("View")) return;
-  entry(context, Action::panels, state.panels);
-  entry(context, Action::full_screen, state.full_screen);
+  entry(context, Action::toggle_panels, state.show_panels);
+  entry(context, Action::toggle_fullscreen, state.is_fullscreen);
   ImGui::Separator();
-  entry(context, Action::first_view);
-  entry(context, Action::fit);
+  entry(context, Action::reset_view);
+  entry(context, Action::fit_view);
   if (ImGui::BeginMenu("Along")) {
-    for (const Action action : {Action::along_x, Action::along_y, Action::along_z, Action::against_x, Action::against_y, Action::against_z})
+    for (const Action action : {Action::view_along_plus_x, Action::view_along_plus_y, Action::view_along_plus_z, Action::view_along_minus_x,
+                                Action::view_along_minus_y, Action::view_along_minus_z})
       entry(context, action);
     ImGui::EndMenu();
   }
-  entry(context, Action::projection, controls.view.orthographic);
+  entry(context, Action::toggle_projection, controls.view.orthographic);
   ImGui::Separator();
-  entry(context, Action::turntable, controls.turntable);
-  entry(context, Action::fly, controls.fly);
-  entry(context, Action::hand_mode, controls.hand_mode);
+  entry(context, Action::toggle_turntable, controls.turntable);
+  entry(context, Action::toggle_fly, controls.fly);
+  entry(context, Action::toggle_probe_mode, controls.probe_mode);
   ImGui::EndMenu();
 }
 
@@ -70,7 +71,7 @@ void draw_menu(PanelContext& context) {
   draw_edit_menu(context);
   draw_view_menu(context);
   if (ImGui::BeginMenu("Help")) {
-    entry(context, Action::help);
+    entry(context, Action::toggle_help);
     ImGui::EndMenu();
   }
   ImGui::EndMainMenuBar();

@@ -23,14 +23,14 @@ const std::vector<Panel>& panels_in_order() {
 void draw_side(PanelContext& context) {
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   ImGui::SetNextWindowPos(view.WorkPos);
-  ImGui::SetNextWindowSize({kSideWidth, view.WorkSize.y - ImGui::GetFrameHeightWithSpacing()});
+  ImGui::SetNextWindowSize({kSidePanelWidth, view.WorkSize.y - ImGui::GetFrameHeightWithSpacing()});
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                       ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus;
   if (ImGui::Begin("##side", nullptr, kFixed)) {
-    ImGui::PushItemWidth(0.55f * kSideWidth);
+    ImGui::PushItemWidth(0.55f * kSidePanelWidth);
     for (const Panel& panel : panels_in_order()) {
-      if (panel.wanted != nullptr && !panel.wanted(context)) continue;
-      ImGui::SetNextItemOpen(panel.open_at_first, ImGuiCond_Once);
+      if (panel.is_relevant != nullptr && !panel.is_relevant(context)) continue;
+      ImGui::SetNextItemOpen(panel.is_initially_open, ImGuiCond_Once);
       if (!ImGui::CollapsingHeader(panel.title)) continue;
       ImGui::PushID(panel.title);
       panel.draw(context);
@@ -43,22 +43,23 @@ void draw_side(PanelContext& context) {
 
 }  // namespace
 
-void ViewState::say(std::string text, bool is_error) {
+void ViewState::show_message(std::string text, bool is_error) {
   messages.push_back({std::move(text), is_error, now_ns()});
-  while (messages.size() > kMessages) messages.pop_front();
+  while (messages.size() > kMaxMessages) messages.pop_front();
 }
 
-Edges interface_edges() { return {kSideWidth, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
+Insets interface_insets() { return {kSidePanelWidth, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
 
 void draw_interface(PanelContext& context) {
   ViewState& state = context.state;
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) ++state.edit.gesture;
   // without panels the menu comes down where the pointer looks for it
-  const bool looked_for = state.pointer_y < ImGui::GetFrameHeight() && state.pointer_y >= 0 && !state.pointer_pressed && state.pointer_seen;
-  if (state.panels || looked_for || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) draw_menu(context);
-  if (state.panels) draw_side(context);
+  const bool looked_for =
+      state.pointer_y < ImGui::GetFrameHeight() && state.pointer_y >= 0 && !state.pointer_pressed && state.pointer_has_moved;
+  if (state.show_panels || looked_for || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) draw_menu(context);
+  if (state.show_panels) draw_side(context);
   draw_status(context);
-  draw_start(context);
+  draw_welcome(context);
   draw_dialogs(context);
   draw_file_dialogs(context);
 }

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "engine/app/viewer/panels/edit_items.h"
 #include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/panels/property_widgets.h"
 
 namespace catena::app {
 
@@ -22,16 +22,16 @@ std::string words_of(const Quality& q) {
 }
 
 void draw_goal(PanelContext& context) {
-  const Quality& now = context.pacing.quality();
+  const Quality& now = context.scheduler.quality();
   const bool time = now.goal && now.goal->kind == Goal::Kind::time, error = now.goal && now.goal->kind == Goal::Kind::error;
   const auto ask = [&](const std::string& words) {
-    if (auto quality = parse_quality(words)) context.ask(ChooseQuality{*quality});
+    if (auto quality = parse_quality(words)) context.push_command(SetQuality{*quality});
   };
   if (ImGui::RadioButton("time", time)) ask("time=50");
-  tip("the best picture that comes within so many milliseconds, and better ones while nothing moves");
+  show_tooltip("the best picture that comes within so many milliseconds, and better ones while nothing moves");
   ImGui::SameLine();
   if (ImGui::RadioButton("error", error)) ask("error=1");
-  tip("at rest, until the picture's estimated error is this small (root mean square, 1/255)");
+  show_tooltip("at rest, until the picture's estimated error is this small (root mean square, 1/255)");
   const std::string words = words_of(now);
   for (const char* word : {"draft", "balanced", "reference"}) {
     if (word[0] != 'd') ImGui::SameLine();
@@ -56,22 +56,22 @@ void draw_memory(const render::RenderStats& stats) {
   const double share = stats.gpu_budget > 0 ? static_cast<double>(stats.gpu_bytes) / static_cast<double>(stats.gpu_budget) : 0;
   const std::string text = megabytes(stats.gpu_bytes) + " of " + megabytes(stats.gpu_budget);
   ImGui::ProgressBar(static_cast<float>(share), {-1, 0}, text.c_str());
-  tip("memory held on " + stats.device + ", and the most that may be (--gpu-memory)");
-  for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) ImGui::TextWrapped("%s", coarser.words().c_str());
-  for (const std::string& note : stats.notes) ImGui::TextWrapped("%s", note.c_str());
+  show_tooltip("memory held on " + stats.device + ", and the most that may be (--gpu-memory)");
+  for (const render::GridDownsampling& coarser : stats.downsampled_grids) ImGui::TextWrapped("%s", coarser.message().c_str());
+  for (const std::string& note : stats.warnings) ImGui::TextWrapped("%s", note.c_str());
 }
 
 void draw_quality(PanelContext& context) {
   draw_goal(context);
-  ImGui::TextWrapped("%s", context.pacing.words().c_str());
-  if (const auto rmse = context.pacing.rmse())
+  ImGui::TextWrapped("%s", context.scheduler.status_text().c_str());
+  if (const auto rmse = context.scheduler.rmse())
     ImGui::Text("error now about %.2f / 255", *rmse);
   else
     ImGui::TextDisabled("error: once it rests");
-  tip("against converged rays, over all pixels");
-  context.ask(EstimateError{});
+  show_tooltip("against converged rays, over all pixels");
+  context.push_command(EstimateImageError{});
   ImGui::Separator();
-  draw_memory(context.screen.renderer().stats());
+  draw_memory(context.presenter.renderer().stats());
 }
 
 }  // namespace

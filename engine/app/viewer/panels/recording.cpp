@@ -6,15 +6,15 @@
 #include <cstring>
 #include <filesystem>
 
-#include "engine/app/viewer/panels/edit_items.h"
 #include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/panels/property_widgets.h"
 
 namespace catena::app {
 
 namespace {
 
 /// The first name that is free, beside the scene.
-std::string free_name(const std::string& scene_path) {
+std::string unused_file_name(const std::string& scene_path) {
   const std::filesystem::path scene(scene_path);
   const std::filesystem::path base = scene.parent_path() / scene.stem();
   std::error_code ignored;
@@ -25,32 +25,32 @@ std::string free_name(const std::string& scene_path) {
 }
 
 void draw_recording(PanelContext& context) {
-  const Recording& recording = context.hand.recording();
+  const Recording& recording = context.haptic_session.recording();
   static char name[1024] = "";
-  if (!recording.running()) {
+  if (!recording.is_recording()) {
     if (name[0] == 0) {
-      const std::string proposed = free_name(context.scene.document().path());
+      const std::string proposed = unused_file_name(context.scene.document().path());
       std::strncpy(name, proposed.c_str(), sizeof name - 1);
     }
     ImGui::SetNextItemWidth(-1);
     const bool enter = ImGui::InputText("##file", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue);
-    tip("the recording, .catlog");
+    show_tooltip("the recording, .catlog");
     // what is there is replaced by a click on a button that says so, never by Enter
     std::error_code ignored;
     const bool exists = name[0] != 0 && std::filesystem::exists(name, ignored);
     const bool clicked = ImGui::Button(exists ? "Replace the file" : "Record");
-    if (name[0] != 0 && (clicked || (enter && !exists))) context.ask(Record{name});
-    tip(exists ? "a file of that name is there: the recording takes its place"
-               : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
+    if (name[0] != 0 && (clicked || (enter && !exists))) context.push_command(SetRecording{name});
+    show_tooltip(exists ? "a file of that name is there: the recording takes its place"
+                        : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
     return;
   }
-  // Stop is where Record was
+  // Stop is where SetRecording was
   const haptics::log::LogStatus status = recording.status();
   ImGui::SetNextItemWidth(-1);
   std::string path = recording.path();
   ImGui::InputText("##file", path.data(), path.size() + 1, ImGuiInputTextFlags_ReadOnly);
   if (ImGui::Button("Stop")) {
-    context.ask(Record{});
+    context.push_command(SetRecording{});
     name[0] = 0;
   }
   const int s = static_cast<int>(recording.seconds());

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/viewer/edit/feel.h"
-#include "engine/app/viewer/panels/look_parts.h"
-#include "engine/scene/hidden.h"
+#include "engine/app/viewer/edit/haptic_binding.h"
+#include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/scene/visibility.h"
 
 namespace catena::app {
 
@@ -12,15 +12,15 @@ namespace {
 
 /// The slice's edits, and those of the links that feel its plane: they lie on the new one.
 TextEdits with_links(const scene::Scene& scene, const scene::Slice& slice, TextEdits edits, const Vec3& point, const Vec3& normal) {
-  for (const std::string& link : felt_planes(scene, slice.point, slice.normal)) {
-    edits.push_back({link + "/point", scene::text_of(point)});
-    edits.push_back({link + "/normal", scene::text_of(normal)});
+  for (const std::string& link : find_coplanar_links(scene, slice.point, slice.normal)) {
+    edits.push_back({link + "/point", scene::to_json(point)});
+    edits.push_back({link + "/normal", scene::to_json(normal)});
   }
   return edits;
 }
 
 void draw_plane(Edits& edits, const scene::Scene& scene, const scene::Slice& slice, const field::Field& field) {
-  const std::string pointer = pointer_of(slice.where);
+  const std::string pointer = item_pointer(slice.where);
   if (slice.where.find("widget") != nullptr) {
     ImGui::TextDisabled("the plane follows a widget");
     return;
@@ -36,23 +36,23 @@ void draw_plane(Edits& edits, const scene::Scene& scene, const scene::Slice& sli
       return scene::Document::Edit{pointer + "/" + key, std::move(value)};
     };
     if (which == 3) {
-      edits.set({edit("axis", std::nullopt), edit("at", std::nullopt), edit("point", scene::text_of(slice.point)),
-                 edit("normal", scene::text_of(slice.normal))},
+      edits.set({edit("axis", std::nullopt), edit("at", std::nullopt), edit("point", scene::to_json(slice.point)),
+                 edit("normal", scene::to_json(slice.normal))},
                 "slice");
       return;
     }
     Vec3 at(0.0), normal(0.0);
     normal[which] = 1;
     at[which] =
-        free ? std::clamp(slice.point[which], box.lo[which], box.hi[which]) : rounded_in(middle[which], box.lo[which], box.hi[which]);
+        free ? std::clamp(slice.point[which], box.lo[which], box.hi[which]) : round_within(middle[which], box.lo[which], box.hi[which]);
     edits.set(with_links(scene, slice,
                          {edit("point", std::nullopt), edit("normal", std::nullopt),
-                          edit("axis", scene::text_of(std::string(1, "xyz"[which]))), edit("at", scene::text_of(at[which]))},
+                          edit("axis", scene::to_json(std::string(1, "xyz"[which]))), edit("at", scene::to_json(at[which]))},
                          at, normal),
               "slice");
     return;
   }
-  short_tip("the axis across which the slice lies");
+  show_short_tooltip("the axis across which the slice lies");
   if (!free) {
     ImGui::SameLine();
     const double lo = box.lo[which], hi = box.hi[which];
@@ -61,27 +61,27 @@ void draw_plane(Edits& edits, const scene::Scene& scene, const scene::Slice& sli
     if (ImGui::SliderScalar("##at", ImGuiDataType_Double, &at, &lo, &hi, "%.5g",
                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat)) {
       Vec3 to = slice.point;
-      to[which] = std::clamp(rounded_in(at, lo, hi), lo, hi);
-      edits.drag(with_links(scene, slice, {{pointer + "/at", scene::text_of(to[which])}}, to, slice.normal), "slice");
+      to[which] = std::clamp(round_within(at, lo, hi), lo, hi);
+      edits.drag(with_links(scene, slice, {{pointer + "/at", scene::to_json(to[which])}}, to, slice.normal), "slice");
     }
     return;
   }
   double point[3] = {slice.point.x, slice.point.y, slice.point.z}, normal[3] = {slice.normal.x, slice.normal.y, slice.normal.z};
-  const auto step = static_cast<float>(field.length() / 500);
+  const auto step = static_cast<float>(field.domain_length() / 500);
   if (ImGui::DragScalarN("point", ImGuiDataType_Double, point, 3, step, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat)) {
     Vec3 to;
-    for (int k = 0; k < 3; ++k) to[k] = rounded_in(point[k], 0, field.length(), 20000);
-    edits.drag(with_links(scene, slice, {{pointer + "/point", scene::text_of(to)}}, to, slice.normal), "slice");
+    for (int k = 0; k < 3; ++k) to[k] = round_within(point[k], 0, field.domain_length(), 20000);
+    edits.drag(with_links(scene, slice, {{pointer + "/point", scene::to_json(to)}}, to, slice.normal), "slice");
   }
   if (ImGui::DragScalarN("normal", ImGuiDataType_Double, normal, 3, 0.005f, nullptr, nullptr, "%.3f", ImGuiSliderFlags_NoRoundToFormat)) {
     Vec3 to;
-    for (int k = 0; k < 3; ++k) to[k] = rounded_in(normal[k], 0, 1, 1000);
-    if (max_abs(to) > 0) edits.drag(with_links(scene, slice, {{pointer + "/normal", scene::text_of(to)}}, slice.point, to), "slice");
+    for (int k = 0; k < 3; ++k) to[k] = round_within(normal[k], 0, 1, 1000);
+    if (max_abs(to) > 0) edits.drag(with_links(scene, slice, {{pointer + "/normal", scene::to_json(to)}}, slice.point, to), "slice");
   }
 }
 
 void draw_contours(Edits& edits, const scene::Slice& slice) {
-  const std::string pointer = pointer_of(slice.where) + "/contours";
+  const std::string pointer = item_pointer(slice.where) + "/contours";
   bool on = slice.contours.has_value();
   if (ImGui::Checkbox("contours", &on)) {
     if (on)
@@ -101,8 +101,8 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
       edits.drag(pointer + "/count", std::to_string(count), "contours");
   } else if (slice.contours->spacing > 0) {
     double spacing = slice.contours->spacing;
-    if (typed_number("##spacing", spacing, "from line to line, field units; Enter") && spacing > 0)
-      edits.drag(pointer + "/spacing", scene::text_of(spacing), "contours");
+    if (input_number("##spacing", spacing, "from line to line, field units; Enter") && spacing > 0)
+      edits.drag(pointer + "/spacing", scene::to_json(spacing), "contours");
   } else {
     ImGui::TextDisabled("%zu stated levels", slice.contours->levels.size());
   }
@@ -111,14 +111,14 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
 void draw_slices(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
-    if (!begin_item(edits, slice.where, !is_hidden(scene.world, e), "slice", name_of(scene, slice.shown.field))) return;
-    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(slice.shown.field);
-    const field::Field* field = source.drawn.get() != nullptr ? source.drawn.get() : source.loaded.get();
+  scene.entities.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
+    if (!begin_item(edits, slice.where, !is_hidden(scene.entities, e), "slice", entity_name(scene, slice.color_by.field))) return;
+    const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(slice.color_by.field);
+    const field::Field* field = source.rendered.get() != nullptr ? source.rendered.get() : source.loaded.get();
     if (field != nullptr) draw_plane(edits, scene, slice, *field);
-    edit_color_scale(edits, slice.where, slice.shown);
+    edit_color_scale(edits, slice.where, slice.color_by);
     draw_contours(edits, slice);
-    edit_plain_keys(edits, "slices", slice.where, {"axis"});
+    edit_simple_keys(edits, "slices", slice.where, {"axis"});
     end_item();
   });
 }

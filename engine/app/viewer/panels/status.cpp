@@ -16,7 +16,7 @@ constexpr double kMessageS = 8;
 const Message* newest(const ViewState& state) {
   if (state.messages.empty()) return nullptr;
   const Message& m = state.messages.back();
-  return 1e-9 * static_cast<double>(now_ns() - m.at_ns) < kMessageS ? &m : nullptr;
+  return 1e-9 * static_cast<double>(now_ns() - m.time_ns) < kMessageS ? &m : nullptr;
 }
 
 ImVec4 color_of(const Message& m) { return m.is_error ? ImVec4(1, 0.5f, 0.4f, 1) : ImVec4(0.7f, 0.9f, 0.7f, 1); }
@@ -29,26 +29,27 @@ ImVec4 force_color(double share) {
 
 std::string loading_words(const ViewState& state) {
   const char* dots[] = {".  ", ".. ", "..."};
-  return "loading " + state.loading + " " + dots[static_cast<std::size_t>(now_ns() / 400'000'000 % 3)];
+  return "loading " + state.loading_path + " " + dots[static_cast<std::size_t>(now_ns() / 400'000'000 % 3)];
 }
 
 void draw_force(const PanelContext& context) {
   const ViewState& state = context.state;
-  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, force_color(state.force_share));
-  const std::string newtons = fmt::format("{:.2f} N", norm(context.hand.felt().force_n));
-  ImGui::ProgressBar(static_cast<float>(state.force_share), {110, ImGui::GetTextLineHeight()}, newtons.c_str());
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, force_color(state.force_ratio));
+  const std::string newtons = fmt::format("{:.2f} N", norm(context.haptic_session.latest_state().force_n));
+  ImGui::ProgressBar(static_cast<float>(state.force_ratio), {110, ImGui::GetTextLineHeight()}, newtons.c_str());
   ImGui::PopStyleColor();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the force on the hand, of at most %.3g N", context.scene.scene().coupling.max_force_n);
 }
 
 /// "skin 5.1 mm": the last link that holds the hand, and how far from itself, in millimetres of the hand.
 std::string held_words(const PanelContext& context) {
-  const exchange::HapticState& felt = context.hand.felt();
-  const auto& program = context.hand.program();
+  const HapticState& felt = context.haptic_session.latest_state();
+  const auto& program = context.haptic_session.program();
   for (int i = felt.link_count - 1; i >= 0; --i) {
-    const exchange::LinkReport& link = felt.links[static_cast<std::size_t>(i)];
-    if (link.active && link.gap > 0 && static_cast<std::size_t>(i) < context.hand.link_names().size())
-      return fmt::format("{} {:.1f} mm", context.hand.link_names()[static_cast<std::size_t>(i)], 1e3 * program->metres_per_unit * link.gap);
+    const LinkReport& link = felt.links[static_cast<std::size_t>(i)];
+    if (link.active && link.gap > 0 && static_cast<std::size_t>(i) < context.haptic_session.link_names().size())
+      return fmt::format("{} {:.1f} mm", context.haptic_session.link_names()[static_cast<std::size_t>(i)],
+                         1e3 * program->meters_per_unit * link.gap);
   }
   return {};
 }
@@ -57,7 +58,7 @@ std::string held_words(const PanelContext& context) {
 void draw_prompt(PanelContext& context) {
   const ViewState& state = context.state;
   if (state.prompt.empty()) return;
-  const Area& area = state.area;
+  const Area& area = state.image_area;
   ImGui::SetNextWindowPos({float(area.x + 0.5 * area.width), float(area.y + 0.5 * area.height)}, 0, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({float(std::min(0.9 * area.width, 30.0 * ImGui::GetFontSize())), 0});
   constexpr ImGuiWindowFlags kFlags =
@@ -69,7 +70,7 @@ void draw_prompt(PanelContext& context) {
       ImGui::TextWrapped("%s", message->text.c_str());
       ImGui::PopStyleColor();
     }
-    if (ImGui::Button("Not now (G)")) context.ask(Action::register_device);
+    if (ImGui::Button("Not now (G)")) context.push_command(Action::register_device);
   }
   ImGui::End();
 }
@@ -77,14 +78,14 @@ void draw_prompt(PanelContext& context) {
 /// Without panels only what must be read is shown.
 void draw_words_alone(const ViewState& state) {
   const Message* message = newest(state);
-  if (message == nullptr && state.loading.empty()) return;
+  if (message == nullptr && state.loading_path.empty()) return;
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   ImGui::SetNextWindowPos({view.WorkPos.x, view.WorkPos.y + view.WorkSize.y}, 0, {0, 1});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {view.WorkSize.x, view.WorkSize.y});
   constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing;
   if (ImGui::Begin("##words", nullptr, kFlags)) {
-    if (!state.loading.empty())
+    if (!state.loading_path.empty())
       ImGui::TextUnformatted(loading_words(state).c_str());
     else
       ImGui::TextColored(color_of(*message), "%s", message->text.c_str());
@@ -97,7 +98,7 @@ void draw_words_alone(const ViewState& state) {
 void draw_status(PanelContext& context) {
   const ViewState& state = context.state;
   draw_prompt(context);
-  if (!state.panels) return draw_words_alone(state);
+  if (!state.show_panels) return draw_words_alone(state);
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   const float height = ImGui::GetFrameHeightWithSpacing();
   ImGui::SetNextWindowPos({view.WorkPos.x, view.WorkPos.y + view.WorkSize.y - height});
@@ -110,16 +111,16 @@ void draw_status(PanelContext& context) {
       ImGui::TextUnformatted(held.c_str());
       ImGui::SameLine();
     }
-    if (!state.loading.empty()) {
+    if (!state.loading_path.empty()) {
       ImGui::TextUnformatted(loading_words(state).c_str());
     } else if (const Message* m = newest(state)) {
       ImGui::TextColored(color_of(*m), "%s", m->text.c_str());
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", m->text.c_str());
     } else {
-      std::string words = line_words(state.pointer, state.unit_length);
-      if (words.empty() && context.controls.hand_mode) words = "hand mode: the mouse is the hand (H)";
-      if (words.empty() && context.controls.fly)
-        words = fmt::format("fly: W S A D E Q, left drag looks about, pace {:.2g} (V)", context.controls.fly_speed);
+      std::string words = format_point_samples(state.pointer_samples, state.unit_length);
+      if (words.empty() && context.navigation.probe_mode) words = "hand mode: the mouse is the hand (H)";
+      if (words.empty() && context.navigation.fly)
+        words = fmt::format("fly: W S A D E Q, left drag looks about, pace {:.2g} (V)", context.navigation.fly_speed);
       ImGui::TextUnformatted(words.c_str());
     }
   }

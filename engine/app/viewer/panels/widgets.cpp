@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "engine/app/viewer/edit/new_items.h"
-#include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/edit/item_templates.h"
 #include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/panels/property_widgets.h"
+#include "engine/scene/to_json.h"
 #include "engine/scene/widgets.h"
-#include "engine/scene/write_values.h"
 
 namespace catena::app {
 
@@ -19,27 +19,27 @@ struct Row {
 
 std::vector<Row> rows_of(const scene::Scene& scene) {
   std::vector<Row> rows;
-  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
-    rows.push_back({scene.world.get<scene::Name>(e).value, fmt::format("/widgets/{}", rows.size()), widget});
+  scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    rows.push_back({scene.entities.get<scene::Name>(e).value, fmt::format("/widgets/{}", rows.size()), widget});
   });
   return rows;
 }
 
 /// The pose as numbers; an edit states it in the text.
 void draw_pose(PanelContext& context, const Row& row) {
-  const widget::Pose& pose = row.widget.state.pose;
+  const widget::Pose& pose = row.widget.report.pose;
   const double speed = 0.001 * row.widget.spec.length;
   const auto place = [&](const char* key, const Vec3& value) { edit_vector(context.edits, key, row.pointer + "/" + key, value, speed); };
   switch (row.widget.spec.kind) {
     case widget::Kind::cutting_plane: {
       place("center", pose.points[0]);
-      const Vec3 normal = scene::normal_of(pose);
+      const Vec3 normal = scene::plane_normal(pose);
       // two ways to say how it stands: where one is edited the other goes
       double n[3] = {normal.x, normal.y, normal.z};
       if (ImGui::InputScalarN("normal", ImGuiDataType_Double, n, 3, nullptr, nullptr, "%.3g", ImGuiInputTextFlags_EnterReturnsTrue))
-        context.edits.set({{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::text_of(Vec3(n[0], n[1], n[2]))}},
+        context.edits.set({{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::to_json(Vec3(n[0], n[1], n[2]))}},
                           "turn " + row.name);
-      tip("Enter takes it");
+      show_tooltip("Enter takes it");
       break;
     }
     case widget::Kind::seed:
@@ -60,7 +60,7 @@ void draw_pose(PanelContext& context, const Row& row) {
 
 void reset(PanelContext& context, const Row& row) {
   // the pose that a new one would have, under the old name
-  const auto fresh = new_widget(context.scene.scene(), scene::kind_word(row.widget.spec.kind), context.scene.bounds);
+  const auto fresh = make_widget_json(context.scene.scene(), scene::to_string(row.widget.spec.kind), context.scene.bounds);
   if (!fresh) return;
   const auto node = json::parse(*fresh, "widget");
   if (!node) return;
@@ -68,27 +68,27 @@ void reset(PanelContext& context, const Row& row) {
   if (row.widget.spec.kind == widget::Kind::cutting_plane) edits.push_back({row.pointer + "/orientation", std::nullopt});
   for (const char* key : {"center", "normal", "position", "from", "to", "lo", "hi"})
     if (const json::Node* value = node->find(key))
-      if (const auto v = json::as_vec3(*value, key)) edits.push_back({row.pointer + "/" + key, scene::text_of(*v)});
+      if (const auto v = json::as_vec3(*value, key)) edits.push_back({row.pointer + "/" + key, scene::to_json(*v)});
   context.edits.set(edits, "reset " + row.name);
 }
 
 void draw_row(PanelContext& context, const Row& row) {
-  const widget::Report& state = row.widget.state;
+  const widget::Report& state = row.widget.report;
   ImGui::PushID(row.name.c_str());
   const bool open = ImGui::TreeNodeEx("##pose", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", row.name.c_str());
-  const char* word = exchange::mode_word(state.mode);
+  const char* word = to_string(state.mode);
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
-  const bool engaged = state.mode != exchange::WidgetMode::away;
+  const bool engaged = state.mode != WidgetMode::idle;
   ImGui::TextColored(engaged ? ImVec4(1, 0.8f, 0.3f, 1) : ImVec4(0.6f, 0.6f, 0.6f, 1), "%s", word);
   if (row.widget.spec.kind == widget::Kind::isolevel) ImGui::TextDisabled("level %.5g", state.value);
   if (open) {
-    ImGui::TextDisabled("%s, button %d", scene::kind_word(row.widget.spec.kind), row.widget.spec.button);
+    ImGui::TextDisabled("%s, button %d", scene::to_string(row.widget.spec.kind), row.widget.spec.button);
     draw_pose(context, row);
     if (ImGui::Button("Reset")) reset(context, row);
-    tip("back to the middle");
+    show_tooltip("back to the middle");
     ImGui::SameLine();
     if (ImGui::Button("Remove")) context.edits.remove(row.pointer, "remove " + row.name);
-    tip("what follows it must go first, or name another one");
+    show_tooltip("what follows it must go first, or name another one");
     ImGui::TreePop();
   }
   ImGui::PopID();
@@ -97,13 +97,13 @@ void draw_row(PanelContext& context, const Row& row) {
 void draw_widgets(PanelContext& context) {
   for (const Row& row : rows_of(context.scene.scene())) draw_row(context, row);
   if (!ImGui::BeginCombo("##add", "Add a widget")) return;
-  for (const std::string& type : widget_types()) {
+  for (const std::string& type : list_widget_types()) {
     if (!ImGui::Selectable(type.c_str())) continue;
-    const auto fresh = new_widget(context.scene.scene(), type, context.scene.bounds);
+    const auto fresh = make_widget_json(context.scene.scene(), type, context.scene.bounds);
     if (fresh)
       context.edits.set("/widgets/-", *fresh, "add " + type);
     else
-      context.state.say(fresh.error().message, true);
+      context.state.show_message(fresh.error().message, true);
   }
   ImGui::EndCombo();
 }

@@ -46,12 +46,12 @@ TEST(EmulatedFalcon, EncodersComeLowNibbleFirst) {
   options.power_on_offset = {-1447 + 510, 0, 0};
   Rig rig(options);
   // at rest at z = 0.11 the encoders stand near -516
-  const int near = static_cast<int>(std::lround(counts_of_angles(delta_legs({0, 0, 0.11})->theta).x));
+  const int near = static_cast<int>(std::lround(angles_to_counts(solve_delta_legs({0, 0, 0.11})->theta).x));
   options.power_on_offset = {-1447 - near, -near, 1 - near};
   Rig exact(options);
   exact.send(kRest);
   EXPECT_EQ(exact.receive(), "<JFKPAAAABAAAAA>");
-  EXPECT_EQ(exact.device.last().encoders, (EmulatedMechanism::Counts{-1447, 0, 1}));
+  EXPECT_EQ(exact.device.last_exchange().encoders, (EmulatedMechanism::Counts{-1447, 0, 1}));
 }
 
 TEST(EmulatedFalcon, MotorsAndLightsArriveAndMakeAForce) {
@@ -61,9 +61,9 @@ TEST(EmulatedFalcon, MotorsAndLightsArriveAndMakeAForce) {
   rig.send("<OAPPOAPPOAPPEAA>");  // a byte too many: no frame
   rig.send("<OAPPOAPPOAPPEA>");
   EXPECT_EQ(rig.device.frames(), 1u);
-  EXPECT_EQ(rig.device.last().motors, (EmulatedMechanism::Counts{-242, -242, -242}));
-  EXPECT_EQ(rig.device.last().control, 4u);
-  EXPECT_NEAR(rig.device.last().force_n.z, 1.0, 1e-2);
+  EXPECT_EQ(rig.device.last_exchange().motors, (EmulatedMechanism::Counts{-242, -242, -242}));
+  EXPECT_EQ(rig.device.last_exchange().control, 4u);
+  EXPECT_NEAR(rig.device.last_exchange().force_n.z, 1.0, 1e-2);
   EXPECT_EQ(rig.device.bad_bytes(), 17u);
 }
 
@@ -152,7 +152,7 @@ TEST(EmulatedFalcon, HandshakesMayGoUnheardOrStartWithAZero) {
   EmulatedFalconOptions options;
   options.firmware = false;
   Rig rig(options);
-  rig.device.boot_rom().faults() = {.deaf_handshakes = 2, .leading_zero = true, .echo_errors = {}};
+  rig.device.boot_rom().faults() = {.ignored_handshakes = 2, .leading_zero = true, .echo_errors = {}};
   rig.reset_processor();
   for (int i = 0; i < 2; ++i) {
     rig.send({0x0A, 0x43, 0x0D});
@@ -168,7 +168,7 @@ TEST(EmulatedFalcon, AnAxisHomesWhenItComesBackInAndItsOriginJumps) {
     EXPECT_TRUE(rig.device.mechanism().hold({0, 0, z}));
     rig.send(frame);
     rig.receive();
-    return rig.device.last();
+    return rig.device.last_exchange();
   };
   const std::string homing = "<AAAAAAAAAAAABA>";
   EXPECT_EQ(at(0.11, homing).homed, 0u);
@@ -238,11 +238,11 @@ TEST(EmulatedFalcon, GoesAfterSoManyBytes) {
 }
 
 TEST(EmulatedFalcon, AHandCarriesTheGripAndFeelsTheMotors) {
-  EmulatedHand hand;
+  EmulatedUser hand;
   hand.path = {{0, {0, 0, 0.11}, 0}, {0.1, {0.01, 0, 0.11}, 1}};
   Rig free, pushed;
-  free.device.mechanism().carry(hand);
-  pushed.device.mechanism().carry(hand);
+  free.device.mechanism().attach_user(hand);
+  pushed.device.mechanism().attach_user(hand);
   for (int i = 0; i < 1000; ++i) {
     free.send(kRest);
     pushed.send("<OAPPOAPPOAPPAA>");  // about +1 N along z

@@ -19,7 +19,7 @@ bool eventually(F&& condition) {
 
 TEST(EmulatedTransport, ErrorsAreThoseOfABus) {
   auto shared = std::make_shared<SharedEmulatedFalcon>();
-  EmulatedSource source(shared, false);
+  EmulatedTransportSource source(shared, false);
   auto transport = std::move(*source.open());
   usb::UsbPacket packet;
   EXPECT_EQ(transport->control(77, 0), usb::UsbError::stall);
@@ -31,7 +31,7 @@ TEST(EmulatedTransport, ErrorsAreThoseOfABus) {
   EXPECT_EQ(transport->clear_halt(usb::UsbEndpoint::in), usb::UsbError::none);
   EXPECT_EQ(transport->read(packet, 5).error, usb::UsbError::none);
   shared->device.unplug();
-  EXPECT_EQ(transport->read(packet, 5).error, usb::UsbError::gone);
+  EXPECT_EQ(transport->read(packet, 5).error, usb::UsbError::disconnected);
   EXPECT_FALSE(source.open());
   EXPECT_FALSE(source.wait_for_arrival(1));
   shared->device.plug(true);
@@ -40,17 +40,17 @@ TEST(EmulatedTransport, ErrorsAreThoseOfABus) {
 
 TEST(EmulatedTransport, TheGentleHandHomesArmsAndStaysInTheWorkspace) {
   auto shared = std::make_shared<SharedEmulatedFalcon>();
-  shared->device.mechanism().carry(gentle_hand());
+  shared->device.mechanism().attach_user(gentle_user());
   bool outside = false;
   int early = 0;
-  shared->device.on_exchange([&](const EmulatedFalcon::Exchange& exchange) {
+  shared->device.set_exchange_observer([&](const EmulatedFalcon::Exchange& exchange) {
     // forces flow (green) only after the grip was homed and far out
     if (exchange.position_m.z > 0.170 && exchange.homed == 7) outside = true;
     early += !outside && exchange.motors != EmulatedMechanism::Counts{};
   });
   usb::FalconOptions options;
-  options.command_timeout_s = options.lost_age_s = 1e6;
-  auto falcon = usb::Falcon::open(std::make_unique<EmulatedSource>(shared, false), options);
+  options.command_timeout_s = options.max_pose_age_s = 1e6;
+  auto falcon = usb::Falcon::open(std::make_unique<EmulatedTransportSource>(shared, false), options);
   ASSERT_TRUE(falcon) << falcon.error().message;
   (*falcon)->write({.force_n = {0, 0, 0.5}});
   ASSERT_TRUE(eventually([&] { return (*falcon)->state() == usb::FalconState::ready; }));
@@ -63,7 +63,7 @@ TEST(EmulatedTransport, TheGentleHandHomesArmsAndStaysInTheWorkspace) {
   EXPECT_EQ(early, 0);
   EXPECT_TRUE(outside);
   EXPECT_EQ((*falcon)->stats().out_of_reach, 0u);
-  EXPECT_EQ((*falcon)->stats().losses, 0u);
+  EXPECT_EQ((*falcon)->stats().disconnects, 0u);
   // the round takes it through the cube that the hand uses
   const DeviceInput input = (*falcon)->read();
   EXPECT_EQ(input.status, DeviceStatus::ready);

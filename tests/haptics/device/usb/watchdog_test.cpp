@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "engine/base/clock.h"
-#include "tests/haptics/device/usbfs/falcon_rig.h"
+#include "tests/haptics/device/usbfs/falcon_fixture.h"
 #include "tests/haptics/device/usbfs/umockdev_bus.h"
 #include "tests/support/support.h"
 
@@ -48,7 +48,7 @@ class Rig {
   Rig() {
     test::write_file(folder / "ball.json", kScene);
     bus.with([&](EmulatedFalcon& device) {
-      device.on_exchange([&](const EmulatedFalcon::Exchange& e) { packets.push_back({now_ns(), norm(e.force_n)}); });
+      device.set_exchange_observer([&](const EmulatedFalcon::Exchange& e) { packets.push_back({now_ns(), norm(e.force_n)}); });
     });
   }
   ~Rig() {
@@ -74,13 +74,13 @@ class Rig {
     posix_spawn_file_actions_addopen(&actions, 2, (folder / "err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ASSERT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environment.data()), 0);
     posix_spawn_file_actions_destroy(&actions);
-    const std::uint64_t frames = frames_of(bus);
-    ASSERT_TRUE(eventually([&] { return frames_of(bus) > frames + 3; })) << said();
+    const std::uint64_t frames = frame_count(bus);
+    ASSERT_TRUE(wait_until([&] { return frame_count(bus) > frames + 3; })) << said();
     // armed, then into the ball: 10 mm
-    for (const double z : {0.155, 0.165, 0.175, 0.165, 0.155, 0.145, 0.135}) ASSERT_TRUE(hold_at(bus, {0, 0, z}));
+    for (const double z : {0.155, 0.165, 0.175, 0.165, 0.155, 0.145, 0.135}) ASSERT_TRUE(hold_grip_at(bus, {0, 0, z}));
   }
   bool pushes() {
-    return eventually([&] { return last().force_n > 1; });
+    return wait_until([&] { return last().force_n > 1; });
   }
   int wait() {
     int status = 0;
@@ -160,7 +160,7 @@ TEST_F(WatchdogUsb, AKilledProgramHoldsNoForce) {
     kill(rig.child, SIGKILL);
     const int status = rig.wait();
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-    ASSERT_TRUE(eventually([&] { return !Rig::lives(watchdog); })) << "its work is done";
+    ASSERT_TRUE(wait_until([&] { return !Rig::lives(watchdog); })) << "its work is done";
     // two zeros; a machine that is slow to end the program has it stand still first, which is said, and lets go then, too
     const bool stood_still = rig.said().find("has stood still with a force on") != std::string::npos;
     EXPECT_GE(rig.bulks(), bulks + 2);
@@ -188,11 +188,11 @@ TEST_F(WatchdogUsb, AStoppedProgramHoldsNoForceAndRampsInWhenItGoesOn) {
     waitpid(rig.child, &status, WUNTRACED);
     ASSERT_TRUE(WIFSTOPPED(status));
     const std::int64_t stopped_ns = now_ns();
-    ASSERT_TRUE(eventually([&] { return rig.bulks() > bulks && rig.last().force_n == 0; }));
+    ASSERT_TRUE(wait_until([&] { return rig.bulks() > bulks && rig.last().force_n == 0; }));
     outlived_ms.push_back(rig.force_outlived_ms(stopped_ns));
     // it holds: a second zero, and nothing else
     const std::uint64_t held = rig.bulks();
-    ASSERT_TRUE(eventually([&] { return rig.bulks() > held; }));
+    ASSERT_TRUE(wait_until([&] { return rig.bulks() > held; }));
     EXPECT_EQ(rig.last().force_n, 0);
     const std::size_t from = rig.count();
     const std::int64_t goes_on_ns = now_ns();
@@ -209,7 +209,7 @@ TEST_F(WatchdogUsb, AStoppedProgramHoldsNoForceAndRampsInWhenItGoesOn) {
       while (k < packets.size() && is_zero(k)) ++k;
       return k + 1 < packets.size() ? k : packets.size();
     };
-    ASSERT_TRUE(eventually([&] { return rig.bus.with([&](EmulatedFalcon&) { return ramp_from() < rig.packets.size(); }); }));
+    ASSERT_TRUE(wait_until([&] { return rig.bus.with([&](EmulatedFalcon&) { return ramp_from() < rig.packets.size(); }); }));
     rig.bus.with([&](EmulatedFalcon&) {
       const Packet& first = rig.packets[ramp_from()];
       on_its_way += late_packet;
@@ -283,16 +283,16 @@ TEST_F(WatchdogUsb, TheProcessStandsApartIsSmallAndIsStartedAgain) {
 #endif
   RecordProperty("resident_kb", static_cast<int>(resident_kb));
   for (const int signal_number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGUSR1, SIGPIPE}) kill(first, signal_number);
-  ASSERT_TRUE(frames_pass(rig.bus, 20));
+  ASSERT_TRUE(wait_for_frames(rig.bus, 20));
   EXPECT_TRUE(Rig::lives(first)) << "signals do not end it";
   // it is killed: the driver lets go while it starts another one
   kill(first, SIGKILL);
-  ASSERT_TRUE(eventually([&] { return rig.watchdog() != 0 && rig.watchdog() != first; }));
+  ASSERT_TRUE(wait_until([&] { return rig.watchdog() != 0 && rig.watchdog() != first; }));
   ASSERT_TRUE(rig.pushes());
   const int second = rig.watchdog();
   kill(rig.child, SIGKILL);
   rig.wait();
-  ASSERT_TRUE(eventually([&] { return !Rig::lives(second); }));
+  ASSERT_TRUE(wait_until([&] { return !Rig::lives(second); }));
   EXPECT_EQ(rig.last().force_n, 0);
 }
 

@@ -19,7 +19,7 @@
 namespace catena::haptics::tests {
 namespace watchdog_test {
 
-using watchdog::Ended;
+using watchdog::EndReason;
 using watchdog::Holder;
 
 // ---- threads that stand still ----
@@ -69,11 +69,11 @@ class StandStill {
     still = true;
     for (const int id : ids_) syscall(SYS_tgkill, getpid(), id, SIGRTMIN + 3);
     const int all = static_cast<int>(ids_.size());
-    EXPECT_TRUE(eventually([&] { return standing == all; }));
+    EXPECT_TRUE(wait_until([&] { return standing == all; }));
   }
   ~StandStill() {
     still = false;
-    EXPECT_TRUE(eventually([] { return standing == 0; }));
+    EXPECT_TRUE(wait_until([] { return standing == 0; }));
   }
   StandStill(const StandStill&) = delete;
   StandStill& operator=(const StandStill&) = delete;
@@ -86,12 +86,12 @@ class StandStill {
 
 class OnAThread final : public usb::ExternalWatchdog {
  public:
-  OnAThread(watchdog::Page& page, int usb) {
+  OnAThread(watchdog::SharedPage& page, int usb) {
     const int made = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line_);
     EXPECT_EQ(made, 0);
     thread_ = std::thread([this, &page, usb] {
       id = static_cast<int>(syscall(SYS_gettid));
-      ended = watch(page, usb, line_[1], -1);
+      ended = run_watchdog(page, usb, line_[1], -1);
       has_ended = true;
     });
     while (id == 0) std::this_thread::yield();
@@ -101,12 +101,12 @@ class OnAThread final : public usb::ExternalWatchdog {
     thread_.join();
     ::close(line_[1]);
   }
-  bool alive() noexcept override { return !has_ended; }
+  bool is_alive() noexcept override { return !has_ended; }
   void quit() noexcept override { EXPECT_EQ(::send(line_[0], &watchdog::kQuit, 1, 0), 1); }
 
   std::atomic<int> id{0};
   std::atomic<bool> has_ended{false};
-  Ended ended = Ended::told;
+  EndReason ended = EndReason::requested;
 
  private:
   int line_[2] = {-1, -1};
@@ -154,8 +154,8 @@ class Ticks {
 class Rig {
  public:
   Rig() {
-    usb::FalconOptions options = patient();
-    options.watchdog = [this](usb::Transport& transport, const usb::WatchdogMemory& memory) {
+    usb::FalconOptions options = patient_options();
+    options.watchdog = [this](usb::Transport& transport, const usb::WatchdogSharedMemory& memory) {
       page = &memory.page();
       auto made = std::make_unique<OnAThread>(memory.page(), transport.descriptor());
       watchdog = made.get();
@@ -168,14 +168,15 @@ class Rig {
     for (const int id : threads())
       if (!before.contains(id) && id != watchdog->id) io_threads.insert(id);
     EXPECT_EQ(io_threads.size(), 1u);
-    EXPECT_TRUE(hold_at(bus, {0, 0, 0.165}) && hold_at(bus, {0, 0, 0.175}) && hold_at(bus, {0, 0, 0.165}) && hold_at(bus, {0, 0, 0.155}) &&
-                hold_at(bus, {0, 0, 0.145}) && hold_at(bus, {0, 0, 0.13}));
-    EXPECT_TRUE(eventually([&] { return falcon->state() == usb::FalconState::ready; }));
+    EXPECT_TRUE(hold_grip_at(bus, {0, 0, 0.165}) && hold_grip_at(bus, {0, 0, 0.175}) && hold_grip_at(bus, {0, 0, 0.165}) &&
+                hold_grip_at(bus, {0, 0, 0.155}) && hold_grip_at(bus, {0, 0, 0.145}) && hold_grip_at(bus, {0, 0, 0.13}));
+    EXPECT_TRUE(wait_until([&] { return falcon->state() == usb::FalconState::ready; }));
     ticks = std::make_unique<Ticks>(*falcon);
-    bus.with([&](EmulatedFalcon& device) { device.on_exchange([&](const EmulatedFalcon::Exchange& e) { add(norm(e.force_n)); }); });
+    bus.with(
+        [&](EmulatedFalcon& device) { device.set_exchange_observer([&](const EmulatedFalcon::Exchange& e) { add(norm(e.force_n)); }); });
   }
   ~Rig() {
-    bus.with([](EmulatedFalcon& device) { device.on_exchange(nullptr); });
+    bus.with([](EmulatedFalcon& device) { device.set_exchange_observer(nullptr); });
     ticks.reset();
     falcon.reset();
   }
@@ -188,18 +189,18 @@ class Rig {
     return bus.with([&](EmulatedFalcon&) { return forces.empty() ? 0.0 : forces.back(); });
   }
   bool pushes_fully() {
-    return eventually([&] { return last() > 0.97 * Ticks::kForceN; });
+    return wait_until([&] { return last() > 0.97 * Ticks::kForceN; });
   }
   /// The full force again, in a packet after the one at `from`: a packet of the old force may have been on its way.
   bool pushes_fully_after(std::size_t from) {
-    return eventually([&] { return packets() > from + 1 && last() > 0.97 * Ticks::kForceN; });
+    return wait_until([&] { return packets() > from + 1 && last() > 0.97 * Ticks::kForceN; });
   }
   std::size_t packets() {
     return bus.with([&](EmulatedFalcon&) { return forces.size(); });
   }
 
   InProcessBus bus{{.homed = true}};
-  watchdog::Page* page = nullptr;
+  watchdog::SharedPage* page = nullptr;
   OnAThread* watchdog = nullptr;
   std::unique_ptr<usb::Falcon> falcon;
   std::unique_ptr<Ticks> ticks;
@@ -224,16 +225,16 @@ int stand_still_at_random(Rig& rig, bool ticks_too, int times) {
     const std::int64_t until = now_ns() + static_cast<std::int64_t>(state % 2000000);
     while (now_ns() < until) {
     }
-    const std::uint32_t zeros = rig.page->zeros, takeovers = rig.page->takeovers;
+    const std::uint32_t zeros = rig.page->acknowledged_zeros, takeovers = rig.page->takeovers;
     const std::uint64_t lost = rig.ticks->lost;
     std::size_t after_zero = 0;
     {
       const StandStill stopped(ticks_too ? rig.all_threads() : rig.io_threads);
-      EXPECT_TRUE(eventually([&] { return rig.page->zeros > zeros; })) << i;
+      EXPECT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros; })) << i;
       after_zero = rig.packets();
       EXPECT_EQ(rig.last(), 0) << i;
       // it goes on to hold: another zero, and nothing but zeros
-      EXPECT_TRUE(eventually([&] { return rig.page->zeros > zeros + 1; })) << i;
+      EXPECT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros + 1; })) << i;
       EXPECT_EQ(rig.page->holder, Holder::watchdog);
       EXPECT_GE(rig.page->takeovers, takeovers + 1);
       const double most = rig.bus.with([&](EmulatedFalcon&) {
@@ -280,12 +281,12 @@ TEST(Watchdog, SoDoesADriverWhoseOwnThreadHangs) {
 TEST(Watchdog, ADeviceWithoutAForceIsLeftAlone) {
   Rig rig;
   rig.ticks->pushes = false;
-  ASSERT_TRUE(eventually([&] { return rig.last() == 0 && rig.page->pushing == 0; }));
+  ASSERT_TRUE(wait_until([&] { return rig.last() == 0 && rig.page->force_active == 0; }));
   const std::uint64_t bulks = rig.bus.port().counts.bulks;
   {
     // at rest a packet with room for a force is only now and then on its way: such a moment would count
     const StandStill stopped(rig.all_threads());
-    if (rig.page->pushing == 0) {
+    if (rig.page->force_active == 0) {
       std::this_thread::sleep_for(std::chrono::milliseconds(150));
       EXPECT_EQ(rig.page->takeovers, 0u);
       EXPECT_EQ(rig.bus.port().counts.bulks, bulks);
@@ -299,9 +300,9 @@ TEST(Watchdog, AStalledEndpointIsClearedAndAFullOneIsTriedAgain) {
   {
     const StandStill stopped(rig.all_threads());
     // not those of a takeover before, when the threads did not get the processor
-    const std::uint32_t zeros = rig.page->zeros;
+    const std::uint32_t zeros = rig.page->acknowledged_zeros;
     rig.bus.with([](EmulatedFalcon& device) { device.halt(EmulatedFalcon::kEndpointOut); });
-    ASSERT_TRUE(eventually([&] { return rig.page->zeros > zeros; }));
+    ASSERT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros; }));
     EXPECT_GE(rig.bus.port().counts.clear_halts, 1u);
     EXPECT_EQ(rig.last(), 0);
   }
@@ -310,10 +311,10 @@ TEST(Watchdog, AStalledEndpointIsClearedAndAFullOneIsTriedAgain) {
   {
     const StandStill stopped(rig.all_threads());
     const std::uint64_t bulks = rig.bus.port().counts.bulks;
-    ASSERT_TRUE(eventually([&] { return rig.bus.port().counts.bulks > bulks + 3; })) << "it tries on";
-    const std::uint32_t zeros = rig.page->zeros;
+    ASSERT_TRUE(wait_until([&] { return rig.bus.port().counts.bulks > bulks + 3; })) << "it tries on";
+    const std::uint32_t zeros = rig.page->acknowledged_zeros;
     rig.bus.with([&](EmulatedFalcon&) { rig.bus.port().faults.out_naks = false; });
-    ASSERT_TRUE(eventually([&] { return rig.page->zeros > zeros; }));
+    ASSERT_TRUE(wait_until([&] { return rig.page->acknowledged_zeros > zeros; }));
     EXPECT_EQ(rig.last(), 0) << "behind the packet that was queued";
   }
   EXPECT_TRUE(rig.pushes_fully());
@@ -324,43 +325,43 @@ TEST(Watchdog, AnUnpluggedDeviceEndsIt) {
   ASSERT_TRUE(rig.pushes_fully());
   const StandStill stopped(rig.all_threads());
   rig.bus.unplug();
-  EXPECT_TRUE(eventually([&] { return rig.watchdog->has_ended.load(); }));
-  EXPECT_EQ(rig.watchdog->ended, Ended::device_gone);
+  EXPECT_TRUE(wait_until([&] { return rig.watchdog->has_ended.load(); }));
+  EXPECT_EQ(rig.watchdog->ended, EndReason::device_gone);
 }
 
 TEST(Watchdog, WhereTheProgramIsGoneItLetsGoAndEnds) {
   InProcessBus bus({.homed = true});
-  auto memory = usb::WatchdogMemory::make(0x02, usb::encode_command({}));
+  auto memory = usb::WatchdogSharedMemory::make(0x02, usb::encode_command({}));
   ASSERT_TRUE(memory);
   { const OnAThread gone((*memory)->page(), bus.fd()); }
-  EXPECT_EQ((*memory)->page().zeros, 2u);
+  EXPECT_EQ((*memory)->page().acknowledged_zeros, 2u);
   EXPECT_EQ(bus.port().counts.bulks, 2u);
   {
     OnAThread told((*memory)->page(), bus.fd());
     told.quit();
-    EXPECT_TRUE(eventually([&] { return told.has_ended.load(); }));
-    EXPECT_EQ(told.ended, Ended::told);
+    EXPECT_TRUE(wait_until([&] { return told.has_ended.load(); }));
+    EXPECT_EQ(told.ended, EndReason::requested);
   }
   EXPECT_EQ(bus.port().counts.bulks, 2u) << "told to end, it writes nothing";
 }
 
 TEST(Watchdog, ADriverThatClosesTellsItToEnd) {
   InProcessBus bus({.homed = true});
-  usb::FalconOptions options = patient();
+  usb::FalconOptions options = patient_options();
   std::atomic<int> started{0}, told{0};
   struct Counted final : usb::ExternalWatchdog {
     explicit Counted(std::atomic<int>& told_by) : told(told_by) {}
-    bool alive() noexcept override { return true; }
+    bool is_alive() noexcept override { return true; }
     void quit() noexcept override { ++told; }
     std::atomic<int>& told;
   };
-  options.watchdog = [&](usb::Transport&, const usb::WatchdogMemory&) {
+  options.watchdog = [&](usb::Transport&, const usb::WatchdogSharedMemory&) {
     ++started;
     return Result<std::unique_ptr<usb::ExternalWatchdog>>(std::make_unique<Counted>(told));
   };
   auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), std::move(options));
   ASSERT_TRUE(falcon);
-  ASSERT_TRUE(frames_pass(bus, 3));
+  ASSERT_TRUE(wait_for_frames(bus, 3));
   falcon->reset();
   EXPECT_EQ(started, 1);
   EXPECT_EQ(told, 1);
@@ -372,15 +373,15 @@ TEST(Watchdog, WithoutOneADeviceThatShallHaveOneGetsNoForceUntilItIsBack) {
   OnAThread* const first = rig.watchdog;
   // it dies
   first->quit();
-  EXPECT_TRUE(eventually([&] { return rig.falcon->stats().watchdog_restarts == 1; }));
+  EXPECT_TRUE(wait_until([&] { return rig.falcon->stats().watchdog_restarts == 1; }));
   EXPECT_TRUE(rig.pushes_fully());
   EXPECT_NE(rig.watchdog, nullptr);
 }
 
 TEST(Watchdog, WhereItCannotBeStartedTheDeviceIsNotOpened) {
   InProcessBus bus({.homed = true});
-  usb::FalconOptions options = patient();
-  options.watchdog = usb::watchdog_process("/no/such/program");
+  usb::FalconOptions options = patient_options();
+  options.watchdog = usb::make_watchdog_launcher("/no/such/program");
   const auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), std::move(options));
   ASSERT_FALSE(falcon);
   EXPECT_NE(falcon.error().message.find("/no/such/program"), std::string::npos) << falcon.error().message;

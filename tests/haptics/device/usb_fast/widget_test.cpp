@@ -1,13 +1,13 @@
 /// The cutting plane in the hand, end to end: encoder counts and button bits over the unmodified libusb, the driver, the servo, the
 /// machine; poses against closed forms of where the grip is.
+#include "tests/haptics/device/usbfs/full_stack_widget_program.h"
 #include "tests/haptics/device/usbfs/in_process_bus.h"
-#include "tests/haptics/device/usbfs/widget_catena.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
 namespace catena::haptics::tests {
 namespace widget_test {
 
-using Mode = exchange::WidgetMode;
+using Mode = WidgetMode;
 
 /// A grip that is held still somewhere, with some buttons pressed.
 class Hand {
@@ -16,28 +16,28 @@ class Hand {
 
   /// At the encoder counts nearest to this place of the world; true once a tick has it.
   bool hold(const Vec3& world, unsigned buttons) {
-    const Vec3 grip = at_whole_counts(kBallCentreM + world * 0.04);
-    place = world_of(grip);
+    const Vec3 grip = snap_to_whole_counts(kBallCenterM + world * 0.04);
+    place = to_world(grip);
     bus_.with([&](EmulatedFalcon& device) {
       device.mechanism().hold_buttons(buttons);
       device.mechanism().hold(grip);
     });
     std::uint64_t seen = 0;
-    const bool there = eventually([&] {
-      servo_.take(tick);
+    const bool there = wait_until([&] {
+      servo_.receive(tick);
       return norm(tick.probe - place) < 1e-7 && tick.buttons == buttons;
     });
     seen = tick.tick;
     // two more ticks: what this one changed has been seen
-    return there && eventually([&] {
-             servo_.take(tick);
+    return there && wait_until([&] {
+             servo_.receive(tick);
              return tick.tick > seen + 1;
            });
   }
-  const exchange::WidgetReport& cut() const { return tick.widgets[0]; }
+  const WidgetReport& cut() const { return tick.widgets[0]; }
 
   Vec3 place{0.0};
-  exchange::HapticState tick;
+  HapticState tick;
 
  private:
   InProcessBus& bus_;
@@ -54,7 +54,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
 
   // away, then on the plane, which holds
   ASSERT_TRUE(hand.hold({0.75, 0.1, 0.3}, 0));
-  EXPECT_EQ(hand.cut().mode, Mode::away);
+  EXPECT_EQ(hand.cut().mode, Mode::idle);
   ASSERT_TRUE(hand.hold({0.75, 0.1, 0.05}, 0));
   EXPECT_EQ(hand.cut().mode, Mode::explore);
   EXPECT_NEAR(hand.tick.links[2].proxy.z, 0, 1e-12);
@@ -63,7 +63,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   // the button: along x, while y and z stay to the bit
   ASSERT_TRUE(hand.hold({0.75, 0.1, 0.05}, 1));
   EXPECT_EQ(hand.cut().mode, Mode::translate);
-  EXPECT_EQ(hand.cut().held, 7);
+  EXPECT_EQ(hand.cut().active_planes, 7);
   const Vec3 grab = hand.place;
   for (const double x : {0.7, 0.5, 0.3, 0.2}) {
     ASSERT_TRUE(hand.hold({x, 0.14, 0.02}, 1));
@@ -81,7 +81,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   const auto on_circle = [&](double angle) { return centre + Vec3(0.48 * std::sin(angle), 0, 0.48 * std::cos(angle)); };
   ASSERT_TRUE(hand.hold(on_circle(0.9), 0));
   EXPECT_EQ(hand.cut().mode, Mode::rotate);
-  EXPECT_EQ(hand.cut().held, 2);
+  EXPECT_EQ(hand.cut().active_planes, 2);
   ASSERT_TRUE(hand.hold(on_circle(0.9), 1));
   EXPECT_EQ(hand.cut().mode, Mode::turn);
   const Vec3 arm = hand.place - centre;
@@ -96,7 +96,7 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   ASSERT_TRUE(hand.hold(on_circle(0.6), 0));
   EXPECT_EQ(hand.cut().mode, Mode::rotate);
   ASSERT_TRUE(hand.hold(centre + Vec3(0.2, 0.6, 0.5), 0));
-  EXPECT_EQ(hand.cut().mode, Mode::away);
+  EXPECT_EQ(hand.cut().mode, Mode::idle);
   EXPECT_EQ(hand.cut().pose.orientation, turned);
   EXPECT_EQ(hand.cut().pose.points[0], centre);
 }

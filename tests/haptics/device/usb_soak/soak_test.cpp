@@ -4,7 +4,7 @@
 
 #include "tests/haptics/device/usbfs/ball_link.h"
 #include "tests/haptics/device/usbfs/in_process_bus.h"
-#include "tests/haptics/device/usbfs/servo_rig.h"
+#include "tests/haptics/device/usbfs/servo_fixture.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
 namespace catena::haptics::tests {
@@ -18,15 +18,15 @@ TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
   ASSERT_NE(falcon, nullptr);
   ServoRig catena(bus, *falcon, ball_link_program(), {.paced = false});
   ASSERT_TRUE(catena.start());
-  EmulatedHand hand;
-  const Vec3 top = kBallCentreM + Vec3(0, 0, kBallRadiusM);
+  EmulatedUser hand;
+  const Vec3 top = kBallCenterM + Vec3(0, 0, kBallRadiusM);
   hand.path = {{0, top + Vec3(0, 0, 0.005), 0}, {1, top - Vec3(0, 0, 0.003), 1}, {2, top + Vec3(0.005, 0, 0.005), 0}};
   hand.repeat_from_s = 0;
   int largest = 0;
   std::uint64_t pushed = 0;
   bus.with([&](EmulatedFalcon& device) {
-    device.mechanism().carry(hand);
-    device.on_exchange([&, device_ptr = &device](const EmulatedFalcon::Exchange& exchange) {
+    device.mechanism().attach_user(hand);
+    device.set_exchange_observer([&, device_ptr = &device](const EmulatedFalcon::Exchange& exchange) {
       for (const int motor : exchange.motors) largest = std::max(largest, std::abs(motor));
       pushed += exchange.motors != EmulatedMechanism::Counts{};
       using Kind = ReplyFault::Kind;
@@ -36,23 +36,23 @@ TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
       if (n % 5003 == 0) device_ptr->halt(n % 2 == 0 ? EmulatedFalcon::kEndpointIn : EmulatedFalcon::kEndpointOut);
     });
   });
-  const std::uint64_t frames_before = frames_of(bus);
-  exchange::HapticState tick;
+  const std::uint64_t frames_before = frame_count(bus);
+  HapticState tick;
   std::uint64_t last = 0;
   // no time limit but of progress
-  while (frames_of(bus) < frames_before + ticks || tick.tick < ticks) {
-    ASSERT_TRUE(frames_pass(bus, 1));
+  while (frame_count(bus) < frames_before + ticks || tick.tick < ticks) {
+    ASSERT_TRUE(wait_for_frames(bus, 1));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    catena.servo().take(tick);
+    catena.servo().receive(tick);
     EXPECT_GE(tick.tick, last);
     last = tick.tick;
   }
   catena.servo().stop();
   // the I/O thread goes on: what the observer counts is read after it has gone
-  bus.with([](EmulatedFalcon& device) { device.on_exchange(nullptr); });
+  bus.with([](EmulatedFalcon& device) { device.set_exchange_observer(nullptr); });
   const usb::FalconStats stats = falcon->stats();
   EXPECT_EQ(falcon->state(), usb::FalconState::ready);
-  EXPECT_EQ(stats.losses, 0u);
+  EXPECT_EQ(stats.disconnects, 0u);
   EXPECT_EQ(stats.out_of_reach, 0u);
   EXPECT_GE(stats.stalls, ticks / 5003);
   EXPECT_GT(stats.resyncs, 0u);
@@ -60,7 +60,7 @@ TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
   EXPECT_LE(largest, 4095);
   falcon.reset();
   bus.with([&](EmulatedFalcon& device) {
-    EXPECT_EQ(device.last().motors, (EmulatedMechanism::Counts{})) << "the last packet is zero";
+    EXPECT_EQ(device.last_exchange().motors, (EmulatedMechanism::Counts{})) << "the last packet is zero";
     EXPECT_EQ(bus.port().counts.submitted, bus.port().counts.reaped) << "every URB came home";
     EXPECT_EQ(device.bad_bytes(), 0u);
   });

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "haptics/device/usb/libusb_transport.h"
-#include "tests/haptics/device/usbfs/falcon_rig.h"
+#include "tests/haptics/device/usbfs/falcon_fixture.h"
 
 namespace catena::haptics::tests {
 
@@ -26,7 +26,7 @@ class WrapSource final : public usb::TransportSource {
 
 /// The driver over the in-process bus; nullptr and a failure where it does not open.
 inline std::unique_ptr<usb::Falcon> open_wrapped_falcon(int fd) {
-  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(fd), patient());
+  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(fd), patient_options());
   if (falcon) return std::move(*falcon);
   ADD_FAILURE() << falcon.error().message;
   return nullptr;

@@ -1,6 +1,6 @@
 /// The headset's wait has a thread of its own: answers come in order and once each, patience ends, a late answer is not lost, and the end
 /// waits for a call that is under way.
-#include "render/xr/frame_wait.h"
+#include "render/xr/frame_waiter.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace catena::test {
 namespace frame_wait_test {
 
 using namespace std::chrono_literals;
-using render::xr::FrameWait;
+using render::xr::FrameWaiter;
 
 std::atomic<int> calls = 0, under_way = 0;
 std::atomic<bool> held = false;
@@ -34,9 +34,9 @@ class FrameWaits : public ::testing::Test {
 };
 
 TEST_F(FrameWaits, AnswersComeInOrderAndOnceEach) {
-  FrameWait wait(wait_frame, XR_NULL_HANDLE);
+  FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
   for (int k = 1; k <= 200; ++k) {
-    const auto answer = wait.take(std::nullopt);
+    const auto answer = wait.wait_for(std::nullopt);
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->result, XR_SUCCESS);
     EXPECT_EQ(answer->state.predictedDisplayTime, k);
@@ -44,11 +44,11 @@ TEST_F(FrameWaits, AnswersComeInOrderAndOnceEach) {
 }
 
 TEST_F(FrameWaits, ALateAnswerIsNotLostAndNotAskedForTwice) {
-  FrameWait wait(wait_frame, XR_NULL_HANDLE);
+  FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
   held = true;
-  for (int k = 0; k < 3; ++k) EXPECT_FALSE(wait.take(1ms));
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(wait.wait_for(1ms));
   held = false;
-  const auto answer = wait.take(std::nullopt);
+  const auto answer = wait.wait_for(std::nullopt);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->state.predictedDisplayTime, 1);
   EXPECT_EQ(calls, 1);
@@ -58,8 +58,8 @@ TEST_F(FrameWaits, TheEndWaitsForACallUnderWay) {
   held = true;
   std::thread release;
   {
-    FrameWait wait(wait_frame, XR_NULL_HANDLE);
-    EXPECT_FALSE(wait.take(0ms));
+    FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
+    EXPECT_FALSE(wait.wait_for(0ms));
     while (under_way == 0) std::this_thread::yield();
     release = std::thread([] {
       std::this_thread::sleep_for(20ms);
@@ -74,10 +74,10 @@ TEST_F(FrameWaits, TheEndWaitsForACallUnderWay) {
 TEST_F(FrameWaits, WhatNeverAnswersIsLeftBehind) {
   held = true;
   {
-    FrameWait wait(wait_frame, XR_NULL_HANDLE);
-    EXPECT_FALSE(wait.take(0ms));
+    FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
+    EXPECT_FALSE(wait.wait_for(0ms));
     while (under_way == 0) std::this_thread::yield();
-    EXPECT_FALSE(wait.end(5ms));
+    EXPECT_FALSE(wait.stop(5ms));
   }
   EXPECT_EQ(under_way, 1);
   // and may come back when nothing else is there any more
@@ -86,14 +86,14 @@ TEST_F(FrameWaits, WhatNeverAnswersIsLeftBehind) {
 }
 
 TEST_F(FrameWaits, WhatAnswersInTimeEndsThere) {
-  FrameWait wait(wait_frame, XR_NULL_HANDLE);
-  ASSERT_TRUE(wait.take(std::nullopt));
-  EXPECT_TRUE(wait.end(10s));
+  FrameWaiter wait(wait_frame, XR_NULL_HANDLE);
+  ASSERT_TRUE(wait.wait_for(std::nullopt));
+  EXPECT_TRUE(wait.stop(10s));
   EXPECT_EQ(calls, 1);
 }
 
 TEST_F(FrameWaits, NobodyAskedNobodyIsCalled) {
-  { FrameWait wait(wait_frame, XR_NULL_HANDLE); }
+  { FrameWaiter wait(wait_frame, XR_NULL_HANDLE); }
   EXPECT_EQ(calls, 0);
 }
 

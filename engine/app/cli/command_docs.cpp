@@ -1,0 +1,161 @@
+/// catena documents man FOLDER | completion FILE: manual pages and the shell's completion, made of what every command says of itself. For
+/// those who pack Catena: `--help` of the program does not list it.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <memory>
+
+#include "engine/app/cli/command.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/base/version.h"
+
+namespace catena::app {
+namespace {
+
+const auto kAll = [](const CLI::App*) { return true; };
+
+/// As roff takes it: no line begins with a control character, and a hyphen is one.
+std::string roff(const std::string& text) {
+  std::string out = !text.empty() && (text[0] == '.' || text[0] == '\'') ? "\\&" : "";
+  for (const char c : text) {
+    if (c == '\\' || c == '-') out += '\\';
+    out += c == '\\' ? 'e' : c;
+    if (c == '\n') out += "\\&";
+  }
+  return out;
+}
+
+/// "-o,--output FILE", "SCENE"
+std::string roff_name(const CLI::Option& option) {
+  std::string names;
+  for (const std::string& name : option.get_snames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("-" + name) + "\\fR");
+  for (const std::string& name : option.get_lnames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("--" + name) + "\\fR");
+  if (names.empty()) return "\\fI" + roff(option.get_name(true)) + "\\fR";
+  return names + (!option.get_type_name().empty() ? " \\fI" + roff(option.get_type_name()) + "\\fR" : "");
+}
+
+void add_options(const CLI::App& command, std::string& page) {
+  for (const bool places : {true, false}) {
+    std::string part;
+    for (const CLI::Option* option : command.get_options())
+      if (option->get_positional() == places && !option->get_group().empty())
+        part += ".TP\n" + roff_name(*option) + "\n" + roff(option->get_description()) + "\n";
+    if (!part.empty()) page += (places ? ".SH ARGUMENTS\n" : ".SH OPTIONS\n") + part;
+  }
+}
+
+/// What a command is for, without its own name and a full stop: the program's begins with "Catena: ".
+std::string purpose(const CLI::App& command) {
+  std::string text = command.get_description();
+  if (text.starts_with("Catena: ")) text.erase(0, 8);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+struct ManualPage {
+  std::string name;  ///< "catena-study-run"
+  std::string text;
+};
+
+/// The page of a command, and those of its parts.
+void add_pages(const CLI::App& command, const std::string& name, std::vector<ManualPage>& pages) {
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '-', ' ');
+  std::string capitals = name;
+  std::transform(name.begin(), name.end(), capitals.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::string page = ".TH " + roff(capitals) + " 1 \"\" \"catena " + kVersion + "\" \"Catena\"\n.SH NAME\n" + roff(name) + " \\- " +
+                     roff(purpose(command)) + "\n.SH SYNOPSIS\n\\fB" + words + "\\fR";
+  std::string parts, see;
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_positional())
+      page += (option->get_required() ? " " : " [") + roff(option->get_name(true)) + (option->get_required() ? "" : "]");
+  if (!command.get_subcommands(kAll).empty()) page += command.get_require_subcommand_min() > 0 ? " \\fICOMMAND\\fR" : " [\\fICOMMAND\\fR]";
+  page += " [\\fIOPTIONS\\fR]\n";
+  for (const CLI::App* part : command.get_subcommands(kAll)) {
+    if (part->get_group().empty()) continue;
+    const std::string own = name + "-" + part->get_name();
+    parts += ".TP\n\\fB" + roff(part->get_name()) + "\\fR\n" + roff(part->get_description()) + "; " + roff(own) + "(1)\n";
+    see += (see.empty() ? "" : ", ") + ("\\fB" + roff(own) + "\\fR(1)");
+    add_pages(*part, own, pages);
+  }
+  if (!parts.empty()) page += ".SH COMMANDS\n" + parts;
+  add_options(command, page);
+  page +=
+      ".SH EXIT STATUS\n0: done. 2: what was given cannot be used, with one line on standard error and no output file. 1: the machine "
+      "failed.\n";
+  page += ".SH SEE ALSO\n" + (see.empty() ? std::string("\\fBcatena\\fR(1)") : see) + "\n";
+  pages.push_back({name, page});
+}
+
+Outcome write_manual(const CLI::App& program, const std::string& folder) {
+  std::vector<ManualPage> pages;
+  add_pages(program, "catena", pages);
+  std::vector<OutputFile> files;
+  std::vector<OutputFile*> all;
+  files.reserve(pages.size());
+  for (const ManualPage& page : pages) {
+    CATENA_TRY(OutputFile file, OutputFile::open(folder + "/" + page.name + ".1"));
+    file.write(page.text);
+    files.push_back(std::move(file));
+    all.push_back(&files.back());
+  }
+  return commit_all(all);
+}
+
+/// "case" branches: the words after each command.
+void add_words(const CLI::App& command, const std::string& words, std::string& cases) {
+  std::string offered;
+  for (const CLI::App* part : command.get_subcommands(kAll)) {
+    if (part->get_group().empty()) continue;
+    offered += part->get_name() + " ";
+    add_words(*part, words + " " + part->get_name(), cases);
+  }
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) offered += "--" + name + " ";
+  cases += "    \"" + words + "\") words=\"" + offered + "\" ;;\n";
+}
+
+/// Of bash, which zsh takes, too (bashcompinit): commands, their options, and files everywhere else.
+Outcome write_completion(const CLI::App& program, const std::string& path) {
+  std::string cases;
+  add_words(program, "catena", cases);
+  CATENA_TRY(OutputFile file, OutputFile::open(path));
+  file.write(
+      "# Completion of catena's commands and options, made by `catena documents completion`.\n"
+      "_catena() {\n  local current=${COMP_WORDS[COMP_CWORD]} at=catena words= i\n"
+      "  for ((i = 1; i < COMP_CWORD && i < 3; ++i)); do\n    [[ ${COMP_WORDS[i]} =~ ^[a-z]+$ ]] || break\n"
+      "    case \"$at ${COMP_WORDS[i]}\" in\n");
+  std::string known;
+  for (const CLI::App* command : program.get_subcommands(kAll)) {
+    if (command->get_group().empty()) continue;
+    known += (known.empty() ? "" : "|") + ("\"catena " + command->get_name() + "\"");
+    for (const CLI::App* part : command->get_subcommands(kAll)) known += "|\"catena " + command->get_name() + " " + part->get_name() + "\"";
+  }
+  file.write("      " + known + ") at+=\" ${COMP_WORDS[i]}\" ;;\n      *) break ;;\n    esac\n  done\n  case $at in\n" + cases +
+             "  esac\n  COMPREPLY=()\n  [[ $current == -* || $at == catena || $words != -* ]] &&\n"
+             "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\")\n"
+             "  [[ $current == -* || $at == catena ]] || mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- \"$current\")\n}\n"
+             "complete -o filenames -F _catena catena\n");
+  return file.commit();
+}
+
+struct DocumentOptions {
+  std::string folder, file;
+};
+
+}  // namespace
+
+void add_documents(CLI::App& program, CommandAction& chosen) {
+  auto options = std::make_shared<DocumentOptions>();
+  CLI::App* command = program.add_subcommand("documents", "manual pages and shell completion, for packages")->group("");
+  command->require_subcommand(1);
+  CLI::App* man = command->add_subcommand("man", "a manual page for every command");
+  man->add_option("FOLDER", options->folder, "where they go")->required();
+  man->callback([&chosen, &program, options] { chosen = [&program, options] { return write_manual(program, options->folder); }; });
+  CLI::App* completion = command->add_subcommand("completion", "the completion of bash");
+  completion->add_option("FILE", options->file, "where it goes")->required();
+  completion->callback([&chosen, &program, options] { chosen = [&program, options] { return write_completion(program, options->file); }; });
+}
+
+}  // namespace catena::app

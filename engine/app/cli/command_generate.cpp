@@ -1,0 +1,91 @@
+/// catena generate NAME -o OUT.vdb --resolution N [--box LO HI]
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "engine/app/cli/command.h"
+#include "engine/app/cli/io_conflicts.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/field/analytic/analytic.h"
+#include "engine/io/volume/load_field.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kMaxResolution = 1024;
+
+struct GenerateOptions {
+  std::string name, output;
+  int resolution = 0;
+  std::array<double, 2> box{-2, 2};
+  double scale = 1;
+  std::vector<double> direction{1, 0, 0};
+  bool direction_given = false;
+};
+
+Outcome check(const GenerateOptions& o) {
+  if (!field::is_analytic(o.name)) {
+    const auto names = field::analytic_names();
+    return Error{"no analytic field " + in_quotes(o.name) + suggestion(o.name, names) + "; known: " + join_words(names)};
+  }
+  if (o.resolution < 2 || o.resolution > kMaxResolution)
+    return Error{fmt::format("--resolution {}: expected 2 to {} nodes an axis", o.resolution, kMaxResolution)};
+  if (!std::isfinite(o.box[0]) || !std::isfinite(o.box[1]) || !(o.box[0] < o.box[1]))
+    return Error{fmt::format("--box {} {}: expected two finite numbers, LO < HI", to_text(o.box[0]), to_text(o.box[1]))};
+  if (!std::isfinite(o.scale) || o.scale == 0)
+    return Error{fmt::format("--scale {}: expected a finite number other than 0", to_text(o.scale))};
+  if (o.direction_given && o.name != "uniform") return Error{"--direction: belongs to uniform, not to " + o.name};
+  const Vec3 d(o.direction[0], o.direction[1], o.direction[2]);
+  if (!is_finite(d) || norm(d) == 0) return Error{"--direction: expected three finite numbers, not all zero"};
+  if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
+  IoConflictChecker files;
+  files.add_output("-o", o.output);
+  return files.check();
+}
+
+Outcome generate(const GenerateOptions& o) {
+  CATENA_CHECK(check(o));
+  std::vector<field::NamedGrid> items;
+  const auto parts = field::analytic_parts(o.name);
+  ProgressLine progress("generate", static_cast<double>(parts.size()));
+  for (const std::string_view part : parts) {
+    field::AnalyticParameters parameters;
+    parameters.scale = o.scale;
+    parameters.direction = Vec3(o.direction[0], o.direction[1], o.direction[2]);
+    if (parts.size() > 1) parameters.part = std::string(part);
+    CATENA_TRY(const field::AnyField exact, field::make_analytic(o.name, parameters));
+    CATENA_TRY(const field::AnyField sampled, field::try_sample_on_grid(exact, o.resolution, o.box[0], o.box[1]));
+    items.push_back({sampled, std::string(part)});
+    progress.update(static_cast<double>(items.size()));
+  }
+  CATENA_CHECK(field::write_vdb(o.output, items));
+  fmt::print("{}:", sanitize_for_terminal(o.output));
+  for (const field::NamedGrid& item : items) fmt::print(" {}", sanitize_for_terminal(item.name));
+  fmt::print(", {0} x {0} x {0} nodes, spacing {1}\n", o.resolution, to_text((o.box[1] - o.box[0]) / (o.resolution - 1)));
+  return Done{};
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program, CommandAction& chosen) {
+  auto options = std::make_shared<GenerateOptions>();
+  CLI::App* command = program.add_subcommand("generate", "sample an analytic field on a grid");
+  command->add_option("NAME", options->name, "the field: " + join_words(field::analytic_names(), field::analytic_names().size()))
+      ->required();
+  command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
+  command->add_option("--resolution", options->resolution, "nodes an axis, both ends included")->required();
+  command->add_option("--box", options->box, "LO HI: the cube to sample")->capture_default_str();
+  command->add_option("--scale", options->scale, "multiplies the values")->capture_default_str();
+  CLI::Option* direction = command->add_option("--direction", options->direction, "of `uniform`")->expected(3)->capture_default_str();
+  command->callback([&chosen, options, direction] {
+    options->direction_given = direction->count() > 0;
+    chosen = [options] { return generate(*options); };
+  });
+}
+
+}  // namespace catena::app

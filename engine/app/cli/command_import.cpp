@@ -1,0 +1,122 @@
+/// catena import IN -o OUT: any file that Catena reads, as one of those that it writes (engine/io/volume/write_field.h).
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "engine/app/cli/command.h"
+#include "engine/app/cli/io_conflicts.h"
+#include "engine/app/cli/options.h"
+#include "engine/app/render/outputs.h"
+#include "engine/base/console.h"
+#include "engine/base/text.h"
+#include "engine/io/volume/formats.h"
+#include "engine/io/volume/load_field.h"
+#include "engine/io/volume/write_field.h"
+#include "engine/scene/time_steps.h"
+
+namespace catena::app {
+
+namespace {
+
+struct ImportOptions {
+  std::string input, output, grid, name;
+  std::vector<int> shape;
+  std::vector<double> spacing{1, 1, 1}, origin{0, 0, 0};
+  std::string type = "float32";
+  int step = -1;
+};
+
+/// None may be a file that is read: of a series all are, not a step's alone.
+Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& outputs) {
+  IoConflictChecker files;
+  files.add_input(o.input);
+  for (const std::string& output : outputs) files.add_output("-o", output);
+  return files.check();
+}
+
+/// `told`: notes of steps before, which are not repeated.
+Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, const std::string& output, std::set<std::string>& told) {
+  std::vector<std::string> notes;
+  CATENA_TRY(const std::string name, field::convert_file(request, output, o.name, &notes));
+  for (const std::string& note : notes)
+    if (told.insert(note).second) print_message("note: " + request.path + ": " + note);
+  fmt::print("{}: {}\n", sanitize_for_terminal(output), sanitize_for_terminal(name));
+  return Done{};
+}
+
+Result<int> count_steps(const field::LoadRequest& request) {
+  if (scene::is_pattern(request.path)) return static_cast<int>(scene::expand_pattern(request.path).size());
+  CATENA_TRY(const field::AnyField first, field::load(request));
+  return scene::list_time_steps(request.path, first).count;
+}
+
+/// One output holds one step.
+Outcome check_one_step(const ImportOptions& o, const field::LoadRequest& request) {
+  const bool pattern = scene::is_pattern(request.path);
+  if (o.step < 0 && !pattern) return Done{};
+  CATENA_TRY(const int steps, count_steps(request));
+  if (o.step < 0)
+    return Error{fmt::format("{}: {} files for one output: --step N was expected, or %03d in the output's name for all", o.input, steps)};
+  return check_step(o.step, steps - 1, fmt::format("--step {}", o.step), o.input);
+}
+
+Outcome import_file(const ImportOptions& o) {
+  if (!field::is_writable_format(o.output) && !o.output.starts_with("/dev/"))
+    return Error{o.output + ": expected an output that ends in " + field::writable_extensions()};
+  const bool raw_file = field::needs_layout(o.input);
+  if (!raw_file && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
+  field::LoadRequest request;
+  request.path = o.input;
+  request.grid = o.grid;
+  if (raw_file) {
+    if (o.shape.empty()) return Error{o.input + ": a .raw file needs --shape NX NY NZ"};
+    field::RawLayout raw;
+    raw.shape = {o.shape[0], o.shape[1], o.shape[2]};
+    raw.spacing = Vec3(o.spacing[0], o.spacing[1], o.spacing[2]);
+    raw.origin = Vec3(o.origin[0], o.origin[1], o.origin[2]);
+    raw.type = o.type;
+    request.raw = raw;
+  }
+  std::set<std::string> told;
+  if (!is_numbered(o.output)) {
+    CATENA_CHECK(check_one_step(o, request));
+    CATENA_CHECK(check_outputs(o, {o.output}));
+    CATENA_CHECK(import_step(o, scene::request_at(request, std::max(o.step, 0)), o.output, told));
+    if (const std::size_t steps = field::read_times(o.input).size(); o.step < 0 && steps > 1)
+      print_message(fmt::format("note: {}: step 0 of {} is written; --step N, or %03d in the output's name for all", o.input, steps));
+    return Done{};
+  }
+  if (o.step >= 0) return Error{fmt::format("--step {}: goes with one output, and {} is one for each step", o.step, o.output)};
+  CATENA_TRY(const int steps, count_steps(request));
+  std::vector<std::string> outputs;
+  for (int step = 0; step < steps; ++step) outputs.push_back(numbered_path(o.output, step));
+  CATENA_CHECK(check_outputs(o, outputs));
+  for (int step = 0; step < steps; ++step) CATENA_CHECK(import_step(o, scene::request_at(request, step), outputs[step], told));
+  return Done{};
+}
+
+}  // namespace
+
+void add_import(CLI::App& program, CommandAction& chosen) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* command = program.add_subcommand("import", "convert a data file");
+  add_source(*command, "IN", options->input, field::describe_field_extensions())->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "the grid: " + field::writable_extensions() + "; %03d in a name numbers the steps in time, which are then all written")
+      ->required();
+  command->add_option("--step", options->step, "which step in time, from 0 (default: the first of one file)")
+      ->check(CLI::Range(0, 1'000'000));
+  command->add_option("--grid", options->grid, "which grid of a file that holds several");
+  command->add_option("--name", options->name, "the grid's name in the output");
+  command->add_option("--shape", options->shape, ".raw: voxels along x y z")->expected(3);
+  command->add_option("--spacing", options->spacing, ".raw: voxel edges")->expected(3)->capture_default_str();
+  command->add_option("--origin", options->origin, ".raw: world position of the first voxel's centre")->expected(3)->capture_default_str();
+  command->add_option("--type", options->type, ".raw: float32, uint8, int16, ... or float32x3")->capture_default_str();
+  command->callback([&chosen, options] { chosen = [options] { return import_file(*options); }; });
+}
+
+}  // namespace catena::app

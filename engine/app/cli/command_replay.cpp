@@ -1,0 +1,145 @@
+/// catena replay SCENE --probe PATH.csv -o TICKS.csv [--details LINKS.csv] [--widgets W.csv] [--stats FILE.json]
+/// catena replay [SCENE] --log FILE.catlog [-o TICKS.csv] ...: what was recorded, again, compared to the bit (replay_log.h)
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "engine/app/cli/command.h"
+#include "engine/app/haptics/contact_summary.h"
+#include "engine/app/haptics/log_replay.h"
+#include "engine/app/haptics/probe_playback.h"
+#include "engine/app/haptics/tick_csv.h"
+#include "engine/app/tuning/plan/tracking_error.h"
+#include "engine/app/tuning/plan/tune.h"
+#include "engine/base/csv.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "haptics/build/build_program.h"
+#include "haptics/device/registry.h"
+#include "haptics/servo/device_limits.h"
+#include "haptics/servo/replay.h"
+
+namespace catena::app {
+
+namespace {
+
+// A scene that names its device is replayed as that device would give it; without one nothing is limited.
+Result<haptics::DeviceLimits> device_limits(const scene::Scene& scene, const std::string& path) {
+  if (!scene.device) return haptics::DeviceLimits{};
+  CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, path));
+  return haptics::compute_device_limits(haptics::nominal_capabilities(settings.type), settings);
+}
+
+/// Before anything is felt: from here on the links say how they are followed.
+Result<std::optional<plan::TickTuning>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
+  CATENA_TRY(const scene::TuningTargets wanted, plan::resolve_tick_targets(scene, options.plan));
+  double rate_hz = 1000;
+  if (scene.device) {
+    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));
+    rate_hz = settings.rate_hz;
+  }
+  return plan::tune_links(scene, wanted, rate_hz, options.fields,
+                          [](const std::string& line) { fmt::print("{}\n", sanitize_for_terminal(line)); });
+}
+
+Outcome replay_scene(const ReplayOptions& options) {
+  if (options.scene.empty()) return Error{"SCENE is required (see catena replay --help)"};
+  if (options.probe.empty()) return Error{"--probe or --log is required (see catena replay --help)"};
+  if (options.output.empty()) return Error{"--output is required (see catena replay --help)"};
+  if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to replay"};
+  CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
+  IoConflictChecker named = replay_files(options);
+  named.add_input(scene);
+  CATENA_CHECK(named.check());
+  CATENA_TRY(const haptics::DeviceLimits limits, device_limits(scene, options.scene));
+  CATENA_TRY(const std::optional<plan::TickTuning> plan, plan_the_hand(scene, options));
+  CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene, limits));
+  print_scene_notes(scene);
+  CATENA_TRY(const std::vector<ProbePathRow> rows, read_probe_path(options.probe));
+  const std::vector<haptics::ProbeSample> path = to_probe_samples(rows);
+  const bool turns = rows.front().has_orientation;
+
+  CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
+  const LinkColumns columns(link_names(*program));
+  const std::vector<std::string> modes = mode_names(*program);
+  ticks.write(tick_header(columns, turns));
+  std::optional<OutputFile> details, widgets, json;
+  if (!options.details.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.details));
+    details.emplace(std::move(file));
+    details->write(details_header(columns) + "\n");
+  }
+  if (!options.widgets.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.widgets));
+    widgets.emplace(std::move(file));
+    widgets->write(widget_header(*program));
+  }
+  ContactSummary felt;
+  plan::TrackingErrorMonitor observer(plan ? &*plan : nullptr, *program);
+  WidgetUsage use;
+  ProgressLine progress("replay", static_cast<double>(path.size()));
+  std::string line;
+  const haptics::ReplayStats stats = haptics::replay(*program, path, [&](const HapticState& state) {
+    line.clear();
+    append_tick(line, columns, state, turns);
+    ticks.write(line);
+    if (details) {
+      line.clear();
+      append_details(line, columns, modes, program->meters_per_unit, state);
+      line += '\n';
+      details->write(line);
+    }
+    if (widgets) {
+      line.clear();
+      append_widgets(line, *program, state);
+      widgets->write(line);
+    }
+    felt.add(state);
+    observer.add(state);
+    use.add(state);
+    if (state.tick % 1024 == 0) progress.update(static_cast<double>(state.tick));
+    return true;
+  });
+
+  std::vector<OutputFile*> files{&ticks};
+  if (details) files.push_back(&*details);
+  if (widgets) files.push_back(&*widgets);
+  if (!options.stats.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.stats));
+    json.emplace(std::move(file));
+    json->write(replay_stats_json(stats, use.to_json(*program)));
+    files.push_back(&*json);
+  }
+  CATENA_CHECK(commit_all(files));
+  if (!scene.workspace.is_explicit) fmt::print("{}", describe_scales({program->meters_per_unit}, false));
+  if (!(program->coupling.ramp_s > 0))
+    fmt::print("forces are not ramped (\"ramp_s\" is 0): where a link lets go or is switched they step\n");
+  fmt::print("{}", observer.summary(scene, 1e-3 * stats.tick_ns_p50));
+  fmt::print("{}", felt.report(*program, stats));
+  fmt::print("{}", use.report(*program));
+  return Done{};
+}
+
+}  // namespace
+
+void add_replay(CLI::App& program, CommandAction& chosen) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = program.add_subcommand("replay", "drive the tick from a recorded probe path: deterministic, no thread");
+  command->add_option("SCENE", options->scene, "the scene file (.json); with --log: used instead of the recorded one");
+  command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons][,qw,qx,qy,qz]");
+  command->add_option("--log", options->log, "a recording (.catlog): runs it again and compares every bit");
+  command->add_option("-o,--output", options->output, "ticks, CSV");
+  command->add_option("--details", options->details, "what every link tells beside: gap, leaving, share, energy; CSV");
+  command->add_option("--widgets", options->widgets,
+                      "modes and poses of the widgets, CSV: t, NAME_mode, NAME_handle, NAME_held, NAME_x,y,z ..");
+  command->add_option("--stats", options->stats, "figures, JSON");
+  command->add_option("--plan", options->plan,
+                      "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
+  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->callback(
+      [&chosen, options] { chosen = [options] { return options->log.empty() ? replay_scene(*options) : replay_log_file(*options); }; });
+}
+
+}  // namespace catena::app

@@ -1,0 +1,260 @@
+/// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--tolerance T]
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "engine/app/cli/command.h"
+#include "engine/app/cli/io_conflicts.h"
+#include "engine/app/cli/options.h"
+#include "engine/app/cli/polyline_writer.h"
+#include "engine/base/clock.h"
+#include "engine/base/csv.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/geometry/flow/batch_tracer.h"
+#include "engine/io/volume/load_field.h"
+#include "engine/scene/streamlines.h"
+#include "engine/scene/time_steps.h"
+
+namespace catena::app {
+
+namespace {
+
+struct TraceOptions {
+  std::string source, field, seeds, output, kind = "vector", stats;
+  int repeat = 1, time_step = -1;
+  double length = 0, min_speed = 0, tolerance = 0, step = 0;
+};
+
+std::int64_t process_cpu_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return 1'000'000'000 * static_cast<std::int64_t>(t.tv_sec) + t.tv_nsec;
+}
+
+/// The scene, or one made of the grids of a data file that the options name.
+Result<scene::Scene> scene_of(const TraceOptions& options) {
+  scene::Scene scene;
+  scene.path = options.source;
+  if (is_scene_file(options.source)) {
+    CATENA_TRY(scene, open_scene(options.source));
+    CATENA_CHECK(go_to_step(scene, options.time_step, fmt::format("--time-step {}", options.time_step)));
+  } else {
+    scene.time.step = std::max(options.time_step, 0);
+  }
+  return scene;
+}
+
+scene::Entity add_grid(scene::Scene& scene, const std::string& grid) {
+  const scene::Entity entity = scene.entities.create();
+  scene::FieldSource source;
+  field::LoadRequest request;
+  request.path = scene.path;
+  request.grid = grid;
+  source.file = scene::request_at(request, scene.time.step);
+  source.where.file = std::make_shared<const std::string>(scene.path);
+  scene.entities.emplace<scene::Name>(entity, {grid});
+  scene.entities.emplace<scene::FieldSource>(entity, std::move(source));
+  return entity;
+}
+
+Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptions& options) {
+  field::AnyField any;
+  if (is_scene_file(options.source)) {
+    const scene::Entity entity = scene::find_field(scene, options.field);
+    if (!entity) {
+      std::vector<std::string_view> known;
+      scene.entities.each<scene::FieldSource>(
+          [&](scene::Entity e, const scene::FieldSource&) { known.push_back(scene.entities.get<scene::Name>(e).value); });
+      return Error{options.source + ": no field \"" + options.field + "\"; known: " + (known.empty() ? "none" : join_words(known))};
+    }
+    CATENA_TRY(any, scene::resolve_field(scene, entity, scene.entities.get<scene::FieldSource>(entity).where));
+  } else {
+    field::LoadRequest request;
+    request.path = options.source;
+    request.grid = options.field;
+    CATENA_TRY(any, field::load(scene::request_at(request, scene.time.step)));
+    CATENA_CHECK(check_step(options.time_step, scene::list_time_steps(options.source, any).count - 1,
+                            fmt::format("--time-step {}", options.time_step), options.source));
+    print_scene_notes(options.source, any.notes);
+  }
+  print_scene_notes(scene);
+  if (!any.vector) return Error{options.source + ": field \"" + options.field + "\" is a scalar field: expected a vector field to trace"};
+  return any.vector;
+}
+
+using Curves = std::vector<flow::CurvePtr>;
+
+/// How long the tracing took, without files: every repetition of it.
+struct Timing {
+  std::vector<double> wall_ms, cpu_ms;
+
+  template <class Work>
+  auto measure(Work&& work) {
+    const std::int64_t start = now_ns(), start_cpu = process_cpu_ns();
+    auto result = work();
+    wall_ms.push_back(ms_since(start));
+    cpu_ms.push_back(1e-6 * static_cast<double>(process_cpu_ns() - start_cpu));
+    return result;
+  }
+};
+
+/// Seeds of a table, over all cores.
+Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, Timing& timing) {
+  CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
+  flow::TraceOptions exact;
+  exact.length = options.length;
+  exact.max_step = options.step * flow.field->max_voxel_edge();
+  flow::BatchOptions batch;
+  batch.length = options.length;
+  batch.tolerance = options.tolerance;
+  batch.max_step = options.step;
+  const bool exactly = options.tolerance <= 1e-9;
+  const flow::BatchTracer tracer(flow, batch);
+  const std::size_t at_once = exactly ? 64 : 4096;  // between two looks at the progress
+  const auto trace_all = [&]() -> Result<Curves> {
+    Curves curves;
+    curves.reserve(seeds.size());
+    ProgressLine progress("trace", static_cast<double>(seeds.size()));
+    std::size_t knots = 0;
+    const std::size_t most_knots = scene::knot_limit();
+    for (std::size_t first = 0; first < seeds.size(); first += at_once) {
+      const std::span block(seeds.data() + first, std::min(at_once, seeds.size() - first));
+      const auto traced = exactly ? flow::trace_all(flow, block, exact) : tracer.trace(block);
+      for (std::size_t i = 0; i < traced.size(); ++i) {
+        if (!traced[i])
+          return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};  // after the header
+        curves.push_back(*traced[i]);
+        knots += curves.back()->knots().size();
+      }
+      if (knots > most_knots)
+        return Error{options.seeds + ": " + scene::too_many_knots_message(seeds.size(), first + block.size(), most_knots)};
+      progress.update(static_cast<double>(first + block.size()));
+    }
+    return curves;
+  };
+  for (int n = 1; n < options.repeat; ++n) CATENA_CHECK(timing.measure(trace_all));
+  return timing.measure(trace_all);
+}
+
+bool is_pattern(const std::string& seeds) { return seeds.starts_with("{") || seeds.ends_with(".json"); }
+
+/// Seeds by a pattern, as a scene's "seeds" has it: text, or a file.
+Result<json::Node> pattern_of(const std::string& seeds) {
+  return seeds.starts_with("{") ? json::parse(seeds, "--seeds") : json::read(seeds);
+}
+
+Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node, const flow::Flow& flow, scene::Scene& scene) {
+  // a data file's other grids are found by name
+  if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
+    if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
+  CATENA_TRY(const scene::Seeds seeds, scene::read_seeds(scene, node));
+  std::optional<ProgressLine> shown;
+  const auto progress = [&](std::size_t done, std::size_t of) {
+    if (!shown) shown.emplace("trace", static_cast<double>(of));
+    shown->update(static_cast<double>(done));
+  };
+  scene::LineRequest request{flow, options.length, options.tolerance, options.step, scene::knot_limit(), progress};
+  // a table of lines goes as far as they do, but those that fill the space need its end
+  const scene::Entity field = scene::find_field(scene, options.field);
+  if (field && seeds.pattern && seeds.pattern->kind == scene::SeedPattern::Kind::evenly_spaced)
+    request.box = scene.entities.get<scene::FieldSource>(field).box;
+  return scene::trace_lines(scene, seeds, request, node);
+}
+
+Outcome trace_lines(const TraceOptions& options) {
+  for (const auto& [name, value] :
+       {std::pair{"--length", options.length}, {"--min-speed", options.min_speed}, {"--tolerance", options.tolerance}})
+    if (!std::isfinite(value)) return Error{fmt::format("{}: expected a finite number", name)};
+  const bool vtp = options.output.ends_with(".vtp");
+  if (!vtp && !options.output.ends_with(".csv") && !options.output.starts_with("/dev/"))
+    return Error{options.output + ": expected an output that ends in .csv or .vtp"};
+  CATENA_TRY(scene::Scene scene, scene_of(options));
+  IoConflictChecker files(scene);
+  if (!options.seeds.starts_with("{")) files.add_input(options.seeds);
+  files.add_output("-o", options.output);
+  files.add_output("--stats", options.stats);
+  CATENA_CHECK(files.check());
+  json::Node pattern;
+  if (is_pattern(options.seeds)) {
+    CATENA_TRY(pattern, pattern_of(options.seeds));
+  }
+  CATENA_TRY(const field::VectorFieldPtr field, vector_field(scene, options));
+
+  const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
+  Timing timing;
+  CATENA_TRY(const Curves curves, is_pattern(options.seeds) ? timing.measure([&] { return trace_pattern(options, pattern, flow, scene); })
+                                                            : trace_table(options, flow, timing));
+  std::map<std::string, int> ends;
+  std::size_t knots = 0;
+  for (const flow::CurvePtr& curve : curves) {
+    knots += curve->knots().size();
+    ++ends[flow::to_string(curve->first_end().termination)];
+    ++ends[flow::to_string(curve->last_end().termination)];
+  }
+
+  CATENA_TRY(OutputFile out, OutputFile::open(options.output));
+  if (vtp)
+    write_polylines_vtp(out, curves, *field);
+  else
+    write_polylines_csv(out, curves);
+  const double first_cpu_ms = timing.cpu_ms.front();
+  if (options.stats.empty()) {
+    CATENA_CHECK(out.commit());
+  } else {
+    CATENA_TRY(OutputFile stats, OutputFile::open(options.stats));
+    stats.write(
+        fmt::format("{{\n  \"lines\": {},\n  \"knots\": {},\n  \"trace_ms\": {:.3f},\n  \"trace_cpu_ms\": {:.3f},\n  "
+                    "\"first_trace_cpu_ms\": {:.3f}\n}}\n",
+                    curves.size(), knots, quantile(timing.wall_ms, 0.5), quantile(timing.cpu_ms, 0.5), first_cpu_ms));
+    CATENA_CHECK(commit_all({&out, &stats}));
+  }
+  fmt::print("{} line{}, {} knots; ends:", curves.size(), curves.size() == 1 ? "" : "s", knots);
+  for (const auto& [word, count] : ends) fmt::print(" {} {}", word, count);
+  fmt::print("\n");
+  return Done{};
+}
+
+}  // namespace
+
+void add_trace(CLI::App& program, CommandAction& chosen) {
+  auto options = std::make_shared<TraceOptions>();
+  CLI::App* command = program.add_subcommand("trace", "streamlines through seeds, as arc-length curves");
+  add_source(*command, "SOURCE", options->source, "a scene file (.json) or a data file")->required();
+  command->add_option("--field", options->field, "a field of the scene, or a grid of the file")->required();
+  command
+      ->add_option("--seeds", options->seeds,
+                   "seeds: CSV x,y,z; or a pattern as a scene's \"seeds\" has it, '{\"line\": ...}' or a .json file")
+      ->required();
+  command->add_option("-o,--output", options->output, "lines: .vtp, or CSV: line,s,x,y,z,tx,ty,tz")->required();
+  command->add_option("--length", options->length, "longest arc length in each direction, world units (default: 10 L)")
+      ->check(number_above_zero());
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
+      ->check(CLI::Range(0.0, 0.01));
+  command
+      ->add_option(
+          "--step", options->step,
+          "the longest step, voxels, of a formula world units (default: 0.5; as the lines need where the tolerance is at most 1e-9)")
+      ->check(CLI::Range(0.01, 4.0));
+  command->add_option("--time-step", options->time_step, "which step in time, from 0, of a field that has several (default: the scene's)")
+      ->check(CLI::Range(0, 1'000'000));
+  command->add_option("--repeat", options->repeat, "trace a table so many times, for --stats: medians, and the first")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--stats", options->stats, "figures, JSON");
+  command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
+      ->check(CLI::IsMember({"vector", "line"}))
+      ->capture_default_str();
+  command->add_option("--min-speed", options->min_speed, "speeds at or below this end a line")->check(number_at_least(0));
+  command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });
+}
+
+}  // namespace catena::app

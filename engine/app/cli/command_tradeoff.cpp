@@ -1,0 +1,68 @@
+/// catena tradeoff SCENE|FILE -o DIR [--quick|--thorough] [--compare OTHER.json]: error against cost of this scene's settings
+/// catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "engine/app/cli/command.h"
+#include "engine/app/cli/options.h"
+#include "engine/app/tuning/tradeoff/figures.h"
+#include "engine/app/tuning/tradeoff/measure_tradeoffs.h"
+#include "engine/base/text.h"
+
+namespace catena::app {
+
+namespace {
+
+struct TradeoffOptions : MeasureOptions {
+  std::string figure;
+};
+
+Outcome run_tradeoff(const TradeoffOptions& options) {
+  if (!options.source.empty() && !options.figure.empty()) return Error{"--figure goes without a scene: its scenes are its own"};
+  if (!options.source.empty()) return measure_tradeoffs(options);
+  if (options.figure.empty())
+    return Error{
+        "tradeoff: expected a scene or a data file to measure, --figure 2 (drift of the methods from a streamline), --figure 3 (a "
+        "penetrable surface and a curve: "
+        "the chain beside its baselines), --figure stiffness (the largest spring by damping, rate and delay) or --figure energy (what a "
+        "closed "
+        "loop of the hand gains)"};
+  CATENA_TRY(ResultsDir folder, ResultsDir::open(options.output));
+  CATENA_CHECK(options.figure == "2"           ? figure2(folder)
+               : options.figure == "3"         ? figure3(folder)
+               : options.figure == "stiffness" ? figure_stiffness(folder)
+                                               : figure_energy(folder));
+  CATENA_CHECK(folder.commit());
+  fmt::print("{}:", sanitize_for_terminal(options.output));
+  for (const std::string& name : folder.file_names()) fmt::print(" {}", name);
+  fmt::print("\n");
+  return Done{};
+}
+
+}  // namespace
+
+void add_tradeoff(CLI::App& program, CommandAction& chosen) {
+  auto options = std::make_shared<TradeoffOptions>();
+  CLI::App* command =
+      program.add_subcommand("tradeoff", "what the settings of a scene cost and what they buy, measured; or figures of the paper");
+  add_source(*command, "SOURCE", options->source,
+             "a scene (.json) or a data file to measure; or the tradeoff.json of a run, for its page again");
+  command
+      ->add_option("--figure", options->figure,
+                   "2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest spring; energy: what a closed "
+                   "loop of the hand gains")
+      ->check(CLI::IsMember({"2", "3", "stiffness", "energy"}));
+  command->add_option("-o,--output", options->output, "a folder for the page and the tables; of a figure its script and plots")->required();
+  command->add_flag("--quick", options->quick, "two minutes at most");
+  command->add_flag("--thorough", options->thorough, "larger pictures and more repeats: up to 20 minutes");
+  command->add_option("--compare", options->compare, "the tradeoff.json of another machine or version: side by side on the page");
+  command->add_option("--probe", options->probe, "a hand's path of your own, CSV: t,x,y,z[,buttons]");
+  command->add_option("--only", options->only, "measure only these")->delimiter(',')->check(CLI::IsMember(measurement_names()));
+  command->add_option("--grid", options->grid, "of a data file that holds several");
+  command->add_option("--field", options->fields, "replace a field of the scene: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->callback([&chosen, options] { chosen = [options] { return run_tradeoff(*options); }; });
+}
+
+}  // namespace catena::app

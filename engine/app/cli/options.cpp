@@ -1,0 +1,87 @@
+#include "engine/app/cli/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/time_steps.h"
+
+namespace catena::app {
+
+CLI::Option* add_source(CLI::App& command, const std::string& name, std::string& source, const std::string& help) {
+  return command.add_option_function<std::vector<std::string>>(
+      name,
+      [&source](const std::vector<std::string>& files) {
+        if (files.size() > 1)
+          for (const char* single : {".json", ".catlog"})
+            for (const std::string& file : files)
+              if (has_extension(file, single))
+                throw CLI::ValidationError(
+                    file + ": several files were expected to be one series of data files; a scene or a recording goes alone");
+        const auto one = scene::make_pattern(files);
+        if (!one) throw CLI::ValidationError(one_line(one.error().message));
+        source = *one;
+      },
+      help + "; several files of one series are its steps in time");
+}
+
+void add_annotation_options(CLI::App& command, AnnotationOptions& options) {
+  command.add_option("--title", options.title, "text at the top of the picture");
+  command.add_flag("--scalar-bar", options.scalar_bar, "the colours of the first volume or coloured streamlines, with their values");
+  command.add_flag("--orientation-marker", options.orientation_marker, "the world's axes in a corner");
+}
+
+Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options) {
+  scene::Annotations& all = scene.annotations;
+  if (!options.title.empty()) all.title = options.title;
+  if (options.orientation_marker && !all.orientation_marker) all.orientation_marker.emplace();
+  if (!options.scalar_bar || !all.scalar_bars.empty()) return Done{};
+  const auto bar = scene::first_scalar_bar(scene.entities);
+  if (!bar)
+    return Error{
+        "--scalar-bar: nothing here has colours; a volume or streamlines with \"color_by\" were expected (--colormap NAME makes a data "
+        "file one)"};
+  all.scalar_bars.push_back(*bar);
+  return Done{};
+}
+
+void ColorOptions::add_to(CLI::App& command) {
+  command.add_option("--colormap", colormap,
+                     "colour map of a data file (catena info --colormaps lists them); lines show their speed by it");
+  command.add_option("--range", range, "the values between which a data file's colours, and a volume's opacity, lie: LO HI")->expected(2);
+  command.add_option("--mapping", mapping, "linear, log or symlog: the scale of a data file's colours, and of a volume's opacity");
+  command.add_option("--linear-below", linear_below,
+                     "of --mapping symlog: up to this size values are linear (default: a thousandth of the greatest)");
+}
+
+Result<scene::NamedColors> ColorOptions::to_named_colors() const {
+  scene::NamedColors colors;
+  if (!colormap.empty() && !scene::is_color_map(colormap))
+    return Error{one_line("--colormap: " + scene::unknown_color_map_message(colormap))};
+  colors.map = colormap;
+  if (!mapping.empty()) {
+    const auto word = std::ranges::find(scene::kMappingNames, mapping);
+    if (word == std::end(scene::kMappingNames))
+      return Error{one_line("--mapping " + in_quotes(mapping) + ": linear, log or symlog was expected")};
+    colors.mapping.kind = static_cast<scene::ValueMapping::Kind>(word - std::begin(scene::kMappingNames));
+  }
+  if (!linear_below.empty()) {
+    const auto size = parse_double(linear_below);
+    if (!size || !(*size > 0) || colors.mapping.kind != scene::ValueMapping::Kind::symlog)
+      return Error{one_line("--linear-below " + linear_below + ": a size above 0 beside --mapping symlog was expected")};
+    colors.mapping.linear_below = *size;
+  }
+  if (range.empty()) return colors;
+  const auto lo = parse_double(range[0]), hi = parse_double(range[1]);
+  if (!lo || !hi || !scene::is_color_range(*lo, *hi))
+    return Error{one_line("--range " + range[0] + " " + range[1] + ": two rising numbers LO HI were expected")};
+  colors.range = {*lo, *hi};
+  if (const std::string problem = scene::mapping_error(colors.mapping, *lo, "--range"); !problem.empty())
+    return Error{one_line("--range " + range[0] + " " + range[1] + ": " + problem)};
+  return colors;
+}
+
+}  // namespace catena::app

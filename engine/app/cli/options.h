@@ -1,0 +1,182 @@
+/// Options that several commands share, one section each: numbers, --size, --stereo, what is annotated, colours, real time.
+///
+/// "--rate", "--seconds" and their like: finite numbers within bounds. CLI11's own checks let "nan" through, print bounds of 309 digits,
+/// and it takes an empty word for 0 behind them: refuse_empty_numbers.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/haptics/haptic_device_setup.h"
+#include "engine/base/numbers.h"
+#include "engine/base/result.h"
+#include "engine/base/text.h"
+#include "engine/scene/components.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/stereo.h"
+#include "render/extract/extract_internal.h"
+
+namespace catena::app {
+
+/// A positional option that takes a file, or several files of one series in any order, which become the pattern that stands for them
+/// (engine/scene/time_steps.h).
+CLI::Option* add_source(CLI::App& command, const std::string& name, std::string& source, const std::string& help);
+
+inline CLI::Validator number_between(double least, double most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) -> std::string {
+        const auto value = parse_double(text);
+        if (value && *value >= least && *value <= most) return {};
+        const std::string range =
+            most < std::numeric_limits<double>::max() ? "from " + to_text(least) + " to " + to_text(most) : "of at least " + to_text(least);
+        return in_quotes(text) + " is out of range; a finite number " + range + " was expected";
+      },
+      "");
+}
+
+inline CLI::Validator number_at_least(double least) { return number_between(least, std::numeric_limits<double>::max()); }
+
+inline CLI::Validator number_above_zero() {
+  return CLI::Validator(
+      [](const std::string& text) -> std::string {
+        const auto value = parse_double(text);
+        if (value && *value > 0 && *value <= std::numeric_limits<double>::max()) return {};
+        return in_quotes(text) + " is out of range; a finite number above 0 was expected";
+      },
+      "");
+}
+
+/// An empty value of an option that takes numbers is said before any other check sees it. After all options of `command` are there.
+inline void refuse_empty_numbers(CLI::App& command) {
+  for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_expected_min() > 0; })) {
+    const std::string type = option->get_type_name();
+    if (!type.starts_with("INT") && !type.starts_with("UINT") && !type.starts_with("FLOAT")) continue;
+    option->transform(CLI::Validator(
+        [](std::string& text) -> std::string { return text.empty() ? "the value is empty; a number was expected" : ""; }, ""));
+  }
+}
+
+/// "--size WxH".
+inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< each way, of a picture drawn in one piece
+
+struct ImageSize {
+  std::uint32_t width = 1024, height = 768;
+};
+
+/// `most`: pixels each way.
+inline Result<ImageSize> parse_image_size(const std::string& text, int most = kMaxImageSize) {
+  const auto x = text.find('x');
+  if (x != std::string::npos) {
+    const auto width = parse_integer(text.substr(0, x)), height = parse_integer(text.substr(x + 1));
+    if (width && height && *width >= 1 && *height >= 1 && *width <= most && *height <= most)
+      return ImageSize{static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+  }
+  return Error{"--size " + text + ": expected WIDTHxHEIGHT, each 1 to " + std::to_string(most) + ", such as 1024x768"};
+}
+
+/// "--stereo MODE", "--eye-separation S", "--zero-parallax F" and "--screen NAME": over what the scene says.
+struct StereoOptions {
+  std::string mode, screen;
+  std::optional<double> separation, zero_parallax;
+
+  Outcome apply(scene::Stereo& stereo) const {
+    if (!mode.empty()) {
+      const auto known = scene::parse_stereo_mode(mode);
+      if (!known) return Error{"--stereo " + mode + ": expected " + scene::stereo_mode_names()};
+      stereo.mode = *known;
+    }
+    if (separation) {
+      if (!(*separation >= 0) || !std::isfinite(*separation))
+        return Error{"--eye-separation: expected a finite number of at least 0, world units"};
+      stereo.separation = separation;
+    }
+    if (zero_parallax) {
+      if (!(*zero_parallax > 0) || !std::isfinite(*zero_parallax))
+        return Error{"--zero-parallax: expected a finite number above 0, world units"};
+      stereo.zero_parallax = zero_parallax;
+    }
+    if (!screen.empty()) {
+      std::vector<std::string_view> names;
+      for (const scene::DisplayScreen& one : stereo.screens) {
+        if (one.name == screen) stereo.screen_index = names.size();
+        names.push_back(one.name);
+      }
+      if (!stereo.screen_index)
+        return Error{"--screen " + screen + ": expected one of the scene's screens: " +
+                     (names.empty() ? "it has none" : join_words(names)) + suggestion(screen, names)};
+    }
+    return Done{};
+  }
+};
+
+/// Several pictures in one may be more than a picture can hold.
+inline Outcome check_packed_size(const scene::Stereo& stereo, const ImageSize& size) {
+  const auto packed = render::packed_size(render::stereo_packing(stereo), render::stereo_view_count(stereo), size.width, size.height);
+  if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMaxImageSize && packed.height <= kMaxImageSize) return Done{};
+  return Error{"--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": with " +
+               std::to_string(render::stereo_view_count(stereo)) + " views " + std::string(scene::to_string(stereo.mode)) +
+               " the picture has " + std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels, expected 1 to " +
+               std::to_string(kMaxImageSize) + " each way"};
+}
+
+inline void add_stereo_options(CLI::App& command, StereoOptions& choice) {
+  command.add_option("--stereo", choice.mode,
+                     scene::stereo_mode_names() + " (default: the scene's); each eye has the size of --size, *-half squeezes all into it");
+  command.add_option("--eye-separation", choice.separation,
+                     "between the eyes, world units (default: the scene's, or a 30th of --zero-parallax)");
+  command.add_option("--zero-parallax", choice.zero_parallax,
+                     "distance from the eyes to where both see the same, world units (default: the scene's, or the camera's target)");
+  command.add_option("--screen", choice.screen,
+                     "the picture is what the eye sees through this one of the scene's \"screens\"; the camera's position is the head");
+}
+
+}  // namespace catena::app
+
+/// Options that write over the picture of a scene or a bare file: --title TEXT, --scalar-bar, --orientation-marker.
+namespace CLI {
+class App;
+}
+
+namespace catena::app {
+
+struct AnnotationOptions {
+  std::string title;
+  bool scalar_bar = false, orientation_marker = false;
+};
+void add_annotation_options(CLI::App& command, AnnotationOptions& options);
+
+/// Adds them to what the scene has; a scalar bar for the first thing that has colours, unless the scene has bars already.
+Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options);
+
+}  // namespace catena::app
+
+/// --colormap NAME, --range LO HI, --mapping WORD and --linear-below SIZE: how a bare data file is coloured.
+namespace CLI {
+class App;
+}
+
+namespace catena::app {
+
+struct ColorOptions {
+  std::string colormap;
+  std::vector<std::string> range;
+  std::string mapping, linear_below;
+
+  void add_to(CLI::App& command);
+  Result<scene::NamedColors> to_named_colors() const;
+};
+
+/// "--realtime on|off" and "--cpu N": how hard the servo's thread tries.
+inline void add_realtime_options(CLI::App& command, RealtimeChoice& choice) {
+  command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the servo, where permitted")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command.add_option("--cpu", choice.cpu, "the core that the servo stays on; default: the last one, with a fixed priority")
+      ->check(CLI::Range(0, 4095));
+}
+
+}  // namespace catena::app

@@ -1,0 +1,17 @@
+/// Lines as a table or for ParaView.
+///   .csv   line,s,x,y,z,tx,ty,tz: arc length and unit tangent, rows in rising s; numbers read back exactly
+///   .vtp   VTK's XML PolyData, raw appended doubles: a polyline a line. Points carry s, tangent, velocity and line; cells line,
+///          length, first_end and last_end (0 BOUNDARY, 1 CRITICAL, 2 LENGTH, 3 LAP, 4 INCOHERENT)
+#pragma once
+#include <vector>
+
+#include "engine/base/output_file.h"
+#include "engine/field/field.h"
+#include "engine/geometry/flow/curve.h"
+
+namespace catena::app {
+
+void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves);
+void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field);
+
+}  // namespace catena::app

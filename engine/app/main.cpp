@@ -1,3 +1,0 @@
-#include "engine/app/command.h"
-
-int main(int argc, char** argv) { return catena::app::run(argc, argv); }

@@ -1,0 +1,367 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/app/cli/command.h"
+#include "engine/app/cli/options.h"
+#include "engine/app/haptics/probe_playback.h"
+#include "engine/app/haptics/signal_handlers.h"
+#include "engine/app/render/frame_stats.h"
+#include "engine/app/render/outputs.h"
+#include "engine/app/render/render_options.h"
+#include "engine/app/tuning/plan/tune.h"
+#include "engine/base/clock.h"
+#include "engine/base/console.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/io/field_cache.h"
+#include "engine/scene/time_steps.h"
+#include "haptics/build/build_program.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_internal.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kUnreportedFrames = 3;    // of one planned picture
+constexpr int kMaxTiledPixels = 65536;  // each way
+
+template <class T>
+T machine(Result<T> result) {
+  if (!result) throw MachineFailure{result.error().message};
+  return std::move(*result);
+}
+
+/// A line about the picture: on standard output, or beside a picture that goes there.
+void say(std::FILE* to, const std::string& line) {
+  if (to == stderr) return print_line(line);
+  std::fputs((sanitize_for_terminal(line) + "\n").c_str(), to);
+  std::fflush(to);
+}
+
+/// Draws frames of one scene and hands their bands on.
+class Frames {
+ public:
+  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, ProbePlayback& hand, ImageSize size,
+         std::vector<int> steps)
+      : scene_(scene), options_(options), motion_(motion), hand_(hand), size_(size), steps_(std::move(steps)) {}
+
+  Result<render::FramePacket> packet(int frame) {
+    if (!steps_.empty()) {
+      scene::set_step(scene_, steps_[static_cast<std::size_t>(frame) % steps_.size()]);
+    }
+    scene_.animation_phase = options_.animation_phase + static_cast<double>(frame) / motion_.frames();
+    hand_.seek(scene_, options_.play_probe && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
+    CATENA_TRY(render::FramePacket packet, render::make_frame(scene_, size_.width, size_.height));
+    if (!steps_.empty() && frame + 1 < motion_.frames())
+      field::prefetch(scene::prefetch_requests(scene_, steps_[static_cast<std::size_t>(frame + 1) % steps_.size()]));
+    // the eye stays where it is while the hand moves, or time goes by
+    if (!base_view_ || (!options_.play_probe && steps_.empty())) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
+    const render::View view = motion_.view_at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
+    render::set_view(scene_, view, packet);
+    CATENA_CHECK(render::check_screen_view(packet, scene_.stereo));
+    return packet;
+  }
+
+  /// Milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
+  Result<double> draw(int frame, Outputs* outputs) {
+    if (!interrupt_) interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
+    const std::int64_t start = now_ns();
+    CATENA_TRY(const render::FramePacket next, packet(frame));
+    const double extract_ms = ms_since(start);
+    Outcome stopped = Done{};
+    bool interrupted = false;
+    const auto take = [&](const render::Band& band) -> Outcome {
+      interrupted = interrupt_->is_requested();
+      if (interrupted) return Error{"interrupted"};
+      if (band.height == 0) {
+        if (progress != nullptr) progress->update(++tiles_done_);
+        return Done{};
+      }
+      if (first_ms == 0) first_ms = ms_since_process_start();
+      return stopped = outputs->write(band);
+    };
+    if (outputs != nullptr) CATENA_CHECK(outputs->begin_frame(frame));
+    const auto ms = render::render_tiled(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
+    CATENA_CHECK(stopped);
+    if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+    if (!ms) throw MachineFailure{ms.error().message};
+    if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
+    drawing_ms = ms->render_ms;
+    // the next picture may have other settings; the first one pays for what stays
+    if (goal && warm_) goal->record_frame_time(drawing_ms), settings = goal->settings();
+    warm_ = true;
+    return extract_ms + ms->wall_ms;
+  }
+
+  std::unique_ptr<render::Renderer> renderer;
+  render::RenderSettings settings;
+  std::optional<plan::ImageTuning> goal;  ///< says the settings of the next picture
+  render::TilePlan plan;
+  render::BandChannels wants;
+  ProgressLine* progress = nullptr;
+  double drawing_ms = 0;  ///< of the last picture (render/quality)
+  double first_ms = 0;    ///< process start to the first pixels on the host
+
+ private:
+  scene::Scene& scene_;
+  const RenderOptions& options_;
+  const CameraMotion& motion_;
+  ProbePlayback& hand_;
+  ImageSize size_;
+  std::vector<int> steps_;  ///< in time, by frame; empty: they stay
+  std::optional<render::View> base_view_;
+  Bounds base_bounds_;
+  std::optional<InterruptHandler> interrupt_;  // while it draws
+  double tiles_done_ = 0;
+  bool warm_ = false;
+  std::function<Outcome(const render::Band&)> nothing_;
+};
+
+constexpr double kBalancedError = 2;  // 1/255: hardly seen beside the converged picture
+constexpr double kConverged = 1;      // 1/255: what calls itself a reference is off by less
+
+/// What is measured of a picture: all of it, or the middle tile of one that is large or supersampled.
+struct Sample {
+  render::FramePacket packet;
+  double share = 1;  ///< of the picture's samples
+};
+Sample sample_of(const Frames& frames, const render::FramePacket& packet) {
+  const render::TilePlan& plan = frames.plan;
+  const bool whole = std::max(plan.samples_x(), plan.samples_y()) <= frames.renderer->max_image_side() &&
+                     std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kMaxUntiledSamples;
+  if (plan.antialias == 1 && (plan.count() == 1 || whole)) return {packet};
+  const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
+  return {render::make_tile_packet(packet, plan, middle),
+          double(middle.render_width) * middle.render_height / (double(plan.samples_x()) * plan.samples_y())};
+}
+
+/// Settings for the goal.
+render::QualityChoice choose_from_list(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
+  const Sample sample = sample_of(frames, packet);
+  if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
+  ProgressLine progress("choosing how to draw", 1);
+  return machine(render::choose_quality(*frames.renderer, sample.packet, goal, [&progress](double done) { progress.update(done); }));
+}
+
+/// What `quality` leaves to the plan: its settings, said before the first picture.
+Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const scene::TuningTargets& wanted, const RenderOptions& o,
+                      const scene::Scene& scene, std::FILE* words) {
+  CATENA_TRY(const std::string text, plan::read_scene_text(scene));
+  const Sample sample = sample_of(frames, packet);
+  std::vector<std::string> options = o.fields;
+  options.insert(options.end(), {o.grid, o.colors.colormap, fmt::format("{}", fmt::join(o.colors.range, " ")), o.colors.mapping,
+                                 o.colors.linear_below, o.annotate.title});
+  frames.goal = machine(plan::tune_image(*frames.renderer, sample.packet, wanted, {scene, text, options, sample.share},
+                                         [&](const std::string& line) { say(words, line); }));
+  frames.settings = frames.goal->settings();
+  say(words, frames.goal->summary());
+  return Done{};
+}
+
+/// "observed: error 1.7/255 in 95 ms": the error of the last picture, the median of the times.
+std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
+  const auto error = render::measure_single_rmse(*frames.renderer, sample_of(frames, packet).packet, settings);
+  return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", *error) : "not known", quantile(times, 0.5));
+}
+
+/// Of the finished picture. Several eyes in one are drawn in one piece.
+Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const ImageSize& size) {
+  if (render::stereo_view_count(stereo) < 2) return size;
+  const std::string mode = "with " + std::to_string(render::stereo_view_count(stereo)) + " views in one picture";
+  if (!o.depth.empty() || !o.ids.empty())
+    return Error{(o.depth.empty() ? "--ids: " : "--depth: ") + mode + " it would be one view's; --stereo left or right was expected"};
+  if (o.antialias > 1 || o.tile > 0)
+    return Error{(o.tile > 0 ? "--tile: " : "--antialias: ") + mode + " it is drawn in one piece; --stereo left or right was expected"};
+  CATENA_CHECK(check_packed_size(stereo, size));
+  const auto packed = render::packed_size(render::stereo_packing(stereo), render::stereo_view_count(stereo), size.width, size.height);
+  return ImageSize{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
+}
+
+/// Every step of --steps has its frame, and a place where it is kept.
+Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
+  const int count = static_cast<int>(steps.size());
+  if (count < 2) return Done{};
+  if (o.frames < count) return Error{fmt::format("--frames {}: fewer than the {} steps of --steps {}", o.frames, count, o.steps)};
+  if (!takes_all_frames(o) && !o.output.starts_with("/dev/"))
+    return Error{fmt::format("{}: one picture for {} steps; %03d in its name, or a video, was expected", o.output, count)};
+  return Done{};
+}
+
+/// Steps beyond the last one of the longest field are refused. Those within files are known once the fields are loaded.
+Outcome check_steps(const scene::Scene& scene, const RenderOptions& o, const std::vector<int>& steps) {
+  const std::string option = steps.empty() ? fmt::format("--step {}", o.step) : "--steps " + o.steps;
+  return check_step(steps.empty() ? o.step : steps.back(), scene::step_count(scene) - 1, option, o.source);
+}
+
+}  // namespace
+
+Outcome render_images(const RenderOptions& given) {
+  RenderOptions o = given;
+  CATENA_TRY(const std::vector<int> steps, parse_steps(o.steps));
+  if (!steps.empty() && o.step >= 0) return Error{"--step: goes without --steps"};
+  if (!steps.empty() && o.frames == 0) o.frames = static_cast<int>(steps.size());
+  CATENA_CHECK(check_frames(o, steps));
+  CATENA_TRY(const ImageSize size, parse_image_size(o.size, kMaxTiledPixels));
+  if (!std::isfinite(o.animation_phase)) return Error{"--phase: expected a finite number"};
+  if (o.play_probe && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
+  ProbePath path;
+  if (o.play_probe) {
+    CATENA_TRY(path, read_probe_samples(o.probe));
+  }
+  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o, o.play_probe ? path.back().t_s - path.front().t_s : 0));
+  CATENA_TRY(const scene::NamedColors colors, o.colors.to_named_colors());
+  const std::int64_t load_start = now_ns();
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors, o.grid, steps.empty() ? o.step : steps.front()));
+  if (o.step >= 0 || !steps.empty()) scene::set_step(scene, steps.empty() ? o.step : steps.front());
+  CATENA_CHECK(add_annotations(scene, o.annotate));
+  CATENA_CHECK(o.stereo.apply(scene.stereo));
+  CATENA_TRY(const ImageSize picture, picture_size(o, scene.stereo, size));
+  const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
+  CATENA_TRY(Quality wanted, parse_quality(quality));
+  CATENA_TRY(scene::TuningTargets plan, plan::resolve_targets(scene, o.plan));
+  if (!o.quality.empty() && !o.plan.empty() && plan.has_image_targets())
+    return Error{"--quality " + o.quality + ": goes without error and time of --plan: one of them says how good the picture is to be"};
+  const bool pinned = !o.quality.empty() || !scene.quality.empty();
+  IoConflictChecker files(scene);
+  files.add_input(o.probe);
+  files.add_input(o.camera);
+  files.add_input(o.head_path);
+  ImageFormat shape{picture.width, picture.height, scene.background.transparent, o.bits, o.fps, {}};
+  CATENA_CHECK(check_outputs(o, shape, motion.frames(), files));
+  std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
+
+  const auto tell_plan = [&](const std::string& line) { say(words, line); };
+  if (plan.has_image_targets() && pinned) tell_plan("plan: the picture stays as it is: its quality is stated, " + quality);
+  if (o.probe.empty() && o.plan.find("hand_") != std::string::npos)
+    tell_plan("plan: no hand feels here, so that nothing is chosen for it; --probe PATH.csv was expected");
+  if (!o.probe.empty()) CATENA_CHECK(plan::tune_links(scene, plan, 1000, o.fields, tell_plan));
+  // the chain is checked with the picture: one scene, two senses
+  CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene));
+  if (o.probe.empty()) {
+    path = make_resting_path(scene);
+  } else if (!o.play_probe) {
+    CATENA_TRY(path, read_probe_samples(o.probe));
+  }
+  ProbePlayback hand(program, std::move(path));
+  Frames frames(scene, o, motion, hand, size, steps);
+  CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  CATENA_CHECK(check_steps(scene, o, steps));
+  if (is_scene_file(o.source)) print_scene_notes(scene);
+  if (const Outcome drawable = render::check_ray_items(packet); !drawable) return Error{o.source + ": " + drawable.error().message};
+  if (!o.ids.empty() && packet.objects.size() > 65535)
+    return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
+  if (quality == "balanced" && render::uses_raycast(packet)) wanted.goal = {render::QualityGoal::Kind::error, kBalancedError};
+  FrameStats stats;
+  stats.load_ms = ms_since(load_start);
+  stats.cpu_bytes = loaded_data_bytes(scene);
+  stats.objects = packet.objects;
+  shape.object_legend = objects_json(packet.objects);
+
+  render::vk::DeviceOptions device;
+  device.validation = o.validation;
+  device.memory_budget_bytes = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
+  frames.renderer = machine(render::Renderer::create(device));
+  frames.settings = wanted.settings;
+  frames.wants = required_band_channels(o);
+  const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
+  frames.plan =
+      render::stereo_view_count(scene.stereo) > 1
+          ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
+          : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || plan.has_image_targets() || wanted.settings.fast,
+                               frames.renderer->max_image_side());
+  const auto choose_for = [&](const char* which, bool once) {
+    wanted.goal->single_image = once;
+    const std::int64_t start = now_ns();
+    const render::QualityChoice choice = choose_from_list(frames, packet, *wanted.goal);
+    stats.settings_search_ms += ms_since(start);
+    frames.settings = choice.settings;
+    stats.estimated_rmse = choice.estimated_rmse;
+    say(words, fmt::format("quality {}{}: {}, error about {:.2f}/255{}", quality, which, describe(frames.settings), choice.estimated_rmse,
+                           choice.goal_reached ? "" : " (nothing reached the goal: the nearest was taken)"));
+    return choice.is_empty;
+  };
+  const bool planned = plan.has_image_targets() && !pinned && render::uses_raycast(packet);
+  if (plan.has_image_targets() && !pinned && !planned) tell_plan("plan: the picture has no settings: nothing in it is drawn by rays");
+  if (planned) {
+    CATENA_CHECK(plan_pictures(frames, packet, plan, o, scene, words));
+    stats.estimated_rmse = frames.goal->expected_error();
+  } else if (wanted.goal) {
+    if (choose_for("", true))
+      print_message(
+          "note: nothing of the scene is in the picture: it is transparent where the camera looks, or the camera looks elsewhere");
+  }
+  if (quality == "reference" && !planned) {
+    stats.estimated_rmse = machine(render::half_step_difference(*frames.renderer, sample_of(frames, packet).packet, frames.settings));
+    if (*stats.estimated_rmse > kConverged)
+      print_message(
+          fmt::format("note: reference has not converged here: half its step changes the picture by {:.2g}/255, since opacity "
+                      "rises within a step. --quality step=0.02 is nearer to the truth",
+                      *stats.estimated_rmse));
+  }
+  stats.quality_mode = planned ? frames.goal->summary() : wanted.goal ? quality + ": " + describe(frames.settings) : quality;
+  stats.tiles = frames.plan.count();
+  stats.device = frames.renderer->stats().device;
+
+  Outputs outputs(o, shape);
+  const bool more = motion.frames() > 1 && (takes_all_frames(o) || o.stats.empty());
+  {
+    const double parts = frames.plan.count() * (more ? double(motion.frames()) : 1.0);
+    ProgressLine progress("render", parts);
+    frames.progress = parts > 1 ? &progress : nullptr;
+    std::vector<double> took;
+    render::RenderSettings last = frames.settings;
+    CATENA_TRY(const double first, frames.draw(0, &outputs));
+    stats.first_frame_ms = frames.first_ms;
+    stats.downsampled_grids = frames.renderer->stats().downsampled_grids;
+    for (const render::GridDownsampling& coarser : stats.downsampled_grids) print_line(coarser.message());
+    print_scene_notes(scene);
+    say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, describe_contents(packet),
+                           stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
+    // what a plan expects holds for pictures whose pipelines and mirrors are there
+    for (int k = 1; k < kUnreportedFrames && planned && motion.frames() == 1; ++k) {
+      CATENA_CHECK(frames.draw(0, nullptr));
+      took.push_back(frames.drawing_ms);
+    }
+    stats.frame_ms.push_back(first);
+    // the first picture is there before settings that hold for a sequence are searched for
+    if (motion.frames() > 1 && !planned && wanted.goal && wanted.goal->kind == render::QualityGoal::Kind::error &&
+        render::uses_raycast(packet))
+      choose_for(" of the sequence", false);
+    for (int k = 1; k < motion.frames(); ++k) {
+      last = frames.settings;
+      CATENA_TRY(const double ms, frames.draw(k, takes_all_frames(o) ? &outputs : nullptr));
+      stats.frame_ms.push_back(ms);
+      took.push_back(frames.drawing_ms);
+    }
+    frames.progress = nullptr;
+    if (planned) {
+      CATENA_TRY(const render::FramePacket shown, frames.packet(motion.frames() - 1));
+      tell_plan(observed(frames, shown, last, took));
+    }
+  }
+  if (!o.stats.empty() || motion.frames() > 1)
+    say(words, fmt::format("frame {:.1f} ms (median of {})", stats.median_ms(), stats.frame_ms.size()));
+
+  CATENA_CHECK(outputs.finish());
+  stats.encode_ms = outputs.ms_per_frame();
+  const render::RenderStats gpu = frames.renderer->stats();
+  stats.driver = gpu.driver;
+  stats.residency_ms = gpu.residency_ms;
+  stats.gpu_bytes = gpu.gpu_bytes;
+  stats.gpu_budget_bytes = gpu.gpu_budget;
+  stats.validation_messages = gpu.validation_messages;
+  for (const std::string& note : gpu.warnings) print_message(note);
+  for (const std::string& text : frames.renderer->validation_texts()) print_line("validation: " + text);
+  if (o.stats.empty()) return outputs.commit();
+  CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
+  json.write(stats.to_json());
+  CATENA_CHECK(json.finish());
+  CATENA_CHECK(outputs.commit());
+  return json.commit();
+}
+
+}  // namespace catena::app

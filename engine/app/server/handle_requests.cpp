@@ -1,0 +1,146 @@
+// What the page that has the hand asks for, carried out.
+#include <utility>
+
+#include "engine/app/server/serve_session.h"
+#include "engine/scene/to_json.h"
+
+namespace catena::app {
+
+void ServeSession::handle(const MoveRequest& wish) {
+  input_number_ = wish.number;
+  NavigationChanges changed;
+  for (Input piece : wish.inputs) {
+    piece.width = width_;
+    piece.height = height_;
+    pointer_x_ = (piece.x + piece.dx) / width_;
+    pointer_y_ = (piece.y + piece.dy) / height_;
+    if (stops_turntable(piece)) controls_.turntable = false;
+    const auto under = controls_.probe_mode ? frame_builder_.pick_at(pointer_x_, pointer_y_) : std::nullopt;
+    controls_.pointer_hit = under ? std::optional(under->world) : std::nullopt;
+    haptics_.update_resistance(scene_.scene(), controls_);
+    const NavigationChanges by_piece = apply(controls_, piece);
+    changed.view = changed.view || by_piece.view;
+    changed.probe = changed.probe || by_piece.probe;
+  }
+  if (changed.probe) {
+    haptics_.move_mouse(scene_.scene(), controls_.probe, controls_.buttons);
+    probe_moved_ = true;
+  }
+  if (!changed.view) return;
+  camera_.pin_camera();
+  has_changed_ = true;
+}
+
+void ServeSession::handle(const SizeRequest& wish) {
+  has_changed_ = has_changed_ || width_ != wish.width || height_ != wish.height;
+  width_ = wish.width;
+  height_ = wish.height;
+}
+
+void ServeSession::handle(Action action) {
+  switch (action) {
+    case Action::toggle_probe_mode:
+      return controls_.probe_mode ? stop_haptics() : start_haptics();
+    case Action::undo:
+      scene_sent_ = false;
+      return send_note_on_error(scene_.undo());
+    case Action::redo:
+      scene_sent_ = false;
+      return send_note_on_error(scene_.redo());
+    case Action::play_time_steps:
+      playback_.is_playing = !playback_.is_playing;
+      return;
+    case Action::next_time_step:
+    case Action::previous_time_step:
+      return send_note_on_error(playback_.show(scene_, scene_.scene().time.step + (action == Action::next_time_step ? 1 : -1)));
+    default:
+      break;  // the eye's
+  }
+  has_changed_ = camera_.handle(action, static_cast<double>(width_) / height_) || has_changed_;
+}
+
+/// The hand goes onto what is under the pointer.
+void ServeSession::start_haptics() {
+  controls_.probe_mode = true;
+  const auto under = frame_builder_.pick_at(pointer_x_, pointer_y_);
+  controls_.pointer_hit = under ? std::optional(under->world) : std::nullopt;
+  app::begin_probe_mode(controls_);
+  haptics_.move_mouse(scene_.scene(), controls_.probe, controls_.buttons);
+  probe_moved_ = true;
+}
+
+/// It stays where it is, with nothing pressed.
+void ServeSession::stop_haptics() {
+  controls_.probe_mode = false;
+  controls_.buttons = 0;
+  haptics_.move_mouse(scene_.scene(), controls_.probe, 0);
+  probe_moved_ = true;
+}
+
+void ServeSession::apply_edits(const TextEdits& edits, const std::string& what, const std::string& item) {
+  if (const Outcome done = scene_.apply(edits, what, what + " of " + item); !done) send_note(done.error().message);
+  scene_sent_ = false;
+}
+
+void ServeSession::handle(const LevelRequest& wish) {
+  const auto surface = find_item<scene::Isosurface>(scene_.scene(), wish.item);
+  if (!surface || item_pointer(surface->where).empty()) return send_note("there is no such isosurface");
+  apply_edits(make_level_edits(scene_.scene(), *surface, wish.value), "isolevel", wish.item);
+}
+
+namespace {
+
+/// The volume and its transfer function as it is drawn.
+std::optional<std::pair<scene::Volume, TransferEdit>> volume_of(const scene::Scene& scene, const std::string& item) {
+  const auto volume = find_item<scene::Volume>(scene, item);
+  if (!volume || item_pointer(volume->where).empty()) return std::nullopt;
+  const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(volume->field);
+  if (!source.rendered.scalar) return std::nullopt;
+  auto edit = make_transfer_edit(*volume, source.rendered.scalar->mapping().min_voxel_edge());
+  if (!edit) return std::nullopt;
+  return std::pair{*volume, std::move(*edit)};
+}
+
+}  // namespace
+
+void ServeSession::handle(const OpacityRequest& wish) {
+  auto found = volume_of(scene_.scene(), wish.item);
+  if (!found) return send_note("there is no such volume");
+  found->second.opacities = wish.points;
+  apply_edits(make_opacity_edits(found->first, found->second), "opacity", wish.item);
+}
+
+void ServeSession::handle(const ColormapRequest& wish) {
+  const auto found = volume_of(scene_.scene(), wish.item);
+  if (!found) return send_note("there is no such volume");
+  apply_edits(make_color_map_edits(found->first, found->second, wish.name), "colours", wish.item);
+}
+
+void ServeSession::handle(const StepRequest& wish) { send_note_on_error(playback_.show(scene_, wish.step)); }
+
+/// While one is under way nothing is offered: what is there is not whole.
+void ServeSession::handle(const RecordRequest& wish) {
+  if (!wish.on) return end_recording();
+  send_note_on_error(recording_.begin(scene_, haptics_));
+  server_.offer_file(recording_.name(), recording_.path());
+}
+
+void ServeSession::end_recording() {
+  if (recording_.must_end(haptics_))
+    send_note("the recording has ended: " + std::string(haptics_.recording().has_failed() ? "writing has failed" : "it is full"));
+  send_note_on_error(recording_.end(haptics_));
+  server_.offer_file(recording_.name(), recording_.path());
+}
+
+void ServeSession::handle(const TuningRequest& wish) {
+  if (wish.position) {
+    if (!tuning_.image_tuning && !tuning_.tick_tuning) return send_note("the plan goes by what is not measured yet");
+    return send_note_on_error(scene_.set("/plan", scene::to_json(tuning_.target_at(*wish.position)), "plan"));
+  }
+  set_default_target(tuning_);
+  send_note_on_error(measure_tick_costs(tuning_, scene_, haptics_, [this](const std::string& line) { send_note(line); }));
+  scene_.mark_changed();
+  if (!tuning_.has_explicit_quality) send_note_on_error(measure_image());
+}
+
+}  // namespace catena::app

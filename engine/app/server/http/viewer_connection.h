@@ -1,0 +1,49 @@
+/// ViewerConnection is the WebSocket of one viewer. Network thread. Part of engine/app/server/http alone: it has Boost in it.
+#pragma once
+#include <array>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <memory>
+
+#include "engine/app/server/http/server_state.h"
+
+namespace catena::http {
+
+class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+
+  ViewerConnection(ServerState& hub, boost::asio::ip::tcp::socket socket, std::unique_ptr<ConnectionGuard> counted);
+  /// Answers the request; then the viewer has come, until it leaves.
+  void accept(Request request);
+  /// In the place of what waits in that slot.
+  void enqueue(Slot slot, Bytes bytes);
+  /// What the viewer said has been taken: more is read where nothing was for that reason.
+  void resume();
+  bool is_ready_for_frame() const { return !slots_[kSlotCount - 1] && frames_in_flight_ < kMaxFramesInFlight; }
+
+ private:
+  using Error = boost::system::error_code;
+  void read();
+  void on_read(Error error);
+  bool handle_message();
+  void write();
+  void disconnect();
+
+  ServerState& hub_;
+  std::unique_ptr<ConnectionGuard> guard_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  Request request_;
+  boost::beast::flat_buffer buffer_{kMaxMessageBytes};
+  std::array<Bytes, kSlotCount> slots_;
+  Bytes writing_;
+  ViewerId id_ = 0;
+  int frames_in_flight_ = 0;          ///< pictures
+  std::size_t pending_messages_ = 0;  ///< messages that were not taken yet
+  bool paused_ = false;
+};
+
+}  // namespace catena::http

@@ -1,0 +1,57 @@
+/// catena study power STUDY.json --effect D [--power P] [--alpha A]: how many subjects find a difference of that size.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "engine/app/study/study_commands.h"
+#include "engine/study/statistics/power.h"
+#include "engine/study/study.h"
+
+namespace catena::app {
+
+namespace {
+
+struct PowerOptions {
+  std::string study;
+  double effect = 0, power = 0.8, alpha = 0.05;
+};
+
+Outcome print_power(const PowerOptions& options) {
+  const double size = std::fabs(options.effect);
+  if (!(size >= 0.01 && size <= 10)) return Error{fmt::format("--effect {:g}: a d_z of 0.01 to 10 was expected", options.effect)};
+  if (!(options.alpha >= 1e-6 && options.alpha <= 0.5)) return Error{fmt::format("--alpha {:g}: 1e-6 to 0.5 was expected", options.alpha)};
+  if (!(options.power > options.alpha && options.power <= 0.9999))
+    return Error{fmt::format("--power {:g}: more than alpha and at most 0.9999 was expected", options.power)};
+  CATENA_TRY(const study::Study study, study::read_study(options.study));
+  fmt::print("{}: paired, two-sided t-tests over subjects; d_z = {:g} (mean difference by the standard deviation of the differences)\n",
+             study.name, options.effect);
+  // the tests of conditions are one family: every task and other condition, mean and deviation of error and time
+  const int family = static_cast<int>(study.tasks.size()) * (static_cast<int>(study.conditions.size()) - 1) * 4;
+  const auto line = [&](double alpha, const std::string& what) -> Outcome {
+    CATENA_TRY(const int needed, statistics::required_subjects(size, options.power, alpha));
+    fmt::print("{}: {} subjects for a power of {:g}", what, needed, options.power);
+    if (study.subjects >= 2)
+      fmt::print("; the design's {} have {:.3f}", study.subjects, statistics::paired_power(size, study.subjects, alpha));
+    fmt::print("\n");
+    return Done{};
+  };
+  CATENA_CHECK(line(options.alpha, fmt::format("one test at alpha = {:g}", options.alpha)));
+  if (family > 1)
+    CATENA_CHECK(line(options.alpha / family, fmt::format("the strictest of the {} tests that Holm's method corrects together", family)));
+  return Done{};
+}
+
+}  // namespace
+
+void add_study_power(CLI::App& study, CommandAction& chosen) {
+  auto options = std::make_shared<PowerOptions>();
+  CLI::App* command = study.add_subcommand("power", "how many subjects a design needs to find a difference of a given size");
+  command->add_option("STUDY", options->study, "a study file (.json)")->required();
+  command->add_option("--effect", options->effect, "d_z: mean of the differences by their standard deviation")->required();
+  command->add_option("--power", options->power, "how often it shall be found")->capture_default_str();
+  command->add_option("--alpha", options->alpha, "how often something is found where there is nothing")->capture_default_str();
+  command->callback([&chosen, options] { chosen = [options] { return print_power(*options); }; });
+}
+
+}  // namespace catena::app

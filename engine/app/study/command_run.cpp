@@ -1,0 +1,111 @@
+/// catena study run STUDY.json --subject N --device NAME -o DIR: one subject's session in the window, with a hand.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <utility>
+
+#include "engine/app/cli/options.h"
+#include "engine/app/study/live_session.h"
+#include "engine/app/study/study_commands.h"
+#include "engine/app/viewer/window/study_window.h"
+#include "engine/base/console.h"
+
+namespace catena::app {
+
+namespace {
+
+struct StudyRunOptions {
+  std::string study, folder, device, firmware, forces, size = "1280x960", quality = "time=50";
+  int subject = 0;
+  bool full_screen = false;
+  StereoOptions stereo;
+  RealtimeChoice realtime;
+};
+
+Result<Instructions> instructions_of(const study::Study& study) {
+  if (study.instructions.empty()) return Instructions{};
+  std::vector<std::string> tasks;
+  for (const study::Task& task : study.tasks) tasks.push_back(task.name);
+  return read_instructions(study.instructions, tasks);
+}
+
+/// Whether it pushes is said, never guessed: a session without forces is another experiment.
+Outcome check_forces(const StudyRunOptions& options, const haptics::DeviceCapabilities& device) {
+  if (device.max_force_n > 0 && options.forces.empty())
+    return Error{"--device " + options.device + " can push: --forces on was expected, or --forces off"};
+  if (!(device.max_force_n > 0) && options.forces == "on")
+    return Error{"--forces on: " + options.device + " cannot push; a haptic device was expected"};
+  return Done{};
+}
+
+ViewOptions view_options(const StudyRunOptions& options, const ImageSize& size) {
+  ViewOptions view;
+  view.source = options.study;
+  view.haptic_options = {options.device, options.firmware, {}, {}, options.realtime.options(), options.forces == "on", false};
+  view.width = size.width;
+  view.height = size.height;
+  view.show_panels = false;
+  return view;
+}
+
+Outcome run_study(const StudyRunOptions& options) {
+  CATENA_TRY(const ImageSize size, parse_image_size(options.size));
+  CATENA_TRY(const study::Study study, study::read_study(options.study));
+  CATENA_TRY(const Instructions instructions, instructions_of(study));
+  ViewOptions view = view_options(options, size);
+  CATENA_TRY(view.quality, parse_quality(options.quality));
+  const auto adjust = [&](scene::Scene& scene) { return options.stereo.apply(scene.stereo); };
+  // the first trial's scene says what a device needs to know
+  const std::vector<study::Trial> trials = study::make_session(study, options.subject);
+  CATENA_TRY(const SceneModel trial, LiveTrial(study).open(trials.front(), adjust));
+  std::optional<InterruptHandler> interrupt;
+  HapticSession hand(view.haptic_options);
+  CATENA_CHECK(hand.open_device(trial.scene()));
+  CATENA_CHECK(check_forces(options, hand.device().device->capabilities()));
+  CATENA_TRY(SubjectFolder folder, SubjectFolder::open(options.folder, study, options.subject));
+  Procedure procedure(study, instructions, folder.trials(), folder.finished_trials(), folder.answered_questions());
+  LiveSession session(study, folder, procedure, adjust);
+  CATENA_TRY(auto scene, session.next_scene());
+  print_line(fmt::format("study run: subject {}: the window opens, and the first picture is made ready", options.subject));
+  auto window = Window::create(size.width, size.height, "catena study");
+  if (!window) return Error{window.error().message, true};
+  std::optional<Failure> failure;
+  {
+    StudyWindow shown(view, session, *scene, hand, **window, interrupt);
+    (*window)->set_fullscreen(options.full_screen);
+    failure = shown.open();
+    if (!failure) failure = shown.run();
+  }
+  const Outcome written = folder.write_table();
+  if (failure) return Error{failure->message, failure->exit_code == 1};
+  CATENA_CHECK(written);
+  print_nonblocking(STDOUT_FILENO, fmt::format("subject {}: {}\n", options.subject, procedure.progress_text()));
+  return Done{};
+}
+
+}  // namespace
+
+void add_study_run(CLI::App& study, CommandAction& chosen) {
+  auto options = std::make_shared<StudyRunOptions>();
+  CLI::App* command = study.add_subcommand("run", "a session with a subject, in the window; the same command goes on after any end");
+  command->add_option("STUDY", options->study, "the study file (.json)")->required();
+  command->add_option("--subject", options->subject, "the subject's number: no names")
+      ->required()
+      ->check(CLI::Range(1, study::kMaxSubject));
+  command->add_option("--device", options->device, "what holds the probe: mouse, or a name of `catena devices`")->required();
+  command->add_option("-o,--output", options->folder, "the folder of the data")->required();
+  command->add_option("--forces", options->forces, "whether the device may push; must be said for one that can")
+      ->check(CLI::IsMember({"on", "off"}));
+  command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
+  command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
+  command->add_option("--quality", options->quality, "of the pictures, as of view: error=2 is as sharp at any time, whatever the machine")
+      ->capture_default_str();
+  command->add_flag("--full-screen", options->full_screen, "as large as the screen (F11)");
+  add_stereo_options(*command, options->stereo);
+  add_realtime_options(*command, options->realtime);
+  command->callback([&chosen, options] { chosen = [options] { return run_study(*options); }; });
+}
+
+}  // namespace catena::app

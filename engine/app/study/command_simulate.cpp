@@ -1,0 +1,204 @@
+/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--model NAME=NUMBER] [--record]: the sessions of model subjects, on
+/// all cores. Training trials are left out: the model does not learn. What a folder holds already is kept, so that a run that was ended
+/// goes on.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+
+#include "engine/app/cli/io_conflicts.h"
+#include "engine/app/cli/plugins.h"
+#include "engine/app/study/study_commands.h"
+#include "engine/app/study/subject_folder.h"
+#include "engine/base/clock.h"
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/base/threads.h"
+#include "engine/study/protocol_deviations.h"
+#include "engine/study/simulated_trial.h"
+#include "engine/study/trial_table.h"
+#include "haptics/servo/log/writer.h"
+
+namespace catena::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  std::string study, output;
+  std::optional<std::string> shard;
+  std::vector<std::string> model;
+  int subjects = 0;
+  bool record = false;
+};
+
+/// The study with other numbers in its "operator": NAME=NUMBER, in its text, so that the data folder holds what was simulated.
+Result<study::Study> study_with_model(const SimulateOptions& options) {
+  CATENA_TRY(std::string text, read_text_file(options.study, "a study file (JSON)", kMaxJsonBytes));
+  for (const std::string& one : options.model) {
+    const std::size_t equals = one.find('=');
+    const auto value = parse_double(equals == std::string::npos ? "" : one.substr(equals + 1));
+    if (!value) return Error{"--model " + in_quotes(one) + ": no NAME=NUMBER; such as depth_noise_mm=4 was expected"};
+    CATENA_TRY(text,
+               json::set_value(text, options.study, "/operator/" + json::escape_pointer_token(one.substr(0, equals)), to_text(*value)));
+  }
+  return study::parse_study(text, options.study);
+}
+
+/// Every N-th subject, from the I-th on.
+struct Shard {
+  int index = 1, count = 1;
+};
+
+Result<Shard> read_shard(const std::optional<std::string>& given) {
+  if (!given) return Shard{};
+  const std::string& text = *given;
+  const std::size_t slash = text.find('/');
+  const auto index = parse_integer(text.substr(0, slash)), count = parse_integer(slash == std::string::npos ? "" : text.substr(slash + 1));
+  if (!index || !count || text.find(' ') != std::string::npos || *index < 1 || *index > *count || *count > study::kMaxSubject)
+    return Error{"--shard " + in_quotes(text) + ": no I/N; a share such as 1/4, 2/4, 3/4 or 4/4 was expected"};
+  return Shard{static_cast<int>(*index), static_cast<int>(*count)};
+}
+
+/// The recordings of one subject, a trial after the other.
+class Recordings {
+ public:
+  Recordings(const study::Study& study, const study::DataFolder& data) : study_(study), data_(data) {}
+
+  Result<haptics::TickSink*> begin(const study::Trial& trial, const std::string& text, const haptics::HapticProgram& program) {
+    haptics::log::LogHeader header;
+    header.scene_path = study_.path;
+    header.scene_text = text;
+    header.device = "simulated hand";
+    header.catena_version = kVersion;
+    header.rate_hz = study::kSimulatedRateHz;
+    header.about = trial_metadata_json(study_, trial);
+    header.plugins = plugins_for_log();
+    unfinished_ = data_.partial_recording_path(trial);
+    CATENA_TRY(writer_, haptics::log::LogWriter::open(unfinished_, std::move(header)));
+    writer_->add_program(program);
+    return writer_.get();
+  }
+  /// A recording gets its name once it is whole.
+  Outcome end(const study::Trial& trial) {
+    if (!writer_) return Done{};
+    const auto writer = std::move(writer_);
+    CATENA_CHECK(writer->finish());
+    return data_.commit_recording(trial, std::exchange(unfinished_, {}));
+  }
+  ~Recordings() {
+    std::error_code ignored;
+    if (!unfinished_.empty()) fs::remove(unfinished_, ignored);
+  }
+
+ private:
+  const study::Study& study_;
+  const study::DataFolder& data_;
+  std::string unfinished_;
+  std::unique_ptr<haptics::log::LogWriter> writer_;
+};
+
+/// The trials that count, and those of them that a folder lacks.
+struct Session {
+  std::vector<study::Trial> trials;
+  std::size_t done = 0;
+};
+
+Result<Session> session_in(const study::Study& study, const study::DataFolder& data, int subject) {
+  Session session;
+  for (const study::Trial& trial : study::make_session(study, subject))
+    if (!trial.training) session.trials.push_back(trial);
+  CATENA_TRY(const std::vector<study::TrialRow> rows, data.rows(subject));
+  session.done = rows.size();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (i >= session.trials.size() || !study::find_protocol_deviation(study, rows[i], session.trials[i]).empty())
+      return Error{fmt::format("{}:{}: is no trial of a simulated session; data of `study simulate` were expected",
+                               study::subject_file(data.path(), subject), i + 2)};
+  return session;
+}
+
+Outcome simulate_subject(const study::Study& study, const study::DataFolder& data, const Session& session, bool record,
+                         const std::function<void()>& on_trial) {
+  Recordings recordings(study, data);
+  study::TrialSimulator::Recorder recorder;
+  if (record)
+    recorder = [&](const study::Trial& trial, const std::string& text, const haptics::HapticProgram& program) {
+      return recordings.begin(trial, text, program);
+    };
+  study::TrialSimulator simulator(study, recorder);
+  for (std::size_t i = session.done; i < session.trials.size(); ++i) {
+    const study::Trial& trial = session.trials[i];
+    const auto ran = simulator.run(trial);
+    if (!ran)
+      return Error{fmt::format("{} (subject {}, trial {})", ran.error().message, trial.subject, trial.index), ran.error().system_failure};
+    const study::TrialResult& measured = *ran;
+    if (!std::isfinite(measured.error_mm) || !std::isfinite(measured.traveled_mm) || !is_finite(measured.end_mm))
+      return Error{fmt::format("{}: subject {}, trial {}: the model left all numbers; milder ones in \"operator\" were expected",
+                               study.path, trial.subject, trial.index)};
+    CATENA_CHECK(recordings.end(trial));
+    CATENA_CHECK(data.append(study::make_row(study, trial, measured)));
+    on_trial();
+  }
+  return Done{};
+}
+
+Outcome simulate(const SimulateOptions& options) {
+  CATENA_TRY(const study::Study study, study_with_model(options));
+  CATENA_TRY(const Shard shard, read_shard(options.shard));
+  CATENA_CHECK(study::TrialSimulator(study).check());
+  CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study, study::ParticipantKind::model));
+  if (options.record) CATENA_CHECK(study::make_folder(study::recordings_folder(data.path())));
+  const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
+  std::vector<Session> sessions;
+  std::size_t todo = 0, all = 0;
+  for (int subject = shard.index; subject <= subjects; subject += shard.count) {
+    CATENA_TRY(Session session, session_in(study, data, subject));
+    all += session.trials.size();
+    todo += session.trials.size() - session.done;
+    sessions.push_back(std::move(session));
+  }
+
+  const std::int64_t began = now_ns();
+  ProgressLine progress("simulate", static_cast<double>(todo));
+  std::mutex guard;
+  std::size_t done = 0;
+  std::optional<std::pair<std::size_t, Error>> fault;  // of the first subject that has one
+  parallel_for(sessions.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Outcome outcome = simulate_subject(study, data, sessions[i], options.record, [&] {
+        const std::lock_guard lock(guard);
+        progress.update(static_cast<double>(++done));
+      });
+      const std::lock_guard lock(guard);
+      if (!outcome && (!fault || i < fault->first)) fault.emplace(i, outcome.error());
+    }
+  });
+  if (fault) return fault->second;
+  CATENA_CHECK(data.write_table());
+  fmt::print("{}: {} subject{} of a model, {} trials, {} of them now in {:.1f} s\n", sanitize_for_terminal(options.output), sessions.size(),
+             sessions.size() == 1 ? "" : "s", all, todo, 1e-3 * ms_since(began));
+  return Done{};
+}
+
+}  // namespace
+
+void add_study_simulate(CLI::App& study, CommandAction& chosen) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command = study.add_subcommand("simulate", "the study with a model in the place of its subjects");
+  command->add_option("STUDY", options->study, "the study file (.json)")->required();
+  command->add_option("--subjects", options->subjects, "how many; default: those of the design")->check(CLI::Range(1, study::kMaxSubject));
+  command->add_option("-o,--output", options->output, "the data folder; what it holds of this study is kept")->required();
+  command->add_option("--shard", options->shard,
+                      "I/N: every N-th subject from the I-th on, for a cluster's job array; study merge joins them");
+  command->add_option("--model", options->model, "NAME=NUMBER: another number of the file's \"operator\", for instance depth_noise_mm=4")
+      ->allow_extra_args(false);
+  command->add_flag("--record", options->record, "every tick of every trial, DIR/recordings/SUBJECT-TRIAL.catlog");
+  command->callback([&chosen, options] { chosen = [options] { return simulate(*options); }; });
+}
+
+}  // namespace catena::app

@@ -1,0 +1,15 @@
+/// The parts of `catena study`: each adds its subcommand to `study` and, when the user chose it, sets `chosen`.
+#pragma once
+#include "engine/app/cli/command.h"
+
+namespace catena::app {
+
+void add_study_simulate(CLI::App& study, CommandAction& chosen);
+void add_study_run(CLI::App& study, CommandAction& chosen);
+void add_study_merge(CLI::App& study, CommandAction& chosen);
+void add_study_scene(CLI::App& study, CommandAction& chosen);
+void add_study_keys(CLI::App& study, CommandAction& chosen);
+void add_study_analyze(CLI::App& study, CommandAction& chosen);
+void add_study_power(CLI::App& study, CommandAction& chosen);
+
+}  // namespace catena::app

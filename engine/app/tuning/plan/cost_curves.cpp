@@ -1,0 +1,147 @@
+/// Curves of the hand: which links leave their setting open, what of a curve agrees with what a link says, and the tick without them.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/tuning/plan/interpolation_choice.h"
+#include "engine/app/tuning/plan/tick_tuning.h"
+#include "engine/app/tuning/tradeoff/measure/haptics/link_replay.h"
+#include "engine/app/tuning/tradeoff/measure/haptics/streamline.h"
+
+namespace catena::app::plan {
+namespace {
+
+constexpr const char *kRestId = "hand-rest", *kRest = "the tick without the links that a plan chooses for",
+                     *kBare = "the tick without links";
+
+using tradeoff::StreamlineSetting;
+
+/// Whether the setting is what the link says, as far as it says anything.
+bool agrees(const StreamlineSetting& setting, const json::Node& link) {
+  const json::Node *follow = link.find("follow"), *method = link.find("method"), *tolerance = link.find("tolerance");
+  if (follow != nullptr && (follow->string == "selected") != setting.is_selected) return false;
+  if (method != nullptr && (setting.is_selected || flow::to_string(*setting.method) != method->string)) return false;
+  return tolerance == nullptr || !setting.tolerance || std::fabs(*setting.tolerance - tolerance->number) <= 1e-9 * tolerance->number;
+}
+
+/// Where there is a choice. A link on the seed of a widget has no line before it is felt.
+std::vector<StreamlineSetting> open_settings(const json::Node& link) {
+  std::vector<StreamlineSetting> open = tradeoff::streamline_settings(link);
+  // fixed steps have no tolerance: they err by the hand's speed and way, of which a curve knows one
+  const bool asks_for_method = link.find("method") != nullptr;
+  std::erase_if(open, [&](const StreamlineSetting& setting) {
+    return !agrees(setting, link) || (!asks_for_method && !setting.is_selected && !setting.tolerance);
+  });
+  if (open.size() < 2) open.clear();
+  return open;
+}
+
+/// The keys that the link does not have already.
+LinkKeys new_keys(const StreamlineSetting& setting, const json::Node& link) {
+  LinkKeys keys = setting.keys;
+  std::erase_if(keys, [&](const auto& key) { return link.find(key.first) != nullptr; });
+  return keys;
+}
+
+std::vector<tradeoff::NamedLink> open_links(const scene::Scene& scene) {
+  std::vector<tradeoff::NamedLink> links = tradeoff::find_links(scene, "streamline");
+  std::erase_if(links, [](const tradeoff::NamedLink& link) { return open_settings(link.node).empty(); });
+  return links;
+}
+
+/// The source of the link's field where it may become cubic: a line field's axes stay linear.
+scene::FieldSource* open_source(scene::Scene& scene, const json::Node& link) {
+  const json::Node *name = link.find("field"), *kind = link.find("kind");
+  if (name == nullptr || (kind != nullptr && kind->string == "line")) return nullptr;
+  const scene::Entity field = scene::find_field(scene, name->string);
+  if (!field) return nullptr;
+  scene::FieldSource& source = scene.entities.get<scene::FieldSource>(field);
+  return is_interpolation_unset(source) ? &source : nullptr;
+}
+
+std::string cubic_curve_id(const std::string& link) { return "hand-cubic-streamline-" + link; }
+
+/// The curve of a link once more, with cubic cells: only where both floors are known are they compared.
+void add_cubic(tradeoff::Workload& subject, const tradeoff::NamedLink& link, std::vector<Curve>& curves) {
+  scene::FieldSource* source = open_source(subject.scene, link.node);
+  if (source == nullptr || !(curves.back().discretization_error > 0)) return;
+  const scene::FieldSource linear = *source;
+  if (!set_cubic_interpolation(*source)) return;
+  auto curve = tradeoff::measure_streamline_link(subject, link);
+  *source = linear;
+  if (!curve || !(curve->discretization_error > 0)) return;
+  curve->id = cubic_curve_id(link.name);
+  curve->title += ", cubic cells";
+  curves.push_back(std::move(*curve));
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_tick_curves(tradeoff::Workload& subject) {
+  std::vector<Curve> curves;
+  std::vector<std::string> chosen;
+  for (const tradeoff::NamedLink& link : open_links(subject.scene)) {
+    auto curve = tradeoff::measure_streamline_link(subject, link);
+    if (!curve) {
+      subject.skipped.push_back(curve.error().message);
+      continue;
+    }
+    curves.push_back(std::move(*curve));
+    add_cubic(subject, link, curves);
+    chosen.push_back(link.name);
+  }
+  haptics::HapticProgram bare = tradeoff::without_widgets(*subject.program), rest = bare;
+  std::erase_if(rest.links, [&](const haptics::Link& link) { return std::find(chosen.begin(), chosen.end(), link.name) != chosen.end(); });
+  bare.links.clear();
+  const std::vector<haptics::ProbeSample> path = subject.motion.samples(subject.rate_hz);
+  Curve curve;
+  curve.id = kRestId;
+  curve.title = kRest;
+  curve.time_name = "ns a tick";
+  curve.points = {{kRest, "", ""}, {kBare, "", ""}};
+  CATENA_CHECK(tradeoff::time_points(curve, {tradeoff::make_tick_run(rest, path), tradeoff::make_tick_run(bare, path)},
+                                     0.3 * subject.effort.haptics_s));
+  curves.push_back(std::move(curve));
+  for (Curve& one : curves) one.category = "hand";
+  return curves;
+}
+
+std::optional<TickCurves> to_tick_curves(scene::Scene& scene, const std::vector<Curve>& curves, double rate_hz) {
+  const std::vector<tradeoff::NamedLink> links = open_links(scene);
+  TickCurves made;
+  bool has_rest = false;
+  for (const Curve& curve : curves) {
+    if (curve.id == kRestId) {
+      if (curve.points.size() != 2 || !std::isfinite(curve.points[0].time.median) || !std::isfinite(curve.points[1].time.median))
+        return std::nullopt;
+      made.base_tick_ns = curve.points[0].time.median;
+      made.empty_tick_ns = curve.points[1].time.median;
+      has_rest = true;
+      continue;
+    }
+    const auto id_is = [&](const std::string& id) { return id == curve.id; };
+    const auto link = std::find_if(links.begin(), links.end(), [&](const auto& l) {
+      return id_is(tradeoff::streamline_curve_id(l.name)) || id_is(cubic_curve_id(l.name));
+    });
+    if (link == links.end()) return std::nullopt;
+    const bool cubic = id_is(cubic_curve_id(link->name));
+    if (cubic && open_source(scene, link->node) == nullptr) return std::nullopt;
+    const field::AnyField field = tradeoff::find_link_field(scene, link->node);
+    if (!field.vector) return std::nullopt;
+    CATENA_ASSERT(link->node.find("field") != nullptr);
+    LinkCurve one{link->name, link->node.find("field")->string, cubic, field.vector->domain_length(), 1e-3 * rate_hz, curve, {}};
+    one.curve.points.clear();
+    const std::vector<StreamlineSetting> open = open_settings(link->node);
+    for (const tradeoff::Point& point : curve.points) {
+      if (!point.is_selectable) continue;
+      const auto setting = std::find_if(open.begin(), open.end(), [&](const auto& s) { return s.label == point.setting; });
+      if (setting == open.end()) continue;
+      one.curve.points.push_back(point);
+      one.keys.push_back(new_keys(*setting, link->node));
+    }
+    if (one.curve.points.empty()) return std::nullopt;
+    made.links.push_back(std::move(one));
+  }
+  return has_rest ? std::optional(made) : std::nullopt;
+}
+
+}  // namespace catena::app::plan

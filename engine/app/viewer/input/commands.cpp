@@ -1,0 +1,194 @@
+#include "engine/app/viewer/input/commands.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace catena::app {
+
+namespace {
+
+enum class Held : std::uint8_t { no, yes, any };
+
+struct KeyPress {
+  int key = 0;  ///< GLFW's number, or kQuestionMark; 0: none
+  Held control = Held::no, shift = Held::any;
+  bool told = true;  ///< in the list of keys
+};
+/// No key: keyboards have it in different places.
+constexpr int kQuestionMark = '?';
+
+struct CommandRow {
+  std::optional<Action> action{};  ///< none: what the pointer, or the device, does
+  const char* menu = nullptr;      ///< nullptr: it is in no menu; of an axis, as render::axis_view takes it
+  KeyPress stroke{}, other{};      ///< either asks for it
+  const char* section = nullptr;   ///< of the list of keys; nullptr: on the line of the row above
+  const char* does = nullptr;      ///< nullptr: the list does not name it
+  const char* by = nullptr;        ///< where it is no key
+};
+
+constexpr const char *kEye = "The eye", *kHand = "The hand", *kScene = "The scene", *kWindow = "The window";
+constexpr KeyPress kNoStroke{};
+
+constexpr CommandRow by_pointer(const char* section, const char* by, const char* does) {
+  return {.section = section, .does = does, .by = by};
+}
+constexpr KeyPress with_control(int key, Held shift = Held::any, bool told = true) { return {key, Held::yes, shift, told}; }
+constexpr KeyPress with_shift(int key) { return {key, Held::no, Held::yes}; }
+constexpr KeyPress alone(int key) { return {key, Held::no, Held::no}; }
+
+// in the order of the list of keys
+constexpr CommandRow kCommandRows[] = {
+    by_pointer(kEye, "left drag", "orbit"),
+    by_pointer(kEye, "middle, shift+left", "pan"),
+    by_pointer(kEye, "wheel", "zoom"),
+    {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoStroke, kEye, "look along +x"},
+    {Action::view_along_plus_y, "+y", alone(GLFW_KEY_2), kNoStroke, nullptr, "+y"},
+    {Action::view_along_plus_z, "+z", alone(GLFW_KEY_3), kNoStroke, nullptr, "+z, at all that is drawn; with shift along -x, -y, -z"},
+    {Action::view_along_minus_x, "-x", with_shift(GLFW_KEY_1)},
+    {Action::view_along_minus_y, "-y", with_shift(GLFW_KEY_2)},
+    {Action::view_along_minus_z, "-z", with_shift(GLFW_KEY_3)},
+    {Action::fit_view, "Everything", {GLFW_KEY_A}, {GLFW_KEY_HOME}, kEye, "all that is drawn into the picture, from the same direction"},
+    {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoStroke, kEye, "orthographic or perspective"},
+    {Action::reset_view, "First view", {GLFW_KEY_R}, kNoStroke, kEye, "the first view again"},
+    {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoStroke, kEye, "turntable, until T or the mouse"},
+    {Action::toggle_fly,
+     "Fly",
+     {GLFW_KEY_V},
+     kNoStroke,
+     kEye,
+     "fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it"},
+
+    by_pointer(kHand, "right drag, control", "move the hand in the picture's plane (wheel: depth)"),
+    {Action::toggle_probe_mode,
+     "The mouse is the hand",
+     {GLFW_KEY_H},
+     kNoStroke,
+     kHand,
+     "the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1"},
+    by_pointer(kHand, "space", "the hand's button 1"),
+    {Action::toggle_forces, "Forces", {GLFW_KEY_F}, kNoStroke, kHand, "a haptic device's forces on and off (off at first)"},
+    {Action::register_device,
+     "Register in the room",
+     {GLFW_KEY_G},
+     kNoStroke,
+     kHand,
+     "with a headset: touch three places, which says where a haptic device stands; again: not now"},
+    by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"),
+
+    {Action::open, "Open...", with_control(GLFW_KEY_O), kNoStroke, kScene, "open; a file can be dropped on the window as well"},
+    {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoStroke, kScene, "save (with the view, if it was moved)"},
+    {Action::save_as, "Save as...", with_control(GLFW_KEY_S, Held::yes), kNoStroke, nullptr, "save as"},
+    {Action::undo, "Undo", with_control(GLFW_KEY_Z, Held::no), kNoStroke, kScene, "undo"},
+    {Action::redo, "Redo", with_control(GLFW_KEY_Y), with_control(GLFW_KEY_Z, Held::yes, false), nullptr, "redo"},
+    {Action::play_time_steps, nullptr, {GLFW_KEY_K}, kNoStroke, kScene, "play the steps in time, or stop"},
+    {Action::previous_time_step, nullptr, {GLFW_KEY_COMMA}, kNoStroke, kScene, "the step before"},
+    {Action::next_time_step, nullptr, {GLFW_KEY_PERIOD}, kNoStroke, nullptr, "and after"},
+    {Action::toggle_band_animation, nullptr, {GLFW_KEY_P}, kNoStroke, kScene, "the pulses along streamlines stand or run"},
+
+    {Action::toggle_panels, "Panels", {GLFW_KEY_TAB, Held::any}, kNoStroke, kWindow, "panels"},
+    {Action::next_stereo_mode, nullptr, {GLFW_KEY_F2}, kNoStroke, kWindow, "the next stereo mode"},
+    {Action::toggle_fullscreen, "Full screen", {GLFW_KEY_F11, Held::any}, kNoStroke, kWindow, "full screen"},
+    {Action::save_image, "Picture as PNG", {GLFW_KEY_F12, Held::any, Held::no}, kNoStroke, kWindow, "write the picture"},
+    {Action::save_window_image, "Window as PNG", {GLFW_KEY_F12, Held::any, Held::yes}, kNoStroke, nullptr, "the window, as SCENE-001.png"},
+    {Action::toggle_help, "Keys and buttons", {GLFW_KEY_F1}, {kQuestionMark}, kWindow, "these keys"},
+    {Action::dismiss,
+     nullptr,
+     {GLFW_KEY_ESCAPE},
+     kNoStroke,
+     kWindow,
+     "closes or cancels what is open, ends flying, hand mode, full screen"},
+    {Action::quit, "Quit", with_control(GLFW_KEY_Q), kNoStroke, kWindow, "quit"},
+};
+
+constexpr bool may_meet(Held a, Held b) { return a == b || a == Held::any || b == Held::any; }
+constexpr bool may_meet(const KeyPress& a, const KeyPress& b) {
+  return a.key != 0 && a.key == b.key && may_meet(a.control, b.control) && may_meet(a.shift, b.shift);
+}
+/// Every action has one row, and every stroke asks for one action.
+constexpr bool is_sound() {
+  for (int i = 0; i <= static_cast<int>(Action::toggle_forces); ++i)
+    if (std::ranges::count(kCommandRows, std::optional(static_cast<Action>(i)), &CommandRow::action) != 1) return false;
+  for (const CommandRow& a : kCommandRows)
+    for (const CommandRow& b : kCommandRows)
+      if (&a != &b && (may_meet(a.stroke, b.stroke) || may_meet(a.stroke, b.other) || may_meet(a.other, b.other))) return false;
+  return true;
+}
+static_assert(is_sound());
+
+const CommandRow& row_of(Action action) { return *std::ranges::find(kCommandRows, std::optional(action), &CommandRow::action); }
+
+bool is(const KeyPress& stroke, const KeyEvent& event) {
+  const auto fits = [](Held wanted, bool held) { return wanted == Held::any || held == (wanted == Held::yes); };
+  if (event.type == KeyEvent::Type::character) return stroke.key == kQuestionMark && event.character == U'?';
+  return stroke.key == event.key && stroke.key != kQuestionMark && fits(stroke.control, event.control) && fits(stroke.shift, event.shift);
+}
+
+bool is_fly_key(int key) {
+  constexpr int kKeys[] = {GLFW_KEY_W, GLFW_KEY_A,    GLFW_KEY_S,     GLFW_KEY_D,  GLFW_KEY_E,
+                           GLFW_KEY_Q, GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP, GLFW_KEY_DOWN};
+  return std::ranges::find(kKeys, key) != std::end(kKeys);
+}
+
+std::string stroke_words(const KeyPress& stroke) {
+  std::string text = stroke.control == Held::yes ? "Ctrl+" : "";
+  if (stroke.shift == Held::yes) text += "Shift+";
+  if (stroke.key >= GLFW_KEY_F1 && stroke.key <= GLFW_KEY_F12) return text + "F" + std::to_string(stroke.key - GLFW_KEY_F1 + 1);
+  switch (stroke.key) {
+    case GLFW_KEY_TAB:
+      return text + "Tab";
+    case GLFW_KEY_HOME:
+      return text + "Home";
+    case GLFW_KEY_ESCAPE:
+      return text + "Esc";
+    default:
+      return text + static_cast<char>(stroke.key);  // letters, digits and "?" are their own numbers
+  }
+}
+
+std::string listed_keys(const CommandRow& row) {
+  if (row.by != nullptr) return row.by;
+  return stroke_words(row.stroke) + (row.other.key != 0 && row.other.told ? ", " + stroke_words(row.other) : "");
+}
+
+}  // namespace
+
+std::optional<Action> find_action(const KeyEvent& event, bool fly) {
+  const bool counts = event.type == KeyEvent::Type::press || event.type == KeyEvent::Type::character;
+  if (!counts || (fly && !event.control && is_fly_key(event.key))) return std::nullopt;
+  for (const CommandRow& row : kCommandRows)
+    if (row.action && (is(row.stroke, event) || (row.other.key != 0 && is(row.other, event)))) return row.action;
+  return std::nullopt;
+}
+
+const char* menu_label(Action action) { return row_of(action).menu; }
+
+std::string shortcut_label(Action action) { return stroke_words(row_of(action).stroke); }
+
+const std::vector<KeyHelp>& key_list() {
+  static const std::vector<KeyHelp> list = [] {
+    std::vector<KeyHelp> lines;
+    for (const CommandRow& row : kCommandRows) {
+      if (row.does == nullptr) continue;
+      if (row.section != nullptr) {
+        lines.push_back({row.section, listed_keys(row), row.does});
+      } else {
+        lines.back().keys += ", " + listed_keys(row);
+        lines.back().description += std::string(", ") + row.does;
+      }
+    }
+    return lines;
+  }();
+  return list;
+}
+
+std::string key_help() {
+  std::string text;
+  for (const KeyHelp& key : key_list())
+    text += key.keys + std::string(key.keys.size() < 21 ? 21 - key.keys.size() : 1, ' ') + key.description + "\n";
+  return text;
+}
+
+}  // namespace catena::app

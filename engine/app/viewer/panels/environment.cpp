@@ -1,0 +1,96 @@
+// What stands around the things: background, help for the eye, stereo, projection, title.
+#include <cstring>
+
+#include "engine/app/viewer/panels/color_widgets.h"
+#include "engine/base/json_edit.h"
+
+namespace catena::app {
+
+namespace {
+
+/// The object that stands at a top-level key.
+std::optional<std::string> stated_object(const PanelContext& context, const std::string& key) {
+  const auto root = json::parse(context.scene.document().text(), "scene");
+  const json::Node* node = root ? root->find(key) : nullptr;
+  if (node == nullptr || node->kind != json::Kind::object) return std::nullopt;
+  return json::serialize_node(*node);
+}
+
+/// A top-level key that is true, false or an object. What stood there comes back when it is switched on again.
+void edit_aid(PanelContext& context, Edits& edits, const char* label, const std::string& key, bool on, const char* hint) {
+  const std::string pointer = "/" + key;
+  const bool clicked = ImGui::Checkbox(label, &on);
+  show_short_tooltip(hint);
+  if (!clicked) return;
+  auto& kept = context.state.appearance.disabled_text;
+  if (on) {
+    edits.set(pointer, kept.contains(key) ? kept[key] : "true", label);
+    return;
+  }
+  if (const auto stated = stated_object(context, key)) kept[key] = *stated;
+  edits.set(pointer, "false", label);
+}
+
+void draw_title(Edits& edits, const std::string& title) {
+  char text[200] = {};
+  std::strncpy(text, title.c_str(), sizeof text - 1);
+  if (ImGui::InputText("title", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue))
+    edits.set("/title", scene::to_json(text), "title");
+  show_short_tooltip("over the picture; Enter");
+}
+
+void choose_projection(PanelContext& context) {
+  const bool before = context.navigation.view.orthographic;
+  int projection = before ? 1 : 0;
+  if (ImGui::Combo("projection", &projection, "perspective\0orthographic\0") && (projection == 1) != before)
+    context.push_command(Action::toggle_projection);
+}
+
+void choose_stereo(PanelContext& context) {
+  const scene::StereoMode mode = context.scene.scene().stereo.mode;
+  if (!ImGui::BeginCombo("stereo", std::string(scene::to_string(mode)).c_str())) return;
+  for (int i = 0; i < scene::kStereoModeCount; ++i) {
+    const auto one = static_cast<scene::StereoMode>(i);
+    if (ImGui::Selectable(std::string(scene::to_string(one)).c_str(), one == mode)) context.push_command(SetStereoMode{one});
+  }
+  ImGui::EndCombo();
+}
+
+void draw_scene_view(PanelContext& context) {
+  Edits& edits = context.edits;
+  const scene::Scene& scene = context.scene.scene();
+  if (scene.background.transparent)
+    ImGui::TextDisabled("transparent background");
+  else
+    edit_color(edits, "background", scene.background.color, "/background");
+  edit_aid(context, edits, "bounding box", "bounding_box", scene.bounding_box.has_value(), "the edges of what is drawn");
+  ImGui::SameLine();
+  edit_aid(context, edits, "axes", "axes", scene.axes.has_value(), "three edges with ticks and numbers");
+  edit_aid(context, edits, "ground", "ground", scene.ground.has_value(), "a checkerboard below");
+  ImGui::SameLine();
+  edit_aid(context, edits, "marker", "orientation_marker", scene.annotations.orientation_marker.has_value(),
+           "three arrows in the corner: which way x, y, z point");
+  ImGui::SameLine();
+  edit_aid(context, edits, "fog", "fog", scene.fog.has_value(), "far things turn to the background");
+  if (scene.fog) {
+    auto most = static_cast<float>(scene.fog->max_opacity);
+    if (ImGui::SliderFloat("fog at the far end", &most, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+      const std::string value = scene::to_json(round_within(most, 0, 1, 1000));
+      if (stated_object(context, "fog"))
+        edits.drag("/fog/most", value, "fog");
+      else
+        edits.drag("/fog", "{\"most\": " + value + "}", "fog");
+    }
+  }
+  choose_projection(context);
+  show_short_tooltip("key O");
+  choose_stereo(context);
+  show_short_tooltip("key F2: the next");
+  draw_title(edits, scene.annotations.title);
+}
+
+}  // namespace
+
+Panel view_panel() { return {"View", false, draw_scene_view}; }
+
+}  // namespace catena::app

@@ -1,0 +1,35 @@
+// Steps in time: which one is shown, and how fast they go by.
+#include <imgui.h>
+
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/panels/property_widgets.h"
+#include "engine/scene/time_steps.h"
+#include "engine/scene/to_json.h"
+
+namespace catena::app {
+
+namespace {
+
+void draw_time(PanelContext& context) {
+  const scene::Scene& scene = context.scene.scene();
+  const int last = scene::step_count(scene) - 1;
+  int step = std::min(scene.time.step, last);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderInt("##step", &step, 0, last, "step %d", ImGuiSliderFlags_AlwaysClamp)) context.push_command(ShowTimeStep{step});
+  show_tooltip("the step that is shown; , and . go to the one before and after");
+  if (ImGui::Button(context.state.playback.is_playing ? "Stop" : "Play")) context.push_command(Action::play_time_steps);
+  ImGui::SameLine();
+  auto rate = static_cast<float>(scene.time.steps_per_second);
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.6f);
+  if (ImGui::SliderFloat("a second", &rate, 0.1f, 60, "%.3g", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+    context.edits.drag("/time/per_second", scene::to_json(static_cast<double>(rate)), "steps a second");
+  if (scene::current_step_time(scene)) ImGui::Text("t = %s", scene::format_time(scene).c_str());
+}
+
+bool has_steps(const PanelContext& context) { return scene::step_count(context.scene.scene()) > 1; }
+
+}  // namespace
+
+Panel time_panel() { return {"Time", true, draw_time, has_steps}; }
+
+}  // namespace catena::app

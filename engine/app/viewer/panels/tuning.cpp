@@ -1,0 +1,72 @@
+// One slider between fast and exact, with what is expected of it and what was observed.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/panels/property_widgets.h"
+#include "engine/scene/to_json.h"
+#include "render/quality/quality.h"
+
+namespace catena::app {
+
+namespace {
+
+void draw_numbers(const char* what, const std::string& expected, const std::string& observed) {
+  ImGui::TextDisabled("%s", what);
+  ImGui::Text("expected  %s", expected.c_str());
+  ImGui::Text("observed  %s", observed.c_str());
+}
+
+void draw_eye(PanelContext& context) {
+  const LiveTuning& live = context.tuning;
+  const plan::ImageTuning& eye = *live.image_tuning;
+  ImGui::TextWrapped("%s", render::describe(eye.settings()).c_str());
+  const auto error = context.scheduler.rmse();
+  draw_numbers("the picture", fmt::format("{:.2g}/255, {:.3g} ms", eye.expected_error(), eye.expected_ms()),
+               fmt::format("{}, {}", error ? fmt::format("{:.2g}/255", *error) : "once it rests",
+                           live.tuned_image_ms > 0 ? fmt::format("{:.3g} ms", live.tuned_image_ms) : "not yet"));
+  show_tooltip("root mean square over the covered pixels against converged rays; milliseconds of drawing");
+  context.push_command(EstimateImageError{});
+}
+
+void draw_hand(PanelContext& context) {
+  const LiveTuning& live = context.tuning;
+  for (const plan::TunedLink& link : live.tick_tuning->links()) ImGui::TextWrapped("%s: %s", link.link.c_str(), link.setting.c_str());
+  const double us = context.haptic_session.servo().stats().compute.p50_us;
+  draw_numbers("the hand", fmt::format("{:.2g}, {:.3g} us", live.tick_tuning->expected_error(), live.tick_tuning->expected_us()),
+               fmt::format("{}, {:.3g} us", live.tracking_error ? fmt::format("{:.2g}", *live.tracking_error) : "not yet", us));
+  show_tooltip("how far proxies are off their lines at most, world units; microseconds a tick");
+  context.push_command(ObserveTrackingError{});
+}
+
+void draw_plan(PanelContext& context) {
+  const LiveTuning& live = context.tuning;
+  const bool eye = live.image_tuning && !live.has_explicit_quality, hand = live.tick_tuning && !live.tick_tuning->is_empty();
+  if (!eye && !hand) {
+    ImGui::TextWrapped("What a setting costs and what it buys is not measured yet; the picture stands still for some seconds.");
+    if (ImGui::Button("Measure")) context.push_command(MeasureCosts{});
+    return;
+  }
+  // it takes hold when it is let go: the hand's settings are new ones from then on
+  static double held = 0;
+  static bool sliding = false;
+  double place = sliding ? held : live.slider_position();
+  const double lo = 0, hi = 1;
+  ImGui::SliderScalar("fast - exact", ImGuiDataType_Double, &place, &lo, &hi, "");
+  held = place;
+  sliding = ImGui::IsItemActive();
+  if (sliding) {
+    const scene::TuningTargets wanted = live.target_at(place);
+    ImGui::TextDisabled("%s", scene::to_json(wanted).c_str());
+  }
+  if (ImGui::IsItemDeactivatedAfterEdit()) context.edits.set("/plan", scene::to_json(live.target_at(place)), "plan");
+  if (eye) draw_eye(context);
+  if (hand) draw_hand(context);
+  if (live.has_explicit_quality) ImGui::TextDisabled("the picture's quality is stated");
+}
+
+}  // namespace
+
+Panel plan_panel() { return {"Plan", false, draw_plan}; }
+
+}  // namespace catena::app

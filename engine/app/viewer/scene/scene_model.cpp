@@ -1,0 +1,163 @@
+#include "engine/app/viewer/scene/scene_model.h"
+
+#include <utility>
+
+#include "engine/app/haptics/haptic_device_setup.h"
+#include "engine/app/viewer/input/haptic_session.h"
+#include "engine/base/threads.h"
+#include "engine/scene/prepare.h"
+#include "render/extract/extract.h"
+
+namespace catena::app {
+
+namespace {
+
+Result<LoadedScene> open_and_load(const std::string& path, std::uint32_t width, std::uint32_t height) {
+  CATENA_TRY(scene::Document document, scene::Document::open(path));
+  CATENA_TRY(SceneModel host, SceneModel::open(std::move(document), {}));
+  return load_scene(std::move(host), width, height);
+}
+
+}  // namespace
+
+Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32_t height) {
+  scene::Scene& scene = host.scene();
+  // the program loads what is felt, the packet what is drawn
+  CATENA_CHECK(HapticSession::load(scene));
+  CATENA_TRY(render::FramePacket packet, render::make_frame(scene, width, height));
+  const Bounds bounds = scene::scene_bounds(scene);
+  if (!scene.camera.is_explicit && packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty() && packet.spheres.empty())
+    packet.view = render::fit_view(bounds, static_cast<double>(width) / height);
+  host.bounds = bounds;
+  return LoadedScene{std::move(host), std::move(packet), bounds};
+}
+
+void SceneLoader::start(const std::string& path, std::uint32_t width, std::uint32_t height) {
+  CATENA_ASSERT(!is_busy());
+  path_ = path;
+  done_ = false;
+  const auto load = [this, path, width, height] {
+    loaded_.emplace(open_and_load(path, width, height));
+    done_ = true;
+  };
+  try {
+    thread_ = std::jthread(load);
+  } catch (const std::system_error& error) {
+    loaded_.emplace(thread_start_error(path, error));
+    done_ = true;
+  }
+}
+
+std::optional<Result<LoadedScene>> SceneLoader::take_result() {
+  if (!is_busy() || !done_) return std::nullopt;
+  if (thread_.joinable()) thread_.join();
+  path_.clear();
+  return std::exchange(loaded_, std::nullopt);
+}
+
+namespace {
+
+void make_cursor(scene::Scene& scene) {
+  if (!scene.cursor) scene.cursor = scene.entities.create();
+  if (!scene.entities.has<scene::Cursor>(scene.cursor)) scene.entities.emplace<scene::Cursor>(scene.cursor);
+}
+
+}  // namespace
+
+Result<SceneModel> SceneModel::open(scene::Document document, std::function<Outcome(scene::Scene&)> adjust) {
+  SceneModel host(std::move(document), std::move(adjust));
+  CATENA_TRY(host.scene_, host.parse_document());
+  return host;
+}
+
+Result<scene::Scene> SceneModel::parse_document() const {
+  CATENA_TRY(scene::Scene scene, document_.read());
+  make_cursor(scene);
+  if (apply_overrides_) CATENA_CHECK(apply_overrides_(scene));
+  if (tick_tuning_) tick_tuning_->apply(scene);
+  return scene;
+}
+
+Outcome SceneModel::set_tick_tuning(std::optional<plan::TickTuning> plan) {
+  std::swap(tick_tuning_, plan);
+  const Outcome done = edit_document([](scene::Document&) -> Outcome { return Done{}; });
+  if (!done) std::swap(tick_tuning_, plan);
+  return done;
+}
+
+std::string SceneModel::recording_text() const {
+  auto text = tick_tuning_ ? tick_tuning_->apply(document_.text(), document_.path()) : Result<std::string>(document_.text());
+  return text ? std::move(*text) : document_.text();
+}
+
+void SceneModel::transfer_session_state(scene::Scene& fresh) const {
+  fresh.camera = scene_.camera;
+  fresh.stereo.mode = scene_.stereo.mode;
+  fresh.animation_phase = scene_.animation_phase;
+  // fitted to the device once; a scene that states another one is followed when it is opened
+  fresh.workspace = scene_.workspace;
+  if (!fresh.coupling.ramp_s) fresh.coupling.ramp_s = scene_.coupling.ramp_s;
+}
+
+Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>& edit) {
+  scene::Document edited = document_;
+  CATENA_CHECK(edit(edited));
+  std::swap(document_, edited);
+  // `edited` is what it was from here on
+  auto fresh = parse_document();
+  if (!fresh) {
+    std::swap(document_, edited);
+    return fresh.error();
+  }
+  scene::transfer_state(scene_, *fresh);
+  transfer_session_state(*fresh);
+  if (validator_)
+    if (const Outcome good = validator_(*fresh); !good) {
+      scene::transfer_state(*fresh, scene_);
+      std::swap(document_, edited);
+      return good;
+    }
+  scene_ = std::move(*fresh);
+  changed_ = true;
+  return Done{};
+}
+
+Outcome SceneModel::set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag) {
+  return edit_document([&](scene::Document& document) { return document.set(pointer, value, what, drag); });
+}
+
+Outcome SceneModel::remove(std::string_view pointer, const std::string& what) {
+  return edit_document([&](scene::Document& document) { return document.remove(pointer, what); });
+}
+
+Outcome SceneModel::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag) {
+  return edit_document([&](scene::Document& document) { return document.apply(edits, what, drag); });
+}
+
+Outcome SceneModel::replace(const std::string& text, const std::string& what) {
+  return edit_document([&](scene::Document& document) { return document.replace(text, what); });
+}
+
+Outcome SceneModel::undo() {
+  if (!document_.can_undo()) return Done{};
+  return edit_document([](scene::Document& document) -> Outcome {
+    document.undo();
+    return Done{};
+  });
+}
+
+Outcome SceneModel::redo() {
+  if (!document_.can_redo()) return Done{};
+  return edit_document([](scene::Document& document) -> Outcome {
+    document.redo();
+    return Done{};
+  });
+}
+
+Outcome SceneModel::reload_from_disk() {
+  return edit_document([](scene::Document& document) { return document.reload_from_disk(); });
+}
+
+Outcome SceneModel::save(const std::string& path) { return document_.save(path); }
+
+}  // namespace catena::app

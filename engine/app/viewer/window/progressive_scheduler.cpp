@@ -1,0 +1,143 @@
+#include "engine/app/viewer/window/progressive_scheduler.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace catena::app {
+namespace {
+
+constexpr double kKeptBudgets = 3;       // that a picture may take whose rays are kept, as good as it is
+constexpr double kStandingBudgets = 20;  // the same of exact rays, that is to be better than the last one
+constexpr double kFinerBelow = 0.7;      // of the budget: more pixels again only with some room, or their number would come and go
+
+bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
+
+double budget_of(const Quality& quality) {
+  if (quality.interactive_ms) return *quality.interactive_ms;
+  return is_goal(quality) && quality.goal->kind == render::QualityGoal::Kind::time ? quality.goal->value : kFrameBudgetMs;
+}
+
+render::QualityLevelOptions ladder_of(const RayWorkload& kind) { return {kind.supports_fast, kind.is_shaded}; }
+
+}  // namespace
+
+ProgressiveScheduler::ProgressiveScheduler(const Quality& quality)
+    : quality_(quality), budget_ms_(budget_of(quality)), refinement_(budget_ms_, ladder_of(workload_)) {}
+
+/// Another kind of scene begins with another ladder.
+void ProgressiveScheduler::set_workload(const RayWorkload& kind) {
+  if (kind == workload_) return;
+  workload_ = kind;
+  refinement_ = render::Refinement(budget_ms_, ladder_of(kind));
+  awaits_time_ = false;
+}
+
+FrameRequest ProgressiveScheduler::request(const render::RefinementStep& step, std::uint32_t scale) {
+  awaits_time_ = true;
+  rmse_.reset();
+  current_ = {step.settings, scale};
+  return current_;
+}
+
+FrameRequest ProgressiveScheduler::interactive_frame(const RayWorkload& kind) {
+  set_workload(kind);
+  const render::RefinementStep step = *refinement_.next(true);
+  // the fast raycast saves pixels by itself
+  const std::uint32_t scale = kind.supports_fast ? 1 : render::choose_pixel_scale(step.expected_ms, current_.pixel_stride, budget_ms_);
+  is_interactive_ = true;
+  is_finished_ = false;
+  return request(step, scale);
+}
+
+std::optional<FrameRequest> ProgressiveScheduler::refined_frame(const RayWorkload& kind) {
+  set_workload(kind);
+  reuse_too_slow_ = false;
+  if (is_finished_) return std::nullopt;
+  const std::uint32_t scale = current_.pixel_stride;
+  if (!is_goal(quality_) || !kind.uses_rays) {
+    is_finished_ = true;
+    const bool shown = is_interactive_ && scale == 1 && !kind.uses_rays;
+    is_interactive_ = awaits_time_ = false;
+    rmse_.reset();
+    if (shown) return std::nullopt;
+    current_ = {quality_.settings, 1};
+    return current_;
+  }
+  is_interactive_ = false;
+  if (const auto step = refinement_.next(false)) {
+    is_finished_ = step->is_final;
+    return request(*step, 1);
+  }
+  is_finished_ = true;
+  if (scale == 1) return std::nullopt;
+  current_.pixel_stride = 1;
+  return current_;
+}
+
+FrameRequest ProgressiveScheduler::reused_frame() {
+  // what it takes says nothing of its setting
+  awaits_time_ = false;
+  is_reused_ = true;
+  FrameRequest next = current_;
+  next.settings.reuse_rays = true;
+  return next;
+}
+
+bool ProgressiveScheduler::may_refine() const {
+  return workload_.supports_fast || refinement_.expected_next_ms().value_or(0) <= kStandingBudgets * budget_ms_;
+}
+
+FrameRequest ProgressiveScheduler::final_frame(const RayWorkload& kind) {
+  while (refined_frame(kind)) {
+  }
+  is_interactive_ = false;
+  return current_;
+}
+
+void ProgressiveScheduler::on_rendered(double ms) {
+  last_image_ms_ = ms;
+  if (std::exchange(is_reused_, false) && ms > kKeptBudgets * budget_ms_) reuse_too_slow_ = true;
+  if (awaits_time_) refinement_.record_render_ms(ms * current_.pixel_stride * current_.pixel_stride);
+  awaits_time_ = false;
+}
+
+void ProgressiveScheduler::set_estimate(double rmse) {
+  rmse_ = rmse;
+  if (quality_.goal && quality_.goal->kind == render::QualityGoal::Kind::error && rmse <= quality_.goal->value) is_finished_ = true;
+}
+
+std::string ProgressiveScheduler::status_text() const {
+  std::string text = workload_.uses_rays ? render::describe(current_.settings) + ", " : "";
+  if (current_.pixel_stride > 1) text += fmt::format("1/{} of the size, ", current_.pixel_stride);
+  if (rmse_) text += fmt::format("error {:.2f}, ", *rmse_);
+  return text + fmt::format("{:.0f} ms", last_image_ms_);
+}
+
+namespace {
+
+constexpr std::int64_t kPauseNs = 1'000'000'000;
+
+std::string figures_json(const haptics::HistogramSummary& f) {
+  std::string bins;
+  for (const auto& bin : f.bins) bins += fmt::format("{}[{:.6g}, {}]", bins.empty() ? "" : ", ", bin.from_us, bin.count);
+  return fmt::format(R"({{"p50": {:.6g}, "p99": {:.6g}, "p999": {:.6g}, "max": {:.6g}, "count": {}, "bins": [{}]}})", f.p50_us, f.p99_us,
+                     f.p999_us, f.max_us, f.count, bins);
+}
+
+}  // namespace
+
+void FrameTimes::add(double ms, std::int64_t now_ns) {
+  draw_.add(static_cast<std::int64_t>(1e6 * ms));
+  if (last_ns_ != 0 && now_ns - last_ns_ < kPauseNs) period_.add(now_ns - last_ns_);
+  last_ns_ = now_ns;
+  recent_[recent_begin()] = static_cast<float>(ms);
+  ++count_;
+}
+
+std::string FrameTimes::to_json() const {
+  return fmt::format("{{\"frames\": {},\n \"draw_us\": {},\n \"period_us\": {},\n \"interface_us\": {}}}\n", count_,
+                     figures_json(draw_times()), figures_json(periods()), figures_json(interface_times()));
+}
+
+}  // namespace catena::app

@@ -1,0 +1,416 @@
+#include "engine/app/viewer/window/viewport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "engine/app/haptics/device_file.h"
+#include "engine/app/viewer/scene/file_browser.h"
+#include "engine/base/clock.h"
+#include "engine/base/console.h"
+#include "engine/scene/to_json.h"
+#include "engine/scene/units.h"
+#include "engine/schema/values.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_internal.h"
+#include "render/image/image.h"
+#include "render/quality/quality.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kMaxWaits = 30;
+
+/// The largest part of an area, in its middle, with a picture's proportions.
+std::array<std::uint32_t, 4> fitted_area(const std::array<std::uint32_t, 4>& area, const std::array<std::uint32_t, 2>& picture) {
+  const double width = area[2] - area[0], height = area[3] - area[1];
+  const double scale = std::min(width / picture[0], height / picture[1]);
+  const auto half_x = std::uint32_t(0.5 * (width - scale * picture[0])), half_y = std::uint32_t(0.5 * (height - scale * picture[1]));
+  return {area[0] + half_x, area[1] + half_y, area[2] - half_x, area[3] - half_y};
+}
+
+}  // namespace
+
+Viewport::~Viewport() {
+  if (headset_session_) headset_session_->request_exit();
+}
+
+std::optional<Failure> Viewport::open() {
+  Presenter::Options options{context_.options.gpu_memory, context_.options.inject_failure};
+  if (context_.options.use_headset) {
+    auto headset = HeadsetSession::open();
+    if (!headset) return Failure{1, headset.error().message};
+    headset_session_ = std::move(*headset);
+    headset_session_->configure(options);
+  }
+  auto screen = Presenter::open(context_.window, std::move(options));
+  if (!screen) return Failure{1, screen.error().message};
+  presenter_ = std::move(*screen);
+  const render::vk::DeviceInfo& device = presenter_->renderer().device().info();
+  if (device.is_cpu()) context_.state.show_message("no GPU: drawn by the processor (" + device.name + ")");
+  return std::nullopt;
+}
+
+// ---- its place ----
+
+bool Viewport::is_minimised() const {
+  std::uint32_t width = 0, height = 0;
+  presenter_->size(width, height);
+  return width == 0 || height == 0;
+}
+
+bool Viewport::update_layout() {
+  double width = 1, height = 1;
+  std::uint32_t frame_width = 0, frame_height = 0;
+  context_.window.size(width, height);
+  presenter_->size(frame_width, frame_height);
+  ViewState& state = context_.state;
+  state.image_area = compute_image_area(width, height, state.show_panels ? interface_insets() : Insets{});
+  const auto before = pixel_rect_;
+  if (frame_width > 0 && frame_height > 0) pixel_rect_ = to_pixel_rect(state.image_area, width, height, frame_width, frame_height);
+  return pixel_rect_ != before;
+}
+
+std::array<std::uint32_t, 2> Viewport::size() const {
+  return {std::max(1u, pixel_rect_[2] - pixel_rect_[0]), std::max(1u, pixel_rect_[3] - pixel_rect_[1])};
+}
+
+// ---- drawing ----
+
+bool Viewport::reload_shaders() { return reload_ && reload_->poll(presenter_->renderer(), now_ns()); }
+
+Result<bool> Viewport::poll_headset() {
+  if (!headset_session_) return false;
+  CATENA_CHECK(headset_session_->poll(*presenter_, now_ns(), [this](const std::string& line) {
+    context_.state.show_message(line, true);
+    print_message(line);
+  }));
+  if (!headset_session_->is_running()) context_.haptic_session.suspend_forces(false);  // nothing moves the world any more
+  return headset_session_->is_running();
+}
+
+/// The hand's metres are the room's where the room knows them; not while the world is on its way.
+void Viewport::update_room_registration() {
+  HapticSession& hand = context_.haptic_session;
+  DeviceRegistration& desk = *headset_session_->device_registration();
+  for (const DeviceRegistration::Message& news : desk.take_messages()) {
+    context_.state.show_message(news.text, news.is_error);
+    print_message(news.text);
+  }
+  context_.state.prompt = desk.prompt();
+  if (const auto found = desk.take_registration()) save_registration(*found);
+  const auto now = headset_session_->probe_workspace(hand);
+  if (!now) return (void)hand.suspend_forces(false);
+  scene::Workspace& workspace = context_.scene.scene().workspace;
+  const bool stays =
+      now->meters_per_unit == workspace.meters_per_unit && now->origin == workspace.origin && now->rotation == workspace.rotation;
+  if (!hand.suspend_forces(!stays || headset_session_->is_grabbing_world()) || stays || headset_session_->is_grabbing_world()) return;
+  workspace = *now;
+  context_.state.show_error(hand.publish(context_.scene.scene(), context_.scene.recording_text()));
+}
+
+Outcome Viewport::toggle_registration() {
+  DeviceRegistration* const desk = headset_session_ ? headset_session_->device_registration() : nullptr;
+  if (!desk) return Error{"there is no headset in whose room a device could be registered; view --xr was expected"};
+  if (!desk->is_active()) return desk->begin(context_.haptic_session);
+  desk->cancel();
+  return Done{};
+}
+
+/// With the settings of the device, in its own file or in the scene.
+void Viewport::save_registration(const haptics::DeviceSettings::RoomRegistration& room) {
+  const std::string type = haptics::parse_device_type(context_.haptic_session.device_name()), &file = context_.options.device_file;
+  const std::vector<scene::Document::Edit> edits{{"/type", scene::to_json(type)},
+                                                 {"/room_origin", scene::to_json(room.origin_m)},
+                                                 {"/room_rotation", schema::write_value(room.room_from_workspace)}};
+  const auto say = [&](const Outcome& kept, const std::string& where) {
+    context_.state.show_message(kept ? where : kept.error().message, !kept);
+    print_message(kept ? where : kept.error().message);
+  };
+  if (!file.empty()) return say(write_device_file(file, edits), "where it stands was written to " + file);
+  const auto& device = std::as_const(context_.scene).scene().device;
+  const json::Node* const other = device ? device->find("type") : nullptr;
+  if (other && other->string != type)
+    return say(
+        Error{"the scene's \"device\" is a " + other->string + ": where the " + type + " stands is not kept; --device-file keeps it"}, "");
+  std::vector<scene::Document::Edit> in_scene = edits;
+  for (scene::Document::Edit& edit : in_scene) edit.pointer.insert(0, "/device");
+  say(context_.scene.apply(in_scene, "where the device stands"), "where it stands is part of the scene, which is saved with Ctrl+S");
+}
+
+/// True: the picture is an eye's. What lies at a place of the window's picture cannot be said by it: an eye has its own packet.
+Result<bool> Viewport::draw_in_headset() {
+  const std::int64_t start = now_ns();
+  scene::Scene& scene = context_.scene.scene();
+  HeadsetSession::FrameCallbacks content;
+  content.make_packet = [&]() -> Result<render::FramePacket> {
+    auto [width, height] = size();
+    CATENA_TRY(render::FramePacket packet, frame_builder_.make_packet(width, height));
+    // what belongs to a flat picture stays in the window
+    packet.overlay.texts.clear();
+    packet.overlay.scalar_bars.clear();
+    packet.overlay.orientation_marker.reset();
+    packet.overlay.status.reset();
+    return packet;
+  };
+  content.late_latch = [&](render::FramePacket& of) {
+    probe_moved_late_ = context_.haptic_session.pull_state(scene) || probe_moved_late_;
+    render::update_cursors(scene, of);
+  };
+  content.apply_view = [&](const render::View& view, render::FramePacket& of) { render::set_view(scene, view, of); };
+  content.classify_rays = [&](const render::FramePacket& of) {
+    const RayWorkload& kind = frame_builder_.update_ray_workload(of, presenter_->renderer());
+    return render::QualityLevelOptions{kind.supports_fast, kind.is_shaded};
+  };
+  CATENA_TRY(const bool drawn, headset_session_->draw(*presenter_, context_.haptic_session, content));
+  update_room_registration();
+  if (!drawn) return false;
+  if (context_.frame_times.count() == 0) print_renderer_notes();
+  frame_builder_.reset();
+  shows_headset_eye_ = is_pick_stale_ = true;
+  context_.frame_times.add(ms_since(start), now_ns());
+  return true;
+}
+
+std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
+  if (headset_session_ && headset_session_->is_running() && !for_file && !is_minimised()) {
+    const auto drawn = draw_in_headset();
+    if (!drawn) return Failure{1, drawn.error().message};
+    // a number of pictures is counted in the window where nobody sees the headset's
+    if (*drawn || (frame_builder_.last_packet() && context_.options.max_frames == 0)) return std::nullopt;
+  }
+  shows_headset_eye_ = false;
+  if (is_minimised()) {
+    frame_builder_.discard_prebuilt();
+    return std::nullopt;
+  }
+  std::uint32_t width = 0, height = 0;
+  presenter_->size(width, height);
+  if (!for_file) {
+    update_layout();
+    width = pixel_rect_[2] - pixel_rect_[0];
+    height = pixel_rect_[3] - pixel_rect_[1];
+  } else {
+    frame_builder_.discard_prebuilt();
+  }
+  std::int64_t start = now_ns();
+  auto packet = frame_builder_.make_packet(next, width, height);
+  if (!packet) {
+    // at the start it is the scene's fault; later an edit's, and the last picture stands
+    if (context_.frame_times.count() == 0) return to_failure(packet.error());
+    context_.state.show_message(packet.error().message, true);
+    return std::nullopt;
+  }
+  ProgressiveScheduler& pacing = context_.scheduler;
+  if (pacing.needs_estimate()) {
+    if (auto known = frame_builder_.estimate_error_if_needed(presenter_->renderer(), *packet, next); !known)
+      return Failure{1, known.error().message};
+    start = now_ns();
+  }
+  const int recoveries = presenter_->recovery_count();
+  const render::RenderTimer clock(presenter_->renderer());
+  auto drawn = presenter_->draw(*packet, next.settings);
+  // with the embedded shaders if those of --shaders cannot be drawn with
+  if (!drawn && reload_ && reload_->fall_back(presenter_->renderer(), drawn.error().message))
+    drawn = presenter_->draw(*packet, next.settings);
+  if (!drawn) return Failure{1, drawn.error().message};
+  const bool recovered = presenter_->recovery_count() != recoveries;
+  if (recovered) context_.state.show_message("the graphics device was lost and has been started again", true);
+  // the clock's renderer is gone with a lost device
+  const double ms = ms_since(start), drawing_ms = recovered ? ms : clock.elapsed_ms();
+  pacing.on_rendered(ms);
+  LiveTuning& live = context_.tuning;
+  const bool as_planned = live.matches(next) && !for_file && context_.frame_times.count() > 0;
+  if (as_planned && live.on_rendered(drawing_ms))
+    if (const auto quality = live.quality()) pacing = ProgressiveScheduler(*quality);
+  if (context_.frame_times.count() == 0) print_renderer_notes();
+  frame_builder_.on_rendered(std::move(*packet), presenter_->renderer());
+  is_pick_stale_ = true;
+  if (!for_file) context_.frame_times.add(ms, now_ns());
+  return std::nullopt;
+}
+
+/// What the first picture had to leave out.
+void Viewport::print_renderer_notes() const {
+  const render::RenderStats stats = presenter_->renderer().stats();
+  for (const std::string& note : stats.warnings) print_message(note);
+  for (const render::GridDownsampling& coarser : stats.downsampled_grids) print_line(coarser.message());
+}
+
+std::optional<Failure> Viewport::estimate_error() {
+  ProgressiveScheduler& pacing = context_.scheduler;
+  if (!pacing.may_estimate() || is_minimised()) return std::nullopt;
+  auto packet = this->make_packet();
+  if (!packet) return std::nullopt;  // said where it was drawn
+  const auto estimate = [&]() -> Result<double> {
+    if (!context_.tuning.image_tuning) return render::estimate_rmse(presenter_->renderer(), *packet, pacing.current().settings);
+    // beside what a plan expects: the error itself, not the estimate above it
+    return render::measure_single_rmse(presenter_->renderer(), *packet, pacing.current().settings);
+  };
+  const auto error = estimate();
+  if (!error) return Failure{1, error.error().message};
+  pacing.set_estimate(*error);
+  // the estimate drew with the renderer's own images
+  if (auto drawn = presenter_->draw(*packet, pacing.current().settings); !drawn) return Failure{1, drawn.error().message};
+  needs_redraw_ = true;
+  return std::nullopt;
+}
+
+std::optional<Failure> Viewport::apply_tuning() {
+  if (is_minimised()) return std::nullopt;
+  update_layout();
+  auto packet = this->make_packet();
+  if (!packet) return to_failure(packet.error());
+  const Outcome made = measure_image_costs(context_.tuning, context_.scheduler, presenter_->renderer(), *packet, context_.scene,
+                                           context_.haptic_session, [this](const std::string& line) { context_.state.show_message(line); });
+  if (!made) return Failure{1, made.error().message};
+  is_pick_stale_ = needs_redraw_ = true;
+  return std::nullopt;
+}
+
+std::optional<Failure> Viewport::show(const std::function<void()>& make_panels) {
+  const std::int64_t start = now_ns();
+  update_field_probes();
+  Gui& gui = context_.gui;
+  if (const auto mouse = headset_session_ ? headset_session_->take_panel_mouse() : std::nullopt) {
+    double width = 1, height = 1;
+    std::uint32_t frame_width = 1, frame_height = 1;
+    context_.window.size(width, height);
+    presenter_->size(frame_width, frame_height);
+    gui.set_virtual_pointer(mouse->x_px * width / frame_width, mouse->y_px * height / frame_height, mouse->pressed);
+  }
+  gui.begin();
+  // the glyph is the pointer while the mouse is the hand
+  if (context_.navigation.probe_mode && context_.haptic_session.is_mouse() && context_.state.pointer_on_image) gui.hide_pointer();
+  make_panels();
+  render::UiItems items = gui.end();
+  items.image_area =
+      shows_headset_eye_ && presenter_->has_image() ? fitted_area(pixel_rect_, presenter_->renderer().view_size()) : pixel_rect_;
+  if (auto shown = presenter_->show(items); !shown) return Failure{1, shown.error().message};
+  if (headset_session_) headset_session_->update_panel(*presenter_);
+  context_.frame_times.add_interface(ms_since(start));
+  needs_redraw_ = false;
+  return std::nullopt;
+}
+
+void Viewport::reset() {
+  frame_builder_.reset();
+  is_pick_stale_ = true;
+}
+
+// ---- what is where ----
+
+/// The rows of the table of values. The place under the pointer is looked up while nothing moves.
+void Viewport::update_field_probes() {
+  const scene::Scene& scene = context_.scene.scene();
+  const HapticSession& hand = context_.haptic_session;
+  ViewState& state = context_.state;
+  state.unit_length = scene::length_unit(scene);
+  const auto at = [&](const std::optional<Vec3>& world, std::string object) {
+    PointSamples place{world, std::move(object), {}};
+    if (world) place.samples = sample_fields(scene, *world);
+    return place;
+  };
+  const HapticState& felt = hand.latest_state();
+  const bool feels = felt.tick > 0;
+  state.probe_samples = at(feels ? std::optional(felt.probe) : std::nullopt, {});
+  std::optional<Vec3> proxy;
+  if (feels && felt.link_count > 0) proxy = felt.links[static_cast<std::size_t>(felt.link_count - 1)].proxy;
+  state.proxy_samples = at(proxy, feels && felt.link_count > 0 && !hand.link_names().empty() ? hand.link_names().back() : "");
+  const double most = scene.coupling.max_force_n;
+  state.force_ratio = most > 0 ? std::clamp(norm(felt.force_n) / most, 0.0, 1.0) : 0;
+
+  const auto& shown = frame_builder_.last_packet();
+  const bool can = state.pointer_on_image && !state.pointer_pressed && shown && shown->eyes.empty() && !state.is_untitled;
+  if (can && !is_pick_stale_) return;
+  is_pick_stale_ = !can;
+  state.pointer_samples = {};
+  if (!can) return;
+  const double x = (state.pointer_x - state.image_area.x) / state.image_area.width * shown->width;
+  const double y = (state.pointer_y - state.image_area.y) / state.image_area.height * shown->height;
+  const auto texel = presenter_->pick(x, y);
+  if (!texel) return;
+  if (const auto place = pick(*shown, x, y, texel->depth, texel->id))
+    state.pointer_samples = at(place->world, object_label(*shown, place->id));
+}
+
+std::optional<PickHit> Viewport::pick_at(double window_x, double window_y) const {
+  const Area& area = context_.state.image_area;
+  if (context_.state.is_untitled || !area.contains(window_x, window_y)) return std::nullopt;
+  return frame_builder_.pick_at((window_x - area.x) / area.width, (window_y - area.y) / area.height);
+}
+
+std::optional<PickHit> Viewport::pick_under_pointer() const {
+  const ViewState& state = context_.state;
+  // eyes side by side have a place for the pointer each
+  const auto& shown = frame_builder_.last_packet();
+  const bool apart = shown && !shown->eyes.empty() && render::has_separate_views(shown->packing);
+  return state.pointer_on_image && !apart ? pick_at(state.pointer_x, state.pointer_y) : std::nullopt;
+}
+
+std::optional<Vec3> Viewport::find_visible_point(const std::string& item) const {
+  // big meshes are looked at triangle by triangle
+  std::size_t triangles = 0;
+  if (const auto& shown = frame_builder_.last_packet())
+    for (const render::MeshItem& mesh : shown->meshes) triangles += mesh.geometry->triangles.size() / 3;
+  const int lattice = triangles > 200000 ? 8 : 24;
+  if (const auto here = pick_under_pointer(); here && item_label(here->id) == item) return here->world;
+  const Area& area = context_.state.image_area;
+  std::optional<Vec3> place;
+  double least = 2;
+  for (int j = 0; j < lattice; ++j)
+    for (int i = 0; i < lattice; ++i) {
+      const double x = (i + 0.5) / lattice, y = (j + 0.5) / lattice, away = std::hypot(x - 0.5, y - 0.5);
+      if (away >= least) continue;
+      const auto there = pick_at(area.x + x * area.width, area.y + y * area.height);
+      if (!there || item_label(there->id) != item) continue;
+      least = away;
+      place = there->world;
+    }
+  return place;
+}
+
+// ---- to a file ----
+
+void Viewport::write_requested_screenshot() {
+  const bool of_window = requested_screenshot_.value_or(false);
+  const bool there = of_window ? presenter_->has_presented() : presenter_->has_image();
+  if (!requested_screenshot_ || !there || (context_.scheduler.current().pixel_stride > 1 && frames_waited_++ < kMaxWaits)) return;
+  frames_waited_ = 0;
+  requested_screenshot_.reset();
+  std::error_code code;
+  const scene::Document& document = context_.scene.document();
+  const std::string name = unused_file_name(std::filesystem::current_path(code).string(), path_stem(document.path()), ".png");
+  auto picture = of_window ? presenter_->capture_window() : presenter_->renderer().read_back();
+  const bool transparent = !of_window && context_.scene.scene().background.transparent;
+  const Outcome written = picture ? render::write_png(name, *picture, transparent) : Outcome(picture.error());
+  context_.state.show_message(written ? "wrote " + name : written.error().message, !written);
+}
+
+std::optional<Failure> Viewport::write_final_screenshots(const std::function<void()>& make_panels) {
+  const ViewOptions& options = context_.options;
+  if (context_.frame_times.count() == 0) return std::nullopt;
+  if (!options.ui_screenshot.empty()) {
+    if (auto failure = show(make_panels)) return failure;
+    auto picture = presenter_->capture_window();
+    if (!picture) return Failure{1, picture.error().message};
+    if (auto written = render::write_png(options.ui_screenshot, *picture, false); !written) return to_failure(written.error());
+  }
+  if (options.screenshot.empty()) return std::nullopt;
+  std::uint32_t width = 0, height = 0;
+  presenter_->size(width, height);
+  const bool whole = pixel_rect_ == std::array<std::uint32_t, 4>{0, 0, width, height};
+  // of a headset: what was seen last by the first eye
+  const bool seen = shows_headset_eye_ && presenter_->has_image();
+  if (!seen && (!context_.scheduler.is_finished() || !whole || !presenter_->has_image()))
+    if (auto failure = draw(frame_builder_.final_frame(), !whole)) return failure;
+  auto picture = presenter_->renderer().read_back();
+  if (!picture) return Failure{1, picture.error().message};
+  const bool transparent = context_.scene.scene().background.transparent;
+  if (auto written = render::write_png(options.screenshot, *picture, transparent); !written) return to_failure(written.error());
+  return std::nullopt;
+}
+
+}  // namespace catena::app

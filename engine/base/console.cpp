@@ -1,0 +1,81 @@
+#include "engine/base/console.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <string>
+
+#include "engine/base/system_failure.h"
+#include "engine/base/text.h"
+
+namespace catena {
+
+namespace {
+
+constexpr int kPatienceMs = 500;
+std::atomic<int> output_error{0};
+
+void keep_output_error(int descriptor, int code) noexcept {
+  int none = 0;
+  if (code == EIO && ::isatty(descriptor) == 1) return;  // the terminal has been closed: nobody looks
+  if (descriptor == STDOUT_FILENO) output_error.compare_exchange_strong(none, code);
+}
+
+void tell_line(std::string_view before, std::string_view line) noexcept {
+  try {
+    const std::string whole = std::string(before) + sanitize_for_terminal(one_line(std::string(line.substr(0, 2 * kMaxLineBytes))));
+    print_nonblocking(STDERR_FILENO, truncate_utf8(whole, kMaxLineBytes) + "\n", kPatienceMs);
+  } catch (...) {
+    char words[256];
+    std::snprintf(words, sizeof words, "catena: %s\n", out_of_memory_message());
+    print_nonblocking(STDERR_FILENO, words, kPatienceMs);
+  }
+}
+
+}  // namespace
+
+void print_line(std::string_view line) noexcept { tell_line({}, line); }
+void print_message(std::string_view line) noexcept { tell_line("catena: ", line); }
+
+void print_nonblocking(int descriptor, std::string_view text, int wait_ms) noexcept {
+  struct stat about {};
+  if (::fstat(descriptor, &about) != 0) return keep_output_error(descriptor, errno);
+  // what others that print left in their buffer comes first, where that does not wait either
+  pollfd ready{descriptor, POLLOUT, 0};
+  if (::poll(&ready, 1, wait_ms) != 1) return;
+  std::fflush(descriptor == STDERR_FILENO ? stderr : stdout);
+
+  // a description of its own: O_NONBLOCK on the shared one would reach the shell
+  const bool waits = S_ISCHR(about.st_mode) || S_ISFIFO(about.st_mode);
+  int own = -1;
+  if (waits) {
+    char name[32];
+    std::snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
+    own = ::open(name, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  }
+  const int to = own >= 0 ? own : descriptor;
+  while (!text.empty()) {
+    const ssize_t n =
+        S_ISSOCK(about.st_mode) ? ::send(to, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL) : ::write(to, text.data(), text.size());
+    if (n > 0) {
+      text.remove_prefix(static_cast<std::size_t>(n));
+      continue;
+    }
+    if (n < 0 && errno == EINTR) continue;
+    pollfd again{to, POLLOUT, 0};
+    if (n < 0 && errno == EAGAIN && wait_ms > 0 && ::poll(&again, 1, wait_ms) == 1 && (again.revents & POLLOUT) != 0) continue;
+    if (n < 0 && errno != EAGAIN) keep_output_error(descriptor, errno);
+    break;
+  }
+  if (own >= 0) ::close(own);
+}
+
+int stdout_errno() noexcept { return output_error; }
+
+}  // namespace catena

@@ -1,0 +1,62 @@
+/// The scale on which values lie between the points of a colour map and along a colour bar. With c = linear_below > 0
+///   s(v) = v / c                         |v| <= c
+///   s(v) = sign(v) (1 + ln(|v| / c))     beyond
+/// which is continuous together with its slope. Of values >= c it is a logarithm but for a constant, so that a logarithmic scale is this
+/// one with c = its least value. linear_below = 0 stands for the linear scale, s(v) = v. Pure functions, any thread.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace catena {
+
+inline double symlog(double value, double linear_below) {
+  if (!(linear_below > 0)) return value;
+  const double ratio = std::fabs(value) / linear_below;
+  return ratio <= 1 ? value / linear_below : std::copysign(1 + std::log(ratio), value);
+}
+
+inline double symlog_inverse(double place, double linear_below) {
+  if (!(linear_below > 0)) return place;
+  const double size = std::fabs(place);
+  return size <= 1 ? place * linear_below : std::copysign(linear_below * std::exp(size - 1), place);
+}
+
+/// The value that lies at the share t, 0 to 1, of the way from lo to hi; lo and hi themselves at the ends.
+inline double symlog_interpolate(double lo, double hi, double t, double linear_below) {
+  if (t <= 0) return lo;
+  if (t >= 1) return hi;
+  const double a = symlog(lo, linear_below), b = symlog(hi, linear_below);
+  return symlog_inverse((1 - t) * a + t * b, linear_below);
+}
+
+/// Rows (value, ...) that are linear between each other on the scale, with more of them, so that they are linear in the value: to `share`
+/// of the greatest number of each column. A straight line over a piece of length h of s is off by h^2 / 8 of the slope there.
+template <std::size_t N>
+std::vector<std::array<double, N>> refine_for_symlog(const std::vector<std::array<double, N>>& rows, double linear_below, double share) {
+  constexpr double kMost = 1024;
+  if (!(linear_below > 0) || rows.size() < 2) return rows;
+  std::array<double, N> most{};
+  for (const auto& row : rows)
+    for (std::size_t c = 1; c < N; ++c) most[c] = std::max(most[c], std::fabs(row[c]));
+  std::vector<std::array<double, N>> out{rows.front()};
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto &a = rows[i - 1], &b = rows[i];
+    double change = 0;
+    for (std::size_t c = 1; c < N; ++c)
+      if (most[c] > 0) change = std::max(change, std::fabs(b[c] - a[c]) / most[c]);
+    const double length = symlog(b[0], linear_below) - symlog(a[0], linear_below);
+    const double parts = std::clamp(std::ceil(std::sqrt(change * length / (8 * share))), 1.0, kMost);
+    for (double k = 1; k < parts; ++k) {
+      std::array<double, N> row;
+      row[0] = symlog_interpolate(a[0], b[0], k / parts, linear_below);
+      for (std::size_t c = 1; c < N; ++c) row[c] = a[c] + k / parts * (b[c] - a[c]);
+      if (row[0] > out.back()[0] && row[0] < b[0]) out.push_back(row);
+    }
+    out.push_back(b);
+  }
+  return out;
+}
+
+}  // namespace catena

@@ -1,0 +1,91 @@
+#include "engine/base/system_failure.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace catena {
+
+namespace {
+
+constexpr const char *kAddresses = "this process may have at most {} KiB of addresses: ulimit -v",
+                     *kProcesses = "this user may have at most {} processes and threads: ulimit -u",
+                     *kFileSize = "files may have at most {} bytes: ulimit -f",
+                     *kFiles = "at most {} files may be open at a time: ulimit -n";
+
+constexpr std::array<SystemFailure, 11> kCauses{{
+    {ENOSPC, -1, ""},                  // the disk is full
+    {EDQUOT, -1, ""},                  // so is this user's share of it
+    {EFBIG, RLIMIT_FSIZE, kFileSize},  // the file system's largest, or a limit
+    {EIO, -1, ""},                     // the disk or its cable
+    {EROFS, -1, ""},                   // mounted read-only, also by the kernel after an error
+    {ESTALE, -1, ""},                  // a file server that came back as another
+    {ETIMEDOUT, -1, ""},               // one that did not come back
+    {EMFILE, RLIMIT_NOFILE, kFiles},
+    {ENFILE, -1, ""},
+    {ENOMEM, RLIMIT_AS, kAddresses},
+    {EAGAIN, RLIMIT_NPROC, kProcesses},  // of fork and threads; a resource that is used up elsewhere
+}};
+
+std::string limit_words(const SystemFailure& cause) {
+  const auto value = cause.limit < 0 ? std::nullopt : resource_limit(cause.limit);
+  if (!value) return {};
+  return fmt::format(fmt::runtime(cause.limit_format), cause.limit == RLIMIT_AS ? *value / 1024 : *value);
+}
+
+const SystemFailure* find_cause(int code) {
+  const auto* at = std::find_if(kCauses.begin(), kCauses.end(), [&](const SystemFailure& cause) { return cause.code == code; });
+  return at != kCauses.end() ? at : nullptr;
+}
+
+}  // namespace
+
+std::span<const SystemFailure> system_failures() { return kCauses; }
+
+bool is_system_failure(int code) { return find_cause(code) != nullptr; }
+
+std::string describe_errno(int code) {
+  const SystemFailure* cause = find_cause(code);
+  const std::string limit = cause != nullptr ? limit_words(*cause) : std::string();
+  return limit.empty() ? std::strerror(code) : fmt::format("{} ({})", std::strerror(code), limit);
+}
+
+Error system_error(const std::string& what, int code) { return Error{what + ": " + describe_errno(code), is_system_failure(code)}; }
+
+std::optional<unsigned long long> resource_limit(int limit) {
+  if (limit == RLIMIT_NPROC && ::getuid() == 0) return std::nullopt;
+  rlimit value{};
+  if (::getrlimit(static_cast<__rlimit_resource>(limit), &value) != 0 || value.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return value.rlim_cur;
+}
+
+const char* out_of_memory_message() noexcept {
+  static thread_local char words[200];
+  const auto limit = resource_limit(RLIMIT_AS);
+  if (limit)
+    std::snprintf(
+        words, sizeof words,
+        "out of memory: this process may have at most %llu KiB of addresses: ulimit -v; expected more, or less to load or to draw",
+        *limit / 1024);
+  else
+    std::snprintf(words, sizeof words,
+                  "out of memory: this machine gives no more; expected less to load or to draw, or fewer programs beside this one");
+  return words;
+}
+
+std::string describe_resource_limits() {
+  std::string all;
+  for (const SystemFailure& cause : kCauses)
+    // every user has a limit on processes, and every shell one on open files
+    if (const std::string words = cause.limit == RLIMIT_AS || cause.limit == RLIMIT_FSIZE ? limit_words(cause) : ""; !words.empty())
+      all += (all.empty() ? "" : "; ") + words;
+  return all;
+}
+
+}  // namespace catena

@@ -1,0 +1,178 @@
+#include "engine/field/nanovdb/nano_statistics.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <set>
+
+#include "engine/base/threads.h"
+#include "engine/field/nanovdb/nano_nodes.h"
+
+namespace catena::field {
+namespace {
+
+using nanovdb::Coord;
+constexpr std::size_t kTreeAt = sizeof(nanovdb::GridData), kLeavesAt = kTreeAt + sizeof(nanovdb::TreeData<3>);
+
+Error wrong(std::string_view what) { return Error{fmt::format("{} is not what it must be", what)}; }
+
+/// A number at a place that is checked to be inside; never read as a bool or an enumeration.
+template <class N>
+N number_at(std::span<const std::byte> bytes, std::size_t at) {
+  N n;
+  std::memcpy(&n, bytes.data() + at, sizeof n);
+  return n;
+}
+
+bool is_bool(const bool& b) {
+  std::uint8_t byte;
+  std::memcpy(&byte, &b, 1);
+  return byte <= 1;
+}
+
+/// Tiles of a mask say the same twice.
+template <class Value>
+bool sound_tile(const Value&, bool) {
+  return true;
+}
+template <>
+bool sound_tile<bool>(const bool& value, bool active) {
+  return is_bool(value) && value == active;
+}
+
+/// The counts of the header, and where its arrays must be.
+template <class T>
+struct Layout {
+  NanoCounts counts;
+  std::size_t lowers, uppers, root;
+};
+
+template <class T>
+Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
+  using Types = NanoTypes<T>;
+  using Grid = nanovdb::GridData;
+  using Tree = nanovdb::TreeData<3>;
+  using Root = typename Types::Root;
+  // the grid
+  if (bytes.size() < kLeavesAt + sizeof(Root)) return wrong("its size");
+  if (number_at<std::uint64_t>(bytes, offsetof(Grid, mMagic)) != NANOVDB_MAGIC_NUMBER) return wrong("the magic number");
+  if (number_at<std::uint32_t>(bytes, offsetof(Grid, mVersion)) != nanovdb::Version().id()) return wrong("the version");
+  if (number_at<std::uint64_t>(bytes, offsetof(Grid, mGridSize)) != bytes.size()) return wrong("the size of the grid");
+  constexpr auto type = std::is_same_v<T, float>            ? nanovdb::GridType::Float
+                        : std::is_same_v<T, nanovdb::Vec3f> ? nanovdb::GridType::Vec3f
+                                                            : nanovdb::GridType::Mask;
+  if (number_at<std::uint32_t>(bytes, offsetof(Grid, mGridType)) != static_cast<std::uint32_t>(type)) return wrong("the type of the grid");
+  // the tree: none of the sums can overflow, as a count has 32 bits and a node less than 2^20 bytes
+  Layout<T> l;
+  const auto count = [&](int level) { return number_at<std::uint32_t>(bytes, kTreeAt + offsetof(Tree, mNodeCount) + 4 * level); };
+  l.counts = {count(0), count(1), count(2), 0};
+  l.lowers = kLeavesAt + l.counts.leaves * sizeof(typename Types::Leaf);
+  l.uppers = l.lowers + l.counts.lowers * sizeof(typename Types::Lower);
+  l.root = l.uppers + l.counts.uppers * sizeof(typename Types::Upper);
+  if (l.root > bytes.size() - sizeof(Root)) return wrong("the number of nodes");
+  const std::uint64_t places[] = {l.counts.leaves > 0 ? kLeavesAt - kTreeAt : 0, l.counts.lowers > 0 ? l.lowers - kTreeAt : 0,
+                                  l.counts.uppers > 0 ? l.uppers - kTreeAt : 0, l.root - kTreeAt};
+  for (int level = 0; level < 4; ++level)
+    if (number_at<std::uint64_t>(bytes, kTreeAt + offsetof(Tree, mNodeOffset) + 8 * level) != places[level])
+      return wrong("the place of the nodes");
+  // the root
+  l.counts.entries = number_at<std::uint32_t>(bytes, l.root + offsetof(Root, mTableSize));
+  if (l.counts.entries > kMaxRootEntries) return wrong("the number of the root's entries");
+  if (NanoBuilder<T>::bytes(l.counts) != bytes.size()) return wrong("the size of the grid");
+  return l;
+}
+
+std::int64_t distance(const void* to, const void* from) { return static_cast<const std::byte*>(to) - static_cast<const std::byte*>(from); }
+
+/// The children of one internal node are the next ones of their array, in order, each at the place of its entry.
+template <class Node, class Children, class PlaceOf>
+bool sound_node(const Node& node, const Children& children, std::uint64_t first, std::uint32_t entries, const PlaceOf& place_of) {
+  for (std::uint32_t n = 0; n < entries; ++n) {
+    if (!node.mChildMask.isOn(n)) {
+      if (!sound_tile(node.mTable[n].value, node.mValueMask.isOn(n))) return false;
+      continue;
+    }
+    if (first >= children.size()) return false;
+    const auto& child = children[first++];
+    if (node.mValueMask.isOn(n) || node.mTable[n].child != distance(&child, &node) || place_of(child) != place_of(node, n)) return false;
+  }
+  return true;
+}
+
+struct PlaceInUpper {
+  template <class Lower>
+  Coord operator()(const Lower& lower) const {
+    return lower.mBBox[0];
+  }
+  template <class Upper>
+  Coord operator()(const Upper& upper, std::uint32_t n) const {
+    return upper_coord(upper.mBBox[0], n);
+  }
+};
+
+struct PlaceInLower {
+  template <class Leaf>
+  Coord operator()(const Leaf& leaf) const {
+    return leaf.mBBoxMin;
+  }
+  template <class Lower>
+  Coord operator()(const Lower& lower, std::uint32_t n) const {
+    return lower_coord(lower.mBBox[0], n);
+  }
+};
+
+/// All nodes of an array: their children use up the next array exactly.
+template <class Nodes, class Children, class PlaceOf>
+bool sound_nodes(const Nodes& nodes, const Children& children, std::uint32_t entries, const PlaceOf& place_of) {
+  std::vector<std::uint64_t> first(nodes.size());
+  std::uint64_t sum = 0;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    first[n] = sum;
+    sum += nodes[n].mChildMask.countOn();
+  }
+  if (sum != children.size()) return false;
+  std::vector<std::uint8_t> sound(nodes.size());
+  parallel_for(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) sound[n] = sound_node(nodes[n], children, first[n], entries, place_of);
+  });
+  return std::all_of(sound.begin(), sound.end(), [](std::uint8_t s) { return s != 0; });
+}
+
+}  // namespace
+
+template <class T>
+Outcome validate_nano(std::span<const std::byte> bytes) {
+  CATENA_TRY(const Layout<T> layout, layout_of<T>(bytes));
+  const auto& grid = *reinterpret_cast<const nanovdb::NanoGrid<T>*>(bytes.data());
+  const NanoNodes<T> nodes = view_nodes(grid);
+  const auto& root = *reinterpret_cast<const typename NanoTypes<T>::Root*>(bytes.data() + layout.root);
+  if constexpr (std::is_same_v<T, nanovdb::ValueMask>)
+    if (!is_bool(root.mBackground) || root.mBackground) return wrong("the background");
+  // the root's entries
+  std::set<std::uint64_t> keys;
+  std::uint64_t uppers = 0;
+  for (const auto& entry : nodes.entries) {
+    const Coord origin = entry.origin();
+    if (entry.key != NanoTypes<T>::Root::CoordToKey(origin) || !keys.insert(entry.key).second) return wrong("the place of a root's entry");
+    if (entry.child == 0) {
+      if (entry.state > 1 || !sound_tile(entry.value, entry.state != 0)) return wrong("a tile of the root");
+      continue;
+    }
+    if (uppers >= nodes.uppers.size()) return wrong("the number of nodes");
+    const auto& upper = nodes.uppers[uppers++];
+    if (entry.child != distance(&upper, &root) || upper.mBBox[0] != origin) return wrong("the place of a node");
+    if constexpr (std::is_same_v<T, nanovdb::ValueMask>)
+      if (!is_bool(entry.value)) return wrong("a tile of the root");
+  }
+  if (uppers != nodes.uppers.size()) return wrong("the number of nodes");
+  // the nodes below
+  if (!sound_nodes(nodes.uppers, nodes.lowers, kUpperEntries, PlaceInUpper{})) return wrong("the place of a node");
+  if (!sound_nodes(nodes.lowers, nodes.leaves, kLowerEntries, PlaceInLower{})) return wrong("the place of a leaf");
+  return Done{};
+}
+
+template Outcome validate_nano<float>(std::span<const std::byte>);
+template Outcome validate_nano<nanovdb::Vec3f>(std::span<const std::byte>);
+template Outcome validate_nano<nanovdb::ValueMask>(std::span<const std::byte>);
+
+}  // namespace catena::field

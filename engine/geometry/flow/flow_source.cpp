@@ -1,0 +1,179 @@
+#include "engine/geometry/flow/flow_source.h"
+
+namespace catena::flow {
+
+namespace {
+
+constexpr double kSlack = 1e-12;     ///< voxels: an excursion beyond a face that is only rounding
+constexpr double kSeedSlack = 1e-9;  ///< voxels: a seed on the domain's face
+
+/// The first theta at which one coordinate of the piece passes above `face` (mirrored for below), or 2.
+double first_passage(double c0, double c1, double c2, double c3, double face, double side) {
+  const auto beyond = [&](double theta) { return side * (c0 + theta * (c1 + theta * (c2 + theta * c3)) - face); };
+  // monotone pieces between the extremes
+  double stations[4] = {0, 1, 1, 1};
+  int count = 1;
+  const double a = 3 * c3, b = c2, discriminant = b * b - a * c1;
+  if (discriminant > 0) {
+    const double root = std::sqrt(discriminant), far = -(b + (b < 0 ? -root : root));
+    double first = a != 0 ? far / a : 2, second = far != 0 ? c1 / far : 2;
+    if (first > second) std::swap(first, second);
+    if (first > 0 && first < 1) stations[count++] = first;
+    if (second > 0 && second < 1) stations[count++] = second;
+  }
+  stations[count++] = 1;
+  double from = 0, value = beyond(0);
+  for (int i = 1; i < count; ++i) {
+    const double next = beyond(stations[i]);
+    if (next > kSlack) return value >= 0 ? from : illinois_root(from, value, stations[i], next, beyond);
+    from = stations[i];
+    value = next;
+  }
+  return 2;
+}
+
+}  // namespace
+
+CellFlowSource::CellFlowSource(const Flow& flow, field::Cursor* cursor)
+    : flow_(flow),
+      grid_(flow.field->grid()),
+      mapping_(grid_->mapping()),
+      box_(grid_->index_box()),
+      shared_cursor_(cursor),
+      cubic_(!flow.is_line_field && grid_->interpolation() == field::Interpolation::cubic) {
+  constexpr double kFarIndex = 1 << 16;
+  if (const Vec3 lo = box_.lo; max_abs(lo) > kFarIndex) {
+    first_ = {static_cast<std::int32_t>(lo.x), static_cast<std::int32_t>(lo.y), static_cast<std::int32_t>(lo.z)};
+    mapping_.origin = mapping_.world_from_index(lo);
+    box_ = {box_.lo - lo, box_.hi - lo};
+  }
+  max_step_ = 2 * norm(world_difference(Vec3(1.0)));
+  for (int axis = 0; axis < 3; ++axis) max_step_ = std::max(max_step_, 2 * norm(mapping_.world_from_index_linear[axis]));
+}
+
+glm::vec3 CellFlowSource::rounding_error(const Vec3& q) const {
+  constexpr double kFar = 500;  // times L
+  const Vec3 place = world(q);
+  if (max_abs(place) <= kFar * grid_->domain_length()) return glm::vec3(0.0f);
+  // the error of the sum, exactly (Knuth's TwoSum)
+  const Vec3 within = world_difference(q), &origin = mapping_.origin, rest = place - within;
+  return glm::vec3((within - (place - rest)) + (origin - rest));
+}
+
+field::VectorCell CellFlowSource::load_cell(const field::Index3& base) {
+  field::VectorCell cell = grid_->cell({base.x + first_.x, base.y + first_.y, base.z + first_.z}, cursor());
+  cell.base = {cell.base.x - first_.x, cell.base.y - first_.y, cell.base.z - first_.z};
+  return cell;
+}
+
+bool CellFlowSource::enter_cell(const field::Index3& base) {
+  const field::VectorCell cell = this->load_cell(base);
+  outside_status_ = !(cell.base == base) ? SampleStatus::outside_box : cell.valid ? SampleStatus::ok : SampleStatus::masked;
+  for (const Vec3& v : cell.corner)
+    if (!is_finite(v) && outside_status_ != SampleStatus::outside_box) outside_status_ = SampleStatus::not_finite;
+  if (outside_status_ != SampleStatus::ok) return false;
+  base_ = base;
+  lo_ = Vec3(base.x, base.y, base.z);
+  for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, box_.hi[axis]);
+  if (flow_.is_line_field) {
+    dyads_ = field::DyadCell(cell.corner);
+    return true;
+  }
+  if (cubic_) {
+    samples_ = *grid_->cubic_samples({base.x + first_.x, base.y + first_.y, base.z + first_.z}, cursor());
+    return true;
+  }
+  const auto& c = cell.corner;
+  const Vec3 x00 = c[1] - c[0], x10 = c[3] - c[2], x01 = c[5] - c[4], x11 = c[7] - c[6];
+  const Vec3 y0 = c[2] - c[0], y1 = c[6] - c[4];
+  polynomial_ = {c[0], x00, y0, x10 - x00, c[4] - c[0], x01 - x00, y1 - y0, (x11 - x01) - (x10 - x00)};
+  for (Vec3& v : polynomial_) v *= sign_;
+  return true;
+}
+
+bool CellFlowSource::start(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
+  q = mapping_.index_from_world(seed);
+  const field::Box& box = box_;
+  outside_status_ = is_finite(q) ? SampleStatus::outside_box : SampleStatus::not_finite;
+  if (!is_finite(q) || !box.contains(q, kSeedSlack)) return false;
+  for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], box.lo[axis], box.hi[axis]);
+  reference_ = sign * u;
+  sign_ = flow_.is_line_field ? 1 : sign;
+  // the cell of the seed, or one that it lies on the face of (a rounding beside a face is on it)
+  const field::Index3 found = grid_->cell_base(q + Vec3(first_.x, first_.y, first_.z));
+  const field::Index3 base{found.x - first_.x, found.y - first_.y, found.z - first_.z};
+  const std::int32_t bases[3] = {base.x, base.y, base.z};
+  int beside[3];
+  for (int axis = 0; axis < 3; ++axis)
+    beside[axis] = q[axis] - bases[axis] <= kSeedSlack ? -1 : bases[axis] + 1 - q[axis] <= kSeedSlack ? 1 : 0;
+  for (int c = 0; c < 8; ++c) {
+    if (((c & 1) && beside[0] == 0) || ((c & 2) && beside[1] == 0) || ((c & 4) && beside[2] == 0)) continue;
+    if (!enter_cell({base.x + (c & 1 ? beside[0] : 0), base.y + (c & 2 ? beside[1] : 0), base.z + (c & 4 ? beside[2] : 0)})) continue;
+    if (c != 0)
+      for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], lo_[axis], hi_[axis]);
+    return true;
+  }
+  return false;
+}
+
+StopReason CellFlowSource::seed_tangent_at(const Vec3& place, Vec3& u) {
+  Vec3 q, w;
+  if (!start(place, Vec3(0.0), 1, q)) return StopReason::outside;
+  // of a line field the side of the nearest voxel
+  if (flow_.is_line_field) reference_ = field::line_axis(load_cell(base_).corner, q - lo_).axis;
+  return rate(q, w, u);
+}
+
+// flat, as direction_at (flow.cpp)
+[[gnu::flatten]] StopReason CellFlowSource::rate(const Vec3& q, Vec3& w, Vec3& u) const {
+  const Vec3 f = q - lo_;
+  if (flow_.is_line_field) {
+    const StopReason stop = axis_direction(dyads_.at(f), flow_.min_speed, reference_, u);
+    w = mapping_.index_from_world_linear * u;
+    return stop;
+  }
+  const auto& c = polynomial_;
+  const Vec3 v = cubic_ ? sign_ * field::cubic_vector_within(samples_, f)
+                        : (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
+  const StopReason stop = unit_direction(v, flow_.min_speed, u);
+  w = mapping_.index_from_world_linear * u;
+  return stop;
+}
+
+CellAdvance CellFlowSource::advance_cell(Vec3& q, const Vec3& w) {
+  CellAdvance settled = CellAdvance::here;
+  for (int hops = 0; hops < 6; ++hops) {
+    int axis = 0, side = 0;
+    for (; axis < 3; ++axis) {
+      side =
+          q[axis] < lo_[axis] || (q[axis] == lo_[axis] && w[axis] < 0) ? -1 : q[axis] > hi_[axis] || (q[axis] == hi_[axis] && w[axis] > 0);
+      if (side != 0) break;
+    }
+    if (axis == 3) return settled;
+    if (!cross_face({0, axis, 0, side})) {
+      q[axis] = side < 0 ? lo_[axis] : hi_[axis];
+      return CellAdvance::boundary;
+    }
+    settled = CellAdvance::moved;
+  }
+  return settled;
+}
+
+bool CellFlowSource::find_exit(const Hermite& piece, CellExit& way) const {
+  way.theta = 2;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = -1; side <= 1; side += 2) {
+      const double face = side < 0 ? lo_[axis] : hi_[axis];
+      const double theta = first_passage(piece.c0[axis], piece.c1[axis], piece.c2[axis], piece.c3[axis], face, side);
+      if (theta < way.theta) way = {theta, axis, face, side};
+    }
+  return way.theta <= 1;
+}
+
+bool CellFlowSource::cross_face(const CellExit& way) {
+  field::Index3 next = base_;
+  (way.axis == 0 ? next.x : way.axis == 1 ? next.y : next.z) += way.side;
+  return enter_cell(next);
+}
+
+}  // namespace catena::flow

@@ -1,0 +1,134 @@
+/// What a line is marched through: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell
+/// faces are exact numbers. Both serve the marcher (march.h):
+///   begin(seed, u, sign, q)   places the motion at the seed, along sign * u; false: outside the domain
+///   rate(q, w, u)             u the unit direction of motion in the world, w = dq/ds; or why there is none
+///   settle(q, w)              makes the cell that the motion goes into the current one
+///   leave(piece, way)         the first place where a Hermite piece leaves the current cell
+/// Off the haptic thread, but without allocation.
+#pragma once
+#include "engine/field/grid/grid.h"
+#include "engine/geometry/flow/curve.h"
+#include "engine/geometry/flow/flow.h"
+#include "engine/geometry/flow/runge_kutta.h"
+
+namespace catena::flow {
+
+enum class CellAdvance { here, moved, boundary };
+
+/// A way out of a cell: the Hermite parameter, and the axis and coordinate of the face.
+struct CellExit {
+  double theta = 0;
+  int axis = 0;
+  double face = 0;
+  int side = 0;  ///< -1 or +1
+};
+
+/// Analytic fields, and any field without cells: no faces.
+class FormulaFlowSource {
+ public:
+  explicit FormulaFlowSource(const Flow& flow) : flow_(flow) {}
+  /// The field's direction at the seed, or why there is none.
+  StopReason seed_tangent_at(const Vec3& place, Vec3& u) {
+    const StopReason stop = seed_direction(flow_, place, cursor_, u);
+    if (stop == StopReason::outside) outside_status_ = flow_.field->status_outside(place, cursor_);
+    return stop;
+  }
+  SampleStatus outside_status() const { return outside_status_; }  ///< why the last rate that was outside was so
+  bool start(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
+    q = seed;
+    reference_ = sign * u;
+    sign_ = flow_.is_line_field ? 1 : sign;
+    return true;
+  }
+  Vec3 world(const Vec3& q) const { return q; }
+  Vec3 world_difference(const Vec3& d) const { return d; }
+  glm::vec3 rounding_error(const Vec3&) const { return glm::vec3(0.0f); }  ///< by the rounding of world(q)
+  StopReason rate(const Vec3& q, Vec3& w, Vec3& u) {
+    const StopReason stop = direction_at(flow_, q, reference_, cursor_, u);
+    if (stop == StopReason::outside) outside_status_ = flow_.field->status_outside(q, cursor_);
+    u *= sign_;
+    w = u;
+    return stop;
+  }
+  CellAdvance advance_cell(Vec3&, const Vec3&) { return CellAdvance::here; }
+  bool find_exit(const Hermite&, CellExit&) const { return false; }
+  bool cross_face(const CellExit&) { return true; }
+  void set_reference(const Vec3& motion) { reference_ = motion; }
+  double max_step() const { return 0.1 * flow_.field->domain_length(); }
+
+ private:
+  Flow flow_;
+  field::Cursor cursor_;
+  Vec3 reference_{0.0};
+  double sign_ = 1;
+  SampleStatus outside_status_ = SampleStatus::ok;
+};
+
+/// A sampled field: within a cell every stage uses that cell's polynomial (of a line field: its dyads), extended as far as a stage
+/// may reach. Index coordinates are counted from the grid's first voxel where its own are far from 0, so that they stay exact.
+class CellFlowSource {
+ public:
+  /// `cursor`: where the walk remembers nodes; none: its own.
+  explicit CellFlowSource(const Flow& flow, field::Cursor* cursor = nullptr);
+  SampleStatus outside_status() const { return outside_status_; }  ///< why the last cell that could not be entered could not
+  StopReason seed_tangent_at(const Vec3& place, Vec3& u);
+  bool start(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
+  Vec3 world(const Vec3& q) const { return mapping_.world_from_index(q); }
+  Vec3 world_difference(const Vec3& d) const { return mapping_.world_from_index_linear * d; }
+  glm::vec3 rounding_error(const Vec3& q) const;  ///< by the rounding of world(q), where that is more than 1e-13 L; else 0
+  StopReason rate(const Vec3& q, Vec3& w, Vec3& u) const;
+  /// Goes on to neighbours while q lies on (or beyond) a face and moves outward.
+  CellAdvance advance_cell(Vec3& q, const Vec3& w);
+  bool find_exit(const Hermite& piece, CellExit& way) const;
+  /// Enters the neighbour behind a face; false: there is none.
+  bool cross_face(const CellExit& way);
+  void set_reference(const Vec3& motion) { reference_ = motion; }
+  double max_step() const { return max_step_; }
+
+ private:
+  bool enter_cell(const field::Index3& base);
+  field::VectorCell load_cell(const field::Index3& base);
+
+  field::Cursor& cursor() { return shared_cursor_ != nullptr ? *shared_cursor_ : own_cursor_; }
+
+  Flow flow_;
+  const field::VectorGrid* grid_;
+  field::Index3 first_;     ///< from which voxels are counted here
+  field::Mapping mapping_;  ///< of indices as they are counted here
+  field::Box box_;
+  field::Cursor* shared_cursor_;
+  field::Cursor own_cursor_;
+  field::Index3 base_;
+  Vec3 lo_{0.0}, hi_{0.0};          ///< the current cell's faces, index coordinates
+  std::array<Vec3, 8> polynomial_;  ///< of a vector field: coefficients of 1, x, y, xy, z, xz, yz, xyz
+  bool cubic_;
+  field::CubicSamples<3> samples_;  ///< of a cubic vector field, instead
+  field::DyadCell dyads_;           ///< of a line field
+  Vec3 reference_{0.0};             ///< last tangent: line fields are turned to its side
+  double sign_ = 1;
+  SampleStatus outside_status_ = SampleStatus::ok;
+  double max_step_ = 0;
+};
+
+/// Shortens a step of length h from q (with the rate w there) that leaves the cell by `way`, so that it ends on the face: true steps
+/// until |q - face| <= 1e-14 L. `rate` is that of the cell. False: a stage stopped; `step.stop` says why.
+template <class Medium, class Rate>
+bool land_on_face(const Medium& medium, const Tableau& tableau, const Vec3& q, const Vec3& w, const CellExit& way, double domain,
+                  Rate&& rate, double& h, Step& step) {
+  double lo = 0, hi = h, at = way.theta * h;
+  const double unit = norm(medium.world_difference(Vec3(way.axis == 0, way.axis == 1, way.axis == 2)));
+  for (int i = 0; i < 12; ++i) {
+    step = runge_kutta_step(tableau, q, w, at, true, rate);
+    if (step.stop != StopReason::none) return false;
+    const double miss = way.side * (q[way.axis] + step.displacement[way.axis] - way.face);
+    if (std::fabs(miss) * unit <= 1e-14 * domain) break;
+    (miss < 0 ? lo : hi) = at;
+    const double next = at - miss / (way.side * step.end_rate[way.axis]);
+    if (!(hi - lo > 1e-16 * h)) break;
+    at = next > lo && next < hi ? next : 0.5 * (lo + hi);
+  }
+  h = at;
+  return true;
+}
+
+}  // namespace catena::flow

@@ -1,0 +1,111 @@
+/// One explicit Runge-Kutta step of q' = rate(q), for any space (world or index) and any tableau.
+/// Reversible bit for bit: only products (h a) k are formed, so that h -> -h and k -> -k give the same sums.
+/// Any thread; no allocation, lock or throw.
+#pragma once
+#include "engine/geometry/flow/flow.h"
+
+namespace catena::flow {
+
+/// Butcher tableaus of the explicit Runge-Kutta methods. Stages 0..stages-1 advance (weights b); one more evaluation at the end
+/// of the step gives the next step's first stage, and closes the error estimate of the embedded pairs (weights e = b - b^).
+///   euler; rk2 midpoint; rk3 Kutta; rk4 classical; rkf34 Fehlberg 3(4); dp54 Dormand-Prince 5(4).
+struct Tableau {
+  int order = 1;
+  int stages = 1;         ///< without the one at the end of the step
+  bool embedded = false;  ///< e is meaningful
+  double a[6][5] = {};
+  double b[6] = {};
+  double e[6] = {};
+  double e_last = 0;
+};
+
+namespace tableaus {
+
+inline constexpr Tableau euler{1, 1, false, {}, {1}, {}, 0};
+inline constexpr Tableau rk2{2, 2, false, {{}, {1.0 / 2}}, {0, 1}, {}, 0};
+inline constexpr Tableau rk3{3, 3, false, {{}, {1.0 / 2}, {-1, 2}}, {1.0 / 6, 4.0 / 6, 1.0 / 6}, {}, 0};
+inline constexpr Tableau rk4{4, 4, false, {{}, {1.0 / 2}, {0, 1.0 / 2}, {0, 0, 1}}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}, {}, 0};
+inline constexpr Tableau rkf34{3,
+                               4,
+                               true,
+                               {{}, {1.0 / 4}, {4.0 / 81, 32.0 / 81}, {57.0 / 98, -432.0 / 343, 1053.0 / 686}},
+                               {1.0 / 6, 0, 27.0 / 52, 49.0 / 156},
+                               {1.0 / 6 - 43.0 / 288, 0, 27.0 / 52 - 243.0 / 416, 49.0 / 156 - 343.0 / 1872},
+                               -1.0 / 12};
+inline constexpr Tableau dp54{5,
+                              6,
+                              true,
+                              {{},
+                               {1.0 / 5},
+                               {3.0 / 40, 9.0 / 40},
+                               {44.0 / 45, -56.0 / 15, 32.0 / 9},
+                               {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+                               {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656}},
+                              {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+                              {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525},
+                              -1.0 / 40};
+
+}  // namespace tableaus
+
+/// `linear` (Eqs 1-2) advects as Euler does.
+inline const Tableau& tableau_of(Method method) {
+  switch (method) {
+    case Method::linear:
+    case Method::euler:
+      return tableaus::euler;
+    case Method::rk2:
+      return tableaus::rk2;
+    case Method::rk3:
+      return tableaus::rk3;
+    case Method::rk4:
+      return tableaus::rk4;
+    case Method::rkf34:
+      return tableaus::rkf34;
+    case Method::dp54:
+      return tableaus::dp54;
+  }
+  return tableaus::rkf34;
+}
+
+struct Step {
+  Vec3 displacement{0.0};
+  Vec3 end_rate{0.0};  ///< rate at the end of the step, if asked for
+  Vec3 error{0.0};     ///< of the embedded pair
+  StopReason stop = StopReason::none;
+  int evaluations = 0;
+};
+
+/// `rate(q, out)` returns a Stop; `first` is the rate at q. On a stop the displacement is meaningless.
+template <class Rate>
+Step runge_kutta_step(const Tableau& tableau, const Vec3& q, const Vec3& first, double h, bool want_last, Rate&& rate) noexcept {
+  Step step;
+  Vec3 k[6];
+  k[0] = first;
+  for (int i = 1; i < tableau.stages; ++i) {
+    Vec3 d = (h * tableau.a[i][0]) * k[0];
+    for (int j = 1; j < i; ++j) d += (h * tableau.a[i][j]) * k[j];
+    ++step.evaluations;
+    step.stop = rate(q + d, k[i]);
+    if (step.stop != StopReason::none) return step;
+  }
+  step.displacement = (h * tableau.b[0]) * k[0];
+  for (int i = 1; i < tableau.stages; ++i) step.displacement += (h * tableau.b[i]) * k[i];
+  if (!want_last) return step;
+  ++step.evaluations;
+  step.stop = rate(q + step.displacement, step.end_rate);
+  if (step.stop != StopReason::none || !tableau.embedded) return step;
+  step.error = (h * tableau.e[0]) * k[0];
+  for (int i = 1; i < tableau.stages; ++i) step.error += (h * tableau.e[i]) * k[i];
+  step.error += (h * tableau.e_last) * step.end_rate;
+  return step;
+}
+
+/// The factor by which a step changes after an error: (tolerance/error)^(1/4), safety 0.9, between `least` and `most`.
+/// Square roots only, so that bits repeat.
+inline double step_factor(double error, double tolerance, double least, double most) {
+  if (!(error > 0)) return most;
+  const double factor = 0.9 * std::sqrt(std::sqrt(tolerance / error));
+  return factor > least ? std::min(factor, most) : least;
+}
+
+}  // namespace catena::flow

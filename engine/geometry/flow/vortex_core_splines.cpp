@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <glm/matrix.hpp>
+
+#include "engine/base/result.h"
+#include "engine/geometry/flow/vortex_cores.h"
+
+namespace catena::flow {
+namespace {
+
+constexpr int kSweeps = 60;  // of Gauss and Seidel: each halves what is left
+
+/// Derivatives at the knots of the cubic spline through them, by a parameter that grows by h[k] from knot k; an open end bends as the
+/// piece beside it.
+std::vector<Vec3> spline_slopes(const std::vector<Vec3>& p, const std::vector<double>& h, bool closed) {
+  const std::size_t n = p.size(), pieces = h.size();
+  std::vector<Vec3> m(n);
+  for (std::size_t k = 0; k < n; ++k) m[k] = (p[(k + 1) % n] - p[k]) * (k < pieces ? 1 / h[k] : 0);
+  if (n == 2 && !closed) {
+    m[1] = m[0];
+    return m;
+  }
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!closed && k == 0) {
+        m[0] = (p[1] - p[0]) * (2 / h[0]) - m[1];
+      } else if (!closed && k == n - 1) {
+        m[k] = (p[k] - p[k - 1]) * (2 / h[k - 1]) - m[k - 1];
+      } else {
+        const std::size_t before = k == 0 ? n - 1 : k - 1, after = (k + 1) % n;
+        const double a = 1 / h[before], b = 1 / h[k];
+        const Vec3 right = ((p[k] - p[before]) * (a * a) + (p[after] - p[k]) * (b * b)) * 3.0;
+        m[k] = (right - m[before] * a - m[after] * b) * (0.5 / (a + b));
+      }
+    }
+  return m;
+}
+
+/// Arc length of a Hermite piece, by Gauss and Legendre's rule of five places.
+double length_of(const Hermite& piece) {
+  constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  double sum = weights[0] * norm(piece.derivative(0.5));
+  for (int i = 1; i < 3; ++i)
+    sum += weights[i] * (norm(piece.derivative(0.5 - 0.5 * places[i])) + norm(piece.derivative(0.5 + 0.5 * places[i])));
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int reach) {
+  const int n = static_cast<int>(places.size());
+  std::vector<Vec3> out(places);
+  for (int i = 0; i < n; ++i) {
+    const int half = closed ? std::min(reach, (n - 1) / 2) : std::min({reach, i, n - 1 - i});
+    if (half < 2) continue;
+    const auto at = [&](int k) -> const Vec3& { return places[static_cast<std::size_t>((i + k + n) % n)]; };
+    // least squares, by the way along the chords
+    Mat3 normal(0.0), right(0.0);
+    const auto add = [&](double u, const Vec3& p) {
+      const Vec3 powers(1, u, u * u);
+      for (int r = 0; r < 3; ++r) {
+        normal[r] += powers * powers[r];
+        right[r] += p * powers[r];
+      }
+    };
+    const double unit = norm(at(1) - at(0));
+    add(0, Vec3(0.0));
+    for (const int way : {-1, 1}) {
+      double u = 0;
+      for (int k = 1; k <= half; ++k) {
+        u += way * norm(at(way * k) - at(way * (k - 1))) / unit;
+        add(u, at(way * k) - places[static_cast<std::size_t>(i)]);
+      }
+    }
+    const Mat3 inverse = glm::inverse(normal);
+    const Vec3 moved = right[0] * inverse[0][0] + right[1] * inverse[1][0] + right[2] * inverse[2][0];
+    if (is_finite(moved)) out[static_cast<std::size_t>(i)] += moved;
+  }
+  return out;
+}
+
+CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last, double domain_length) {
+  const std::size_t n = places.size(), pieces = closed ? n : n - 1;
+  std::vector<double> h(pieces);
+  for (std::size_t k = 0; k < pieces; ++k) h[k] = norm(places[(k + 1) % n] - places[k]);
+  // by the chords, then by the lengths that come of them
+  std::vector<Vec3> slopes = spline_slopes(places, h, closed);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t k = 0; k < pieces; ++k) {
+      const std::size_t next = (k + 1) % n;
+      h[k] = length_of(Hermite(places[k], places[next] - places[k], h[k], slopes[k], slopes[next]));
+    }
+    slopes = spline_slopes(places, h, closed);
+  }
+  std::vector<Knot> knots;
+  double s = 0;
+  for (std::size_t k = 0; k <= pieces; ++k) {
+    knots.push_back({s, places[k % n], direction(slopes[k % n])});
+    if (k < pieces) s += h[k];
+  }
+  return std::make_shared<const Curve>(std::move(knots), closed, first, last, domain_length);
+}
+
+}  // namespace catena::flow

@@ -1,0 +1,135 @@
+/// A hierarchy of boxes over the faces of a mesh: binary, flat, two children's boxes a cache line, leaves of at most four faces
+/// that lie one after the other. Split where the surface-area heuristic is least (16 bins), by halves where that goes too deep.
+/// Boxes are floats, rounded outwards. Built off the tick; a walk is bounded by its budget of nodes and a fixed stack.
+/// Curves and polylines keep trees of their own (engine/geometry/flow/curve.h, haptics/constraints/shapes/polyline_bvh.h): the order of a
+/// walk decides which of equally near places is taken and what a walk that is cut off has seen, and theirs is part of what recordings hold.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/vec.h"
+
+namespace catena::mesh {
+
+/// The box of one face, in the mesh's own frame.
+struct FaceBox {
+  Vec3 lo{0.0}, hi{0.0};  ///< least and greatest corner
+};
+
+/// Two children's boxes in one cache line.
+struct alignas(64) BvhNode {
+  std::array<float, 3> lo[2], hi[2];     ///< corners of the children's boxes, rounded outwards
+  std::int32_t child[2] = {-1, -1};      ///< >= 0: a node; else ~first face of a leaf
+  std::array<std::uint16_t, 2> count{};  ///< faces of a leaf; 0 with child < 0: nothing there
+  /// Fills the cache line.
+  std::array<std::uint32_t, 1> unused_{};  // fills the line
+};
+static_assert(sizeof(BvhNode) == 64);
+
+/// The hierarchy. Walks allocate nothing and may run on the haptic thread.
+class Bvh {
+ public:
+  static constexpr int kStackSize = 64;  ///< Nodes that a walk may keep open.
+
+  /// `order` becomes the faces' order: leaf ranges refer to it.
+  void build(const std::vector<FaceBox>& boxes, std::vector<std::uint32_t>& order);
+  /// Memory of the nodes.
+  std::size_t bytes() const { return nodes_.size() * sizeof(BvhNode); }
+
+  /// Calls visit(face) for every face whose box, grown by `margin`, meets the segment from..to. visit may shorten the segment through
+  /// the reference `to`. Returns false where `budget` (nodes, counted down) ran out.
+  template <class Visit>
+  bool visit_segment(const Vec3& from, const Vec3& to, double margin, int& budget, Visit&& visit) const noexcept;
+
+  /// Calls visit(face) for the faces whose boxes are closer to `p` than the square root of `bound2`, nearest boxes first; visit may
+  /// lower the bound through the reference. Returns false where `budget` ran out.
+  template <class Visit>
+  bool visit_nearest(const Vec3& p, const double& bound2, int& budget, Visit&& visit) const noexcept;
+
+ private:
+  struct Builder;
+  std::vector<BvhNode> nodes_;
+};
+
+template <class Visit>
+bool Bvh::visit_segment(const Vec3& from, const Vec3& to, double margin, int& budget, Visit&& visit) const noexcept {
+  std::array<std::int32_t, kStackSize> stack;
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    if (--budget < 0) return false;
+    const BvhNode& node = nodes_[static_cast<std::size_t>(stack[--top])];
+    const Vec3 middle = (from + to) * 0.5, half = (to - from) * 0.5;
+    const Vec3 a(std::fabs(half.x), std::fabs(half.y), std::fabs(half.z));
+    bool meets[2];
+    double along[2];
+    for (int k = 0; k < 2; ++k) {
+      const auto &lo = node.lo[k], &hi = node.hi[k];
+      const Vec3 m(middle.x - 0.5 * (static_cast<double>(lo[0]) + hi[0]), middle.y - 0.5 * (static_cast<double>(lo[1]) + hi[1]),
+                   middle.z - 0.5 * (static_cast<double>(lo[2]) + hi[2]));
+      const Vec3 h(0.5 * (static_cast<double>(hi[0]) - lo[0]) + margin, 0.5 * (static_cast<double>(hi[1]) - lo[1]) + margin,
+                   0.5 * (static_cast<double>(hi[2]) - lo[2]) + margin);
+      along[k] = -dot(m, half);
+      meets[k] = std::fabs(m.x) <= h.x + a.x && std::fabs(m.y) <= h.y + a.y && std::fabs(m.z) <= h.z + a.z &&
+                 std::fabs(m.y * half.z - m.z * half.y) <= h.y * a.z + h.z * a.y + margin * 1e-3 &&
+                 std::fabs(m.z * half.x - m.x * half.z) <= h.z * a.x + h.x * a.z + margin * 1e-3 &&
+                 std::fabs(m.x * half.y - m.y * half.x) <= h.x * a.y + h.y * a.x + margin * 1e-3;
+    }
+    const int first = along[1] < along[0] ? 1 : 0;
+    int later[2], pending = 0;
+    for (const int k : {first, 1 - first}) {
+      if (!meets[k]) continue;
+      if (node.child[k] >= 0) {
+        later[pending++] = node.child[k];
+      } else {
+        const auto begin = static_cast<std::uint32_t>(~node.child[k]);
+        for (std::uint32_t f = begin; f < begin + node.count[static_cast<std::size_t>(k)]; ++f) visit(f);
+      }
+    }
+    while (pending > 0 && top < kStackSize) stack[static_cast<std::size_t>(top++)] = later[--pending];
+  }
+  return true;
+}
+
+template <class Visit>
+bool Bvh::visit_nearest(const Vec3& p, const double& bound2, int& budget, Visit&& visit) const noexcept {
+  struct Entry {
+    double distance2;
+    std::int32_t node;
+  };
+  std::array<Entry, kStackSize> stack;
+  int top = 0;
+  stack[static_cast<std::size_t>(top++)] = {0, 0};
+  while (top > 0) {
+    const Entry entry = stack[static_cast<std::size_t>(--top)];
+    if (entry.distance2 > bound2) continue;
+    if (--budget < 0) return false;
+    const BvhNode& node = nodes_[static_cast<std::size_t>(entry.node)];
+    double distance2[2];
+    for (int k = 0; k < 2; ++k) {
+      distance2[k] = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double c = p[static_cast<int>(i)];
+        const double gap = std::max(0.0, std::max(static_cast<double>(node.lo[k][i]) - c, c - static_cast<double>(node.hi[k][i])));
+        distance2[k] += gap * gap;
+      }
+    }
+    const int first = distance2[1] < distance2[0] ? 1 : 0;
+    Entry later[2];
+    int pending = 0;
+    for (const int k : {first, 1 - first}) {
+      if (distance2[k] > bound2) continue;
+      if (node.child[k] >= 0) {
+        later[pending++] = {distance2[k], node.child[k]};
+      } else {
+        const auto begin = static_cast<std::uint32_t>(~node.child[k]);
+        for (std::uint32_t f = begin; f < begin + node.count[static_cast<std::size_t>(k)]; ++f) visit(f);
+      }
+    }
+    while (pending > 0 && top < kStackSize) stack[static_cast<std::size_t>(top++)] = later[--pending];
+  }
+  return true;
+}
+
+}  // namespace catena::mesh

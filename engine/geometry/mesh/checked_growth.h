@@ -1,0 +1,30 @@
+/// Private to this room: lists whose length no header states ask for their memory before they grow.
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/base/memory_limit.h"
+
+namespace catena::mesh {
+
+/// Room for one more. `beside`: what is in memory already and stays; `what` names the things: "vertices".
+template <class T>
+Outcome reserve_checked(std::vector<T>& list, double beside, const std::string& name, const char* what) {
+  if (list.size() < list.capacity()) return Done{};
+  constexpr std::size_t kFirst = 1024;
+  const std::size_t wanted = list.empty() ? kFirst : 2 * list.size();
+  // the old list lives until the new one is filled
+  CATENA_CHECK(check_text_memory_available(fmt::format("{}: a mesh of more than {} {}", name, list.size(), what),
+                                           beside + static_cast<double>((list.size() + wanted) * sizeof(T))));
+  list.reserve(wanted);
+  return Done{};
+}
+
+template <class T>
+double capacity_bytes(const std::vector<T>& list) {
+  return static_cast<double>(list.capacity() * sizeof(T));
+}
+
+}  // namespace catena::mesh

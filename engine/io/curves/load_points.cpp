@@ -1,0 +1,243 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/geometry/curves/point_set.h"
+
+namespace catena::curves {
+namespace {
+
+std::atomic<std::uint64_t> next_point_version{1};
+constexpr double kFarthestPoint = 1e15;
+constexpr std::size_t kMostColumns = 256, kSampled = 64;
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+/// CellCache of a line; without a separator blanks part them, as many as there are.
+void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
+  cells.clear();
+  while (separator == ' ') {
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return;
+    const std::size_t end = std::min(line.find_first_of(" \t", begin), line.size());
+    cells.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+    if (cells.size() > kMostColumns) return;
+  }
+  for (std::size_t end = 0; end != std::string_view::npos && cells.size() <= kMostColumns; line.remove_prefix(end + 1)) {
+    end = line.find(separator);
+    cells.push_back(trim(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+  }
+}
+
+std::string_view unquoted(std::string_view cell) {
+  return cell.size() >= 2 && cell.front() == '"' && cell.back() == '"' ? trim(cell.substr(1, cell.size() - 2)) : cell;
+}
+
+bool is_axis(std::string_view name, char lower_case) { return name.size() == 1 && (name[0] | 0x20) == lower_case; }
+
+class TableReader {
+ public:
+  TableReader(std::string_view text, const std::string& name) : text_(strip_bom(text)), name_(name) {}
+
+  Result<PointSet> read() {
+    CATENA_CHECK(read_header());
+    const std::size_t rows = static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), '\n')) + 1;
+    if (rows > kMaxPoints) return failed(fmt::format("there are {} lines; at most {} points were expected", rows, kMaxPoints));
+    CATENA_CHECK(check_text_memory_available(
+        one_line(fmt::format("{}: {} points", name_, rows)),
+        static_cast<double>(rows) * static_cast<double>(sizeof(Vec3) + sizeof(glm::vec3) + columns_.size() * sizeof(float))));
+    std::string_view line;
+    while (next(line)) {
+      if (trim(line).empty()) continue;
+      CATENA_CHECK(read_row(line, rows));
+    }
+    if (places_.empty()) return failed("the table ends after its names; rows of numbers were expected");
+    set_.set_positions(places_);
+    return std::move(set_);
+  }
+
+ private:
+  struct Column {
+    std::size_t cell;
+    std::size_t values;
+  };
+  Error failed(const std::string& what) const { return Error{one_line(fmt::format("{}:{}: {}", name_, line_, what))}; }
+
+  bool next(std::string_view& line) {
+    if (at_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    line = text_.substr(at_, end - at_);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    at_ = std::min(end + 1, text_.size());
+    ++line_;
+    return true;
+  }
+
+  Outcome read_header() {
+    std::string_view line;
+    while (next(line) && trim(line).empty()) {
+    }
+    for (const char separator : {',', ';', '\t', ' '})
+      if (separator_ == 0 && line.find(separator) != std::string_view::npos) separator_ = separator;
+    if (separator_ == 0) separator_ = ' ';
+    if (line.starts_with('#')) line.remove_prefix(1);
+    split(line, separator_, cells_);
+    if (cells_.size() > kMostColumns)
+      return failed(fmt::format("the table has more than {0} columns; {0} or fewer were expected", kMostColumns));
+    for (std::string_view& cell : cells_) cell = unquoted(cell);
+    for (int i = 0; i < 3; ++i) {
+      const auto is = [&](std::string_view cell) { return is_axis(cell, "xyz"[i]); };
+      const auto found = std::find_if(cells_.begin(), cells_.end(), is);
+      if (found == cells_.end())
+        return failed(fmt::format("no column is called {}, the first line is {}; a table of points with columns x, y, z was expected",
+                                  "xyz"[i], in_quotes(line)));
+      if (std::find_if(found + 1, cells_.end(), is) != cells_.end())
+        return failed(fmt::format("two columns are called {}; one was expected", "xyz"[i]));
+      axes_[i] = static_cast<std::size_t>(found - cells_.begin());
+    }
+    for (const std::string_view cell : cells_) names_.push_back(sanitize_for_terminal(cell));
+    return Done{};
+  }
+
+  /// Which columns hold numbers, the first row says.
+  void choose_columns(std::size_t rows) {
+    std::string words;
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (std::find(std::begin(axes_), std::end(axes_), k) != std::end(axes_)) continue;
+      if (!unquoted(cells_[k]).empty() && !parse_double(unquoted(cells_[k]))) {
+        words += (words.empty() ? "" : ", ") + in_quotes(names_[k]);
+        continue;
+      }
+      columns_.push_back(k);
+      set_.values.push_back({names_[k].empty() ? fmt::format("column_{}", k + 1) : names_[k], {}});
+      set_.values.back().values.reserve(std::min<std::size_t>(rows, 1 << 20));
+    }
+    if (!words.empty()) set_.note = "columns without numbers left out: " + words;
+  }
+
+  Outcome read_row(std::string_view line, std::size_t rows) {
+    split(line, separator_, cells_);
+    if (cells_.size() != names_.size())
+      return failed(fmt::format("the row has {} cells; {} were expected, as in the first line", cells_.size(), names_.size()));
+    if (places_.empty()) choose_columns(rows);
+    Vec3 p;
+    for (int i = 0; i < 3; ++i) {
+      const std::string_view cell = unquoted(cells_[axes_[i]]);
+      const auto number = parse_double(cell);
+      if (!number || !(std::fabs(*number) <= kFarthestPoint))
+        return failed(fmt::format("{} is {}; a number up to 1e15 in size was expected", "xyz"[i], in_quotes(cell)));
+      p[i] = *number;
+    }
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      const std::string_view cell = unquoted(cells_[columns_[k]]);
+      const auto number = parse_double(cell);
+      if (!number && !cell.empty())
+        return failed(fmt::format("{} is {}; a number, or nothing, was expected", in_quotes(names_[columns_[k]]), in_quotes(cell)));
+      const double value = number.value_or(kNone);
+      set_.values[k].values.push_back(std::fabs(value) <= kFarthestValue ? static_cast<float>(value) : kNone);
+    }
+    places_.push_back(p);
+    return Done{};
+  }
+
+  static constexpr double kFarthestValue = 1e30;
+  std::string_view text_;
+  const std::string& name_;
+  std::size_t at_ = 0;
+  int line_ = 0;
+  char separator_ = 0;
+  std::vector<std::string_view> cells_;
+  std::vector<std::string> names_;
+  std::size_t axes_[3] = {};
+  std::vector<std::size_t> columns_;
+  std::vector<Vec3> places_;
+  PointSet set_;
+};
+
+double spacing_of(const std::vector<glm::vec3>& points) {
+  std::vector<double> nearest;
+  const std::size_t step = 1 + points.size() / kSampled;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    float least = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& p : points) {
+      const glm::vec3 e = p - points[i];
+      const float d = e.x * e.x + e.y * e.y + e.z * e.z;
+      if (d > 0 && d < least) least = d;
+    }
+    if (std::isfinite(least)) nearest.push_back(std::sqrt(static_cast<double>(least)));
+  }
+  return quantile(nearest, 0.5);
+}
+
+}  // namespace
+
+void PointSet::set_positions(const std::vector<Vec3>& places) {
+  // single precision says a coordinate to 1 in 2^24: of this many edges of their box that leaves 1 in 4096 of an edge
+  constexpr double kFarEdges = 4096;
+  Bounds box;
+  double reach = 0;
+  for (const Vec3& p : places) {
+    box.extend(p);
+    reach = std::max(reach, max_abs(p));
+  }
+  origin = reach > kFarEdges * max_abs(box.hi - box.lo) ? box.center() : Vec3(0.0);
+  points.clear();
+  points.reserve(places.size());
+  for (const Vec3& p : places) points.emplace_back(p - origin);
+}
+
+const std::vector<std::string_view>& point_endings() {
+  static const std::vector<std::string_view> endings{".csv", ".tsv", ".xyz", ".vtp", ".vtk", ".ply", ".pvd", ".series"};
+  return endings;
+}
+
+bool is_point_file(std::string_view path) {
+  return std::ranges::any_of(point_endings(), [&](std::string_view ending) { return has_extension(path, ending); });
+}
+
+namespace {
+
+Result<PointSet> completed(PointSet set, const std::string& name) {
+  set.name = name;
+  Bounds box;
+  for (std::size_t i = 0; i < set.points.size(); ++i) box.extend(set.position(i));
+  set.min_corner = box.lo;
+  set.max_corner = box.hi;
+  set.robust_bounds = compute_robust_bounds(set.points);
+  if (!(set.origin == Vec3(0.0)) && !set.robust_bounds.box.empty())
+    set.robust_bounds.box = {set.robust_bounds.box.lo + set.origin, set.robust_bounds.box.hi + set.origin};
+  set.median_spacing = spacing_of(set.points);
+  set.version = next_point_version.fetch_add(1);
+  set.memory_reservation = MemoryReservation(set.bytes());
+  return set;
+}
+
+bool is_text(std::string_view path) { return has_extension(path, ".csv") || has_extension(path, ".tsv") || has_extension(path, ".xyz"); }
+
+}  // namespace
+
+Result<PointSet> parse_points(std::string_view text, const std::string& name) {
+  CATENA_TRY(PointSet set, TableReader(text, name).read());
+  return completed(std::move(set), name);
+}
+
+Result<PointSetPtr> load_points(const std::string& path, int step) {
+  const std::string wanted = "a table of points (" + join_alternatives(point_endings()) + ")";
+  if (!is_point_file(path)) return Error{one_line(path + ": has an unknown kind; " + wanted + " was expected")};
+  if (!is_text(path)) {
+    CATENA_TRY(PointSet shape, read_points(path, step));
+    CATENA_TRY(PointSet made, completed(std::move(shape), path));
+    return PointSetPtr(std::make_shared<PointSet>(std::move(made)));
+  }
+  CATENA_TRY(const std::string text, read_text_file(path, wanted));
+  CATENA_TRY(PointSet set, parse_points(text, path));
+  return PointSetPtr(std::make_shared<PointSet>(std::move(set)));
+}
+
+}  // namespace catena::curves

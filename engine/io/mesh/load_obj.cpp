@@ -1,0 +1,142 @@
+// OBJ (Wavefront): lines "v x y z", "f a b c ..." with corners "v", "v/vt", "v//vn", "v/vt/vn" (from 1, or negative: from the last),
+// '#' to the line's end, '\' goes on in the next line. All other known statements are passed over.
+#include <algorithm>
+#include <array>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/geometry/mesh/checked_growth.h"
+#include "engine/io/mesh/load_mesh.h"
+
+namespace catena::mesh {
+namespace {
+
+constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;
+
+constexpr std::array<std::string_view, 38> kPassedOver = {
+    "vt",     "vn",    "vp",       "g",        "o",    "s",          "mg",        "usemtl", "mtllib", "usemap", "maplib", "l",  "p",
+    "cstype", "deg",   "bmat",     "step",     "curv", "curv2",      "surf",      "parm",   "trim",   "hole",   "scrv",   "sp", "end",
+    "con",    "bevel", "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",  "stech",  "call",   "csh",    "res"};
+
+struct ObjReader {
+  std::string_view text;
+  const std::string& name;
+  std::size_t at = 0;
+  int line = 1;        ///< where the next line begins
+  int line_begin = 1;  ///< of the line that is read
+  std::string joined_line;
+  TriangleSoup soup;
+
+  Error failed(const std::string& what) const { return Error{one_line(name + ":" + std::to_string(line_begin) + ": " + what)}; }
+
+  /// One line without its end and its comment; continued ones are joined. False at the end of the text.
+  bool next_line(std::string_view& out) {
+    if (at >= text.size()) return false;
+    line_begin = line;
+    bool joined = false;
+    while (true) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      std::string_view part = text.substr(at, end - at);
+      at = end + 1;
+      ++line;
+      if (part.ends_with('\r')) part.remove_suffix(1);
+      part = part.substr(0, part.find('#'));
+      const bool goes_on = part.ends_with('\\');
+      if (goes_on) part.remove_suffix(1);
+      if (!joined && !goes_on) {
+        out = part;
+        return true;
+      }
+      if (!joined) joined_line.clear();
+      joined = true;
+      joined_line += part;
+      joined_line += ' ';
+      if (goes_on && at < text.size()) continue;
+      out = joined_line;
+      return true;
+    }
+  }
+
+  static std::string_view next_word(std::string_view& rest) {
+    std::size_t begin = 0;
+    while (begin < rest.size() && (rest[begin] == ' ' || rest[begin] == '\t' || rest[begin] == '\r')) ++begin;
+    std::size_t end = begin;
+    while (end < rest.size() && rest[end] != ' ' && rest[end] != '\t' && rest[end] != '\r') ++end;
+    const std::string_view word = rest.substr(begin, end - begin);
+    rest.remove_prefix(end);
+    return word;
+  }
+
+  Outcome read_vertex(std::string_view rest) {
+    Vec3 v(0.0);
+    for (int i = 0; i < 3; ++i) {
+      const std::string_view word = next_word(rest);
+      const auto number = word.empty() ? std::nullopt : parse_double(word);
+      if (!number || !std::isfinite(*number))
+        return failed((word.empty() ? std::string("a vertex ends too early") : in_quotes(word) + " is no coordinate") +
+                      "; three finite numbers were expected");
+      v[i] = *number;
+    }
+    if (soup.vertices.size() >= kMaxVertices)
+      return failed("too many vertices; at most " + std::to_string(kMaxVertices) + " were expected");
+    CATENA_CHECK(reserve_checked(soup.vertices, static_cast<double>(text.size()) + capacity_bytes(soup.triangles), name, "vertices"));
+    soup.vertices.push_back(v);
+    return Done{};
+  }
+
+  Result<std::uint32_t> read_corner(std::string_view word) const {
+    const std::string_view digits = word.substr(0, word.find('/'));
+    const auto index = parse_integer(digits);
+    const auto count = static_cast<long long>(soup.vertices.size());
+    if (!index || *index == 0)
+      return failed(in_quotes(word) + " is no corner; the number of a vertex (v, v/vt, v//vn or v/vt/vn) was expected");
+    const long long found = *index > 0 ? *index - 1 : count + *index;
+    if (*index > count || *index < -count)
+      return failed(in_quotes(word) + " names a vertex that is not there; " +
+                    (count > 0 ? "1 to " + std::to_string(count) : "a vertex before") + " was expected");
+    return static_cast<std::uint32_t>(found);
+  }
+
+  Outcome read_face(std::string_view rest) {
+    std::uint32_t first = 0, last = 0;
+    int corners = 0;
+    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+      CATENA_TRY(const std::uint32_t v, read_corner(word));
+      ++corners;
+      if (corners == 1) first = v;
+      if (corners > 2) {
+        if (soup.triangles.size() >= kMaxTriangles)
+          return failed("too many triangles; at most " + std::to_string(kMaxTriangles) + " were expected");
+        CATENA_CHECK(reserve_checked(soup.triangles, static_cast<double>(text.size()) + capacity_bytes(soup.vertices), name, "triangles"));
+        soup.triangles.push_back({first, last, v});
+      }
+      last = v;
+    }
+    if (corners < 3) return failed("a face has " + std::to_string(corners) + " corners; at least 3 were expected");
+    return Done{};
+  }
+
+  Result<TriangleSoup> read() {
+    std::string_view rest;
+    while (next_line(rest)) {
+      const std::string_view word = next_word(rest);
+      if (word.empty()) continue;
+      if (word == "v") {
+        CATENA_CHECK(read_vertex(rest));
+      } else if (word == "f" || word == "fo") {
+        CATENA_CHECK(read_face(rest));
+      } else if (std::find(kPassedOver.begin(), kPassedOver.end(), word) == kPassedOver.end()) {
+        return failed(in_quotes(word) + " is no statement of an OBJ file; v, f, vt, vn, g, o, s, usemtl or mtllib was expected");
+      }
+    }
+    return std::move(soup);
+  }
+};
+
+}  // namespace
+
+Result<TriangleSoup> parse_obj(std::string_view text, const std::string& name) {
+  return ObjReader{strip_bom(text), name, 0, 1, 1, {}, {}}.read();
+}
+
+}  // namespace catena::mesh

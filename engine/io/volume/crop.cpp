@@ -1,0 +1,105 @@
+#include "engine/io/volume/crop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/field/grid/dense.h"
+#include "engine/io/volume/formats.h"
+#include "engine/io/volume/write_box.h"
+
+namespace catena::field {
+namespace {
+
+/// Voxels of the whole's own box, from its lowest one.
+struct Part {
+  Index3 from, size;
+};
+
+template <class Grid>
+Result<std::shared_ptr<const Grid>> part_of(const std::string& path, const VoxelBox& whole, const Part& part) {
+  DenseSource source;
+  source.size = part.size;
+  source.has_mask = whole.has_mask;
+  CATENA_CHECK(check_dense_memory(path, source.size, whole.components, whole.has_mask));
+  std::vector<float> layer(whole.layer_voxels() * static_cast<std::size_t>(whole.components));
+  std::vector<std::uint8_t> layer_valid(whole.has_mask ? whole.layer_voxels() : 0);
+  source.read = [&](int first, int count, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
+    const auto row = static_cast<std::size_t>(part.size.x), components = static_cast<std::size_t>(whole.components);
+    std::size_t to = 0;
+    for (int z = first; z < first + count; ++z) {
+      whole.read_values(part.from.z + z, layer);
+      if (whole.has_mask) whole.read_valid(part.from.z + z, layer_valid);
+      for (int y = 0; y < part.size.y; ++y, to += row) {
+        const std::size_t at = static_cast<std::size_t>(part.from.y + y) * static_cast<std::size_t>(whole.size.x) + part.from.x;
+        std::copy_n(layer.begin() + static_cast<std::ptrdiff_t>(at * components), row * components,
+                    values.begin() + static_cast<std::ptrdiff_t>(to * components));
+        if (whole.has_mask)
+          std::copy_n(layer_valid.begin() + static_cast<std::ptrdiff_t>(at), row, valid.begin() + static_cast<std::ptrdiff_t>(to));
+      }
+    }
+    return Done{};
+  };
+  if (whole.has_cell_mask)
+    source.read_cells = [&](int first, int count, std::span<std::uint8_t> cells) -> Outcome {
+      const auto row = static_cast<std::size_t>(part.size.x);
+      std::size_t to = 0;
+      for (int z = first; z < first + count; ++z) {
+        whole.read_cells(part.from.z + z, layer_valid);
+        for (int y = 0; y < part.size.y; ++y, to += row) {
+          const std::size_t at = static_cast<std::size_t>(part.from.y + y) * static_cast<std::size_t>(whole.size.x) + part.from.x;
+          std::copy_n(layer_valid.begin() + static_cast<std::ptrdiff_t>(at), row, cells.begin() + static_cast<std::ptrdiff_t>(to));
+        }
+      }
+      return Done{};
+    };
+  const Mapping mapping = Mapping::from_linear(whole.mapping.world_from_index_linear,
+                                               whole.mapping.world_from_index(Vec3(part.from.x, part.from.y, part.from.z)));
+  return make_dense_grid<Grid>(whole.name, mapping, source, fmt::format("{}: within \"crop\" the grid \"{}\" ", path, whole.name), true);
+}
+
+}  // namespace
+
+ActiveBox voxels_in_box(const Box& world, const Mapping& mapping) {
+  constexpr double kSlack = 1e-9;  // of a voxel: a face that lies on voxels needs no more of them
+  Vec3 lo(std::numeric_limits<double>::infinity()), hi(-std::numeric_limits<double>::infinity());
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p = mapping.index_from_world(
+        {corner & 1 ? world.hi.x : world.lo.x, corner & 2 ? world.hi.y : world.lo.y, corner & 4 ? world.hi.z : world.lo.z});
+    for (int axis = 0; axis < 3; ++axis) lo[axis] = std::fmin(lo[axis], p[axis]), hi[axis] = std::fmax(hi[axis], p[axis]);
+  }
+  ActiveBox box;
+  const auto index = [](double v) { return static_cast<std::int32_t>(std::clamp(v, -double(kMaxAbsIndex), double(kMaxAbsIndex))); };
+  for (int axis = 0; axis < 3; ++axis) {
+    const double slack = kSlack * std::fmax(1.0, std::fmax(std::fabs(lo[axis]), std::fabs(hi[axis])));
+    box.lo[axis] = index(std::floor(lo[axis] + slack));
+    box.hi[axis] = index(std::ceil(hi[axis] - slack));
+  }
+  return box;
+}
+
+Result<AnyField> crop_field(const std::string& path, const AnyField& field, const Box& world) {
+  const VoxelBox whole(field, field.get()->name(), {});
+  const ActiveBox wanted = voxels_in_box(world, whole.mapping);
+  const int n[3] = {whole.size.x, whole.size.y, whole.size.z};
+  int from[3], size[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    from[axis] = std::max(0, wanted.lo[axis]);
+    size[axis] = std::min(n[axis] - 1, wanted.hi[axis]) - from[axis] + 1;
+    if (size[axis] < std::min(2, n[axis]))
+      return Error{fmt::format("{}: \"crop\" has no voxels of the grid \"{}\" along {}; a box that meets the data was expected", path,
+                               whole.name, "xyz"[axis])};
+  }
+  const Part part{{from[0], from[1], from[2]}, {size[0], size[1], size[2]}};
+  AnyField result = field;
+  if (field.scalar) {
+    CATENA_TRY(result.scalar, part_of<ScalarGrid>(path, whole, part));
+  } else {
+    CATENA_TRY(result.vector, part_of<VectorGrid>(path, whole, part));
+  }
+  return result;
+}
+
+}  // namespace catena::field

@@ -1,0 +1,195 @@
+#include "engine/io/volume/load_field.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <new>
+
+#include "engine/base/system_failure.h"
+#include "engine/base/text.h"
+#include "engine/base/threads.h"
+#include "engine/field/field_display_range.h"
+#include "engine/io/volume/crop.h"
+#include "engine/io/volume/downsample.h"
+#include "engine/io/volume/formats.h"
+#include "engine/io/volume/unsupported_formats.h"
+
+namespace catena::field {
+namespace {
+
+std::atomic<std::uint64_t> files{0}, grids{0}, masks{0};
+
+/// Nothing that a library throws leaves this room.
+template <class T, class Body>
+Result<T> guarded(const std::string& path, const Body& body) {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    if (resource_limit(RLIMIT_AS)) return Error{path + ": there is not enough memory to read it: " + describe_errno(ENOMEM), true};
+    return Error{fmt::format("{}: not enough memory to read it (or the file is damaged)", path)};
+  } catch (const std::exception& e) {
+    if (is_thread_start_failure(e)) return Error{path + ": no other thread can be started: " + describe_errno(thread_start_errno()), true};
+    return Error{fmt::format("{}: the file is damaged or of an unknown kind ({})", path, one_line(e.what()))};
+  } catch (...) {
+    return Error{fmt::format("{}: the file is damaged or of an unknown kind", path)};
+  }
+}
+
+/// Each number of a transform may be finite, and the box not.
+bool has_finite_box(const Field& field) {
+  bool finite = std::isfinite(field.domain_length());
+  for (int i = 0; i < 8; ++i) finite = finite && is_finite(field.corner(i));
+  return finite;
+}
+
+/// Where the largest size of a value lies outside 1e-30 .. 1e30, what that hints at: a sentence without an end.
+std::string absurd_sizes(const AnyField& field) {
+  const GridStats* stats = field.scalar && field.scalar->grid()   ? &field.scalar->grid()->stats()
+                           : field.vector && field.vector->grid() ? &field.vector->grid()->stats()
+                                                                  : nullptr;
+  if (stats == nullptr) return {};
+  const double most = std::max(std::fabs(stats->min), std::fabs(stats->max));
+  constexpr double kSmallest = 1e-30, kLargest = 1e30;
+  if (most == 0 || (most >= kSmallest && most <= kLargest)) return {};
+  return fmt::format(
+      "the values go from {:.3g} to {:.3g}: if that is not meant, the type or the order of the bytes is another one, or a number stands "
+      "for \"no data\"",
+      stats->min, stats->max);
+}
+
+Error unknown_kind(const std::string& path) {
+  if (const std::string conversion = conversion_hint(path); !conversion.empty())
+    return Error{fmt::format("{}: this is {}", path, conversion)};
+  return Error{fmt::format("{}: unknown kind of file, expected {}", path, describe_field_extensions())};
+}
+
+}  // namespace
+
+Result<AnyField> with_cubic_interpolation(AnyField field, const std::string& path) {
+  const auto told = [&](const Error& e) { return Error{fmt::format("{}: {}", path, e.message)}; };
+  if (field.scalar && field.scalar->grid()) {
+    auto made = field.scalar->grid()->as_cubic();
+    if (!made) return told(made.error());
+    field.scalar = *made;
+  }
+  if (field.vector && field.vector->grid()) {
+    auto made = field.vector->grid()->as_cubic();
+    if (!made) return told(made.error());
+    field.vector = *made;
+  }
+  return field;
+}
+
+Result<AnyField> load_dense(const DenseFile& file) {
+  AnyField field;
+  if (file.components == 3) {
+    CATENA_TRY(field.vector, make_dense_grid<VectorGrid>(file.name, file.mapping, file.source, file.prefix));
+  } else {
+    CATENA_TRY(field.scalar, make_dense_grid<ScalarGrid>(file.name, file.mapping, file.source, file.prefix));
+  }
+  field.times = file.times;
+  field.time_unit = file.time_unit;
+  field.newest_mtime_ns = file.newest_mtime_ns;
+  field.notes = file.notes;
+  if (file.rounding)
+    for (std::string& note : rounding_notes(*file.rounding, file.type)) field.notes.push_back(std::move(note));
+  count_file();
+  count_grid();
+  return field;
+}
+
+Result<std::vector<GridInfo>> describe_by_loading(const std::string& path, int step) {
+  LoadRequest request;
+  request.path = path;
+  request.step = step;
+  const FileFormat* format = find_format(path);
+  std::string type;
+  Result<AnyField> loaded = Error{};
+  if (format->open != nullptr) {
+    CATENA_TRY(const DenseFile file, format->open(request));
+    type = file.type;
+    loaded = load_dense(file);
+  } else {
+    loaded = format->load(request);
+  }
+  CATENA_TRY(const AnyField field, std::move(loaded));
+  const Field& any = *field.get();
+  GridInfo info;
+  info.name = any.name();
+  info.type = !type.empty() ? type : field.scalar ? "float" : "vec3s";
+  info.stats = field.scalar ? field.scalar->grid()->stats() : field.vector->grid()->stats();
+  info.display_range = display_range(field);
+  const Vec3 size = any.index_box().hi - any.index_box().lo;
+  info.size = {std::llround(size.x) + 1, std::llround(size.y) + 1, std::llround(size.z) + 1};
+  info.mapping = any.mapping();
+  info.bytes = field.scalar ? field.scalar->grid()->bytes() : field.vector->grid()->bytes();
+  info.is_usable = true;
+  info.is_vector = field.vector != nullptr;
+  return std::vector<GridInfo>{info};
+}
+
+void count_file() { ++files; }
+void count_grid() { ++grids; }
+void count_mask() { ++masks; }
+LoadCounters load_counters() { return {files, grids, masks}; }
+
+/// The format; of a folder with a known ending (Zarr) none.
+static const FileFormat* format_to_read(const std::string& path) {
+  std::string_view ending;
+  const FileFormat* format = find_format(path, &ending);
+  return format != nullptr && ending.empty() && !conversion_hint(path).empty() ? nullptr : format;
+}
+
+Result<AnyField> load(const LoadRequest& request) {
+  const FileFormat* format = format_to_read(request.path);
+  if (request.raw && (format == nullptr || !format->needs_layout))
+    return Error{fmt::format("{}: shape, spacing, origin and type belong to .raw files only", request.path)};
+  return guarded<AnyField>(request.path, [&]() -> Result<AnyField> {
+    if (format == nullptr) {
+      if (!std::filesystem::is_directory(request.path)) CATENA_CHECK(readable_file_size(request.path));
+      return unknown_kind(request.path);
+    }
+    Result<AnyField> field = Error{};
+    if (format->load != nullptr) {
+      field = format->load(request);
+    } else {
+      CATENA_TRY(const DenseFile file, format->open(request));
+      field = load_dense(file);
+    }
+    if (field && !has_finite_box(*field->get()))
+      return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
+    if (!field) return field;
+    const auto is_hinted = [](const std::string& note) { return note.find("bytes") != std::string::npos; };
+    if (const std::string absurd = absurd_sizes(*field); !absurd.empty() && std::ranges::none_of(field->notes, is_hinted))
+      field->notes.push_back(absurd);
+    if (request.crop && !has_extension(request.path, ".vdb")) {  // of a .vdb nothing else was read
+      CATENA_TRY(field, crop_field(request.path, *field, *request.crop));
+    }
+    const bool nearest = request.interpolation == Interpolation::nearest;
+    if (nearest && field->vector)
+      return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,
+                               field->get()->name())};
+    if (const ScalarGrid* grid = nearest ? field->scalar->grid() : nullptr) field->scalar = grid->with_interpolation(request.interpolation);
+    if (request.level > 0)
+      return downsample_to_level(request.path, std::move(*field), request.level, request.interpolation == Interpolation::cubic);
+    if (request.interpolation == Interpolation::cubic) return with_cubic_interpolation(std::move(*field), request.path);
+    return field;
+  });
+}
+
+Result<std::vector<GridInfo>> describe_grids(const std::string& path, int step) {
+  const FileFormat* format = format_to_read(path);
+  return guarded<std::vector<GridInfo>>(path, [&]() -> Result<std::vector<GridInfo>> {
+    if (format != nullptr) return format->describe(path, step);
+    if (!std::filesystem::is_directory(path)) CATENA_CHECK(readable_file_size(path));
+    return unknown_kind(path);
+  });
+}
+
+}  // namespace catena::field

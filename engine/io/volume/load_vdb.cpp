@@ -1,0 +1,62 @@
+// OpenVDB files, as the program catena-read hands them over. What it wrote is believed as far as it is checked here.
+#include <fmt/format.h>
+
+#include "engine/field/grid/grid_factory.h"
+#include "engine/field/nanovdb/nano_statistics.h"
+#include "engine/io/client.h"
+#include "engine/io/volume/formats.h"
+
+namespace catena::field {
+namespace {
+
+/// One buffer of the answer, checked.
+template <class T>
+Result<NanoMemory> buffer_at(const NanoMemory& memory, const BufferRange& piece) {
+  if (piece.offset % kBufferAlignment != 0 || piece.offset > memory.size() || piece.bytes > memory.size() - piece.offset)
+    return Error{"the place of a buffer is not what it must be"};
+  NanoMemory part = memory.slice(piece.offset, piece.bytes);
+  CATENA_CHECK(validate_nano<T>({part.data(), part.size()}));
+  return part;
+}
+
+template <class T>
+Result<NanoBuffers> buffers_of(const MappedResponse& answer) {
+  NanoBuffers buffers;
+  CATENA_TRY(buffers.values, buffer_at<T>(answer.memory, answer.response.values));
+  if (!answer.response.has_mask) return buffers;
+  CATENA_TRY(buffers.valid_voxels, buffer_at<nanovdb::ValueMask>(answer.memory, answer.response.valid_voxels));
+  CATENA_TRY(buffers.valid_cells, buffer_at<nanovdb::ValueMask>(answer.memory, answer.response.valid_cells));
+  buffers.has_cell_mask = answer.response.has_cell_mask;
+  return buffers;
+}
+
+template <class Grid>
+Result<std::shared_ptr<const Grid>> grid_of(const std::string& path, const MappedResponse& answer) {
+  const ReadResponse& reply = answer.response;
+  if (!reply.mapping.is_invertible()) return damaged_response_error(path, "the transform cannot be inverted");
+  auto buffers = buffers_of<typename GridValue<Grid>::Type>(answer);
+  if (!buffers) return damaged_response_error(path, buffers.error().message);
+  auto made = grid_from_buffers<Grid>(reply.name, reply.mapping, std::move(*buffers));
+  if (!made) return Error{fmt::format("{}: grid \"{}\" {}", path, reply.name, made.error().message)};
+  count_file();
+  count_grid();
+  if (reply.has_mask) count_mask();
+  return made;
+}
+
+}  // namespace
+
+static Result<AnyField> load_vdb(const LoadRequest& request) {
+  CATENA_TRY(const MappedResponse answer, run_reader(ReadMode::load, request));
+  AnyField field;
+  if (answer.response.is_vector) {
+    CATENA_TRY(field.vector, grid_of<VectorGrid>(request.path, answer));
+  } else {
+    CATENA_TRY(field.scalar, grid_of<ScalarGrid>(request.path, answer));
+  }
+  return field;
+}
+
+FileFormat vdb_format() { return {.extensions = {".vdb"}, .load = load_vdb, .describe = describe_with_reader, .units = read_vdb_units}; }
+
+}  // namespace catena::field

@@ -1,0 +1,113 @@
+// What the reader programs hand over as numbers, voxel by voxel: VTK's and ITK's formats, and NumPy's. What they wrote is believed as far
+// as it is checked here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "engine/base/text.h"
+#include "engine/io/client.h"
+#include "engine/io/volume/data_files.h"
+#include "engine/io/volume/formats.h"
+
+namespace catena::field {
+namespace {
+
+Result<AnyField> load_answered(const LoadRequest& request) {
+  const std::string& path = request.path;
+  CATENA_TRY(MappedResponse answer, run_reader(ReadMode::load, request));
+  const auto kept = std::make_shared<const MappedResponse>(std::move(answer));
+  const ReadResponse& reply = kept->response;
+  const DenseResponse& dense = reply.dense;
+  constexpr std::int64_t kMostAxis = 1 << 24;
+  for (const std::int64_t n : {dense.size.x, dense.size.y, dense.size.z})
+    if (n < 1 || n > kMostAxis) return damaged_response_error(path, fmt::format("an axis has {} voxels", n));
+  const Index3 n{static_cast<int>(dense.size.x), static_cast<int>(dense.size.y), static_cast<int>(dense.size.z)};
+  const int components = reply.is_vector ? 3 : 1;
+  Mapping mapping = reply.mapping;
+  if (is_numpy_file(path)) {
+    Mat3 linear(0.0);
+    for (int a = 0; a < 3; ++a) linear[a][a] = request.spacing[a];
+    mapping = Mapping::from_linear(linear, request.origin);
+  }
+  if (!mapping.is_invertible()) return damaged_response_error(path, "the transform cannot be inverted");
+  const std::span<const float> values = kept->numbers<float>(dense.values);
+  const std::span<const std::uint8_t> valid = kept->numbers<std::uint8_t>(dense.valid);
+  const std::span<const std::uint8_t> cells = kept->numbers<std::uint8_t>(dense.cells);
+  const double voxels = static_cast<double>(n.x) * n.y * n.z;
+  if (static_cast<double>(values.size()) != voxels * components || (!valid.empty() && static_cast<double>(valid.size()) != voxels) ||
+      (!cells.empty() && cells.size() != valid.size()))
+    return damaged_response_error(path, "there are not as many values as voxels");
+  CATENA_CHECK(check_dense_memory(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, components, !valid.empty()));
+  DenseFile file{reply.name, dense.type, path + ": " + reply.name + " ", mapping, components, {}};
+  file.times = reply.times;
+  file.time_unit = reply.time_unit;
+  file.newest_mtime_ns = reply.newest_mtime_ns;
+  file.notes = reply.notes;
+  file.source.size = n;
+  file.source.has_mask = !valid.empty();
+  file.source.read = [kept, values, valid, n, components](int z, int layers, std::span<float> to, std::span<std::uint8_t> good) -> Outcome {
+    const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
+    const std::size_t first = layer * static_cast<std::size_t>(z), count = layer * static_cast<std::size_t>(layers);
+    std::memcpy(to.data(), values.data() + first * static_cast<std::size_t>(components),
+                count * static_cast<std::size_t>(components) * sizeof(float));
+    for (std::size_t i = 0; i < good.size(); ++i) good[i] = valid[first + i] != 0 ? 1 : 0;
+    return Done{};
+  };
+  if (!cells.empty())
+    file.source.read_cells = [kept, cells, n](int z, int layers, std::span<std::uint8_t> good) -> Outcome {
+      const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
+      const std::size_t first = layer * static_cast<std::size_t>(z), count = layer * static_cast<std::size_t>(layers);
+      for (std::size_t i = 0; i < count; ++i) good[i] = cells[first + i] != 0 ? 1 : 0;
+      return Done{};
+    };
+  if (dense.has_range) {
+    const DisplayRange& r = dense.range;
+    if (!(std::isfinite(r.data_min) && std::isfinite(r.data_max) && r.data_min <= r.lo && r.lo <= r.hi && r.hi <= r.data_max))
+      return damaged_response_error(path, "the range is none");
+    file.source.range = r;
+  }
+  return load_dense(file);
+}
+
+Units units_answered(const std::string& path, const std::string& grid) {
+  const std::optional<ReadResponse> file = read_file_metadata(path);
+  if (!file) return {};
+  Units units;
+  units.is_patient_space = file->is_patient_space;
+  if (is_unit_name(file->unit_length)) units.length = file->unit_length;
+  for (const GridMetadata& words : file->grid_metadata)
+    if (words.name == grid || (grid.empty() && file->grid_metadata.size() == 1)) units.value = is_unit_name(words.unit) ? words.unit : "";
+  return units;
+}
+
+}  // namespace
+
+std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path) {
+  const std::optional<ReadResponse> file = read_file_metadata(path);
+  return file ? std::optional(file->primitives) : std::nullopt;
+}
+
+std::vector<double> read_times(const std::string& path) {
+  const std::vector<std::string_view> endings = vtk_format().extensions;
+  if (openfoam_case_folder(path).empty() &&
+      std::ranges::none_of(endings, [&](std::string_view ending) { return has_extension(path, ending); }))
+    return {};
+  const std::optional<ReadResponse> file = read_file_metadata(path);
+  return file ? file->times : std::vector<double>();
+}
+
+/// .npy: a single array, described by loading it.
+FileFormat npy_format() { return {.extensions = {".npy"}, .load = load_answered, .describe = describe_by_loading}; }
+
+FileFormat vtk_format() {
+  return {.extensions = {".vti", ".vtr", ".vts", ".vtu",  ".vtm",  ".vtmb",  ".vtk",  ".pvti", ".pvtr", ".pvts", ".pvtu", ".nrrd",  ".nhdr",
+                         ".mha", ".mhd", ".dcm", ".foam", ".case", ".encas", ".cgns", ".nc",   ".cdf",  ".npz",  ".pvd",  ".series"},
+          .load = load_answered,
+          .describe = describe_with_reader,
+          .units = units_answered,
+          .reads_folders = true};
+}
+
+}  // namespace catena::field

@@ -1,0 +1,201 @@
+#include "engine/io/volume/write_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/text.h"
+#include "engine/field/grid/grid_storage.h"
+#include "engine/field/nanovdb/nano_nodes.h"
+#include "engine/io/volume/formats.h"
+#include "engine/io/volume/write_box.h"
+
+namespace catena::field {
+namespace {
+
+struct Writer {
+  std::string_view ending;
+  Outcome (*write)(const std::string& path, const VoxelBox& box);  ///< nullptr: .vdb, which holds more than a box
+};
+constexpr std::array kWriters{Writer{".vdb", nullptr}, Writer{".vti", write_vti}, Writer{".nrrd", write_nrrd}, Writer{".nii", write_nifti},
+                              Writer{".nii.gz", write_nifti}};
+
+const Writer* writer_of(std::string_view path) {
+  for (const Writer& writer : kWriters)
+    if (has_extension(path, writer.ending)) return &writer;
+  return nullptr;
+}
+
+/// `use` of the storage of either kind of grid.
+template <class Use>
+auto with_storage(const AnyField& field, const Use& use) {
+  return field.scalar ? use(field.scalar->grid()->storage()) : use(field.vector->grid()->storage());
+}
+
+const NanoMask* mask_of(const AnyField& field) {
+  return with_storage(field, [](const auto& storage) { return storage.valid_voxels; });
+}
+
+/// The formats that hold a mask of cells.
+bool holds_cells(std::string_view path) { return has_extension(path, ".vdb") || has_extension(path, ".vti"); }
+
+}  // namespace
+
+VoxelBox::VoxelBox(const AnyField& field, const std::string& box_name, const Units& box_units)
+    : name(box_name),
+      units(box_units),
+      mapping(field.get()->mapping()),
+      components(field.vector ? 3 : 1),
+      has_mask(mask_of(field) != nullptr),
+      has_cell_mask(with_storage(field, [](const auto& storage) { return storage.has_cell_mask; })),
+      field_(field) {
+  CATENA_ASSERT(field.get()->is_grid());
+  const auto index = [](const Vec3& v) {
+    return Index3{static_cast<std::int32_t>(v.x), static_cast<std::int32_t>(v.y), static_cast<std::int32_t>(v.z)};
+  };
+  const Box& whole = field.get()->index_box();
+  first_index_ = index(whole.lo);
+  size = index(whole.hi - whole.lo + Vec3(1.0));
+  mapping.origin = mapping.world_from_index(whole.lo);
+}
+
+void VoxelBox::read_values(std::int32_t z, std::span<float> out) const {
+  const Index3 origin{first_index_.x, first_index_.y, first_index_.z + z}, layer{size.x, size.y, 1};
+  if (field_.scalar)
+    field_.scalar->grid()->read_block(origin, layer, out);
+  else
+    field_.vector->grid()->read_block(origin, layer, out);
+}
+
+void VoxelBox::read_valid(std::int32_t z, std::span<std::uint8_t> out) const {
+  const NanoMask* mask = mask_of(field_);
+  if (mask == nullptr) {
+    std::fill(out.begin(), out.end(), std::uint8_t{1});
+    return;
+  }
+  const auto accessor = mask->getAccessor();
+  std::size_t n = 0;
+  for (std::int32_t y = 0; y < size.y; ++y)
+    for (std::int32_t x = 0; x < size.x; ++x)
+      out[n++] = accessor.getValue({first_index_.x + x, first_index_.y + y, first_index_.z + z}) ? 1 : 0;
+}
+
+void VoxelBox::read_cells(std::int32_t z, std::span<std::uint8_t> out) const {
+  std::fill(out.begin(), out.end(), std::uint8_t{1});
+  with_storage(field_, [&](const auto& storage) {
+    if (storage.valid_cells == nullptr) return;
+    const auto cells = storage.valid_cells->getAccessor();
+    std::size_t n = 0;
+    for (std::int32_t y = 0; y < size.y; ++y)
+      for (std::int32_t x = 0; x < size.x; ++x, ++n) {
+        const Index3 base{first_index_.x + x, first_index_.y + y, first_index_.z + z};
+        if (storage.is_legal_base(base)) out[n] = storage.is_cell_valid(cells, base) ? 1 : 0;
+      }
+  });
+}
+
+void VoxelBox::read_values_or_nan(std::int32_t z, std::span<float> out) const {
+  read_values(z, out);
+  if (!has_mask) return;
+  std::vector<std::uint8_t> valid(layer_voxels());
+  read_valid(z, valid);
+  const auto n = static_cast<std::size_t>(components);
+  for (std::size_t i = 0; i < valid.size(); ++i)
+    if (valid[i] == 0) std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i * n), n, std::numeric_limits<float>::quiet_NaN());
+}
+
+bool is_writable_format(std::string_view path) { return writer_of(path) != nullptr; }
+
+std::string writable_extensions() {
+  std::vector<std::string_view> endings;
+  for (const Writer& writer : kWriters) endings.push_back(writer.ending);
+  return join_alternatives(endings);
+}
+
+/// NIfTI's 32-bit axes and origin, far from the origin; empty: no voxel is moved by more than a hundredth of its edge.
+static std::string moved_in(const std::string& path, const VoxelBox& box) {
+  constexpr double kTold = 0.01;
+  if (!has_extension(path, ".nii") && !has_extension(path, ".nii.gz")) return {};
+  const Mapping& exact = box.mapping;
+  const auto rounded = [&](const Vec3& index) {
+    Vec3 at(glm::vec3(exact.origin));
+    for (int a = 0; a < 3; ++a) at += index[a] * Vec3(glm::vec3(exact.world_from_index_linear[a]));
+    return at;
+  };
+  double most = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 corner((c & 1) != 0 ? box.size.x - 1 : 0, (c & 2) != 0 ? box.size.y - 1 : 0, (c & 4) != 0 ? box.size.z - 1 : 0);
+    most = std::max(most, max_abs(exact.index_from_world(rounded(corner)) - corner));
+  }
+  if (!(most > kTold)) return {};
+  return fmt::format("its 32-bit places move voxels by up to {:.2g} of an edge, so far from the origin (.vdb, .vti and .nrrd hold 64 bits)",
+                     most);
+}
+
+std::string lost_mask_note(const std::string& path, const AnyField& field) {
+  const VoxelBox box(field, {}, {});
+  std::string moved = moved_in(path, box);
+  if (!box.has_cell_mask || holds_cells(path)) return moved;
+  // cells between valid voxels that are not valid
+  std::vector<std::uint8_t> below(box.layer_voxels()), above(box.layer_voxels()), cells(box.layer_voxels());
+  const int step[3] = {box.size.x > 1, box.size.y > 1, box.size.z > 1};
+  std::uint64_t lost = 0;
+  for (int z = 0; z < std::max(1, box.size.z - 1); ++z) {
+    box.read_valid(z, below);
+    box.read_valid(z + step[2], above);
+    box.read_cells(z, cells);
+    for (int y = 0; y < std::max(1, box.size.y - 1); ++y)
+      for (int x = 0; x < std::max(1, box.size.x - 1); ++x) {
+        const auto at = [&](int i, int j) { return static_cast<std::size_t>(y + j) * static_cast<std::size_t>(box.size.x) + x + i; };
+        bool open = cells[at(0, 0)] == 0;
+        for (int c = 0; c < 4 && open; ++c) {
+          const std::size_t corner = at((c & 1) * step[0], (c >> 1) * step[1]);
+          open = below[corner] != 0 && above[corner] != 0;
+        }
+        lost += open ? 1 : 0;
+      }
+  }
+  if (lost == 0) return moved;
+  if (!moved.empty()) moved += "; ";
+  return moved + fmt::format(
+                     "{} cells without a value have valid voxels at all their corners: {} masks voxels only, and they are filled in it "
+                     "(.vdb and .vti keep them)",
+                     lost, path.substr(path.find_last_of('/') + 1));
+}
+
+Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
+  const Writer* writer = writer_of(path);
+  if (writer == nullptr) return Error{path + ": expected an output that ends in " + writable_extensions()};
+  if (writer->write == nullptr) return write_vdb(path, {{field, name}});
+  const VoxelBox box(field, name, units);
+  // who reads the file has to hold it
+  CATENA_CHECK(
+      check_memory_available(fmt::format("{}: the whole box of the grid, {} x {} x {} voxels,", path, box.size.x, box.size.y, box.size.z),
+                             box.voxels() * (box.components * static_cast<double>(sizeof(float)) + (box.has_mask ? 1 : 0))));
+  return writer->write(path, box);
+}
+
+Result<std::string> convert_file(const LoadRequest& request, const std::string& path, const std::string& name,
+                                 std::vector<std::string>* notes) {
+  const Writer* writer = writer_of(path);
+  const bool as_vdb = writer == nullptr || writer->write == nullptr;
+  // layer by layer where the file comes so
+  if (const FileFormat* format = find_format(request.path); as_vdb && (format == nullptr || format->open != nullptr))
+    return import_as_vdb(request, path, name);
+  CATENA_TRY(const AnyField field, load(request));
+  if (notes != nullptr) *notes = field.notes;
+  const std::string own = field.get()->name();
+  const std::string chosen = !name.empty() ? name : !own.empty() ? own : file_stem(request.path);
+  if (as_vdb) {
+    CATENA_CHECK(write_vdb(path, {{field, chosen}}));
+  } else {
+    CATENA_CHECK(write_field(path, field, chosen, read_units(request.path, request.grid)));
+    if (const std::string lost = lost_mask_note(path, field); notes != nullptr && !lost.empty()) notes->push_back(lost);
+  }
+  return chosen;
+}
+
+}  // namespace catena::field

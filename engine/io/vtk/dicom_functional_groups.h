@@ -1,0 +1,48 @@
+/// Private to this room: what the headers of DICOM frames say by functional groups, and what tells frames at one place apart.
+#pragma once
+#include "engine/io/vtk/dicom_element.h"
+#include "engine/io/vtk/dicom_headers.h"
+
+namespace catena::vtk {
+
+/// Elements of one frame: its own functional groups, the shared ones, and the file's data set, in this order.
+struct DicomFunctionalGroups {
+  const gdcm::DataSet& root;
+  const gdcm::DataSet* shared;
+  const gdcm::DataSet* per_frame;
+
+  template <class Find>
+  auto first(gdcm::Tag group, const Find& find) const -> decltype(find(root)) {
+    for (const gdcm::DataSet* set : {per_frame, shared})
+      if (set != nullptr)
+        for (const gdcm::DataSet& item : read_items(*set, group))
+          if (auto found = find(item); static_cast<bool>(found)) return found;
+    return find(root);
+  }
+  std::optional<std::vector<double>> numbers(gdcm::Tag group, gdcm::Tag tag, std::size_t least,
+                                             DicomEncoding encoding = DicomEncoding::text) const {
+    return first(group, [&](const gdcm::DataSet& set) {
+      std::vector<double> found = read_numbers(set, tag, encoding);
+      return found.size() >= least ? std::optional(std::move(found)) : std::nullopt;
+    });
+  }
+  std::optional<double> number(gdcm::Tag group, gdcm::Tag tag, DicomEncoding encoding = DicomEncoding::text) const {
+    const auto found = numbers(group, tag, 1, encoding);
+    return found ? std::optional(found->front()) : std::nullopt;
+  }
+  std::string text(gdcm::Tag group, gdcm::Tag tag) const {
+    return first(group,
+                 [&](const gdcm::DataSet& set) {
+                   std::string found = read_text(set, tag);
+                   return found.empty() ? std::nullopt : std::optional(std::move(found));
+                 })
+        .value_or(std::string());
+  }
+};
+
+/// Fills in what may tell the frame from others at its place.
+void read_frame_keys(const DicomFunctionalGroups& groups, DicomFrame& frame);
+/// The same of the vectors of NM files, which have a number a frame.
+void read_nm_vectors(const gdcm::DataSet& root, std::vector<DicomFrame>& frames);
+
+}  // namespace catena::vtk

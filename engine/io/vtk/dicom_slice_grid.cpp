@@ -1,0 +1,164 @@
+#include "engine/io/vtk/dicom_slice_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace catena::vtk {
+namespace {
+
+/// Largest difference between the file's slices and the lattice at their places, in parts of the range.
+double lattice_error(const std::vector<float>& slices, const std::vector<float>& even, std::size_t voxels, const DicomSliceGrid& lattice) {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo, most = 0;
+  for (std::size_t k = 0; k < lattice.stated_positions.size(); ++k) {
+    const double place = std::clamp(lattice.stated_positions[k], 0.0, static_cast<double>(lattice.count - 1));
+    const auto n = std::min(static_cast<std::size_t>(place), lattice.count - 2);
+    const double t = place - static_cast<double>(n);
+    const auto part = [&](double weight, std::size_t at) { return weight > 0 ? weight * static_cast<double>(even[at]) : 0.0; };
+    for (std::size_t i = 0; i < voxels; ++i) {
+      const double value = static_cast<double>(slices[k * voxels + i]);
+      const double there = part(1 - t, n * voxels + i) + part(t, (n + 1) * voxels + i);
+      if (std::isfinite(value)) lo = std::min(lo, value), hi = std::max(hi, value);
+      if (std::isfinite(value) && std::isfinite(there)) most = std::max(most, std::fabs(value - there));
+    }
+  }
+  return hi > lo ? most / (hi - lo) : 0;
+}
+
+/// NumberArray of steps, from the least: the first that meets every place; else the one whose nodes come nearest to all of them.
+struct Steps {
+  double count = 1;
+  bool exact = false;
+};
+Steps steps_for(const std::vector<double>& places, double least, double most_slices) {
+  constexpr double kOfStep = 0.01, kOfLeast = 1e-5;
+  const double span = places.back(), fewest = std::max(1.0, std::ceil(span / least - kOfStep));
+  Steps best{std::max(1.0, std::min(fewest, most_slices - 1)), false};
+  double nearest = std::numeric_limits<double>::infinity();
+  for (double count = best.count; count + 1 <= most_slices; ++count) {
+    const double step = span / count, wanted = std::max(kOfStep * step, kOfLeast * least);
+    double off = 0;
+    for (auto place = places.begin(); place != places.end() && off < nearest; ++place) {
+      const double at = *place / step;
+      off = std::max(off, std::fabs(at - std::round(at)) * step);
+    }
+    if (off <= wanted && off < nearest && count >= fewest) return {count, true};
+    if (off < nearest) nearest = off, best.count = count;
+  }
+  return best;
+}
+
+/// Distances that are no spacing of slices: the space between two acquisitions, or several slices that are missing.
+void find_gaps(const std::vector<double>& places, DicomSliceGrid& lattice) {
+  constexpr double kOfNeighbour = 2.05, kOfMedian = 10;
+  std::vector<double> distances;
+  for (std::size_t k = 1; k < places.size(); ++k) distances.push_back(places[k] - places[k - 1]);
+  if (distances.size() < 2) return;
+  std::vector<double> ordered = distances;
+  const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>((ordered.size() - 1) / 2);
+  std::ranges::nth_element(ordered, middle);
+  const auto is_wide = [&](std::size_t k) {
+    const double before = k > 0 ? distances[k - 1] : 0, after = k + 1 < distances.size() ? distances[k + 1] : 0;
+    return distances[k] > kOfNeighbour * std::max(before, after) || distances[k] > kOfMedian * *middle;
+  };
+  lattice.is_open_gap.assign(distances.size(), false);
+  for (std::size_t k = 0; k < distances.size(); ++k) {
+    if (!is_wide(k)) continue;
+    lattice.is_open_gap[k] = k > 0 && k + 1 < distances.size() && !is_wide(k - 1) && !is_wide(k + 1);
+    double& widest = lattice.is_open_gap[k] ? lattice.widest_open_gap : lattice.widest_filled_gap;
+    widest = std::max(widest, distances[k]);
+  }
+}
+
+}  // namespace
+
+DicomSliceGrid fit_slice_grid(const DicomVolume& volume) {
+  DicomSliceGrid lattice;
+  const DicomFrame &first = *volume.frames.front(), &last = *volume.frames.back();
+  lattice.origin = first.position;
+  const std::size_t n = volume.frames.size();
+  lattice.count = n;
+  if (n == 1) {
+    const double pixel = first.column_spacing > 0 ? std::min(first.column_spacing, first.row_spacing) : 1;
+    lattice.step = (first.thickness > 0 ? first.thickness : pixel) * first.normal();
+    lattice.positions = lattice.stated_positions = {0};
+    return lattice;
+  }
+  const double span = last.offset() - first.offset();
+  lattice.min_distance = span;
+  std::vector<double> places;
+  for (const DicomFrame* frame : volume.frames) places.push_back(frame->offset() - first.offset());
+  for (std::size_t k = 1; k < n; ++k) {
+    lattice.min_distance = std::min(lattice.min_distance, places[k] - places[k - 1]);
+    lattice.max_distance = std::max(lattice.max_distance, places[k] - places[k - 1]);
+  }
+  constexpr double kEven = 0.01;
+  lattice.is_uniform = lattice.max_distance - lattice.min_distance <= kEven * lattice.min_distance;
+  double steps = static_cast<double>(n - 1);
+  if (!lattice.is_uniform) {
+    // as many slices as eight times the file's, or as many as fit in a reasonable memory
+    constexpr double kMaxSlices = 4096, kTimes = 8, kVoxels = 32e6;
+    const double own = static_cast<double>(n), by_memory = kVoxels / (static_cast<double>(first.columns) * first.rows);
+    const double most = std::max(std::clamp(kTimes * own, 64.0, std::max(kMaxSlices, own)), std::min(kMaxSlices, by_memory));
+    const Steps wanted = steps_for(places, lattice.min_distance, most);
+    steps = wanted.count;
+    lattice.is_exact = wanted.exact;
+    find_gaps(places, lattice);
+  }
+  lattice.count = static_cast<std::size_t>(steps) + 1;
+  lattice.step = (last.position - first.position) / steps;
+  for (const double place : places) {
+    lattice.stated_positions.push_back(place / span * steps);
+    lattice.positions.push_back(lattice.is_exact ? std::round(lattice.stated_positions.back()) : lattice.stated_positions.back());
+  }
+  if (lattice.is_uniform)
+    for (std::size_t k = 0; k < n; ++k) lattice.positions[k] = static_cast<double>(k);
+  return lattice;
+}
+
+std::vector<float> resample_slices(const std::vector<float>& slices, std::size_t voxels, const DicomSliceGrid& lattice, bool zero_between) {
+  std::vector<float> even(voxels * lattice.count);
+  std::size_t k = 0;
+  for (std::size_t n = 0; n < lattice.count; ++n) {
+    const double place = std::min(static_cast<double>(n), lattice.positions.back());
+    while (k + 2 < lattice.positions.size() && lattice.positions[k + 1] <= place) ++k;
+    const double before = place - lattice.positions[k], after = lattice.positions[k + 1] - place;
+    const double t = std::clamp(before / (before + after), 0.0, 1.0);
+    const float *a = slices.data() + k * voxels, *b = a + voxels;
+    float* to = even.data() + n * voxels;
+    if (t == 0 || t == 1) {
+      std::copy_n(t == 0 ? a : b, voxels, to);
+      continue;
+    }
+    if (zero_between) continue;
+    // a node less than a step from a slice belongs to the cell of that slice
+    if (k < lattice.is_open_gap.size() && lattice.is_open_gap[k] && std::min(before, after) >= 1) {
+      std::fill_n(to, voxels, std::numeric_limits<float>::quiet_NaN());
+      continue;
+    }
+    for (std::size_t i = 0; i < voxels; ++i)
+      to[i] = static_cast<float>((1 - t) * static_cast<double>(a[i]) + t * static_cast<double>(b[i]));
+  }
+  return even;
+}
+
+std::string slice_grid_note(const DicomSliceGrid& lattice, const std::vector<float>& slices, const std::vector<float>& even,
+                            std::size_t voxels, bool zero_between) {
+  std::string note = fmt::format("slices lie {:.4g} to {:.4g} mm apart: {} were brought to {} at equal distances of {:.4g} mm, {}",
+                                 lattice.min_distance, lattice.max_distance, lattice.positions.size(), lattice.count, norm(lattice.step),
+                                 zero_between ? "0 where the segment has none" : "linearly between the file's");
+  // below what 32-bit floats round to, nothing is lost
+  constexpr double kLost = 1e-6;
+  if (const double error = lattice_error(slices, even, voxels, lattice); error > kLost)
+    note += fmt::format("; at the file's own slices they differ by up to {:.2g} % of the range", 100 * error);
+  if (zero_between) return note;
+  if (const auto gaps = std::ranges::count(lattice.is_open_gap, true); gaps > 0)
+    note += fmt::format("; {} {:.4g} mm {} no values", gaps == 1 ? "a gap of" : fmt::format("{} gaps of up to", gaps),
+                        lattice.widest_open_gap, gaps == 1 ? "has" : "have");
+  if (lattice.widest_filled_gap > 0) note += fmt::format("; a gap of {:.4g} mm beside a single slice is filled", lattice.widest_filled_gap);
+  return note;
+}
+
+}  // namespace catena::vtk

@@ -1,0 +1,15 @@
+/// The folders of an OpenFOAM case that stand for times ("0", "0.5", "1e-05"), and the fields in them.
+#pragma once
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace catena::vtk {
+
+/// Finite times by the names of the folders in a case, or in one of its processor folders.
+std::set<double> list_foam_times(const std::filesystem::path& folder);
+/// Names of the volume fields at a time, in all regions; empty where that time has none.
+std::set<std::string> list_foam_fields(const std::filesystem::path& folder, double time);
+
+}  // namespace catena::vtk

@@ -1,0 +1,130 @@
+// Collections: files of a series with their times, in a file of names. ParaView's .pvd (XML; several parts may make up one step) and its
+// .series (JSON: .vtk.series, .vtu.series and so on). The parts of the step that is read are blocks, as those of a multi-block file.
+#include <fmt/format.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLUtilities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "engine/base/json.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/io/vtk/open.h"
+
+namespace catena::vtk {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One step: file names as the collection has them, in the order in which they stand.
+struct Step {
+  double time = 0;
+  std::vector<std::string> files;
+};
+using Steps = std::vector<Step>;
+
+constexpr std::uint64_t kMostBytes = 64 << 20;
+/// Elements of the file of names; parsing that many takes seconds.
+constexpr std::ptrdiff_t kMostElements = 200'000;
+
+bool is_collection(const std::string& path) { return has_extension(path, ".pvd") || has_extension(path, ".series"); }
+
+/// An error is a phrase.
+Outcome add_datasets(vtkXMLDataElement& collection, std::map<double, std::vector<std::string>>& steps) {
+  for (int i = 0; i < collection.GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* element = collection.GetNestedElement(i);
+    if (std::strcmp(element->GetName(), "DataSet") != 0) continue;
+    const char *file = element->GetAttribute("file"), *time = element->GetAttribute("timestep");
+    if (file == nullptr || *file == '\0') return Error{fmt::format("its DataSet number {} has no file", i + 1)};
+    const auto number = time == nullptr ? std::optional(0.0) : parse_double(time);
+    if (!number || !std::isfinite(*number))
+      return Error{fmt::format("timestep {} of {} was expected to be a number", in_quotes(time), in_quotes(file))};
+    steps[*number].emplace_back(file);
+  }
+  return Done{};
+}
+
+Result<Steps> read_pvd(const std::string& path) {
+  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
+  if (const std::string complaint = take_reader_errors(); root == nullptr || !complaint.empty())
+    return Error{"it is no XML file, or not a whole one" + (complaint.empty() ? "" : " (" + complaint + ")")};
+  std::map<double, std::vector<std::string>> by_time;  // several files of one time are its parts
+  for (int i = 0; i < root->GetNumberOfNestedElements(); ++i)
+    if (std::strcmp(root->GetNestedElement(i)->GetName(), "Collection") == 0)
+      CATENA_CHECK(add_datasets(*root->GetNestedElement(i), by_time));
+  Steps steps;
+  for (auto& [time, names] : by_time) steps.push_back({time, std::move(names)});
+  return steps;
+}
+
+Result<Steps> read_series(const std::string& path, const std::string& text) {
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  const json::Node* files = root.find("files");
+  if (files == nullptr || files->kind != json::Kind::array) return Error{"it has no list \"files\""};
+  Steps steps;
+  for (const json::Node& one : files->items) {
+    CATENA_TRY(const std::string name, json::require_string(one, "name"));
+    CATENA_TRY(const double time, json::require_number(one, "time"));
+    steps.push_back({time, {name}});
+  }
+  std::ranges::stable_sort(steps, {}, &Step::time);
+  return steps;
+}
+
+/// Where a named file lies for this process. An error is a phrase.
+Result<std::string> part_path(const Source& source, const std::string& name) {
+  const fs::path folder = fs::path(source.path).parent_path();
+  std::error_code code;
+  const fs::path relative = fs::path(name).is_absolute() ? fs::path(name).lexically_relative(source.original_folder) : fs::path(name);
+  const fs::path at = fs::weakly_canonical(folder / relative, code);
+  const fs::path inside = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, code);
+  if (std::mismatch(inside.begin(), inside.end(), at.begin(), at.end()).first != inside.end())
+    return Error{in_quotes(name) + " lies outside of its folder; a file in it or below it was expected"};
+  if (!fs::exists(at, code)) return Error{in_quotes(name) + ", which it names, is not there"};
+  if (is_collection(name)) return Error{in_quotes(name) + " is a collection, too; files of data were expected"};
+  return at.string();
+}
+
+void append(ImportedData part, ImportedData& all) {
+  std::move(part.blocks.begin(), part.blocks.end(), std::back_inserter(all.blocks));
+  all.units.merge(part.units);
+  all.unit_length = part.unit_length;
+  all.is_patient_space = all.is_patient_space || part.is_patient_space;
+  for (std::string& note : part.notes)
+    if (std::ranges::find(all.notes, note) == all.notes.end()) all.notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+Result<ImportedData> open_collection(const Source& source) {
+  const auto failed = [&](const std::string& what) { return Error{one_line(source.display_name + ": " + what)}; };
+  const auto text = read_text_file(source.path, "a collection of files", kMostBytes);
+  if (!text) return failed("cannot be read as a collection of files: it is longer than 64 MiB, or it cannot be opened");
+  const bool pvd = has_extension(source.path, ".pvd");
+  if (std::ranges::count(*text, pvd ? '<' : '{') > kMostElements)
+    return failed(fmt::format("has more than {} elements; shorter collections of files were expected", kMostElements));
+  const auto steps = pvd ? read_pvd(source.path) : read_series(source.display_name, *text);
+  if (!steps) return failed(steps.error().message);
+  if (steps->empty()) return failed("names no files");
+  ImportedData all;
+  for (const Step& step : *steps) all.times.push_back(step.time);
+  const Step& step = (*steps)[std::min(static_cast<std::size_t>(source.step), steps->size() - 1)];
+  for (const std::string& name : step.files) {
+    const auto path = part_path(source, name);
+    if (!path) return failed(fmt::format("at time {:g} {}", step.time, path.error().message));
+    Source part = source;
+    part.display_name = fmt::format("{}: {}", source.display_name, name);
+    part.path = *path;
+    part.step = 0;
+    CATENA_TRY(ImportedData opened, open_any(part));
+    append(std::move(opened), all);
+  }
+  return all;
+}
+
+}  // namespace catena::vtk

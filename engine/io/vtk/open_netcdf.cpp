@@ -1,0 +1,290 @@
+#include "engine/io/vtk/open_netcdf.h"
+
+#include <fmt/format.h>
+#include <netcdf.h>
+#include <vtkCellData.h>
+#include <vtkDataSet.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkIntArray.h>
+#include <vtkNetCDFCFReader.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStringArray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/base/text.h"
+#include "engine/io/vtk/netcdf_axes.h"
+#include "engine/io/vtk/netcdf_values.h"
+
+namespace catena::vtk {
+namespace {
+
+std::string dimension_name(int file, int dimension) {
+  char name[NC_MAX_NAME + 1] = "";
+  nc_inq_dimname(file, dimension, name);
+  return name;
+}
+
+/// All variables of the groups below one.
+std::size_t variables_in_groups(int file, int depth = 0) {
+  int count = 0;
+  constexpr int kDeepest = 8;
+  if (depth > kDeepest || nc_inq_grps(file, &count, nullptr) != NC_NOERR || count <= 0) return 0;
+  std::vector<int> groups(static_cast<std::size_t>(count));
+  nc_inq_grps(file, &count, groups.data());
+  std::size_t all = 0;
+  for (const int group : groups) {
+    int variables = 0;
+    nc_inq_nvars(group, &variables);
+    all += static_cast<std::size_t>(std::max(variables, 0)) + variables_in_groups(group, depth + 1);
+  }
+  return all;
+}
+
+/// VTK's reader with the values of netcdf_values.h.
+class NetcdfReader : public vtkNetCDFCFReader {
+ public:
+  vtkTypeMacro(NetcdfReader, vtkNetCDFCFReader);
+  static NetcdfReader* New();
+
+  std::vector<std::string> notes;
+  std::vector<NetcdfScale> axis_scales;  ///< of the coordinates along the data's axes
+  AxisOrder order = kFileOrder;
+  std::string time_unit;
+
+  std::string dimensions_of(vtkIdType variable) const { return VariableDimensions->GetValue(variable); }
+
+ protected:
+  int ReadMetaData(int file) override {
+    if (const std::size_t hidden = variables_in_groups(file); hidden > 0)
+      notes.push_back(
+          fmt::format("{} variables lie in groups and are left out: \"ncks -G : FILE OUT\" or \"ncks -g GROUP FILE OUT\" brings a "
+                      "group's to the top",
+                      hidden));
+    return Superclass::ReadMetaData(file);
+  }
+
+  int IsTimeDimension(int file, int dimension) override {
+    return Superclass::IsTimeDimension(file, dimension) != 0 || read_netcdf_dimension(file, dimension).axis == NetcdfAxis::time ? 1 : 0;
+  }
+
+  int LoadVariable(int file, const char* name, double time, vtkDataSet* output) override {
+    NetcdfHyperslab part{file, 0, {}, {}};
+    int count = 0;
+    if (nc_inq_varid(file, name, &part.variable) != NC_NOERR || nc_inq_varndims(file, part.variable, &count) != NC_NOERR)
+      return failed(name, "is damaged");
+    std::vector<int> dimensions(static_cast<std::size_t>(count));
+    nc_inq_vardimid(file, part.variable, dimensions.data());
+    // the step in time
+    if (count > 0 && IsTimeDimension(file, dimensions[0]) != 0) {
+      const vtkSmartPointer<vtkDoubleArray> times = GetTimeValues(file, dimensions[0]);
+      std::size_t step = 0;
+      const auto steps = static_cast<std::size_t>(times->GetNumberOfTuples());
+      while (step + 1 < steps && times->GetValue(static_cast<vtkIdType>(step)) < time) ++step;
+      if (steps == 0) return 1;
+      time_unit = read_netcdf_dimension(file, dimensions[0]).unit;
+      part.start.push_back(step);
+      part.count.push_back(1);
+      dimensions.erase(dimensions.begin());
+    }
+    if (static_cast<vtkIdType>(dimensions.size()) != LoadingDimensions->GetNumberOfTuples() ||
+        !std::equal(dimensions.begin(), dimensions.end(), LoadingDimensions->GetPointer(0))) {
+      notes.push_back(fmt::format("{} has other dimensions, and is left out", name));
+      return 1;
+    }
+    // the box: the last three dimensions are z, y, x
+    const bool of_points = DimensionsAreForPointData(LoadingDimensions);
+    int extent[6];
+    GetUpdateExtentForOutput(output, extent);
+    for (std::size_t i = 0; i < dimensions.size(); ++i) {
+      const std::size_t axis = dimensions.size() - i - 1;
+      std::size_t length = 0;
+      nc_inq_dimlen(file, dimensions[i], &length);
+      if (axis >= 3) {
+        part.start.push_back(0);
+        part.count.push_back(1);
+        if (length > 1)
+          notes.push_back(fmt::format("of the {} places along {} the first one is read", length, dimension_name(file, dimensions[i])));
+        continue;
+      }
+      if (IsTimeDimension(file, dimensions[i]) != 0)
+        notes.push_back(
+            fmt::format("{} is not the first dimension of {}: it is read as an axis of space", dimension_name(file, dimensions[i]), name));
+      const int cells = of_points ? 1 : 0;
+      const auto first = static_cast<std::size_t>(extent[2 * axis]);
+      const auto wanted = static_cast<std::size_t>(std::max(extent[2 * axis + 1] - extent[2 * axis] + cells, 0));
+      if (first > length || wanted > length - first) return failed(name, "has another size than its coordinates");
+      part.start.push_back(first);
+      part.count.push_back(wanted);
+    }
+    std::vector<std::string> told;
+    const auto values = read_netcdf_values(part, told);
+    if (!values) return failed(name, values.error().message);
+    for (const std::string& note : told) notes.push_back(fmt::format("{}: {}", name, note));
+    if (*values == nullptr) {
+      notes.push_back(fmt::format("{} holds no numbers, and is left out", name));
+      return 1;
+    }
+    (*values)->SetName(name);
+    if (of_points)
+      output->GetPointData()->AddArray(*values);
+    else
+      output->GetCellData()->AddArray(*values);
+    note_axes(file, dimensions);
+    return 1;
+  }
+
+ private:
+  int failed(const char* name, const std::string& what) {
+    vtkErrorMacro(<< name << ": " << what);
+    return 0;
+  }
+
+  /// What the dimensions of space say of themselves; the last one is the data's first axis.
+  void note_axes(int file, const std::vector<int>& dimensions) {
+    axis_scales.assign(3, {});
+    std::array<NetcdfAxis, 3> axes;
+    axes.fill(NetcdfAxis::unknown);
+    bool by_name = false;
+    for (std::size_t axis = 0; axis < std::min<std::size_t>(3, dimensions.size()); ++axis) {
+      int variable = 0;
+      const int dimension = dimensions[dimensions.size() - axis - 1];
+      const std::string name = dimension_name(file, dimension);
+      if (nc_inq_varid(file, name.c_str(), &variable) == NC_NOERR) axis_scales[axis] = read_netcdf_scale(file, variable);
+      const NetcdfDimension stated = read_netcdf_dimension(file, dimension);
+      axes[axis] = stated.axis;
+      by_name = by_name || stated.guessed_from_name;
+    }
+    order = compute_axis_order(axes);
+    if (by_name && order != kFileOrder)
+      notes.push_back(
+          "the axes follow the names of the dimensions, because not all of their variables have an axis, a standard_name or units "
+          "that say which one they are");
+  }
+};
+vtkStandardNewMacro(NetcdfReader);
+
+/// Coordinates as stored, which VTK takes, to those that their scale_factor and add_offset make of them.
+void scale_axes(vtkDataSet* data, const std::vector<NetcdfScale>& scales) {
+  if (auto* image = vtkImageData::SafeDownCast(data)) {
+    double origin[3], spacing[3];
+    image->GetOrigin(origin);
+    image->GetSpacing(spacing);
+    for (std::size_t a = 0; a < 3; ++a) {
+      origin[a] = origin[a] * scales[a].factor + scales[a].offset;
+      spacing[a] *= scales[a].factor;
+    }
+    image->SetOrigin(origin);
+    image->SetSpacing(spacing);
+  } else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data)) {
+    vtkDataArray* axes[3] = {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()};
+    for (std::size_t a = 0; a < 3; ++a)
+      for (vtkIdType i = 0; axes[a] != nullptr && i < axes[a]->GetNumberOfTuples(); ++i)
+        axes[a]->SetComponent(i, 0, axes[a]->GetComponent(i, 0) * scales[a].factor + scales[a].offset);
+  }
+}
+
+/// First place and step of coordinates of even steps; nullopt: they are uneven, or there is one.
+std::optional<std::pair<double, double>> even_steps(vtkDataArray* axis) {
+  const vtkIdType count = axis != nullptr ? axis->GetNumberOfTuples() : 0;
+  if (count < 2) return std::nullopt;
+  const double first = axis->GetComponent(0, 0), step = (axis->GetComponent(count - 1, 0) - first) / static_cast<double>(count - 1);
+  constexpr double kOfStep = 0.01;
+  for (vtkIdType i = 0; i < count; ++i)
+    if (!(std::fabs(axis->GetComponent(i, 0) - (first + static_cast<double>(i) * step)) <= kOfStep * std::fabs(step))) return std::nullopt;
+  return step != 0 ? std::optional(std::pair(first, step)) : std::nullopt;
+}
+
+/// A rectilinear grid of even steps as an image, with its axes beside it, as they may fall.
+void make_image(Block& block) {
+  auto* grid = vtkRectilinearGrid::SafeDownCast(block.data);
+  if (grid == nullptr) return;
+  vtkDataArray* axes[3] = {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()};
+  Mat3 linear(0.0);
+  Vec3 origin(0.0);
+  double smallest = 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto even = even_steps(axes[a]);
+    const bool single = axes[a] != nullptr && axes[a]->GetNumberOfTuples() == 1;
+    if (!even && !single) return;
+    origin[a] = even ? even->first : axes[a]->GetComponent(0, 0);
+    linear[a][a] = even ? even->second : 0;
+    if (even && (smallest == 0 || std::fabs(even->second) < smallest)) smallest = std::fabs(even->second);
+  }
+  if (smallest == 0) return;
+  for (int a = 0; a < 3; ++a)
+    if (linear[a][a] == 0) linear[a][a] = smallest;
+  const auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(grid->GetDimensions());
+  image->GetPointData()->ShallowCopy(grid->GetPointData());
+  image->GetCellData()->ShallowCopy(grid->GetCellData());
+  block = {image, field::Mapping::from_linear(linear, origin)};
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkAlgorithm> open_netcdf(const Source& source) {
+  const auto reader = vtkSmartPointer<NetcdfReader>::New();
+  reader->SetFileName(source.path.c_str());
+  reader->SphericalCoordinatesOff();  // degrees stay degrees: a map, not a globe
+  return reader;
+}
+
+void choose_netcdf_variables(vtkAlgorithm* algorithm, const Source& source, ImportedData& opened) {
+  auto* reader = NetcdfReader::SafeDownCast(algorithm);
+  if (reader == nullptr) return;
+  const int count = reader->GetNumberOfVariableArrays();
+  std::string best;
+  std::ptrdiff_t most = -1;
+  for (int i = 0; i < count; ++i) {
+    const std::string words = reader->dimensions_of(i);
+    const std::ptrdiff_t commas = std::count(words.begin(), words.end(), ',');
+    if (!source.grid.empty() && source.grid == reader->GetVariableArrayName(i)) {
+      best = words;
+      break;
+    }
+    if (words != "()" && commas > most) best = words, most = commas;
+  }
+  std::vector<std::string> others;
+  for (int i = 0; i < count; ++i)
+    if (const std::string words = reader->dimensions_of(i); words != best && words != "()")
+      others.push_back(fmt::format("{} {}", reader->GetVariableArrayName(i), words));
+  if (best.empty() || (others.empty() && count == 0)) return;
+  reader->SetDimensions(best.c_str());
+  if (others.empty()) return;
+  constexpr std::size_t kMost = 10;
+  const std::size_t shown = std::min(kMost, others.size());
+  const std::string more = others.size() > shown ? fmt::format(" and {} more", others.size() - shown) : "";
+  opened.notes.push_back(fmt::format("the variables over the dimensions {} are read; --grid NAME chooses others: {}{}", best,
+                                     fmt::join(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(shown), ", "), more));
+}
+
+Outcome finish_netcdf(vtkAlgorithm* algorithm, ImportedData& opened) {
+  auto* reader = NetcdfReader::SafeDownCast(algorithm);
+  if (reader == nullptr) return Done{};
+  if (!opened.times.empty()) opened.time_unit = reader->time_unit;
+  for (int i = 0; i < reader->GetNumberOfVariableArrays(); ++i)
+    if (const char* name = reader->GetVariableArrayName(i)) opened.units[name] = reader->QueryArrayUnits(name);
+  for (const std::string& note : reader->notes)
+    if (std::find(opened.notes.begin(), opened.notes.end(), note) == opened.notes.end()) opened.notes.push_back(note);
+  const bool scaled =
+      std::any_of(reader->axis_scales.begin(), reader->axis_scales.end(), [](const NetcdfScale& s) { return !s.is_identity(); });
+  int arrays = 0;
+  for (Block& block : opened.blocks) {
+    if (scaled) scale_axes(block.data, reader->axis_scales);
+    block.data = reorder_axes(block.data, reader->order);
+    make_image(block);
+    arrays += block.data->GetPointData()->GetNumberOfArrays() + block.data->GetCellData()->GetNumberOfArrays();
+  }
+  if (arrays == 0)
+    return Error{
+        fmt::format("holds no variables of numbers over dimensions{}{}", opened.notes.empty() ? "" : "; ", fmt::join(opened.notes, "; "))};
+  return Done{};
+}
+
+}  // namespace catena::vtk

@@ -1,0 +1,186 @@
+// VTK's own formats, and those of simulation programs that it reads.
+#include <fmt/format.h>
+#include <vtkAlgorithm.h>
+#include <vtkCGNSReader.h>
+#include <vtkCellData.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataArray.h>
+#include <vtkDataArraySelection.h>
+#include <vtkFieldData.h>
+#include <vtkGenericDataObjectReader.h>
+#include <vtkGenericEnSightReader.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkXMLGenericDataObjectReader.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/io/vtk/netcdf_size.h"
+#include "engine/io/vtk/open.h"
+#include "engine/io/vtk/open_netcdf.h"
+#include "engine/io/vtk/open_vtk.h"
+#include "engine/io/vtk/truncation_check.h"
+
+namespace catena::vtk {
+namespace {
+
+using Reader = vtkSmartPointer<vtkAlgorithm>;
+
+template <class R>
+Reader named(const Source& source) {
+  const auto reader = vtkSmartPointer<R>::New();
+  reader->SetFileName(source.path.c_str());
+  return reader;
+}
+
+/// All arrays of a legacy file: of several SCALARS VTK reads the first alone otherwise.
+Reader open_legacy(const Source& source) {
+  const auto reader = vtkSmartPointer<vtkGenericDataObjectReader>::New();
+  reader->SetFileName(source.path.c_str());
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  return reader;
+}
+
+Reader open_ensight(const Source& source) {
+  const auto reader = vtkSmartPointer<vtkGenericEnSightReader>::New();
+  reader->SetCaseFileName(source.path.c_str());
+  reader->ReadAllVariablesOn();
+  return reader;
+}
+
+Reader open_cgns(const Source& source) {
+  const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
+  reader->SetFileName(source.path.c_str());
+  reader->UpdateInformation();
+  reader->EnableAllBases();
+  reader->EnableAllPointArrays();
+  reader->EnableAllCellArrays();
+  return reader;
+}
+
+struct Format {
+  std::string_view ending;
+  Reader (*open)(const Source& source);
+};
+constexpr Format kFormats[] = {
+    {".vtk", open_legacy}, {".case", open_ensight}, {".encas", open_ensight},
+    {".cgns", open_cgns},  {".nc", open_netcdf},    {".cdf", open_netcdf},
+};
+
+Reader reader_of(const Source& source) {
+  for (const Format& format : kFormats)
+    if (has_extension(source.path, format.ending)) return format.open(source);
+  return named<vtkXMLGenericDataObjectReader>(source);
+}
+
+void keep_units(vtkDataSetAttributes* arrays, ImportedData& opened) {
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) {
+    vtkDataArray* array = arrays->GetArray(i);
+    if (array == nullptr || array->GetName() == nullptr || !array->HasInformation()) continue;
+    if (const char* unit = array->GetInformation()->Get(vtkDataArray::UNITS_LABEL())) opened.units[array->GetName()] = unit;
+  }
+}
+
+/// The time of a file of one step, where it states one: ParaView's TimeValue, VisIt's TIME.
+std::optional<double> stated_time(vtkDataObject* object) {
+  if (object == nullptr) return std::nullopt;
+  for (const char* name : {"TimeValue", "TIME"}) {
+    vtkDataArray* array = object->GetFieldData()->GetArray(name);
+    if (array != nullptr && array->GetNumberOfValues() == 1 && std::isfinite(array->GetComponent(0, 0))) return array->GetComponent(0, 0);
+  }
+  return std::nullopt;
+}
+
+/// VTK makes a place for every block below the largest index.
+Outcome check_indices(const Source& source) {
+  constexpr std::uint64_t kMostBytes = 16 << 20;
+  constexpr long long kMostBlocks = 1'000'000;
+  const auto text = read_text_file(source.path, "a collection of blocks", kMostBytes);
+  if (!text) return Done{};  // VTK says what is wrong
+  for (std::size_t at = text->find("index"); at != std::string::npos; at = text->find("index", at + 1)) {
+    const std::size_t open = text->find_first_of("\"'", at),
+                      close = open == std::string::npos ? open : text->find_first_of("\"'", open + 1);
+    if (close == std::string::npos || trim(std::string_view(*text).substr(at + 5, open - at - 5)) != "=") continue;
+    const std::string word = text->substr(open + 1, close - open - 1);
+    const auto index = parse_integer(trim(word));
+    if (!index || *index < 0 || *index >= kMostBlocks)
+      return Error{fmt::format("{}: a block has the index {}, expected 0 to {}", source.display_name,
+                               sanitize_for_terminal(word.substr(0, 40)), kMostBlocks - 1)};
+  }
+  return Done{};
+}
+
+void add_block(vtkDataObject* object, ImportedData& opened) {
+  vtkDataSet* data = vtkDataSet::SafeDownCast(object);
+  if (data == nullptr || data->GetNumberOfPoints() == 0) return;
+  keep_units(data->GetPointData(), opened);
+  keep_units(data->GetCellData(), opened);
+  opened.blocks.push_back({data, {}});
+}
+
+}  // namespace
+
+Result<ImportedData> open_with_vtk(const Source& source) {
+  if (has_extension(source.path, ".vtm") || has_extension(source.path, ".vtmb")) CATENA_CHECK(check_indices(source));
+  const bool netcdf = has_extension(source.path, ".nc") || has_extension(source.path, ".cdf");
+  if (const auto whole = netcdf ? check_netcdf_size(source.path) : Outcome(Done{}); !whole)
+    return Error{one_line(source.display_name + ": " + whole.error().message)};
+  return read_with_reader(*reader_of(source), source);
+}
+
+Result<ImportedData> read_with_reader(vtkAlgorithm& algorithm, const Source& source, const std::set<double>& no_steps) {
+  const auto failed = [&](const std::string& what) { return Error{one_line(source.display_name + ": " + what)}; };
+  ImportedData opened;
+  vtkAlgorithm* const reader = &algorithm;
+  // the steps
+  reader->UpdateInformation();
+  vtkInformation* about = reader->GetOutputInformation(0);
+  if (about != nullptr && about->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS())) {
+    const double* times = about->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+    opened.times.assign(times, times + about->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()));
+  }
+  std::erase_if(opened.times, [&](double time) { return !std::isfinite(time) || no_steps.contains(time); });
+  if (has_extension(source.path, ".vtk")) opened.times.clear();  // the legacy reader says 0 of every file
+  choose_netcdf_variables(reader, source, opened);
+  // the data
+  bool again = false;
+  const auto whole = read_checking_truncation(
+      [&] {
+        if (std::exchange(again, true)) reader->Modified();
+        if (opened.times.empty())
+          reader->Update();
+        else
+          reader->UpdateTimeStep(opened.times[std::min(static_cast<std::size_t>(source.step), opened.times.size() - 1)]);
+      },
+      [&] { return reader->GetOutputDataObject(0); });
+  vtkDataObject* object = reader->GetOutputDataObject(0);
+  if (const std::string complaint = take_reader_errors(); !complaint.empty()) return failed("cannot be read (" + complaint + ")");
+  if (!whole) return failed(whole.error().message);
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(object)) {
+    const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem()) add_block(each->GetCurrentDataObject(), opened);
+  } else if (object != nullptr && vtkDataSet::SafeDownCast(object) == nullptr) {
+    return failed(fmt::format("holds a {}, expected grids, meshes, lines or points", object->GetClassName()));
+  } else {
+    add_block(object, opened);
+  }
+  if (opened.times.empty()) {
+    auto time = stated_time(object);
+    for (std::size_t b = 0; !time && b < opened.blocks.size(); ++b) time = stated_time(opened.blocks[b].data);
+    if (time) opened.times.push_back(*time);
+  }
+  if (const auto finished = finish_netcdf(reader, opened); !finished) return failed(finished.error().message);
+  if (opened.blocks.empty()) return failed("holds nothing, or is not of the kind that its name says");
+  return opened;
+}
+
+}  // namespace catena::vtk

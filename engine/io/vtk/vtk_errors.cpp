@@ -1,0 +1,42 @@
+// What the libraries complain of: VTK tells it to a window, ITK throws.
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+
+#include "engine/base/text.h"
+#include "engine/io/vtk/open.h"
+
+namespace catena::vtk {
+namespace {
+
+std::string first_complaint;
+
+/// "ERROR: In FILE, line N\nCLASS (ADDRESS): WHAT" is WHAT.
+std::string plain(const std::string& text) {
+  const std::size_t at = text.find("): ");
+  const std::string what = strip_addresses(one_line(at == std::string::npos ? text : text.substr(at + 3)));
+  const std::size_t end = what.find_last_not_of(" .\n");
+  constexpr std::size_t kLongest = 200;
+  return what.substr(0, std::min(end == std::string::npos ? 0 : end + 1, kLongest));
+}
+
+class Listener : public vtkOutputWindow {
+ public:
+  vtkTypeMacro(Listener, vtkOutputWindow);
+  static Listener* New();
+  void DisplayText(const char*) override {}
+  void DisplayErrorText(const char* text) override {
+    if (first_complaint.empty() && text != nullptr) first_complaint = plain(text);
+  }
+};
+vtkStandardNewMacro(Listener);
+
+}  // namespace
+
+std::string take_reader_errors() { return std::exchange(first_complaint, {}); }
+
+void capture_reader_errors() {
+  const vtkSmartPointer<Listener> listener = vtkSmartPointer<Listener>::New();
+  vtkOutputWindow::SetInstance(listener);
+}
+
+}  // namespace catena::vtk

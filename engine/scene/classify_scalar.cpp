@@ -1,0 +1,252 @@
+#include "engine/scene/classify_scalar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <unordered_set>
+
+#include "engine/base/numbers.h"
+#include "engine/scene/auto_transfer.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr std::size_t kMostVoxels = 1u << 20;
+constexpr int kKindBins = 256, kEdge = 8;
+constexpr int kMostLabels = 2048;
+constexpr double kAsGood = 0.995;  // of the best threshold
+// the background, see data_kind.h
+constexpr double kBackgroundFull = 0.05, kBackgroundEnd = 0.2, kBackgroundWidth = 0.02;
+// level sets
+constexpr double kUnitSlope = 0.05, kUnitSlopes = 0.9;
+// Hounsfield units
+constexpr double kAirLo = -1100, kAirHi = -850, kSoftLo = -150, kSoftHi = 200, kTissueShare = 0.05, kLeastHounsfield = -5000;
+constexpr double kEqualNeighbours = 0.6;
+constexpr double kRegions = 0.4;  // of neighbours, in regions of a voxel's thickness half, of random labels a third
+// solids: two plateaus
+constexpr double kPlateau = 0.1, kPlateaus = 0.9, kLeastPlateau = 0.02;
+// scans
+constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.6;
+constexpr double kEmpty = 0.6;
+
+/// What is summed over the neighbours in blocks.
+struct Neighbours {
+  double first = 0, second = 0;
+  std::array<std::size_t, 3> pairs{}, equal{};  // along each axis, both in the foreground
+  std::size_t touching = 0;                     // pairs of which one at least is in it
+  std::size_t slopes = 0, unit_slopes = 0;
+};
+
+double share(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
+
+/// The bins of the values over lo..hi.
+using Bins = std::array<std::size_t, kKindBins>;
+
+int bin_of(double value, double lo, double hi) {
+  return static_cast<int>(std::clamp((value - lo) / (hi - lo) * kKindBins, 0.0, kKindBins - 1.0));
+}
+
+/// The bin behind which the two classes differ most: the middle of all that differ as much, as where nothing lies between them.
+int otsu_bin(const Bins& bins) {
+  double all = 0, sum = 0;
+  for (int i = 0; i < kKindBins; ++i) all += double(bins[i]), sum += double(i) * double(bins[i]);
+  double below = 0, below_sum = 0, best = -1;
+  std::array<double, kKindBins> apart_by{};
+  for (int i = 0; i + 1 < kKindBins; ++i) {
+    below += double(bins[i]);
+    below_sum += double(i) * double(bins[i]);
+    if (!(below > 0) || !(below < all)) continue;
+    const double apart = below_sum / below - (sum - below_sum) / (all - below);
+    apart_by[i] = below * (all - below) * apart * apart;
+    best = std::max(best, apart_by[i]);
+  }
+  const auto is_best = [&](double between) { return between >= kAsGood * best; };
+  const auto first = std::find_if(apart_by.begin(), apart_by.end(), is_best);
+  const auto last = std::find_if(apart_by.rbegin(), apart_by.rend(), is_best).base() - 1;
+  return static_cast<int>((first - apart_by.begin() + (last - apart_by.begin())) / 2);
+}
+
+void measure_values(std::vector<float>& values, ScalarStats& facts) {
+  const std::size_t n = values.size();
+  std::unordered_set<float> distinct;
+  facts.is_integral = true;
+  facts.min_value = values.front();
+  std::size_t air = 0, soft = 0;
+  for (const float v : values) {
+    facts.min_value = std::min(facts.min_value, double(v));
+    if (v != std::nearbyint(v)) facts.is_integral = false;
+    if (distinct.size() <= kMostLabels) distinct.insert(v);
+    air += v >= kAirLo && v <= kAirHi;
+    soft += v >= kSoftLo && v <= kSoftHi;
+  }
+  facts.distinct_values = static_cast<int>(distinct.size());
+  facts.air_share = share(air, n);
+  facts.soft_share = share(soft, n);
+  facts.empty_share = share(static_cast<std::size_t>(std::count(values.begin(), values.end(), static_cast<float>(facts.min_value))), n);
+  facts.lo = quantile(values, 0.001);
+  facts.hi = quantile(values, 0.999);
+  const double brightest = quantile(values, 0.9999);
+  facts.background = facts.threshold = facts.lo;
+  if (!(facts.lo < facts.hi)) return;
+
+  Bins bins{};
+  for (const float v : values) ++bins[bin_of(v, facts.lo, facts.hi)];
+  const auto fullest = std::max_element(bins.begin(), bins.end()) - bins.begin();
+  if (share(bins[fullest], n) > kBackgroundFull && double(fullest) < kBackgroundEnd * kKindBins)
+    facts.background = facts.lo + (double(fullest) + 0.5) / kKindBins * (facts.hi - facts.lo);
+  facts.threshold = facts.lo + (otsu_bin(bins) + 1.0) / kKindBins * (facts.hi - facts.lo);
+
+  for (const float v : values) facts.mean += std::clamp(double(v), facts.lo, facts.hi) / static_cast<double>(n);
+  std::size_t near = 0, low = 0, high = 0, bright = 0;
+  const double width = kBackgroundWidth * (facts.hi - facts.lo), tenth = kPlateau * (facts.hi - facts.lo);
+  const double bright_from = facts.background + kBrightFrom * (brightest - facts.background);
+  for (const float v : values) {
+    near += std::fabs(v - facts.background) < width;
+    low += v <= facts.lo + tenth;
+    high += v >= facts.hi - tenth;
+    bright += v > bright_from;
+  }
+  facts.background_share = share(near, n);
+  facts.bright_share = share(bright, n);
+  if (share(low, n) >= kLeastPlateau && share(high, n) >= kLeastPlateau) facts.plateau_share = share(low + high, n);
+}
+
+/// Of one block of 8^3; values that are not valid are NaN.
+void measure_neighbours(const std::vector<float>& block, const field::Mapping& mapping, const ScalarStats& facts, Neighbours& sums) {
+  const double width = kBackgroundWidth * (facts.hi - facts.lo);
+  const auto at = [&](int x, int y, int z) { return double(block[static_cast<std::size_t>((z * kEdge + y) * kEdge + x)]); };
+  const auto is_foreground = [&](double v) { return std::fabs(v - facts.background) >= width; };
+  for (int z = 0; z < kEdge; ++z)
+    for (int y = 0; y < kEdge; ++y)
+      for (int x = 0; x + 2 < kEdge; ++x) {
+        const double a = at(x, y, z), b = at(x + 1, y, z), c = at(x + 2, y, z);
+        if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c) || !is_foreground(b)) continue;
+        sums.first += 0.5 * (std::fabs(b - a) + std::fabs(c - b));
+        sums.second += std::fabs(a - 2 * b + c);
+      }
+  const auto compare = [&](int axis, double a, double b) {
+    if (!std::isfinite(a) || !std::isfinite(b)) return;
+    sums.touching += is_foreground(a) || is_foreground(b);
+    if (!is_foreground(a) || !is_foreground(b)) return;
+    ++sums.pairs[axis];
+    sums.equal[axis] += a == b;
+  };
+  for (int k = 0; k < kEdge; ++k)
+    for (int j = 0; j < kEdge; ++j)
+      for (int i = 0; i + 1 < kEdge; ++i) {
+        compare(0, at(i, j, k), at(i + 1, j, k));
+        compare(1, at(j, i, k), at(j, i + 1, k));
+        compare(2, at(j, k, i), at(j, k, i + 1));
+      }
+  for (int z = 1; z + 1 < kEdge; z += 2)
+    for (int y = 1; y + 1 < kEdge; y += 2)
+      for (int x = 1; x + 1 < kEdge; x += 2) {
+        const Vec3 slope(at(x + 1, y, z) - at(x - 1, y, z), at(x, y + 1, z) - at(x, y - 1, z), at(x, y, z + 1) - at(x, y, z - 1));
+        const double length = norm(mapping.world_from_index_gradient(0.5 * slope));
+        if (!std::isfinite(length) || length == 0) continue;
+        ++sums.slopes;
+        sums.unit_slopes += std::fabs(length - 1) <= kUnitSlope;
+      }
+}
+
+}  // namespace
+
+ScalarStats compute_scalar_stats(const field::ScalarGrid& grid, const field::Units& units) {
+  ScalarStats facts;
+  facts.is_level_set = units.is_level_set;
+  facts.is_hounsfield = units.value == "HU";
+  facts.is_patient_space = units.is_patient_space;
+  facts.is_label_map = units.is_label_map;
+  facts.has_mask = grid.has_mask();
+
+  // blocks spread over the box, each whole: an edge that the box cuts off is left out
+  std::vector<float> blocks, block(kEdge * kEdge * kEdge), values;
+  std::vector<std::uint8_t> valid(block.size());
+  const DisplayRange& range = display_range(grid);
+  field::for_sampled_blocks(grid.index_box(), kMostVoxels,
+                            [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+                              block.assign(block.size(), 0.f);
+                              const std::span<float> part(block.data(), count);
+                              grid.read_block(origin, extent, part);
+                              if (facts.has_mask) {
+                                grid.read_cell_validity(origin, extent, valid);
+                                for (std::size_t i = 0; i < count; ++i)
+                                  if (valid[i] == 0) block[i] = NAN;
+                              }
+                              for (float& v : part) {
+                                if (!range.contains(v)) v = NAN;
+                                if (std::isfinite(v)) values.push_back(v);
+                              }
+                              if (count == block.size()) blocks.insert(blocks.end(), block.begin(), block.end());
+                            });
+  if (values.empty()) return facts;
+  measure_values(values, facts);
+
+  Neighbours sums;
+  for (std::size_t i = 0; i < blocks.size(); i += block.size()) {
+    std::copy_n(blocks.begin() + static_cast<std::ptrdiff_t>(i), block.size(), block.begin());
+    measure_neighbours(block, grid.mapping(), facts, sums);
+  }
+  facts.equal_share = 1;
+  for (int axis = 0; axis < 3; ++axis) facts.equal_share = std::min(facts.equal_share, share(sums.equal[axis], sums.pairs[axis]));
+  facts.region_share = share(std::accumulate(sums.equal.begin(), sums.equal.end(), std::size_t{0}), sums.touching);
+  facts.roughness = sums.first > 0 ? sums.second / sums.first : 0;
+  facts.distance_share = share(sums.unit_slopes, sums.slopes);
+  return facts;
+}
+
+DataKind classify_scalar(const ScalarStats& f) {
+  const bool rough = f.roughness >= kRough;
+  const bool both_signs = f.lo < 0 && f.hi > 0;
+  if (f.is_label_map && f.is_integral && f.distinct_values > 1) return DataKind::label_map;
+  if (f.is_level_set || (both_signs && f.distance_share >= kUnitSlopes)) return DataKind::level_set;
+  if (f.is_hounsfield) return DataKind::ct;
+  if (f.min_value >= kLeastHounsfield && f.air_share >= kTissueShare && f.soft_share >= kTissueShare) return DataKind::ct;
+  if (f.is_integral && f.distinct_values > 1 && f.distinct_values <= kMostLabels && f.equal_share >= kEqualNeighbours &&
+      f.region_share >= kRegions)
+    return DataKind::label_map;
+  if (f.plateau_share >= kPlateaus || (!f.is_integral && f.equal_share >= kEqualNeighbours)) return DataKind::solid;
+  if (!f.is_patient_space && !f.has_mask && f.min_value >= 0 && f.min_value < f.hi && f.empty_share >= kEmpty) return DataKind::cloud;
+  if (rough && f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost) return DataKind::angiogram;
+  if (f.is_patient_space && rough) return DataKind::mr;
+  return DataKind::simulation;
+}
+
+std::string_view to_string(DataKind kind) {
+  constexpr std::string_view words[] = {"a level set",  "a CT",       "a label map", "a solid body",
+                                        "an angiogram", "an MR scan", "a cloud",     "a simulation"};
+  return words[static_cast<int>(kind)];
+}
+
+std::string explain_kind(DataKind kind, const ScalarStats& f) {
+  const auto percent = [](double part) { return fmt::format("{:.3g} %", 100 * part); };
+  switch (kind) {
+    case DataKind::level_set:
+      return f.is_level_set ? "the file says so"
+                            : "values of both signs, and the slope is 1 in " + percent(f.distance_share) + " of the places";
+    case DataKind::ct:
+      return f.is_hounsfield ? "its unit is HU"
+                             : percent(f.air_share) + " of the values are air near -1000, " + percent(f.soft_share) + " soft tissue near 0";
+    case DataKind::label_map:
+      if (f.is_label_map) return "the file says so";
+      return fmt::format("{} different whole numbers, and {} of the neighbours at and in what is not background are equal",
+                         f.distinct_values, percent(f.region_share));
+    case DataKind::solid:
+      return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are at either end of the range"
+                                          : percent(f.equal_share) + " of all neighbours are equal";
+    case DataKind::angiogram:
+      return "only " + percent(f.bright_share) + " of the values are bright, and they are rough";
+    case DataKind::mr:
+      return fmt::format("of a patient or an animal, without a scale, and rough ({:.2f})", f.roughness);
+    case DataKind::cloud:
+      return percent(f.empty_share) + " of the box are empty";
+    case DataKind::simulation:
+      return fmt::format("a quantity that fills its domain (roughness {:.2f})", f.roughness);
+  }
+  return {};
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,253 @@
+#include "engine/scene/default_visualization.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+#include "engine/field/derived/label_surface.h"
+#include "engine/geometry/flow/seeds.h"
+#include "engine/scene/auto_transfer.h"
+#include "engine/scene/classify_scalar.h"
+#include "engine/scene/classify_vector.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/readers.h"
+#include "engine/scene/to_json.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
+constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
+constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25, kShellOpacity = 0.2;
+constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;                         // optical depths of a ray across the domain
+constexpr double kMostlyEmpty = 0.5;                                                         // of the values: the background
+constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // of lines: by the domain's diagonal
+constexpr Color kFibre{0.90f, 0.62f, 0.42f};
+constexpr double kFlat = 1, kWide = 7;  // cells: a single image has at most so many one way, and at least so many the others
+constexpr const char* kQuantityMap = "viridis";
+
+/// A level that a surface can have: within the values.
+bool has_level(const field::ScalarGrid& grid, double level) {
+  const DisplayRange& range = display_range(grid);
+  return level > range.lo && level < range.hi;
+}
+
+/// With as many digits as say it to a thousandth of the range.
+double rounded(double value, const ScalarStats& facts) {
+  const double step = std::pow(10, std::floor(std::log10(std::max(facts.hi - facts.lo, 1e-30))) - 2);
+  return std::round(value / step) * step;
+}
+
+double three_digits(double value) { return round_to_digits(value, 3); }
+
+std::string surface(const std::string& field, double level, const Color& color, double opacity = 1) {
+  return "{\"field\": " + field + ", \"level\": " + to_json(level) + ", \"color\": " + to_json(color) +
+         (opacity < 1 ? ", \"opacity\": " + to_json(opacity) : "") + "}";
+}
+
+std::string surfaces(const std::vector<std::string>& items) {
+  std::string text = "  \"isosurfaces\": [";
+  for (std::size_t i = 0; i < items.size(); ++i) text += (i > 0 ? ",\n                  " : "") + items[i];
+  return text + "]";
+}
+
+/// Its title is the name of what is shown, with its unit.
+std::string bar_of(const std::string& what, bool box = true) {
+  return ",\n  \"scalar_bars\": [{" + what + "}]" + (box ? ",\n  \"bounding_box\": true" : "");
+}
+
+/// In the colours that are asked for. A map that is named without a range reaches over the values that the opacity follows, not over all.
+std::string colored_volume(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
+  if (!colors.map.empty() && !colors.range) {
+    TransferFunction transfer;
+    transfer.named.mapping = colors.mapping;
+    complete_transfer(transfer, grid);
+    const double lo = transfer.colors.front().value, hi = transfer.colors.back().value;
+    if (is_color_range(lo, hi)) colors.range = {lo, hi};
+  }
+  return "  \"volumes\": [{\"field\": " + field + color_members(colors) + ", \"shade\": true}]";
+}
+
+std::string quantity(const std::string& field, const field::ScalarGrid& grid, const ScalarStats& facts) {
+  double lo = rounded(facts.lo, facts), hi = rounded(facts.hi, facts);
+  if (!is_color_range(lo, hi)) return colored_volume(field, grid, {kQuantityMap, {}});
+  // what is empty is left out; without an empty part the low values can be seen, too
+  const bool empty = facts.background_share > kMostlyEmpty;
+  const double clear = 1 / std::max(grid.domain_length(), 1e-300);
+  std::string text = "  \"volumes\": [{\"field\": " + field + ", \"color\": " + to_json(kQuantityMap) +
+                     ", \"range\": " + to_json(std::array<double, 2>{lo, hi}) + ",\n               \"extinction\": ";
+  std::string rows = "[";
+  const double mean = std::max((facts.mean - facts.lo) / (facts.hi - facts.lo), 1e-3);
+  const double most = std::clamp(kMeanDepth / mean, kMeanDepth, kMostDepth);
+  for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, most}})
+    rows += (share > 0 ? ", [" : "[") + to_json(rounded(lo + share * (hi - lo), facts)) + ", " + to_json(three_digits(depth * clear)) + "]";
+  text += rows + "]}]";
+  return text + bar_of("\"volume\": 0");
+}
+
+std::string computed_tomography(const std::string& field, const field::ScalarGrid& grid, const ScalarStats& facts) {
+  std::vector<std::string> items;
+  const bool bone = has_level(grid, kBoneLevel);
+  if (bone) items.push_back(surface(field, kBoneLevel, kBone));
+  if (has_level(grid, kSkinLevel)) items.push_back(surface(field, kSkinLevel, kSkin, bone ? kSkinOpacity : 1));
+  return items.empty() ? quantity(field, grid, facts) : surfaces(items);
+}
+
+/// All labels in one surface: what lies between two of them is hidden, and a surface for each would be many times the work.
+void show_labels(const std::string& field, DefaultVisualization& look) {
+  const std::string name = field.substr(1, field.size() - 2) + "_labels";
+  const std::string surface = json::serialize_string(name);
+  look.is_label_map = true;
+  look.extra_fields = ",\n             " + surface + ": {\"label\": \"*\", \"of\": " + field + "}";
+  look.scene_members =
+      surfaces({"{\"field\": " + surface + ", \"level\": " + to_json(field::kLabelLevel) + ", \"color_by\": {\"field\": " + field + "}}"}) +
+      bar_of("\"field\": " + field, false);
+}
+
+std::string angiogram(const std::string& field, const ScalarStats& facts) {
+  const double lo = rounded(facts.background, facts), hi = rounded(facts.hi, facts);
+  return "  \"volumes\": [{\"field\": " + field + ", \"color\": \"grey\", \"range\": " + to_json(std::array<double, 2>{lo, hi}) +
+         ", \"opacity\": [[" + to_json(lo) + ", 0], [" + to_json(hi) + ", 0.95]], \"projection\": \"maximum\"}]";
+}
+
+/// The axis along which the grid is a single image, or -1.
+int flat_axis(const field::ScalarGrid& grid) {
+  const Vec3 size = grid.index_box().hi - grid.index_box().lo;
+  for (int axis = 0; axis < 3; ++axis)
+    if (size[axis] <= kFlat && std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]) >= kWide) return axis;
+  return -1;
+}
+
+/// A single image: as it is, from lo to hi in grey.
+std::string image(const std::string& field, const field::ScalarGrid& grid, int axis, const ScalarStats& facts, NamedColors colors) {
+  const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
+  if (colors.map.empty()) colors.map = "grey";
+  if (!colors.range && is_color_range(rounded(facts.lo, facts), rounded(facts.hi, facts)))
+    colors.range = {rounded(facts.lo, facts), rounded(facts.hi, facts)};
+  const Vec3 normal = direction(grid.mapping().world_from_index_gradient(Vec3(axis == 0, axis == 1, axis == 2)));
+  return "  \"slices\": [{\"field\": " + field + ", \"point\": " + to_json(middle) + ", \"normal\": " + to_json(normal) +
+         color_members(colors) + "}]" + bar_of("\"slice\": 0", false);
+}
+
+}  // namespace
+
+std::string default_mesh_background() { return "  \"background\": " + to_json(kBackdrop); }
+
+std::string color_members(const NamedColors& colors) {
+  std::string text;
+  for (const auto& [key, value] : color_scale_members({}, colors)) text += ", \"" + key + "\": " + value;
+  return text;
+}
+
+DefaultVisualization choose_default_visualization(const std::string& field, const field::ScalarGrid& grid, const field::Units& units,
+                                                  NamedColors colors) {
+  const ScalarStats facts = compute_scalar_stats(grid, units);
+  DataKind kind = classify_scalar(facts);
+  // by a part of the voxels it may look like one
+  if (kind == DataKind::label_map && !field::count_labels(grid)) kind = DataKind::solid;
+  DefaultVisualization look;
+  look.ignore_mask = facts.has_mask && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
+  look.note = "looks like " + std::string(to_string(kind)) + ": " + explain_kind(kind, facts);
+  const DisplayRange& range = display_range(grid);
+  const bool one_value = !(range.lo < range.hi);
+  if (one_value) look.note = std::string(range.has_outliers() ? "every other value is " : "every value is ") + format_readable(range.lo);
+  const auto level = [&](double value) {
+    return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (range.lo + range.hi);
+  };
+  const auto body = [&](double at) {
+    look.shell_members = surfaces({surface(field, at, kSolid, kShellOpacity)});
+    return surfaces({surface(field, at, kSolid)});
+  };
+  if (const int axis = flat_axis(grid); axis >= 0) {
+    look.note = "is a single image";
+    look.scene_members = image(field, grid, axis, facts, std::move(colors)) + ",\n" + default_mesh_background();
+    return look;
+  }
+  if (!colors.is_default() || one_value) {
+    look.scene_members = colored_volume(field, grid, colors);
+  } else {
+    switch (kind) {
+      case DataKind::ct:
+        look.scene_members = computed_tomography(field, grid, facts);
+        break;
+      case DataKind::mr:
+        look.scene_members = surfaces({surface(field, level(0.5 * (facts.background + facts.threshold)), kTissue)});
+        break;
+      case DataKind::label_map:
+        show_labels(field, look);
+        break;
+      case DataKind::solid:
+        look.scene_members = body(level(facts.threshold));
+        break;
+      case DataKind::level_set:
+        look.scene_members = body(level(0));
+        break;
+      case DataKind::angiogram:
+        // black, as its least values are: on anything lighter its outline would be a dark rag
+        look.scene_members = angiogram(field, facts) + ",\n  \"background\": [0, 0, 0]";
+        return look;
+      case DataKind::cloud:
+        look.scene_members = colored_volume(field, grid, {"grey", {}});
+        break;
+      case DataKind::simulation:
+        look.scene_members = quantity(field, grid, facts);
+        break;
+    }
+  }
+  look.scene_members += ",\n" + default_mesh_background();
+  return look;
+}
+
+DefaultVisualization choose_default_visualization(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors) {
+  const VectorStats facts = compute_vector_stats(grid);
+  const double diagonal = grid.world_bounds().diagonal();
+  // where most of the field stands still, what moves is narrow
+  const bool narrow = facts.median_speed < kStillSpeedRatio * facts.fast_speed;
+  const double size = narrow ? std::clamp(std::cbrt(facts.moving_share), kNarrowest, 1.0) : 1;
+  const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
+  const bool named = !colors.is_default(), plain = (facts.is_unit_length || facts.is_line_field) && !named;
+  DefaultVisualization look;
+  look.is_fibers = facts.is_unit_length;
+  look.note = facts.is_unit_length  ? "looks like fibres: all vectors are as long"
+              : facts.is_line_field ? "looks like fibres: neighbours point to either side"
+                                    : "looks like a flow";
+  NamedColors shown = colors;
+  if (colors.map.empty() && !colors.range) shown.map = kQuantityMap;
+  const std::array<double, 2> speeds{three_digits(facts.slow_speed), three_digits(facts.fast_speed)};
+  if (!shown.range && is_color_range(speeds[0], speeds[1])) shown.range = speeds;
+
+  // a line must begin somewhere, and be as long as lines are apart
+  const double still = narrow ? three_digits(kStillSpeedRatio * facts.fast_speed) : 0;
+  flow::EvenSpacingOptions spacing{distance, 0.5, facts.fastest_points, 1};
+  flow::BatchOptions options;
+  options.length = three_digits(kLineLength * diagonal);
+  if (!(facts.fast_speed > 0)) {
+    look.note = "looks like a flow that stands still";
+    look.scene_members = default_mesh_background();
+  } else if (flow::trace_evenly_spaced({&grid, facts.is_line_field, still}, spacing, options).empty()) {
+    const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
+    look.scene_members = "  \"slices\": [";
+    for (int axis = 0; axis < 3; ++axis)
+      look.scene_members += std::string(axis > 0 ? ",\n             " : "") + "{\"field\": " + field + ", \"axis\": \"" + "xyz"[axis] +
+                            "\", \"at\": " + to_json(middle[axis]) + color_members(shown) + "}";
+    look.scene_members += "]" + bar_of("\"slice\": 0") + ",\n" + default_mesh_background();
+  } else {
+    look.scene_members = "  \"streamlines\": [{\"field\": " + field;
+    if (facts.is_line_field) look.scene_members += ", \"kind\": \"line\"";
+    if (still > 0) look.scene_members += ", \"min_speed\": " + to_json(still);
+    look.scene_members +=
+        plain ? ", \"color\": " + to_json(kFibre) : ", \"color_by\": {\"quantity\": \"speed\"" + color_members(shown) + "}";
+    look.scene_members += ", \"radius\": " + to_json(radius) + ", \"length\": " + to_json(options.length) +
+                          ",\n                   \"seeds\": {\"evenly_spaced\": {\"distance\": " + to_json(distance) +
+                          ",\n                                               \"start\": " + to_json(facts.fastest_points) + "}}}]";
+    if (!plain) look.scene_members += bar_of("\"streamlines\": 0");
+    look.scene_members += ",\n" + default_mesh_background();
+  }
+  return look;
+}
+
+}  // namespace catena::scene

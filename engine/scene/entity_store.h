@@ -1,0 +1,164 @@
+/// The ECS: entities are numbers, components plain structs in sparse sets, systems free functions over them.
+/// Frame thread only.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <typeindex>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace catena::scene {
+
+/// A number that stands for a thing in a world. False: none.
+struct Entity {
+  std::uint32_t id = 0xffffffffu;  ///< unique in its world; the greatest number: none
+  bool operator==(const Entity&) const = default;
+  /// Whether it stands for something.
+  explicit operator bool() const { return id != 0xffffffffu; }
+};
+
+/// A sparse set: dense arrays of owners and components, in order of insertion until something is removed.
+template <class T>
+class ComponentPool {
+ public:
+  /// Gives the entity one; it must have none.
+  T& emplace(Entity e, T value) {
+    CATENA_ASSERT(!contains(e));
+    if (sparse_.size() <= e.id) sparse_.resize(e.id + 1, kNone);
+    sparse_[e.id] = static_cast<std::uint32_t>(dense_.size());
+    owners_.push_back(e);
+    dense_.push_back(std::move(value));
+    return dense_.back();
+  }
+  /// Whether the entity has one.
+  bool contains(Entity e) const { return e.id < sparse_.size() && sparse_[e.id] != kNone; }
+  /// The entity's; it must have one.
+  T& get(Entity e) {
+    CATENA_ASSERT(contains(e));
+    return dense_[sparse_[e.id]];
+  }
+  /// The entity's; it must have one.
+  const T& get(Entity e) const {
+    CATENA_ASSERT(contains(e));
+    return dense_[sparse_[e.id]];
+  }
+  /// Takes the entity's away; nothing where it has none. The last one moves into its place.
+  void remove(Entity e) {
+    if (!contains(e)) return;
+    const std::uint32_t hole = sparse_[e.id];
+    dense_[hole] = std::move(dense_.back());
+    owners_[hole] = owners_.back();
+    sparse_[owners_[hole].id] = hole;
+    sparse_[e.id] = kNone;
+    dense_.pop_back();
+    owners_.pop_back();
+  }
+  /// How many entities have one.
+  std::size_t size() const { return dense_.size(); }
+  /// The entities that have one, in the order of the pool.
+  const std::vector<Entity>& owners() const { return owners_; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> sparse_;
+  std::vector<Entity> owners_;
+  std::vector<T> dense_;
+};
+
+/// Entities with their components of any types.
+class EntityStore {
+ public:
+  /// A new entity, without components.
+  Entity create() { return Entity{next_++}; }
+
+  /// Gives the entity a T; it must have none.
+  template <class T>
+  T& emplace(Entity e, T value = {}) {
+    return pool<T>().emplace(e, std::move(value));
+  }
+  /// Whether the entity has a T.
+  template <class T>
+  bool has(Entity e) const {
+    const auto* p = find_pool<T>();
+    return p != nullptr && p->contains(e);
+  }
+  /// The entity's T; it must have one. References last until a T is added or removed.
+  template <class T>
+  T& get(Entity e) {
+    return pool<T>().get(e);
+  }
+  /// The entity's T; it must have one.
+  template <class T>
+  const T& get(Entity e) const {
+    const auto* p = find_pool<T>();
+    CATENA_ASSERT(p != nullptr);
+    return p->get(e);
+  }
+  /// Takes the entity's T away; nothing where it has none.
+  template <class T>
+  void remove(Entity e) {
+    pool<T>().remove(e);
+  }
+  /// Moves over what `there` has in another world and `here` has none of in this one.
+  void move_missing_from(Entity here, EntityStore& other, Entity there) {
+    for (auto& [type, slot] : other.pools_) {
+      auto& mine = pools_[type];
+      if (!mine) mine = slot->make_empty();
+      mine->move_from(here, *slot, there);
+    }
+  }
+  /// How many entities have a T.
+  template <class T>
+  std::size_t count() const {
+    const auto* p = find_pool<T>();
+    return p == nullptr ? 0 : p->size();
+  }
+  /// Calls f(entity, T&) for each owner of a T, in order of insertion. f may not add or remove Ts.
+  template <class T, class F>
+  void each(F&& f) {
+    for (Entity e : pool<T>().owners()) f(e, pool<T>().get(e));
+  }
+  /// The same, to read.
+  template <class T, class F>
+  void each(F&& f) const {
+    if (const auto* p = find_pool<T>())
+      for (Entity e : p->owners()) f(e, p->get(e));
+  }
+
+ private:
+  struct Slot {
+    virtual ~Slot() = default;
+    virtual std::unique_ptr<Slot> make_empty() const = 0;
+    virtual void move_from(Entity here, Slot& other, Entity there) = 0;  ///< `other` is of the same type
+  };
+  template <class T>
+  struct TypedSlot final : Slot {
+    std::unique_ptr<Slot> make_empty() const override { return std::make_unique<TypedSlot>(); }
+    void move_from(Entity here, Slot& other, Entity there) override {
+      ComponentPool<T>& from = static_cast<TypedSlot&>(other).pool;
+      if (!from.contains(there) || pool.contains(here)) return;
+      pool.emplace(here, std::move(from.get(there)));
+      from.remove(there);
+    }
+    ComponentPool<T> pool;
+  };
+  template <class T>
+  ComponentPool<T>& pool() {
+    auto& slot = pools_[std::type_index(typeid(T))];
+    if (!slot) slot = std::make_unique<TypedSlot<T>>();
+    return static_cast<TypedSlot<T>&>(*slot).pool;
+  }
+  template <class T>
+  const ComponentPool<T>* find_pool() const {
+    const auto it = pools_.find(std::type_index(typeid(T)));
+    return it == pools_.end() ? nullptr : &static_cast<const TypedSlot<T>&>(*it->second).pool;
+  }
+
+  std::uint32_t next_ = 0;
+  std::unordered_map<std::type_index, std::unique_ptr<Slot>> pools_;
+};
+
+}  // namespace catena::scene

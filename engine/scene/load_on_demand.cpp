@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include "engine/base/numbers.h"
+#include "engine/base/system_failure.h"
+#include "engine/base/text.h"
+#include "engine/io/field_cache.h"
+#include "engine/io/volume/units.h"
+#include "engine/scene/auto_transfer.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/labels.h"
+#include "engine/scene/reader_bindings.h"
+#include "engine/scene/streamlines.h"
+#include "engine/scene/time_steps.h"
+#include "engine/scene/vortex_core_curves.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr double kFarthestDrawn = 1e30;  ///< world coordinates: as those that a scene may write
+constexpr std::size_t kManyCurves = 64;  ///< from here on those that nothing holds are looked for
+
+/// A field without a single value helps nobody.
+Outcome check_grid(const field::AnyField& any) {
+  const field::GridStats* stats = nullptr;
+  if (any.scalar && any.scalar->grid()) stats = &any.scalar->grid()->stats();
+  if (any.vector && any.vector->grid()) stats = &any.vector->grid()->stats();
+  if (stats == nullptr) return Done{};
+  if (stats->active_voxels == 0) return Error{"grid " + in_quotes(any.get()->name()) + " is empty; active voxels were expected"};
+  if (stats->nan_count >= stats->active_voxels)
+    return Error{"grid " + in_quotes(any.get()->name()) + " holds no finite value; numbers were expected"};
+  return Done{};
+}
+
+Result<field::AnyField> load_source(const FieldSource& source) {
+  if (!source.file) return field::make_analytic(source.analytic, source.parameters);
+  auto loaded = source.has_changed_step || !source.series.empty() ? field::load_cached(*source.file) : field::load(*source.file);
+  if (!loaded && source.grid_is_optional && !source.file->grid.empty()) {
+    field::LoadRequest any_grid = *source.file;
+    any_grid.grid.clear();
+    loaded = field::load(any_grid);
+  }
+  if (!loaded) return loaded.error();
+  CATENA_CHECK(check_grid(*loaded));
+  return *loaded;
+}
+
+/// What lies in a source's file; the error stands at the source's place in the scene file, where it has one.
+template <class Source, class Load>
+auto load_once(Scene& scene, Entity entity, const std::string& kind, const Load& load) -> Result<decltype(Source::loaded)> {
+  Source& source = scene.entities.get<Source>(entity);
+  if (source.loaded) return source.loaded;
+  auto loaded = load(source);
+  if (!loaded && source.where.line == 0) return loaded.error();
+  if (!loaded)
+    return with_cause(
+        json::error_at(source.where, kind + " " + in_quotes(scene.entities.get<Name>(entity).value) + ": " + loaded.error().message),
+        loaded.error());
+  source.loaded = *loaded;
+  request_step_times(source.steps, source.path);
+  return source.loaded;
+}
+
+/// Between labels there is nothing to mix: a note where what is marked as labels is read by cells, unless a surface of labels is made of
+/// it.
+void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource& source) {
+  const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
+  if (!source.file || grid == nullptr || grid->interpolation() == field::Interpolation::nearest) return;
+  const std::string& path = source.file->path;
+  const bool table = !source.labels_table.empty();
+  if (!table && (path.ends_with(".vdb") || !field::read_units(path, source.file->grid).is_label_map)) return;  // a .vdb has no such mark
+  bool made = false;
+  scene.entities.each<FieldSource>(
+      [&](Entity, const FieldSource& other) { made = made || (other.label && other.label->label_map == name); });
+  if (made) return;
+  scene.notes.push_back(fmt::format(
+      "field {}: {}, and {} cells make numbers between them that stand for nothing; \"interpolation\": \"nearest\" was expected",
+      in_quotes(name), table ? "it has \"labels\"" : path + " says that it holds labels (NIFTI_INTENT_LABEL)",
+      grid->interpolation() == field::Interpolation::cubic ? "cubic" : "linear"));
+}
+
+/// Pictures and forces are of numbers that a scene can state.
+void note_tiny_values(Scene& scene, const std::string& name, const FieldSource& source) {
+  const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
+  if (grid == nullptr) return;
+  const double most = std::max(std::fabs(grid->stats().min), std::fabs(grid->stats().max));
+  if (most == 0 || most >= kMinSize) return;
+  scene.notes.push_back(fmt::format(
+      "field {}: its values are at most {} in size, too little for pictures and forces; from {} on were expected: scale the data",
+      in_quotes(name), format_readable(most), format_readable(kMinSize)));
+}
+
+/// Colours without a stated range leave outliers and fill values out.
+void note_outliers(Scene& scene, const std::string& name, const FieldSource& source) {
+  if (source.has_changed_step) return;
+  const std::string note = outlier_note(field::display_range(source.loaded));
+  if (!note.empty()) scene.notes.push_back("field " + in_quotes(name) + ": " + note);
+}
+
+}  // namespace
+
+Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::Node& where) {
+  FieldSource& source = scene.entities.get<FieldSource>(field);
+  if (source.loaded.get() != nullptr) return source.loaded;
+  if (source.label) {
+    CATENA_TRY(field::AnyField surface, resolve_label_surface(scene, field));
+    scene.entities.get<FieldSource>(field).loaded = surface;
+    return surface;
+  }
+  auto loaded = load_source(source);
+  if (!loaded) {
+    const json::Node& place = source.where.line != 0 ? source.where : where;
+    return with_cause(json::error_at(place, "field " + in_quotes(scene.entities.get<Name>(field).value) + ": " + loaded.error().message),
+                      loaded.error());
+  }
+  source.loaded = *loaded;
+  for (const std::string& note : source.has_changed_step ? std::vector<std::string>() : loaded->notes)
+    scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
+  load_label_map(source);
+  note_mixed_labels(scene, scene.entities.get<Name>(field).value, source);
+  note_tiny_values(scene, scene.entities.get<Name>(field).value, source);
+  note_outliers(scene, scene.entities.get<Name>(field).value, source);
+  return source.loaded;
+}
+
+Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, const json::Node& where) {
+  CATENA_TRY(const Entity field, require_named<FieldSource>(scene, name, where, "field", "fields"));
+  return resolve_field(scene, field, where);
+}
+
+/// Of the farthest corner, along an axis.
+static double reach_of(const field::Field& grid) {
+  const Bounds box = field::world_bounds(grid.mapping(), grid.index_box());
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis) most = std::max({most, std::fabs(box.lo[axis]), std::fabs(box.hi[axis])});
+  return most;
+}
+
+Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const json::Node& where) {
+  CATENA_TRY(const field::AnyField loaded, resolve_field(scene, field, where));
+  FieldSource& source = scene.entities.get<FieldSource>(field);
+  if (source.rendered.get() == nullptr) {
+    if (loaded.get()->is_grid()) {
+      if (const double reach = reach_of(*loaded.get()); reach > kFarthestDrawn)
+        return json::error_at(source.where.line != 0 ? source.where : where,
+                              fmt::format("field {}: reaches {:.3g} from the origin, which no picture shows; at most {:g} was expected",
+                                          in_quotes(scene.entities.get<Name>(field).value), reach, kFarthestDrawn));
+      source.rendered = loaded;
+    } else {
+      const auto drawn = field::try_sample_on_grid(loaded, source.resolution, source.box[0], source.box[1]);
+      if (!drawn) return with_cause(json::error_at(source.where, drawn.error().message), drawn.error());
+      source.rendered = *drawn;
+    }
+  }
+  Outcome mapped = Done{};
+  if (source.rendered.scalar)
+    scene.entities.each<Volume>([&](Entity, Volume& volume) {
+      if (volume.field != field || is_complete(volume.transfer)) return;
+      const field::ScalarGrid& grid = *source.rendered.scalar->grid();
+      if (shows_labels(scene, field, volume.transfer.colors, volume.transfer.named)) {
+        volume.transfer.colors = make_label_colors(*source.labels);
+        volume.transfer.named.mapping = {};
+        if (volume.transfer.extinctions.empty() && volume.transfer.opacities.empty()) volume.transfer.opacities = {{0.4, 0}, {0.6, 0.9}};
+        return;
+      }
+      if (!scene.cache.has<ValueSample>(field)) scene.cache.emplace<ValueSample>(field);
+      ValueSample& sample = scene.cache.get<ValueSample>(field);
+      if (sample.grid != source.rendered.get()) sample = {source.rendered.get(), sorted_values(grid)};
+      complete_transfer(volume.transfer, grid, *sample.sorted);
+      if (Outcome found = check_mapping(volume.where, volume.transfer.named.mapping, volume.transfer.colors.front().value); !found)
+        mapped = std::move(found);
+    });
+  CATENA_CHECK(mapped);
+  return source.rendered;
+}
+
+Result<mesh::MeshPtr> resolve_mesh(Scene& scene, Entity mesh) {
+  return load_once<MeshSource>(scene, mesh, "mesh",
+                               [](const MeshSource& source) { return mesh::load_mesh(source.path, source.placement, source.steps.step); });
+}
+
+Result<mesh::MeshPtr> resolve_mesh(Scene& scene, const std::string& name, const json::Node& where) {
+  CATENA_TRY(const Entity mesh, require_named<MeshSource>(scene, name, where, "mesh", "\"meshes\""));
+  return resolve_mesh(scene, mesh);
+}
+
+Result<curves::CurveSetPtr> resolve_curves(Scene& scene, Entity curves) {
+  if (scene.entities.get<CurvesSource>(curves).vortex_cores) return resolve_vortex_core_curves(scene, curves);
+  return load_once<CurvesSource>(scene, curves, "curves",
+                                 [](const CurvesSource& source) { return curves::load_curves(source.path, source.steps.step); });
+}
+
+Result<curves::CurveSetPtr> resolve_curves(Scene& scene, const std::string& name, const json::Node& where) {
+  CATENA_TRY(const Entity curves, require_named<CurvesSource>(scene, name, where, "curves", "\"curves\""));
+  return resolve_curves(scene, curves);
+}
+
+Result<curves::PointSetPtr> resolve_points(Scene& scene, Entity points) {
+  return load_once<PointsSource>(scene, points, "points",
+                                 [](const PointsSource& source) { return curves::load_points(source.path, source.steps.step); });
+}
+
+Result<curves::PointSetPtr> resolve_points(Scene& scene, const std::string& name, const json::Node& where) {
+  CATENA_TRY(const Entity points, require_named<PointsSource>(scene, name, where, "points", "\"points\""));
+  return resolve_points(scene, points);
+}
+
+Result<flow::CurvePtr> resolve_streamline(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length) {
+  CATENA_ASSERT(flow.field != nullptr);
+  if (!is_finite(seed)) return json::error_at(where, "the seed is not finite; three finite numbers [x, y, z] were expected");
+  const Scene::CurveKey key{flow.field->version(), flow.is_line_field, flow.min_speed, length, {seed.x, seed.y, seed.z}};
+  if (const auto it = scene.traced_curves.find(key); it != scene.traced_curves.end()) return it->second;
+  flow::TraceOptions options;
+  options.length = length;
+  auto curve = flow::trace(flow, seed, options);
+  if (!curve) return with_cause(json::error_at(where, curve.error().message), curve.error());
+  if (scene.traced_curves.size() >= kManyCurves) drop_unused_curves(scene);
+  scene.traced_curves.emplace(key, *curve);
+  return *curve;
+}
+
+Outcome check_surface(const Scene& scene, Entity field, const json::Node& where) {
+  const field::AnyField& any = loaded_field(scene, field);
+  const std::string why = any.scalar ? field::no_surface_hint(*any.scalar, scene.entities.get<Name>(field).value) : std::string();
+  return why.empty() ? Outcome(Done{}) : json::error_at(where, why);
+}
+
+Outcome check_level(const field::ScalarField& field, double level, const json::Node& where) {
+  const double lo = field.min_value(), hi = field.max_value();
+  if (level >= lo && level <= hi) return Done{};
+  return json::error_at(where, "level " + to_text(level) + " lies outside the field's values " + format_readable(lo) + ".." +
+                                   format_readable(hi) + "; a level that the field attains was expected");
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,176 @@
+#include "engine/base/text.h"
+#include "engine/scene/reader_bindings.h"
+#include "engine/scene/to_json.h"
+
+namespace catena::scene {
+
+Key clip_key() { return schema::boolean("clip", "False: the clip planes leave it whole.").with_default("true"); }
+Key visible_key() { return schema::boolean("visible", "False: it is not drawn, but still felt and followed.").with_default("true"); }
+Key opacity_key(const std::string& help) { return schema::number("opacity", "", help).within(0, 1); }
+
+Keys color_scale_keys(std::string_view map, const std::string& range) {
+  return {schema::any_of("color", {schema::table("", 4, "value", ""), schema::text("", "")},
+                         "Rows `[value, r, g, b]`, or the name of a colour map (`catena info --colormaps`).")
+              .with_range_text("values rising")
+              .with_default("\"" + std::string(map) + "\""),
+          schema::vector("range", 2, "value", "Between which values the named map lies; not beside a table.")
+              .with_range_text("rising")
+              .with_default(range),
+          schema::choice("mapping", {std::begin(kMappingNames), std::end(kMappingNames)},
+                         "The scale between the points of colours and opacities: by the logarithm, or by it away from 0 on both sides.")
+              .with_default("\"linear\""),
+          schema::number("linear_below", "value", "Of `symlog`: up to this size values are linear.")
+              .positive()
+              .with_default("a thousandth of the greatest"),
+          schema::file("transfer", "A file that says all of it: Catena's (`assets/transfer/`) or a ParaView colour map.")};
+}
+
+Keys transfer_keys() {
+  return schema::concatenate(
+      color_scale_keys(kDefaultVolumeColorMap, "0.5 to 99.8 percentile; with a named map the display range"),
+      {schema::table("opacity", 2, "value, 1", "Rows `[value, alpha]`, alpha per `opacity_unit`; 1 counts as 0.999.")
+           .with_range_text("0 <= alpha <= 1")
+           .with_default("from the values"),
+       schema::number("opacity_unit", "world", "The length that alpha is meant for.").positive().with_default("smallest voxel edge"),
+       schema::table("extinction", 2, "value, 1/world", "Rows `[value, sigma]`, instead of `opacity`.").with_range_text("sigma >= 0"),
+       schema::table("gradient_opacity", 2, "value/world, 1", "Rows `[slope, factor]`: the slope multiplies the extinction.")
+           .with_range_text("factor 0 to 1")
+           .with_default("1 everywhere")});
+}
+
+/// How values become colours: the one shape of "color_by", {"field" or "quantity", "color", "range", "mapping", "transfer"}.
+
+namespace {
+
+constexpr std::string_view kQuantities[] = {"speed", "arc_length"};
+
+bool knows_quantities(ColorTarget subjects) { return subjects == ColorTarget::lines || subjects == ColorTarget::glyphs; }
+
+Outcome take_scale(const Scene& scene, const json::Node& object, ColorBy& by) {
+  by.where = object;
+  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, object));
+  by.colors = std::move(scale.colors);
+  by.named = std::move(scale.named);
+  return Done{};
+}
+
+bool is_table(const json::Node& color) {
+  return color.kind == json::Kind::string ||
+         (color.kind == json::Kind::array && !color.items.empty() && color.items[0].kind == json::Kind::array);
+}
+
+Outcome read_object(const Scene& scene, const json::Node& node, ColorTarget subjects, ColorBy& by) {
+  CATENA_CHECK(json::check_known_keys(node, schema::key_names(*color_by_key(subjects).members)));
+  const json::Node *field = node.find("field"), *quantity = node.find("quantity"), *value = node.find("value");
+  if (knows_quantities(subjects) && (field != nullptr) == (quantity != nullptr))
+    return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
+                                    " \"field\" and \"quantity\"; exactly one of them was expected");
+  if (subjects == ColorTarget::curves && (field != nullptr) + (quantity != nullptr) + (value != nullptr) != 1)
+    return json::error_at(node,
+                          "\"color_by\" names none or several of \"field\", \"value\" and \"quantity\"; exactly one of them was expected");
+  if (subjects == ColorTarget::points && (field != nullptr) == (value != nullptr))
+    return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
+                                    " \"field\" and \"value\"; exactly one of them was expected");
+  if (value != nullptr) {
+    by.source = ColorBy::Source::value;
+    CATENA_TRY(by.value_name, json::require_string(node, "value"));
+  } else if (quantity != nullptr && subjects == ColorTarget::curves) {
+    CATENA_CHECK(json::get_choice(node, "quantity", 0, {kQuantities[1]}));
+    by.source = ColorBy::Source::arc_length;
+  } else if (quantity != nullptr) {
+    std::vector<std::string_view> known{kQuantities[0]};
+    if (subjects == ColorTarget::lines) known.push_back(kQuantities[1]);
+    CATENA_TRY(const int index, json::get_choice(node, "quantity", 0, known));
+    by.source = index == 0 ? ColorBy::Source::speed : ColorBy::Source::arc_length;
+  } else {
+    CATENA_TRY(by.field, read_field_name(scene, node));
+  }
+  return take_scale(scene, node, by);
+}
+
+/// As it was written once: a word, with the colours' keys beside it.
+Outcome read_word(Scene& scene, const json::Node& item, ColorTarget subjects, ColorBy& by) {
+  const json::Node& node = *item.find("color_by");
+  const std::string name = node.string;
+  by.field = find_field(scene, name);
+  if (!by.field && subjects == ColorTarget::lines && name == kQuantities[0])
+    by.source = ColorBy::Source::speed;
+  else if (!by.field && subjects == ColorTarget::lines && name == kQuantities[1])
+    by.source = ColorBy::Source::arc_length;
+  else if (!by.field && subjects == ColorTarget::lines) {
+    std::vector<std::string_view> names{kQuantities[0], kQuantities[1]};
+    for (const std::string_view field : list_names<FieldSource>(scene)) names.push_back(field);
+    return json::error_at(node, "unknown \"color_by\" " + in_quotes(name) + "; known: " + join_words(names) + suggestion(name, names));
+  } else if (!by.field) {
+    CATENA_TRY(by.field, read_field_name(scene, item, "color_by"));
+  }
+  if (const json::Node* color = item.find("color"); subjects == ColorTarget::lines && color != nullptr && !is_table(*color))
+    return json::error_at(*color,
+                          "\"color\" beside \"color_by\" is no table; rows [value, r, g, b], or the name of a colour map, were expected");
+  CATENA_CHECK(take_scale(scene, item, by));
+  const char* key = by.source == ColorBy::Source::field ? "field" : "quantity";
+  scene.notes.push_back(
+      json::error_at(node, "\"color_by\" as a word, with \"color\", \"range\" and \"transfer\" beside it, is the old way: {\"" +
+                               std::string(key) + "\": " + in_quotes(name) + ", \"color\": ..., ...} says the same")
+          .message);
+  return Done{};
+}
+
+}  // namespace
+
+Key color_by_key(ColorTarget subjects) {
+  Keys keys{schema::reference("field", Role::any_field, "The field whose values are shown; of a vector field, its magnitude.")};
+  if (subjects == ColorTarget::lines)
+    keys.push_back(schema::choice("quantity", {std::string(kQuantities[0]), std::string(kQuantities[1])},
+                                  "Or what the line itself knows: one of `field` and `quantity`."));
+  else if (subjects == ColorTarget::glyphs)
+    keys.push_back(schema::choice("quantity", {std::string(kQuantities[0])}, "Or their speed: one of `field` and `quantity`."));
+  else if (subjects == ColorTarget::points)
+    keys.push_back(schema::text("value", "Or a column of the table, by its name: one of the two."));
+  else if (subjects == ColorTarget::curves) {
+    keys.push_back(schema::text("value", "Or what the file says at each point, by its name there."));
+    keys.push_back(schema::choice("quantity", {std::string(kQuantities[1])}, "Or the way along the line: one of the three."));
+  } else
+    keys[0] = keys[0].required();
+  return schema::object("color_by", schema::concatenate(keys, color_scale_keys()), "Colours by values.");
+}
+
+Outcome read_color_by(Scene& scene, const json::Node& item, ColorTarget subjects, std::optional<ColorBy>& out) {
+  const json::Node* node = item.find("color_by");
+  if (node == nullptr) return Done{};
+  out.emplace();
+  if (node->kind == json::Kind::string && (subjects == ColorTarget::surfaces || subjects == ColorTarget::lines))
+    return read_word(scene, item, subjects, *out);
+  CATENA_CHECK(json::expect_object(*node, "color_by"));
+  return read_object(scene, *node, subjects, *out);
+}
+
+std::string to_json(const Scene& scene, const ColorBy& by) {
+  std::string out =
+      by.source == ColorBy::Source::field   ? "{\"field\": " + to_json(std::string_view(scene.entities.get<Name>(by.field).value))
+      : by.source == ColorBy::Source::value ? "{\"value\": " + to_json(std::string_view(by.value_name))
+                                            : "{\"quantity\": " + to_json(kQuantities[by.source == ColorBy::Source::speed ? 0 : 1]);
+  for (const auto& [key, value] : color_scale_members(by.colors, by.named)) out += ", \"" + key + "\": " + value;
+  return out + "}";
+}
+
+schema::Members color_scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named) {
+  schema::Members out;
+  if (!colors.empty()) out.emplace_back("color", to_json(colors));
+  if (colors.empty() && !named.map.empty()) out.emplace_back("color", to_json(std::string_view(named.map)));
+  if (colors.empty() && named.range) out.emplace_back("range", to_json(*named.range));
+  if (named.mapping.kind != ValueMapping::Kind::linear) out.emplace_back("mapping", to_json(to_string(named.mapping.kind)));
+  if (named.mapping.linear_below > 0) out.emplace_back("linear_below", to_json(named.mapping.linear_below));
+  return out;
+}
+
+schema::Members transfer_members(const TransferFunction& transfer) {
+  auto out = color_scale_members(transfer.colors, transfer.named);
+  if (!transfer.opacities.empty()) out.emplace_back("opacity", to_json(transfer.opacities));
+  if (!transfer.opacities.empty() && transfer.opacity_unit > 0) out.emplace_back("opacity_unit", to_json(transfer.opacity_unit));
+  if (transfer.opacities.empty() && !transfer.extinctions.empty()) out.emplace_back("extinction", to_json(transfer.extinctions));
+  if (!transfer.gradient_factors.empty()) out.emplace_back("gradient_opacity", to_json(transfer.gradient_factors));
+  return out;
+}
+
+}  // namespace catena::scene

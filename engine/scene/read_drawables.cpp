@@ -1,0 +1,232 @@
+/// What is drawn: "volumes", "isosurfaces", "meshes", and the "cursor".
+#include <filesystem>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/io/volume/unsupported_formats.h"
+#include "engine/scene/reader_bindings.h"
+
+namespace catena::scene {
+namespace {
+
+const Table<Volume>& volume_table() {
+  static const auto table = [] {
+    Table<Volume> t;
+    bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field.").required(), &Volume::field);
+    t.group(
+        transfer_keys(),
+        [](Scene& scene, const json::Node& item, Volume& volume) -> Outcome {
+          CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
+          return Done{};
+        },
+        [](const Scene&, const Volume& v) { return transfer_members(v.transfer); });
+    t.bind(schema::boolean("shade", "Lit by the gradient."), &Volume::shaded);
+    t.bind(clip_key(), &Volume::clipped);
+    t.companion(visible_key());
+    t.bind(schema::choice("projection", {"composite", "maximum", "minimum", "average"}, "What a ray makes of its values."),
+           &Volume::projection);
+    bind_color_by(t, ColorTarget::rays, &Volume::color_by);
+    t.check([](Scene&, const json::Node& item, Volume& volume) -> Outcome {
+      if (volume.projection == Volume::Projection::composite) return Done{};
+      const std::string beside =
+          " beside the projection " + in_quotes(item.find("projection")->string) + "; \"composite\" was expected with it";
+      if (volume.color_by) return json::error_at(volume.color_by->where, "\"color_by\" stands" + beside);
+      if (volume.transfer.gradient_factors.empty()) return Done{};
+      return json::error_at(*item.find("projection"), "an opacity by the gradient stands" + beside);
+    });
+    return t;
+  }();
+  return table;
+}
+
+const Table<Isosurface>& isosurface_table() {
+  static const auto table = [] {
+    Table<Isosurface> t;
+    bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field.").required(), &Isosurface::field);
+    const Key level = schema::number("level", "value", "The value on the surface, or an isolevel widget whose value it follows.")
+                          .required()
+                          .with_range_text("in the field's range")
+                          .with_role(Role::level)
+                          .or_widget();
+    t.custom(
+        level,
+        [](Scene& scene, const json::Node& item, Isosurface& surface) -> Outcome {
+          if (const json::Node* node = item.find("level"); node != nullptr && node->kind == json::Kind::object) {
+            CATENA_CHECK(json::check_known_keys(*node, {"widget"}));
+            CATENA_TRY(surface.level_widget, read_widget_name(scene, *node, {widget::Kind::isolevel}, "an isolevel"));
+          } else {
+            CATENA_TRY(surface.level, json::require_number(item, "level"));
+          }
+          return Done{};
+        },
+        [](const Scene& scene, const Isosurface& s) {
+          return s.level_widget ? "{\"widget\": " + schema::write_value(scene.entities.get<Name>(s.level_widget).value) + "}"
+                                : schema::write_value(s.level);
+        });
+    t.bind(schema::color("color", "Its colour."), &Isosurface::color);
+    t.bind(opacity_key("Of one side."), &Isosurface::opacity);
+    t.bind(clip_key(), &Isosurface::clipped);
+    t.companion(visible_key());
+    bind_color_by(t, ColorTarget::rays, &Isosurface::color_by);
+    return t;
+  }();
+  return table;
+}
+
+/// An item of "meshes": the file, which is felt and drawn, and how it is drawn.
+struct MeshItem {
+  std::string name;
+  MeshSource source;
+  SurfaceMesh surface;
+  bool drawn = true;
+};
+
+/// "color", or "color_by".
+Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
+  SurfaceMesh& surface = mesh.surface;
+  CATENA_CHECK(read_color_by(scene, item, ColorTarget::surfaces, surface.color_by));
+  const json::Node* by = item.find("color_by");
+  if (by != nullptr && by->kind == json::Kind::string) return Done{};
+  for (const char* key : {"range", "transfer"})
+    if (const json::Node* node = item.find(key))
+      return json::error_at(*node,
+                            in_quotes(key) + " is given, but nothing says of what; it was expected within \"color_by\": {\"field\": NAME}");
+  return schema::read_value(schema::color("color", ""), item, surface.color);
+}
+
+const Table<MeshItem>& mesh_table() {
+  static const auto table = [] {
+    Table<MeshItem> t;
+    t.custom(schema::identifier("name", "By which a link names it.").required(),
+             [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
+               CATENA_TRY(mesh.name, read_new_name<MeshSource>(scene, item, "mesh"));
+               return Done{};
+             });
+    t.custom(schema::file("file", "The file: " + join_alternatives(mesh::mesh_endings()) + ".").required(),
+             [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
+               CATENA_TRY(mesh.source.path, read_path(scene, item, "mesh", mesh.name, mesh::mesh_endings(), mesh.source.steps));
+               return Done{};
+             });
+    t.bind(
+        schema::number("scale", "", "World units per unit of the file.").positive(),
+        [](auto& m) -> auto& { return m.source.placement.scale; });
+    t.bind(
+        schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
+    t.bind(schema::boolean("drawn", "False: it is only felt."), &MeshItem::drawn);
+    t.custom(schema::color("color", "Its colour, without `color_by`.").with_default(schema::write_value(SurfaceMesh{}.color)),
+             read_mesh_color);
+    t.companion(color_by_key(ColorTarget::surfaces));
+    t.bind(
+        opacity_key("Of one side."), [](auto& m) -> auto& { return m.surface.opacity; });
+    t.bind(
+        schema::choice("shading", {"flat", "smooth"}, "How it is lit; the hand feels it flat."),
+        [](auto& m) -> auto& { return m.surface.smooth_shading; });
+    t.bind(
+        schema::boolean("edges", "Draws the triangles' edges."), [](auto& m) -> auto& { return m.surface.show_edges; });
+    t.bind(
+        clip_key(), [](auto& m) -> auto& { return m.surface.clipped; });
+    t.companion(visible_key());
+    t.deprecated("range").deprecated("transfer");  // beside "color_by" as a word
+    return t;
+  }();
+  return table;
+}
+
+const Table<Cursor>& cursor_table() {
+  static const auto table = [] {
+    Table<Cursor> t;
+    t.custom(schema::vec3("probe", "world", "Where the hand stands in a still picture."),
+             [](Scene&, const json::Node& node, Cursor& cursor) -> Outcome {
+               CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
+               if (probe) cursor.probe = *probe;
+               cursor.visible = cursor.visible || probe;
+               return Done{};
+             });
+    t.bind(schema::number("size", "world", "Radius of its ball; half the length of the rods.").positive().with_default("fitted"),
+           &Cursor::size);
+    t.bind(schema::boolean("ghost", "Hand, proxies and force shine through what hides them."), &Cursor::show_occluded);
+    t.bind(schema::choice(
+               "shape", {"ball", "crosshair"},
+               "`crosshair`: three thin rods cross where the hand is; proxies and force are not shown, so that the picture does not "
+               "tell what is felt."),
+           &Cursor::crosshair);
+    t.bind(schema::boolean("drop_line",
+                           "A thin line from the hand down to the floor of the domain, with a small cross where it meets it, says how deep "
+                           "the hand is."),
+           &Cursor::drop_line);
+    return t;
+  }();
+  return table;
+}
+
+template <class T>
+Outcome read_items(Scene& scene, const json::Node& node, const Table<T>& table) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    T made;
+    made.where = item;
+    CATENA_CHECK(table.read(scene, item, made));
+    const Entity e = scene.entities.create();
+    scene.entities.emplace<T>(e, std::move(made));
+    return read_visible(scene, e, item);
+  });
+}
+
+Outcome read_meshes(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    MeshItem mesh;
+    mesh.source.where = mesh.surface.where = item;
+    CATENA_CHECK(mesh_table().read(scene, item, mesh));
+    mesh.surface.mesh = scene.entities.create();
+    scene.entities.emplace<Name>(mesh.surface.mesh, {mesh.name});
+    scene.entities.emplace<MeshSource>(mesh.surface.mesh, std::move(mesh.source));
+    const Entity e = scene.entities.create();
+    if (mesh.drawn) scene.entities.emplace<SurfaceMesh>(e, std::move(mesh.surface));
+    return read_visible(scene, e, item);
+  });
+}
+
+Outcome read_cursor(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "cursor"));
+  return cursor_table().read(scene, node, scene.entities.get<Cursor>(scene.cursor));
+}
+
+}  // namespace
+
+std::string file_problem(const std::string& path, bool known, const std::string& wanted, bool folders) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const auto fault = [&](const char* what) { return in_quotes(path) + what + "; " + wanted + " was expected"; };
+  if (const std::string conversion = known ? "" : field::conversion_hint(path); !conversion.empty())
+    return in_quotes(path) + " is " + conversion;
+  if (!known) return fault(" has an unknown kind");
+  if (!fs::exists(path, code)) return fault(" does not exist");
+  if (!fs::is_regular_file(path, code) && !(folders && fs::is_directory(path, code))) return fault(" is not a file");
+  return {};
+}
+
+Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
+  return read_named<FieldSource>(scene, object, key, "field", "fields");
+}
+
+std::string to_json(const Scene& scene, const Volume& volume) { return volume_table().write(scene, volume); }
+std::string to_json(const Scene& scene, const Isosurface& surface) { return isosurface_table().write(scene, surface); }
+
+Part volumes_part() {
+  return {make_list_component("volumes", "Volumes seen through. At most four.", volume_table()),
+          [](Scene& scene, const json::Node& node) { return read_items(scene, node, volume_table()); }};
+}
+
+Part isosurfaces_part() {
+  return {make_list_component("isosurfaces", "Surfaces on which a scalar field has one value. At most eight translucent ones.",
+                              isosurface_table()),
+          [](Scene& scene, const json::Node& node) { return read_items(scene, node, isosurface_table()); }};
+}
+
+Part meshes_part() { return {make_list_component("meshes", "Triangle meshes, which are drawn and felt.", mesh_table()), read_meshes}; }
+
+Part cursor_part() {
+  return {{"cursor", "The hand in a still picture; a device or a replay moves it.", schema::Section::Layout::object, cursor_table().keys()},
+          read_cursor};
+}
+
+}  // namespace catena::scene

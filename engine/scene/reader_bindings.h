@@ -1,0 +1,112 @@
+/// What the scene calls by names, fields, meshes, curves, points and widgets: how their names and files are read, and what is said of a
+/// name that nothing has. RecordWords of the messages: `kind` is what one is called ("mesh"), `list` what all of them are. Inside this room
+/// only.
+#pragma once
+#include "engine/scene/readers.h"
+#include "engine/scene/time_steps.h"
+#include "engine/scene/visibility.h"
+
+namespace catena::scene {
+
+template <class T>
+std::vector<std::string_view> list_names(const Scene& scene) {
+  std::vector<std::string_view> names;
+  scene.entities.each<T>([&](Entity e, const T&) { names.push_back(scene.entities.get<Name>(e).value); });
+  return names;
+}
+
+/// The one of that name; an error at `where`.
+template <class T>
+Result<Entity> require_named(const Scene& scene, const std::string& name, const json::Node& where, const std::string& kind,
+                             const std::string& list) {
+  if (const Entity found = find_named<T>(scene, name)) return found;
+  const std::vector<std::string_view> names = list_names<T>(scene);
+  return json::error_at(where, "unknown " + kind + " " + in_quotes(name) + "; one of the scene's " + list +
+                                   " was expected: " + (names.empty() ? "it has none" : join_words(names)) + suggestion(name, names));
+}
+
+/// The one that member `key` of `object` names.
+template <class T>
+Result<Entity> read_named(const Scene& scene, const json::Node& object, std::string_view key, const std::string& kind,
+                          const std::string& list) {
+  CATENA_TRY(const std::string name, json::require_string(object, key));
+  if (const Entity found = find_named<T>(scene, name)) return found;
+  const std::vector<std::string_view> names = list_names<T>(scene);
+  return json::error_at(*object.find(key), "unknown " + kind + " " + in_quotes(name) +
+                                               "; known: " + (names.empty() ? "none" : join_words(names)) + ", one of " + in_quotes(list) +
+                                               " was expected" + suggestion(name, names));
+}
+
+/// "name" of a new one. `many`: one of them is several things ("curves").
+template <class T>
+Result<std::string> read_new_name(const Scene& scene, const json::Node& item, const std::string& kind, bool many = false) {
+  CATENA_TRY(std::string name, json::require_string(item, "name"));
+  const json::Node& node = *item.find("name");
+  CATENA_CHECK(check_name(kind, name, node));
+  if (find_named<T>(scene, name))
+    return json::error_at(node, (many ? "second " + kind + " are" : "a second " + kind + " is") + " called " + in_quotes(name) +
+                                    "; a name of " + (many ? "their" : "its") + " own was expected");
+  return name;
+}
+
+/// "file" of the item called `name`: the path of a file that is there and has one of these endings, or the file of a pattern for the
+/// scene's step.
+inline Result<std::string> read_path(const Scene& scene, const json::Node& item, const std::string& kind, const std::string& name,
+                                     const std::vector<std::string_view>& endings, FileSteps& steps) {
+  CATENA_TRY(const std::string file, json::require_string(item, "file"));
+  std::string path = resolve_path(scene.path, file);
+  if (is_pattern(path)) {
+    steps.pattern = path;
+    steps.series = expand_pattern(path);
+    if (steps.series.empty())
+      return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": no file is called like " + in_quotes(path));
+    path = steps.series[std::min(static_cast<std::size_t>(scene.time.step), steps.series.size() - 1)];
+  }
+  steps.step = scene.time.step;
+  const bool known = std::ranges::any_of(endings, [&](std::string_view ending) { return has_extension(path, ending); });
+  if (const std::string fault = file_problem(path, known, "a " + join_alternatives(endings) + " file"); !fault.empty())
+    return json::error_at(*item.find("file"), kind + " " + in_quotes(name) + ": file " + fault);
+  return path;
+}
+
+/// An item of "curves" or "points": a file, drawn under a name.
+template <class T>
+struct FileItem {
+  std::string name;
+  T item;
+};
+
+/// Its first keys, "name" and "file"; `file` says what that is, and `needs_file` whether it must be there.
+template <class T>
+Table<FileItem<T>> make_file_table(const std::string& kind, const std::string& file, const std::vector<std::string_view>& endings,
+                                   bool needs_file = true) {
+  Table<FileItem<T>> t;
+  t.custom(schema::identifier("name", "By which a link names them.").required(),
+           [kind](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
+             CATENA_TRY(made.name, read_new_name<T>(scene, item, kind, true));
+             return Done{};
+           });
+  const Key key = schema::file("file", file + ": " + join_alternatives(endings) + ".");
+  t.custom(needs_file ? key.required() : key,
+           [kind, endings, needs_file](Scene& scene, const json::Node& item, FileItem<T>& made) -> Outcome {
+             if (!needs_file && item.find("file") == nullptr) return Done{};
+             CATENA_TRY(made.item.path, read_path(scene, item, kind, made.name, endings, made.item.steps));
+             return Done{};
+           });
+  return t;
+}
+
+template <class T>
+Outcome read_file_items(Scene& scene, const json::Node& node, const Table<FileItem<T>>& table) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    FileItem<T> made;
+    made.item.where = item;
+    CATENA_CHECK(table.read(scene, item, made));
+    const Entity e = scene.entities.create();
+    scene.entities.emplace<Name>(e, {made.name});
+    scene.entities.emplace<T>(e, std::move(made.item));
+    return read_visible(scene, e, item);
+  });
+}
+
+}  // namespace catena::scene

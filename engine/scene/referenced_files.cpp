@@ -1,0 +1,136 @@
+#include "engine/scene/referenced_files.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/base/json_edit.h"
+#include "engine/base/output_file.h"
+#include "engine/io/volume/formats.h"
+#include "engine/scene/readers.h"
+
+namespace catena::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_string(const json::Node& object, std::string_view key, std::vector<const json::Node*>& names) {
+  const json::Node* node = object.find(key);
+  if (node != nullptr && node->kind == json::Kind::string && !node->string.empty()) names.push_back(node);
+}
+
+/// Every string of `object` whose key names a file, by the keys' roles; in lists and objects of it, too.
+void add_files(const json::Node& object, const schema::Keys& keys, std::vector<const json::Node*>& names) {
+  for (const schema::Key& key : keys) {
+    if (key.role == schema::Role::file) add_string(object, key.name, names);
+    const json::Node* value = object.find(key.name);
+    if (value != nullptr && key.value_type == schema::ValueType::object) add_files(*value, *key.members, names);
+  }
+}
+
+/// Of an item of a part, or of the part itself.
+void add_files(const json::Node& item, const schema::Section& component, std::vector<const json::Node*>& names) {
+  add_files(item, component.keys, names);
+  for (const schema::Variant& variant : component.variants) add_files(item, variant.keys, names);
+  if (schema::find(component.keys, "color_by") != nullptr) add_string(item, "transfer", names);  // beside "color_by" as a word
+}
+
+/// The values that name files, in the text's order.
+std::vector<const json::Node*> file_names(const json::Node& root) {
+  std::vector<const json::Node*> names;
+  for (const schema::Section& component : scene_components()) {
+    const json::Node* part = root.find(component.name);
+    if (part == nullptr) continue;
+    for (const json::Node& item : part->items) add_files(item, component, names);
+    if (component.layout == schema::Section::Layout::map)
+      for (const auto& [name, item] : part->members) add_files(item, component, names);
+    else
+      add_files(*part, component, names);
+  }
+  if (const json::Node* device = root.find("device")) add_string(*device, "firmware", names);
+  std::sort(names.begin(), names.end(), [](const json::Node* a, const json::Node* b) { return a->begin < b->begin; });
+  names.erase(std::unique(names.begin(), names.end()), names.end());  // a key of several variants
+  return names;
+}
+
+fs::path folder_of(const std::string& path) {
+  std::error_code code;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(path, code).parent_path(), code);
+  return code ? fs::path(path).parent_path() : folder;
+}
+
+/// The file as a scene in that folder names it. Links on the way are followed, the file itself keeps its name: its ending counts.
+std::string name_from(const std::string& file, const fs::path& folder) {
+  const std::string name = (folder_of(file).lexically_relative(folder) / fs::path(file).filename()).lexically_normal().string();
+  std::error_code code;
+  return is_same_file((folder / name).string(), file) ? name : fs::absolute(file, code).lexically_normal().string();
+}
+
+/// The text with an override in it: what apply_override makes of the field, said by the field.
+Result<std::string> with_override(std::string text, const std::string& path, const FieldOverride& with) {
+  const std::string name = fs::path(with.file).is_absolute() ? with.file : name_from(with.file, folder_of(path));
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  const std::string pointer = "/fields/" + json::escape_pointer_token(with.name);
+  const json::Node* field = json::find_value(root, pointer);
+  const json::Node* file = field == nullptr ? nullptr : field->find("file");
+  const bool raw = file != nullptr && field::needs_layout(file->string);
+  if (file == nullptr || (raw && !field::needs_layout(name))) {
+    const std::string grid = with.grid.empty() ? "" : ", \"grid\": " + json::serialize_string(with.grid);
+    return json::set_value(text, path, pointer, "{\"file\": " + json::serialize_string(name) + grid + "}");
+  }
+  CATENA_TRY(text, json::set_value(text, path, pointer + "/file", json::serialize_string(name)));
+  if (raw) return text;
+
+  // the grid and the mask of the file before are wishes: without them the file's own
+  const json::Node *grid = field->find("grid"), *valid = field->find("valid");
+  const bool wish = grid != nullptr && with.grid.empty(), mask = valid != nullptr && valid->kind == json::Kind::string;
+  const auto grids = wish || mask ? field::describe_grids(with.file) : Result<std::vector<field::GridInfo>>(Error{});
+  const auto lacks = [&](const json::Node& node) {
+    return grids && std::none_of(grids->begin(), grids->end(), [&](const field::GridInfo& info) { return info.name == node.string; });
+  };
+  if (!with.grid.empty()) {
+    CATENA_TRY(text, json::set_value(text, path, pointer + "/grid", json::serialize_string(with.grid)));
+  } else if (wish && lacks(*grid)) {
+    CATENA_TRY(text, json::remove_value(text, path, pointer + "/grid"));
+  }
+  if (mask && lacks(*valid)) {
+    CATENA_TRY(text, json::set_value(text, path, pointer + "/valid", "null"));
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> referenced_files(std::string_view text, const std::string& path,
+                                                  const std::vector<FieldOverride>& overrides) {
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  return referenced_files(root, path, overrides);
+}
+
+std::vector<std::string> referenced_files(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
+  std::vector<std::string> files;
+  for (const json::Node* name : file_names(root)) files.push_back(resolve_path(path, name->string));
+  for (const FieldOverride& with : overrides)
+    if (!with.file.empty()) files.push_back(with.file);
+  return files;
+}
+
+Result<std::string> relocate_text(std::string_view text, const std::string& from, const std::string& to,
+                                  const std::vector<FieldOverride>& overrides) {
+  std::string moved(text);
+  const fs::path folder = folder_of(to);
+  if (folder_of(from) != folder) {
+    CATENA_TRY(const json::Node root, json::parse(text, from));
+    const std::vector<const json::Node*> names = file_names(root);
+    // from the end, so that the places before keep theirs
+    for (auto it = names.rbegin(); it != names.rend(); ++it)
+      if (fs::path((*it)->string).is_relative())
+        moved.replace((*it)->begin, (*it)->end - (*it)->begin,
+                      json::serialize_string(name_from(resolve_path(from, (*it)->string), folder)));
+  }
+  for (const FieldOverride& with : overrides) {
+    CATENA_TRY(moved, with_override(std::move(moved), to, with));
+  }
+  return moved;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,94 @@
+#include "engine/scene/uniform_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena::scene {
+namespace {
+
+constexpr double kCornersLost = 4;   ///< a rectangle about a section is at most so many times larger than it
+constexpr double kOnTheEdge = 1e-9;  ///< of a step, or of a voxel: rounding
+constexpr double kMostAnAxis = 1 << 24;
+
+/// Where the plane crosses the twelve edges of the domain.
+std::vector<Vec3> section_corners(const Domain& domain, const Vec3& point, const Vec3& normal) {
+  const auto corner = [&](int i) { return field::world_corner(domain.mapping, domain.box, i); };
+  double most = 0;
+  for (int i = 0; i < 8; ++i) most = std::max(most, std::fabs(dot(normal, corner(i) - corner(0))));
+  const double slack = kOnTheEdge * most;
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    for (int step = 1; step < 8; step *= 2) {
+      if ((i & step) != 0) continue;
+      const Vec3 a = corner(i), b = corner(i | step);
+      const double from = dot(normal, a - point), to = dot(normal, b - point);
+      if (std::fabs(from) <= slack) corners.push_back(a);
+      if (std::fabs(to) <= slack) corners.push_back(b);
+      if ((from < -slack && to > slack) || (from > slack && to < -slack)) corners.push_back(a + from / (from - to) * (b - a));
+    }
+  return corners;
+}
+
+}  // namespace
+
+UniformSamples sample_plane(const Domain& domain, const Vec3& point, const Vec3& normal, double spacing, std::size_t most) {
+  const Vec3 n = direction(normal);
+  int axis = 0;
+  for (int a = 1; a < 3; ++a)
+    if (std::fabs(n[a]) < std::fabs(n[axis])) axis = a;
+  Vec3 along(0.0);
+  along[axis] = 1;
+  const Vec3 u = direction(along - dot(along, n) * n), v = cross(n, u);
+  const Vec3 centre = domain.mapping.world_from_index(0.5 * (domain.box.lo + domain.box.hi)), origin = centre - dot(centre - point, n) * n;
+
+  // the lattice's rows and columns about the section
+  double least_u = HUGE_VAL, most_u = -HUGE_VAL, least_v = HUGE_VAL, most_v = -HUGE_VAL;
+  for (const Vec3& corner : section_corners(domain, point, n)) {
+    const double a = dot(corner - origin, u), b = dot(corner - origin, v);
+    least_u = std::min(least_u, a), most_u = std::max(most_u, a);
+    least_v = std::min(least_v, b), most_v = std::max(most_v, b);
+  }
+  UniformSamples even;
+  if (!(least_u <= most_u)) return even;
+  const double row = std::sqrt(0.75) * spacing;
+  even.expected_count = ((most_u - least_u) / spacing + 1) * ((most_v - least_v) / row + 1);
+  if (!(even.expected_count <= kCornersLost * static_cast<double>(most) + 1000) || (most_u - least_u) / spacing > kMostAnAxis ||
+      (most_v - least_v) / row > kMostAnAxis)
+    return even;
+  for (double j = std::ceil(least_v / row - kOnTheEdge); j <= most_v / row + kOnTheEdge; ++j) {
+    const double shift = std::fmod(j, 2) == 0 ? 0 : 0.5;
+    for (double i = std::ceil(least_u / spacing - shift - kOnTheEdge); i + shift <= most_u / spacing + kOnTheEdge; ++i) {
+      const Vec3 place = origin + (i + shift) * spacing * u + j * row * v;
+      if (domain.box.contains(domain.mapping.index_from_world(place), kOnTheEdge)) even.positions.push_back(place);
+    }
+  }
+  even.expected_count = static_cast<double>(even.positions.size());
+  if (even.positions.size() > most) even.positions.clear();
+  return even;
+}
+
+UniformSamples sample_box(const Domain& domain, double spacing, std::size_t most) {
+  const Vec3 low = domain.mapping.world_from_index(domain.box.lo);
+  Vec3 steps[3], first = low;
+  double count[3];
+  UniformSamples even;
+  even.expected_count = 1;
+  for (int a = 0; a < 3; ++a) {
+    Vec3 edge(0.0);
+    edge[a] = domain.box.hi[a] - domain.box.lo[a];
+    edge = domain.mapping.world_from_index_linear * edge;
+    const double length = norm(edge);
+    count[a] = std::floor(length / spacing + kOnTheEdge) + 1;
+    even.expected_count *= count[a];
+    steps[a] = spacing * direction(edge);
+    first += 0.5 * edge - (0.5 * (count[a] - 1)) * steps[a];
+  }
+  if (!(even.expected_count <= static_cast<double>(most))) return even;
+  even.positions.reserve(static_cast<std::size_t>(even.expected_count));
+  for (double k = 0; k < count[2]; ++k)
+    for (double j = 0; j < count[1]; ++j)
+      for (double i = 0; i < count[0]; ++i) even.positions.push_back(first + i * steps[0] + j * steps[1] + k * steps[2]);
+  return even;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,73 @@
+#include "engine/study/statistics/permutation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "engine/study/statistics/summary.h"
+
+namespace catena::statistics {
+namespace {
+
+/// The sums of all choices of signs, rising.
+std::vector<double> sorted_sums(std::span<const double> values) {
+  std::vector<double> sums{0.0};
+  for (const double x : values) {
+    const std::size_t half = sums.size();
+    sums.resize(2 * half);
+    for (std::size_t i = 0; i < half; ++i) {
+      sums[half + i] = sums[i] + std::fabs(x);
+      sums[i] -= std::fabs(x);
+    }
+  }
+  std::sort(sums.begin(), sums.end());
+  return sums;
+}
+
+double exact_share(std::span<const double> values, double bound) {
+  const std::vector<double> first = sorted_sums(values.subspan(0, values.size() / 2));
+  const std::vector<double> second = sorted_sums(values.subspan(values.size() / 2));
+  // the larger the one half, the smaller the other may be; sums come with both signs, so the upper side is half of them
+  double far = 0;
+  std::size_t j = second.size();
+  for (const double x : first) {
+    while (j > 0 && x + second[j - 1] >= bound) --j;
+    far += static_cast<double>(second.size() - j);
+  }
+  return std::min(1.0, 2 * far / std::ldexp(1.0, static_cast<int>(values.size())));
+}
+
+double drawn_share(std::span<const double> values, double bound, std::uint64_t seed, int draws) {
+  std::mt19937_64 random(seed);
+  int far = 0;
+  for (int k = 0; k < draws; ++k) {
+    double sum = 0;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < values.size(); ++i, bits >>= 1) {
+      if (i % 64 == 0) bits = random();
+      sum += (bits & 1) != 0 ? values[i] : -values[i];
+    }
+    if (std::fabs(sum) >= bound) ++far;
+  }
+  return (1.0 + far) / (1.0 + draws);
+}
+
+}  // namespace
+
+Result<SignFlipTest> sign_flip_test(std::span<const double> differences, std::uint64_t seed) {
+  CATENA_CHECK(check_values(differences, 2));
+  double size = 0;
+  for (const double d : differences) size += std::fabs(d);
+  if (!std::isfinite(size)) return Error{"the values are too large to be summed"};
+  if (!(size > 0)) return SignFlipTest{1, true, std::ldexp(1.0, static_cast<int>(differences.size()))};
+  const double bound = std::fabs(std::accumulate(differences.begin(), differences.end(), 0.0)) - 1e-12 * size;
+  if (bound <= 0) return SignFlipTest{1, true, std::ldexp(1.0, static_cast<int>(differences.size()))};
+  if (differences.size() <= kMaxExactFlips)
+    return SignFlipTest{exact_share(differences, bound), true, std::ldexp(1.0, static_cast<int>(differences.size()))};
+  const int draws = static_cast<int>(std::clamp<std::size_t>(20'000'000 / differences.size(), 100, 10'000));
+  return SignFlipTest{drawn_share(differences, bound, seed, draws), false, static_cast<double>(draws)};
+}
+
+}  // namespace catena::statistics

@@ -1,0 +1,175 @@
+#include "engine/widget/state_machine.h"
+
+#include <cstring>
+
+#include "engine/widget/cutting_plane.h"
+#include "engine/widget/handles.h"
+
+namespace catena::widget {
+
+namespace {
+
+// Where a cutting plane goes that is not held by the hand.
+Mode at_rest(const TransitionInput& f) noexcept {
+  return f.near_sphere ? (f.rotate_on_contact ? Mode::turn : Mode::rotate) : f.near_plane ? Mode::explore : Mode::idle;
+}
+
+Mode next_of_cutting_plane(Mode mode, const TransitionInput& f) noexcept {
+  switch (mode) {
+    case Mode::explore:
+      return f.button_pressed ? Mode::translate : at_rest(f);
+    case Mode::translate:
+      return f.button_down ? Mode::translate : at_rest(f);
+    case Mode::rotate:
+      return f.button_pressed ? Mode::turn : at_rest(f);
+    case Mode::turn:
+      if (f.button_pressed || (f.is_gripped && f.button_down)) return Mode::turn;
+      return at_rest(f);
+    default:
+      return at_rest(f);
+  }
+}
+
+Mode next_of_handles(Mode mode, const TransitionInput& f) noexcept {
+  if (mode == Mode::hover && f.button_pressed) return Mode::drag;
+  if (mode == Mode::drag && f.button_down) return Mode::drag;
+  return f.near_handle ? Mode::hover : Mode::idle;
+}
+
+// What the probe is near: how much it comes first, and how far it is.
+struct Near {
+  Proximity reach;
+  int rank = 0;  // 0 nothing, 1 a cutting plane, 2 its sphere, 3 a handle
+};
+
+Near near_of(const Spec& spec, const State& state, const Vec3& probe) noexcept {
+  Near out;
+  out.reach = spec.kind == Kind::cutting_plane ? plane_proximity(spec, state, probe) : handle_proximity(spec, state, probe);
+  out.rank = out.reach.nearest_handle >= 0 ? 3 : out.reach.near_sphere ? 2 : out.reach.near_plane ? 1 : 0;
+  return out;
+}
+
+TransitionInput facts_of(const Spec& spec, const State& state, const Proximity& reach, const TickInput& input) noexcept {
+  const std::uint32_t bit = 1u << ((spec.button - 1) & 31);
+  const bool down = (input.buttons & bit) != 0;
+  return {.near_handle = reach.nearest_handle >= 0,
+          .near_sphere = reach.near_sphere,
+          .near_plane = reach.near_plane,
+          .button_pressed = down && (input.last_buttons & bit) == 0 && !input.probe_returned,
+          .button_down = down,
+          .rotate_on_contact = spec.rotate_on_contact,
+          .is_gripped = state.is_gripped};
+}
+
+bool drags_along(const Spec& spec, const State& state) noexcept {
+  return spec.kind == Kind::ruler && !spec.along_links.empty() && state.mode == Mode::drag && state.handle < 2;
+}
+
+void enter(const Spec& spec, State& state, Mode mode, const TransitionInput& facts, const Proximity& reach, const Vec3& probe) noexcept {
+  state.is_gripped = is_grabbed(mode) && (facts.button_pressed || (state.is_gripped && facts.button_down));
+  if (mode != Mode::drag) state.handle = mode == Mode::hover ? reach.nearest_handle : static_cast<std::int8_t>(-1);
+  if (mode == state.mode) return;
+  state.mode = mode;
+  state.active_planes = 0;
+  state.axis = -1;
+  if (!is_grabbed(mode)) return;
+  state.start_pose = state.pose;
+  if (mode == Mode::turn)
+    begin_turn(spec, state, probe);
+  else if (mode == Mode::translate)
+    state.grip = {probe, state.pose.orientation, 0, 0};
+  else
+    state.grip = make_grip(spec, state, probe);
+}
+
+// After a while without a probe a grab goes on as it was, from where the probe is now.
+void take_anew(State& state, const TickInput& input) noexcept {
+  const Vec3 grab = state.grip.grab_point + (input.probe - input.last_probe);
+  state.grip.grab_point = is_finite(grab) ? grab : input.probe;
+  state.start_pose.orientation = state.pose.orientation;
+  state.rebase_arm = true;
+}
+
+}  // namespace
+
+Mode next_mode(Kind kind, Mode mode, const TransitionInput& facts) noexcept {
+  return kind == Kind::cutting_plane ? next_of_cutting_plane(mode, facts) : next_of_handles(mode, facts);
+}
+
+void reset_state(const Spec& spec, State& state) noexcept {
+  state = State{};
+  state.is_initialized = true;
+  state.revision = spec.revision;
+  state.pose = spec.pose;
+  state.value = spec.value;
+  const Quat& q = spec.pose.orientation;
+  const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  if (!(std::fabs(square - 1) <= 1e-14)) state.pose.orientation = normalized(q);
+  if (spec.kind == Kind::isolevel) update_level(spec, state);
+}
+
+int step_modes(std::span<const Spec> specs, std::span<State> states, const TickInput& input) noexcept {
+  const std::size_t count = std::min({specs.size(), states.size(), static_cast<std::size_t>(kMaxWidgets)});
+  std::array<Near, kMaxWidgets> nears{};
+  std::array<TransitionInput, kMaxWidgets> facts{};
+  std::size_t chosen = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!states[i].is_initialized) reset_state(specs[i], states[i]);
+    if (input.probe_returned && drags_along(specs[i], states[i])) states[i].mode = Mode::idle;
+    nears[i] = near_of(specs[i], states[i], input.probe);
+    facts[i] = facts_of(specs[i], states[i], nears[i].reach, input);
+    // what the hand has, or takes now
+    if (states[i].mode != Mode::idle && is_grabbed(next_mode(specs[i].kind, states[i].mode, facts[i]))) chosen = i;
+  }
+  if (chosen == count) {
+    const auto comes_first = [&](std::size_t a, std::size_t b) {
+      if (nears[a].rank != nears[b].rank) return nears[a].rank > nears[b].rank;
+      const bool a_is = states[a].mode != Mode::idle, b_is = states[b].mode != Mode::idle;
+      return a_is != b_is ? a_is : nears[a].reach.distance < nears[b].reach.distance;
+    };
+    for (std::size_t i = 0; i < count; ++i)
+      if (nears[i].rank > 0 && (chosen == count || comes_first(i, chosen))) chosen = i;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Mode was = states[i].mode;
+    const Mode next = i == chosen ? next_mode(specs[i].kind, was, facts[i]) : Mode::idle;
+    enter(specs[i], states[i], next, facts[i], nears[i].reach, input.probe);
+    if (input.probe_returned && is_grabbed(was) && states[i].mode == was) take_anew(states[i], input);
+  }
+  return chosen < count ? static_cast<int>(chosen) : -1;
+}
+
+ChainRequest plan_chain(const Spec& spec, State& state, const Vec3& probe) noexcept {
+  state.active_planes = 0;
+  return spec.kind == Kind::cutting_plane ? plan_plane_chain(spec, state, probe) : plan_handle_chain(spec, state, probe);
+}
+
+void update_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept {
+  if (!is_grabbed(state.mode) || !is_finite(proxy)) return;
+  const Pose before = state.pose;
+  if (spec.kind == Kind::cutting_plane)
+    update_plane_pose(spec, state, proxy);
+  else
+    update_handle_pose(spec, state, proxy);
+  if (!is_finite(state.pose.points[0]) || !is_finite(state.pose.points[1]) || !is_finite(state.pose.orientation)) state.pose = before;
+  if (spec.kind == Kind::isolevel) update_level(spec, state);
+}
+
+Report make_report(const State& state) noexcept {
+  return {state.pose, state.value, state.revision, state.mode, state.handle, state.active_planes};
+}
+
+bool is_valid_state(const Spec& spec, const State& state) noexcept {
+  const auto byte = [](const auto& value) {
+    unsigned char out;
+    std::memcpy(&out, &value, 1);
+    return out;
+  };
+  if (byte(state.is_initialized) > 1 || byte(state.is_gripped) > 1 || byte(state.rebase_arm) > 1) return false;
+  if (byte(state.mode) > static_cast<unsigned char>(Mode::drag)) return false;
+  const bool on_handle = state.mode == Mode::hover || state.mode == Mode::drag, plane = spec.kind == Kind::cutting_plane;
+  if (state.mode != Mode::idle && plane == on_handle) return false;
+  return state.handle >= (on_handle ? 0 : -1) && state.handle < std::max(handle_count(spec.kind), 1) && state.axis >= -1 && state.axis <= 2;
+}
+
+}  // namespace catena::widget

@@ -1,0 +1,62 @@
+/// The closest point of a smooth level set to the probe x, one fetch an iteration.
+///   n = grad s / |grad s|, l = (s - level) / |grad s|, e = x - p, delta = n.e, t = e - delta n
+///   (I + delta B) u = t on the tangent plane (|eigenvalues| >= 0.1, less after 12 steps), |u| <= D;  p+ = p + u + (-l - u'Bu / 2) n
+/// B, the surface's curvature, is learned by SR1 from step to step and from tick to tick; after three refusals it is measured
+/// with two more fetches.
+/// Accepted: n.n+ > 0.3 and (Armijo on |e + l n|^2 / 2 + l^2 / 2, or |l| halved), else u *= 0.35. Haptic thread.
+#pragma once
+#include "haptics/constraints/common/pull_back.h"
+#include "haptics/constraints/isosurface/level_set_field.h"
+
+namespace catena::haptics {
+
+/// Symmetric; zero bytes: flat. dn = B dp.
+struct Curvature {
+  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  Vec3 times(const Vec3& v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+  }
+};
+
+struct ClosestPointCriteria {
+  double tangential_tolerance = 0;  ///< stop at |t|, world units
+  double level_tolerance = 0;       ///< and |l|
+  int max_fetches = 128;            ///< fetches
+  int max_rejections = 24;          ///< in a row: stuck
+};
+
+enum class ClosestPointResult { converged, stuck, out_of_budget };
+
+/// Moves `at` (valid, not a plateau) to the closest point; `at` is the best point found whatever comes back.
+ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const ClosestPointCriteria& goal, LevelPoint& at,
+                                 Curvature& curvature) noexcept;
+
+/// SR1 update of b from one accepted step, on the tangent plane of its end.
+void update_curvature(const LevelPoint& from, const LevelPoint& to, double length, Curvature& b) noexcept;
+
+/// The curvature at a point by two more fetches, where learning it is too slow.
+Curvature measure_curvature(LevelSetField& field, const LevelPoint& at) noexcept;
+
+/// M u = t in two dimensions, eigenvalues taken as |.| >= least: always a descent direction.
+void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept;
+
+/// J^T f of the closest point of a surface with the unit normal n (rules/pull_back.h); `times` gives B v.
+template <class Times>
+PulledBackForce pull_back_on_surface(const Vec3& n, double delta, const Times& times, const Vec3& f) noexcept {
+  Vec3 a, b;
+  make_tangent_basis(n, a, b);
+  const Vec3 ba = times(a), bb = times(b);
+  const double m11 = 1 + delta * dot(a, ba), m12 = 0.5 * delta * (dot(a, bb) + dot(b, ba)), m22 = 1 + delta * dot(b, bb);
+  const auto solved = [&](double least) {
+    double u1, u2;
+    solve_tangent(m11, m12, m22, dot(a, f), dot(b, f), least, u1, u2);
+    return a * u1 + b * u2;
+  };
+  const Vec3 force = solved(kMinFactor);
+  // both eigenvalues above the bound: nothing is left out
+  const double rest = (m11 - kMinFactor) * (m22 - kMinFactor) - m12 * m12;
+  const bool free = m11 >= kMinFactor && m22 >= kMinFactor && rest >= 0;
+  return {force, free ? Vec3(0.0) : solved(1e-12) - force};
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,96 @@
+/// Online steps through the cells of a sampled line field. Every stage uses the dyads of the cell that the step starts in, and a step
+/// ends on the face by which it leaves the cell: there the interpolant has a kink, which no embedded error estimate sees, and
+/// neighbouring fibres of noisy data part quickly. So the online proxy stays on the line that is traced and drawn.
+/// Haptic thread: no allocation, lock or throw; at most kMaxHops cells and 13 steps of the method a call.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "engine/geometry/flow/flow.h"
+#include "engine/geometry/flow/flow_source.h"
+#include "haptics/chain/constraint.h"
+
+namespace catena::haptics {
+
+class CellStepper {
+ public:
+  CellStepper(const flow::Flow& flow, field::Cursor& cursor) : medium_(flow, &cursor), domain_(flow.field->domain_length()) {}
+
+  /// From p over the length h > 0 in the direction way * t (way +1 or -1); h becomes shorter where the step ends on a face.
+  /// World coordinates; `last` is turned as t is. Stop::outside: there is no cell that way.
+  flow::Step step(const flow::Tableau& tableau, const Vec3& p, const Vec3& t, double way, double& h) noexcept {
+    const Vec3 motion = way * t;
+    int evaluations = 0;
+    const auto rate = [&](const Vec3& q, Vec3& w) {
+      Vec3 u;
+      ++evaluations;
+      const flow::StopReason stop = medium_.rate(q, w, u);
+      return stop == flow::StopReason::none && dot(u, motion) < 0.5 ? flow::StopReason::turned : stop;
+    };
+    flow::Step step;
+    Vec3 q, w, u;
+    step.stop = medium_.start(p, motion, 1, q) ? flow::StopReason::none : flow::StopReason::outside;
+    for (int hop = 0; hop < kMaxHops && step.stop == flow::StopReason::none; ++hop) {
+      ++evaluations;
+      step.stop = medium_.rate(q, w, u);
+      if (step.stop != flow::StopReason::none) break;
+      step = flow::runge_kutta_step(tableau, q, w, h, true, rate);
+      if (step.stop != flow::StopReason::none) break;
+      flow::CellExit out;
+      if (!medium_.find_exit(flow::Hermite(q, step.displacement, h, w, step.end_rate), out)) break;
+      if (out.theta * h > kOnFace * domain_) {
+        land_on_face(medium_, tableau, q, w, out, domain_, rate, h, step);
+        break;
+      }
+      if (!medium_.cross_face(out)) step.stop = flow::StopReason::outside;
+    }
+    step.evaluations = evaluations;
+    step.displacement = medium_.world_difference(step.displacement);
+    step.end_rate = way * direction(medium_.world_difference(step.end_rate));
+    step.error = medium_.world_difference(step.error);
+    return step;
+  }
+
+ private:
+  static constexpr int kMaxHops = 6;
+  static constexpr double kOnFace = 1e-14;  ///< of L: closer to a face than this is on it
+
+  flow::CellFlowSource medium_;
+  double domain_;
+};
+
+/// Online streamline (paper, Eqs. 3-4, safeguarded): integrates from the last proxy toward the probe x in every tick.
+///   u = v/|v|, g = (x - p).u;  step h = g / max(|1 - kappa N.(x - p)|, 0.1), no longer than the trust radius
+///   g changes sign: root on the step's Hermite, then one true step lands on it; Armijo on |x - p|^2 / 2
+///   a step that turns by more than 60 degrees is halved; tried at 1e-7 L and still turning, or a zero within 1e-4 L: CRITICAL,
+///   held while the probe is beyond it, until it turns back; a step on to where a line field is incoherent: the same, with that
+///   reason; a step that leaves the domain is halved down to 1e-9 L: BOUNDARY, held likewise.
+/// `linear` is Eqs. 1-2 as printed: one Euler step a tick, nothing corrected.
+/// At most kMaxEvaluations evaluations a tick, then BUDGET. Haptic thread: no allocation, lock or throw.
+struct OnlineStreamlineSpec {
+  field::VectorFieldPtr field;
+  bool is_line_field = false;
+  double min_speed = 0;
+  flow::Method method = flow::Method::rkf34;
+  double tolerance = 1e-9;   ///< of the embedded error of one step, times L
+  std::optional<Vec3> seed;  ///< none: the probe where the link is switched on
+};
+
+/// What the link remembers.
+struct OnlineStreamlineMemory {
+  enum Mode : std::int32_t { seeking, following, at_zero, at_boundary, at_incoherent };
+  Mode mode = seeking;
+  std::int32_t zero_searches = 0;          ///< searches for a zero in this tick
+  SampleStatus reason = SampleStatus::ok;  ///< why it is held, or seeks
+  Vec3 t{0.0};                             ///< unit direction at the proxy
+  Vec3 curvature{0.0};                     ///< dt/ds of the last step
+  double trust_radius = 0;                 ///< longest step that the error control takes now, world units
+  Vec3 hold_point{0.0};                    ///< held while (x - hold).way >= 0
+  Vec3 hold_direction{0.0};
+  Vec3 p_resume{0.0}, t_resume{0.0};          ///< where the line goes on from when it is let go
+  Vec3 last_smooth{0.0}, t_last_smooth{0.0};  ///< last place with a radius of curvature above 1e-3 L: before the turn at a saddle
+};
+
+std::shared_ptr<const Constraint> make_online_streamline(const OnlineStreamlineSpec& spec);
+
+}  // namespace catena::haptics

@@ -1,0 +1,146 @@
+#include "render/raycast/fast_volume_resources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "engine/base/clock.h"
+#include "engine/field/field_display_range.h"
+#include "render/vk/commands.h"
+
+namespace catena::render {
+
+namespace {
+
+bool same_look(const VolumeItem& a, const VolumeItem& b) {
+  return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.is_shaded == b.is_shaded;
+}
+
+ValueInterval active_values(const VolumeItem& item) {
+  const double background = item.grid->background();
+  const field::GridStats& stats = item.grid->stats();
+  ValueInterval values{std::min(stats.min, background), std::max(stats.max, background)};
+  // outliers look as the end of the display range does, unless the function has points among them
+  const DisplayRange& shown = display_range(*item.grid);
+  const auto changing = [&](double from, double to) { return active_interval(item.transfer, {from, to}, false); };
+  if (shown.below.count > 0) {
+    const ValueInterval part = changing(values.min, shown.lo);
+    values.min = part.min < part.max ? part.min : shown.lo;
+  }
+  if (shown.above.count > 0) {
+    const ValueInterval part = changing(shown.hi, values.max);
+    values.max = part.min < part.max ? part.max : shown.hi;
+  }
+  return active_interval(item.transfer, values, item.is_shaded);
+}
+
+constexpr double kMostChanged = 0.03;  // by rounding to codes (quantization_change)
+
+bool shows_values(const VolumeItem& item) {
+  struct Answer {
+    std::uint64_t version = 0;
+    TransferTable transfer;
+    bool shade = false, shows = false;
+  };
+  thread_local Answer last;
+  if (last.version == item.grid->version() && last.transfer == item.transfer && last.shade == item.is_shaded) return last.shows;
+  const double changed = quantization_change(item.transfer, active_values(item), sample_values(*item.grid), item.grid->domain_length());
+  last = {item.grid->version(), item.transfer, item.is_shaded, changed <= kMostChanged};
+  return last.shows;
+}
+
+}  // namespace
+
+bool FastVolumeResources::can_pack(const vk::Device& device, const field::ScalarGrid& grid) {
+  return can_pack_dense(device, grid) || can_pack_as_bricks(grid);
+}
+
+bool FastVolumeResources::can_quantize(const VolumeItem& item) {
+  return resolves_transfer_function(item.transfer, active_values(item)) && shows_values(item);
+}
+
+Outcome FastVolumeResources::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
+  const std::int64_t start = now_ns();
+  const bool other_grid = !table_ || version_ != item.grid->version();
+  const bool other_look = other_grid || !same_look(item_, item);
+  if (other_grid) table_ = {};
+  item_ = item;
+  const bool gradients = item.is_shaded && settings.smooth_gradients, whole = can_pack_dense(*device_, *item.grid);
+  const std::uint64_t bytes = whole ? packed_bytes(*item.grid, gradients) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
+  if (bytes > settings.max_bytes) return memory_limit_error(bytes, settings.max_bytes);
+  if (!other_look && (!gradients || this->gradients())) return Done{};
+  const ValueInterval active = active_values(item);
+  const bool other_range = other_grid || !(active == active_);
+  active_ = active;
+  version_ = item.grid->version();
+  ++appearance_version_;
+  const std::uint64_t room = left + (bricks_ ? bricks_->atlas.bytes() : 0);
+  CATENA_CHECK(whole ? pack_dense(gradients, other_range) : pack_bricks(other_range, std::min(settings.max_bytes, room - room / 16)));
+  build_ms_ += ms_since(start);
+  return Done{};
+}
+
+Outcome FastVolumeResources::pack_dense(bool gradients, bool other_range) {
+  bricks_.reset();
+  if (other_range) {
+    gradients_ = {};
+    packed_ = {};
+    CATENA_TRY(packed_, make_packed_volume(*device_, *item_.grid, active_));
+  }
+  if (gradients && !gradients_) {
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item_.grid, packed_.codes.per_code));
+  }
+  const PreintegratedTable table = make_preintegrated(item_.transfer, packed_.codes.lo, packed_.codes.per_code, item_.is_shaded);
+  CATENA_TRY(map_, make_homogeneous_map(*device_, packed_, table.appearance));
+  return upload_table(table);
+}
+
+Outcome FastVolumeResources::pack_bricks(bool other_range, std::uint64_t most_bytes) {
+  packed_ = {};
+  map_ = {};
+  gradients_ = {};
+  // of bricks they are few, so that all that is lit has them
+  const bool gradients = item_.is_shaded, scans = !bricks_ || other_range || (gradients && !this->gradients());
+  if (scans) {
+    bricks_.reset();
+    bricks_.emplace();
+    bricks_->scan = scan_bricks(*item_.grid, active_, gradients);
+  }
+  BrickScan& scan = bricks_->scan;
+  PackedAtlas& atlas = bricks_->atlas;
+  const CodeScale codes(scan.range, false);
+  const PreintegratedTable table = make_preintegrated(item_.transfer, codes.lo, codes.per_code, item_.is_shaded);
+  bool kept = false;
+  if (!scans) {
+    CATENA_TRY(kept, remap_atlas(*device_, atlas, scan, table.appearance));
+  }
+  if (!kept) {
+    atlas = {};
+    CATENA_TRY(atlas, make_packed_atlas(*device_, *item_.grid, scan, codes, table.appearance, most_bytes));
+  }
+  return upload_table(table);
+}
+
+Outcome FastVolumeResources::upload_table(const PreintegratedTable& table) {
+  vk::ImageInfo info;
+  info.format = VK_FORMAT_R32G32_UINT;
+  info.extent = {256, 256, 1};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(table_, vk::Image::create(*device_, info));
+  return vk::upload_planes(*device_, table_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
+    std::memcpy(out, table.entries.data(), table.entries.size() * sizeof(table.entries[0]));
+  });
+}
+
+float FastVolumeResources::gradient_nodes() const { return bricks_ ? float(bricks_->atlas.gradient_nodes) : 0.0f; }
+
+ResidentGrid FastVolumeResources::local_geometry() const {
+  const auto wide = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
+  ResidentGrid place;
+  place.origin = bricks_ ? bricks_->scan.origin : packed_.origin;
+  if (bricks_) place.box_lo = wide(bricks_->scan.box_lo);
+  place.box_hi = bricks_ ? wide(bricks_->scan.box_hi) : wide(packed_.size) - Vec3(1.0);
+  return place;
+}
+
+}  // namespace catena::render

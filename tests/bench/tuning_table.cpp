@@ -1,0 +1,280 @@
+/// Plans against the exhaustive sweep: for five fields and six targets each (error, error, time of the eye; the same of the hand) what a
+/// plan expects, what is observed, and what the chosen setting costs beside the cheapest of the sweep that is as exact.
+///   plan_table DIR > TABLE.csv       DIR: the folder of the data files (carotid_flow.vdb ...)
+/// The eye is observed on the whole picture against whole converged pictures, the hand along another motion than that of its curve; times
+/// of the chosen setting and of the sweep are of one run in turns. Columns: field, target, setting, stated error, observed error, their
+/// ratio, stated time, observed time, their ratio, cost by the cheapest's, cheapest; ms and 1/255, or us and world units.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/app/tuning/plan/tune.h"
+#include "engine/app/tuning/tradeoff/measure/haptics/link_replay.h"
+#include "engine/app/tuning/tradeoff/measure/haptics/streamline.h"
+#include "engine/app/tuning/tradeoff/measure/rendering/render_workload.h"
+#include "engine/base/numbers.h"
+#include "engine/scene/prepare.h"
+#include "haptics/build/build_program.h"
+#include "haptics/constraints/streamline/online_streamline.h"
+#include "render/extract/extract.h"
+#include "render/quality/quality.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::app;
+
+struct Case {
+  const char *name, *flow, *scalar, *look;
+};
+
+template <class T>
+T get(Result<T> result) {
+  if (result) return std::move(*result);
+  fmt::print(stderr, "{}\n", result.error().message);
+  std::exit(1);
+}
+void need(const Outcome& outcome) {
+  if (!outcome) fmt::print(stderr, "{}\n", outcome.error().message), std::exit(1);
+}
+
+/// Somewhere in the flow, not near its end: of random places the one whose line is the longest.
+Vec3 seed_in(const field::VectorField& flow) {
+  std::mt19937 random(3);
+  const Bounds box = flow.world_bounds();
+  Vec3 best = box.center();
+  double longest = -1;
+  for (int k = 0; k < 40; ++k) {
+    Vec3 p;
+    for (int i = 0; i < 3; ++i) p[i] = box.lo[i] + (0.25 + 0.5 * double(random() >> 8) / 16777216.0) * (box.hi[i] - box.lo[i]);
+    const auto line = flow::trace({&flow, false, 0}, p, {.length = flow.domain_length()});
+    if (!line) continue;
+    const double way = (*line)->knots().back().s - (*line)->knots().front().s;
+    if (way > longest) longest = way, best = p;
+  }
+  return best;
+}
+
+scene::Scene scene_of(const Case& c, const std::string& folder, int level = 0) {
+  std::string scalar = c.scalar;
+  const std::size_t nodes = scalar.find("64");
+  if (level > 0 && nodes != std::string::npos) {
+    scalar.replace(nodes, 2, std::to_string((64 >> level) + 1));
+  } else if (level > 0) {
+    scalar.insert(scalar.rfind('}'), fmt::format(", \"level_of_detail\": {}", level));
+  }
+  std::string files = fmt::format("{{\"flow\": {}, \"s\": {}}}", c.flow, scalar);
+  for (std::size_t at; (at = files.find("DIR")) != std::string::npos;) files.replace(at, 3, folder);
+  scene::Scene bare = get(scene::parse_scene("{\"fields\": " + files + "}", c.name));
+  const json::Node nowhere;
+  const Vec3 seed = seed_in(*get(scene::resolve_field(bare, "flow", nowhere)).vector);
+  const std::string text = fmt::format(
+      R"({{"fields": {}, "chain": [{{"name": "curve", "type": "streamline", "field": "flow", "seed": [{}, {}, {}]}}], "volumes": [{{"field": "s", {}}}]}})",
+      files, seed.x, seed.y, seed.z, c.look);
+  scene::Scene scene = get(scene::parse_scene(text, c.name));
+  need(scene::prepare(scene));
+  return scene;
+}
+
+void row(const std::string& field, const std::string& target, const std::string& setting, double stated_error, double error,
+         double stated_time, double time, double cost, const std::string& cheapest) {
+  fmt::print("{},{},\"{}\",{:.3g},{:.3g},{:.2f},{:.3g},{:.3g},{:.2f},{:.2f},\"{}\"\n", field, target, setting, stated_error, error,
+             error / stated_error, stated_time, time, time / stated_time, cost, cheapest);
+  std::fflush(stdout);
+}
+
+/// The chosen point and the cheapest of the sweep whose error is at most `error`; times of both in turns, as the last of the sweep.
+int cheapest_within(const std::vector<tradeoff::Point>& sweep, double error) {
+  int best = -1;
+  for (std::size_t i = 0; i < sweep.size(); ++i)
+    if (sweep[i].error <= error && (best < 0 || sweep[i].time.median < sweep[static_cast<std::size_t>(best)].time.median))
+      best = static_cast<int>(i);
+  return best;
+}
+
+std::vector<render::RenderSettings> all_settings(bool fast, bool shaded) {
+  std::vector<render::RenderSettings> all;
+  if (fast)
+    for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.35, 0.25})
+      for (const bool smooth : shaded ? std::vector{true, false} : std::vector{false}) {
+        all.push_back(render::fast_level(step, 4, -1, -1, smooth));
+        for (const double half : {12.0, 6.0, 3.0, 1.5}) all.push_back(render::fast_level(step, 4, half, -1, smooth));
+        all.push_back(render::fast_level(step, 2, 0, -1, smooth));
+        for (const double full : {12.0, 6.0, 3.0, 1.5}) all.push_back(render::fast_level(step, 2, 0, full, smooth));
+        all.push_back(render::fast_level(step, 1, 0, -1, smooth));
+      }
+  for (const double step : {4.0, 3.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.35, 0.25}) all.push_back(render::exact_level(step));
+  return all;
+}
+
+/// `coarser`: the same scene on coarser levels of its grid, which the sweep tries, too.
+void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coarser) {
+  const auto renderer = get(render::Renderer::create({}));
+  const render::FramePacket packet = get(render::make_frame(scene, 400, 300));
+  render::FramePacket clear = packet;
+  clear.background[3] = 0;
+  const plan::ImageCurve curve =
+      get(plan::measure_image_curve(*renderer, packet, get(plan::detect_quality_level_options(*renderer, packet)), [](double) {}));
+  const double told = tradeoff::min_resolvable_error(curve.curve);
+  need(renderer->draw(packet, render::balanced_settings()));
+  const auto sweep = all_settings(renderer->can_draw_fast(packet), packet.volumes.front().is_shaded);
+  const auto truth = get(tradeoff::render_image(*renderer, clear, render::converged_level(0.125)));
+  std::vector<render::FramePacket> levels;
+  std::vector<std::unique_ptr<render::Renderer>> renderers;  // one a level, or each would make its mirrors again
+  for (scene::Scene& coarse : coarser) {
+    levels.push_back(get(render::make_frame(coarse, 400, 300)));
+    renderers.push_back(get(render::Renderer::create({})));
+    levels.back().view = packet.view;
+    const auto grid = levels.back().volumes.front().grid;
+    // opacities are those of the whole grid's voxels
+    levels.back().volumes = packet.volumes;
+    levels.back().volumes.front().grid = grid;
+  }
+  const auto error_of = [&](render::Renderer& by, render::FramePacket drawn, const render::RenderSettings& s) {
+    drawn.background[3] = 0;
+    return render::measure_error(get(tradeoff::render_image(by, drawn, s)), truth,
+                                 {packet.background[0], packet.background[1], packet.background[2]})
+        .rmse;
+  };
+  std::vector<scene::TuningTargets> wanted(3);
+  wanted[0].max_image_error = std::max(1.0, 1.5 * told);
+  wanted[1].max_image_error = 4 * *wanted[0].max_image_error;
+  double fast = 1e9, slow = 0;
+  for (const tradeoff::Point& p : curve.curve.points) fast = std::min(fast, p.time.median), slow = std::max(slow, p.time.median);
+  wanted[2].max_image_ms = std::sqrt(fast * slow);
+  std::vector<plan::ImageTuning> plans;
+  tradeoff::Curve times;
+  std::vector<tradeoff::TimedRun> repeats;
+  const auto add = [&](render::Renderer& by, const render::FramePacket& drawn, const render::RenderSettings& s,
+                       const std::string& on = "") {
+    tradeoff::Point p;
+    p.setting = render::describe(s) + on;
+    p.error = error_of(by, drawn, s);
+    times.points.push_back(p);
+    repeats.push_back([&by, &drawn, s] { return render::measure_render_ms(by, drawn, s); });
+  };
+  for (const auto& s : sweep) add(*renderer, packet, s);
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    for (const auto& s : sweep) add(*renderers[k], levels[k], s, fmt::format(", level {}", k + 1));
+  const std::size_t swept = times.points.size();
+  for (const scene::TuningTargets& plan : wanted) plans.emplace_back(curve, plan), add(*renderer, packet, plans.back().settings());
+  need(tradeoff::time_points(times, repeats, 10, 5));
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    const tradeoff::Point& chosen = times.points[swept + k];
+    const double goal = std::max({told, wanted[k].max_image_error.value_or(chosen.error)});
+    const int best = cheapest_within(times.points, goal);
+    row(c.name,
+        wanted[k].max_image_error
+            ? fmt::format("error={:.3g}{}", *wanted[k].max_image_error, *wanted[k].max_image_error < told ? " (floor)" : "")
+            : fmt::format("time={:.3g}", *wanted[k].max_image_ms),
+        chosen.setting, plans[k].expected_error(), chosen.error, plans[k].expected_ms(), chosen.time.median,
+        best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
+        best < 0 ? "none" : times.points[static_cast<std::size_t>(best)].setting);
+  }
+}
+
+void hand_rows(const Case& c, scene::Scene scene) {
+  tradeoff::Workload subject{std::move(scene), tradeoff::select_effort(true, false), {}, {}, 1000, {}, {}};
+  need(tradeoff::add_haptics(subject, {}));
+  const auto curves = get(plan::measure_tick_curves(subject));
+  for (const std::string& s : subject.skipped) fmt::print(stderr, "{}: {}\n", c.name, s);
+  const auto found = plan::to_tick_curves(subject.scene, curves, 1000);
+  if (!found || found->links.empty()) return;
+  const plan::LinkCurve& link = found->links.front();
+  const double told = tradeoff::min_resolvable_error(link.curve) * link.length;
+  std::vector<scene::TuningTargets> wanted(3);
+  wanted[0].max_proxy_error = std::max(1e-4 * link.length, 1.5 * told);
+  wanted[1].max_proxy_error = std::max(1e-9 * link.length, 1.5 * told);
+  scene::TuningTargets quickest;
+  quickest.max_tick_us = 1e-9;
+  const plan::TickTuning cheap(*found, quickest);
+  wanted[2].max_tick_us = 1.6 * cheap.expected_us();
+  // another motion: slower, and a little beside
+  const tradeoff::NamedLink own = tradeoff::find_links(subject.scene, "streamline").front();
+  const auto along = tradeoff::motion_along_streamline(subject.scene, own, 1);
+  tradeoff::ProbeMotion motion = *along;
+  const double beside = 0.002 * link.length;
+  motion.position_at = [along, beside](double t) {
+    return along->position_at(0.9 * t) + beside * Vec3(std::sin(9 * t), std::cos(7 * t), std::sin(5 * t));
+  };
+  const auto path = motion.samples(1000);
+  const field::VectorFieldPtr field = tradeoff::find_link_field(subject.scene, own.node).vector;
+  const Vec3 seed = *get(json::get_optional_vec3(own.node, "seed"));
+  const auto line =
+      get(flow::trace({field.get(), false, 0}, seed, {.length = 10.2 * link.length, .tolerance = 1e-13, .hermite_tolerance = 1e-13}));
+  const flow::NearestOnCurve nearest(line);
+  std::vector<haptics::HapticProgram> programs;
+  tradeoff::Curve times;
+  const auto add = [&](haptics::HapticProgram program, const std::string& words) {
+    programs.push_back(tradeoff::without_widgets(program));
+    double far2 = 0;
+    tradeoff::run_ticks(programs.back(), path,
+                        [&](const HapticState& out) { far2 = std::max(far2, nearest.find_exact(out.links[0].proxy).distance2); });
+    tradeoff::Point p;
+    p.setting = words;
+    p.error = std::sqrt(far2);
+    times.points.push_back(p);
+  };
+  const auto online = [&](flow::Method method, double tolerance) {
+    return tradeoff::isolate_link(*subject.program, own.name, haptics::make_online_streamline({field, false, 0, method, tolerance, seed}));
+  };
+  using flow::Method;
+  add(*subject.program, "selected");
+  // not fixed steps, which no plan chooses: their error grows with the hand's speed and way
+  for (const Method m : {Method::rkf34, Method::dp54})
+    for (double digits = 2; digits <= 13; digits += 0.5)
+      add(online(m, std::pow(10.0, -digits)), fmt::format("{} 1e-{}", flow::to_string(m), digits));
+  const std::size_t swept = times.points.size();
+  std::vector<plan::TickTuning> plans;
+  for (const scene::TuningTargets& plan : wanted) {
+    plans.emplace_back(*found, plan);
+    const plan::TunedLink& planned = plans.back().links().front();
+    for (const auto& s : tradeoff::streamline_settings(own.node))
+      if (s.label == planned.setting) add(s.is_selected ? *subject.program : online(*s.method, s.tolerance.value_or(1e-9)), s.label);
+  }
+  std::vector<tradeoff::TimedRun> repeats;
+  for (const haptics::HapticProgram& program : programs) repeats.push_back(tradeoff::make_tick_run(program, path));
+  need(tradeoff::time_points(times, repeats, 5, 15));
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    const tradeoff::Point& chosen = times.points[swept + k];
+    const double goal = std::max(told, wanted[k].max_proxy_error.value_or(chosen.error));
+    const int best = cheapest_within(times.points, goal);
+    row(c.name,
+        wanted[k].max_proxy_error ? fmt::format("hand_error={:.3g}", *wanted[k].max_proxy_error)
+                                  : fmt::format("hand_time={:.3g}", *wanted[k].max_tick_us),
+        chosen.setting, std::max(plans[k].error_anywhere(), 1e-300), chosen.error, plans[k].expected_us(), 1e-3 * chosen.time.median,
+        best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
+        best < 0 ? "none" : times.points[static_cast<std::size_t>(best)].setting);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) return fmt::print(stderr, "usage: plan_table DIR [FIELD]\n"), 2;
+  const Case cases[] = {
+      {"helix and ball", R"({"analytic": "helix"})", R"({"analytic": "sphere", "resolution": 64})",
+       R"("color": "viridis", "range": [0.2, 2], "opacity": [[0.2, 0.6], [2, 0]])"},
+      {"abc", R"({"file": "DIR/synth_abc.vdb", "grid": "velocity"})", R"({"file": "DIR/synth_abc.vdb", "grid": "speed"})",
+       R"("color": "viridis", "range": [0, 3.5], "opacity": [[1, 0], [3.4, 0.3]], "shade": true)"},
+      {"carotid", R"({"file": "DIR/carotid_flow.vdb", "grid": "velocity"})", R"({"file": "DIR/carotid_flow.vdb", "grid": "density"})",
+       R"("color": "viridis", "range": [0, 580], "opacity": [[100, 0], [500, 0.7]])"},
+      {"combustor", R"({"file": "DIR/combustor_cfd.vdb", "grid": "velocity"})", R"({"file": "DIR/combustor_cfd.vdb", "grid": "density"})",
+       R"("color": "viridis", "range": [0.2, 0.7], "opacity": [[0.3, 0.1], [0.7, 0.0]])"},
+      {"weather", R"({"file": "DIR/weather_uvt.vdb", "grid": "wind"})", R"({"file": "DIR/weather_uvt.vdb", "grid": "temperature"})",
+       R"("color": "viridis", "range": [190, 310], "opacity": [[200, 0.0], [310, 0.1]], "shade": true)"}};
+  fmt::print(
+      "field,target,setting,stated_error,observed_error,error_ratio,stated_time,observed_time,time_ratio,cost_by_cheapest,cheapest\n");
+  for (const Case& c : cases) {
+    if (argc > 2 && std::string(argv[2]) != c.name) continue;
+    scene::Scene scene = scene_of(c, argv[1]);
+    std::vector<scene::Scene> coarser;
+    for (const int level : {1, 2}) coarser.push_back(scene_of(c, argv[1], level));
+    eye_rows(c, scene, coarser);
+    hand_rows(c, std::move(scene));
+  }
+  return 0;
+}

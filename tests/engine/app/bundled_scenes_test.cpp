@@ -1,0 +1,103 @@
+/// The scenes of assets/scenes work in a fresh clone: where nothing but the folder `assets` is there, every one is drawn, and names no file
+/// but those beside it and those of packages that `./run` installs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "engine/base/json.h"
+#include "render/image/image.h"
+#include "tests/support/run_program.h"
+#include "tests/support/support.h"
+
+namespace scenes_test {
+
+using namespace catena;
+namespace fs = std::filesystem;
+
+/// The scenes that need no measured data, without folder and ending.
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/assets/scenes"))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The packages that `./run` installs.
+std::vector<std::string> packages() {
+  std::istringstream words(test::run_program(test::source_dir() + "/run", {"packages"}).out);
+  return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
+}
+
+/// Every object of the scene that names a file.
+void find_files(const json::Node& node, std::vector<std::pair<const json::Node*, std::string>>& found) {
+  for (const char* key : {"file", "transfer", "firmware"})
+    if (const json::Node* file = node.find(key)) found.push_back({&node, file->string});
+  for (const auto& [key, member] : node.members) find_files(member, found);
+  for (const json::Node& item : node.items) find_files(item, found);
+}
+
+/// The share of pixels that do not have the picture's most frequent colour.
+double covered(const render::Image8& picture) {
+  std::map<std::array<std::uint8_t, 3>, int> count;
+  int most = 0;
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x) {
+      const std::uint8_t* p = picture.pixel(x, y);
+      most = std::max(most, ++count[{p[0], p[1], p[2]}]);
+    }
+  return 1 - static_cast<double>(most) / (picture.width * picture.height);
+}
+
+class BundledScenes : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Assets, BundledScenes, testing::ValuesIn(scene_names()), [](const auto& parameter) {
+  std::string name = parameter.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST_P(BundledScenes, IsDrawnWhereOnlyTheAssetsAre) {
+  const test::TemporaryFolder clone;
+  fs::copy(test::source_dir() + "/assets", clone / "assets", fs::copy_options::recursive);
+  const std::string scene = clone / ("assets/scenes/" + GetParam() + ".json"), assets = clone / "assets/";
+
+  const auto root = json::read(scene);
+  ASSERT_TRUE(root) << root.error().message;
+  std::vector<std::pair<const json::Node*, std::string>> files;
+  find_files(*root, files);
+  const std::vector<std::string> installed = packages();
+  for (const auto& [node, file] : files) {
+    if (!fs::path(file).is_absolute()) {
+      const std::string at = fs::path(clone / "assets/scenes/" + file).lexically_normal().string();
+      EXPECT_TRUE(at.starts_with(assets) && fs::exists(at)) << file << " is not among the assets";
+      continue;
+    }
+    const json::Node* package = node->find("package");
+    ASSERT_NE(package, nullptr) << file << ": a \"package\" was expected beside it";
+    EXPECT_TRUE(std::count(installed.begin(), installed.end(), package->string)) << "./run does not install " << package->string;
+    if (!fs::exists(file)) GTEST_SKIP() << package->string << " is not installed";
+  }
+
+  const std::string probe = assets + "probes/" + GetParam() + ".csv";
+  std::vector<std::string> words{"render", scene, "-o", clone / "o.png", "--size", "96x72", "--quality", "draft"};
+  if (fs::exists(probe)) words.insert(words.end(), {"--probe", probe});
+  const auto run = test::run_catena(words);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto picture = render::read_png(clone / "o.png");
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_GT(covered(*picture), 0.1);
+}
+
+TEST(MissingPackages, AMissingFileOfAPackageNamesThePackage) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"mr": {"file": "/nowhere/brain.nii.gz", "package": "mricron-data"}}})");
+  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("the Debian package \"mricron-data\" brings it"), std::string::npos) << run.err;
+}
+
+}  // namespace scenes_test

@@ -1,0 +1,100 @@
+/// One small file with a layer of hidden cells, one cell thick, asked by every command at the same places.
+#include <gtest/gtest.h>
+
+#include "engine/base/numbers.h"
+#include "engine/io/mesh/load_mesh.h"
+#include "tests/engine/io/vtk/blanked_grid_files.h"
+#include "tests/support/run_program.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace holes_commands_test {
+
+#ifdef CATENA_TEST_VTK
+namespace files = test::vtk_files;
+using test::Table;
+
+/// Points 0 .. 6 along each axis; the cells from x = 3 to 4 are hidden. v = y + 0.05 x, w = (1, 0, 0).
+TEST(HiddenCells, ValuesLinesSurfacesSlicesAndTheHandAgree) {
+  const test::TemporaryFolder folder;
+  files::Flags flags;
+  flags.cells = [](int i) { return i % 6 == 3 ? 32 : 0; };
+  std::string text = files::boxes(
+                  files::Form::image, 6, [](const Vec3&p) { return p.y + 0.05 * p.x; }, flags),
+              along;
+  for (int i = 0; i < 343; ++i) along += "1 0 0 ";
+  text.insert(text.find("</PointData>"), files::array("w", along, 3));
+  test::write_file(folder / "layer.vti", text);
+  test::write_file(folder / "s.json", R"({"fields": {"v": {"file": "layer.vti", "grid": "v"}, "w": {"file": "layer.vti", "grid": "w"}},
+    "isosurfaces": [{"field": "v", "level": 2.6}], "slices": [{"field": "v", "point": [0, 0, 2.5], "normal": [0, 0, 1]}]})");
+  const auto run = [&](std::vector<std::string> arguments) {
+    const test::ProgramResult result = test::run_catena(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  const auto in_hole = [](double x, double slack) { return x > 3 + slack && x < 4 - slack; };
+  // values
+  std::string probe = "t,x,y,z\n";
+  constexpr int kTicks = 500;
+  for (int i = 0; i < kTicks; ++i) probe += fmt::format("{},{},2.3,2.5\n", to_text(0.001 * i), to_text(1 + 0.008 * i));
+  test::write_file(folder / "p.csv", probe);
+  run({"export", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "v.csv"});
+  const Table values = Table::read(folder / "v.csv");
+  ASSERT_EQ(values.rows(), static_cast<std::size_t>(kTicks));
+  for (std::size_t row = 0; row < values.rows(); ++row) {
+    const double x = values.number(row, "x");
+    if (std::fabs(x - 3) < 1e-6 || std::fabs(x - 4) < 1e-6) continue;
+    EXPECT_EQ(values.text(row, "v").empty() || values.text(row, "v") == "nan", in_hole(x, 0)) << x << " " << values.text(row, "v");
+  }
+  // lines
+  test::write_file(folder / "seeds.csv", "x,y,z\n1,2,2\n5,2,2\n");
+  run({"trace", folder / "s.json", "--field", "w", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
+  const Table lines = Table::read(folder / "l.csv");
+  double least[2] = {9, 9}, most[2] = {0, 0};
+  for (std::size_t row = 0; row < lines.rows(); ++row) {
+    const double x = lines.number(row, "x");
+    const int side = x > 3.5 ? 1 : 0;
+    least[side] = std::min(least[side], x);
+    most[side] = std::max(most[side], x);
+  }
+  EXPECT_NEAR(least[0], 0, 1e-6);
+  EXPECT_NEAR(most[0], 3, 1e-3);
+  EXPECT_NEAR(least[1], 4, 1e-3);
+  EXPECT_NEAR(most[1], 6, 1e-6);
+  // surfaces and slices, of the file and of what was exported
+  for (const char* name : {"again.vti", "again.vdb"}) run({"export", folder / "s.json", "--field", "v", "-o", folder / name});
+  for (const char* name : {"layer.vti", "again.vti", "again.vdb"}) {
+    test::write_file(folder / "t.json", fmt::format(R"({{"fields": {{"v": {{"file": "{}", "grid": "v"}}}},
+      "isosurfaces": [{{"field": "v", "level": 2.6}}], "slices": [{{"field": "v", "point": [0, 0, 2.5], "normal": [0, 0, 1]}}]}})",
+                                                    name));
+    run({"export", folder / "t.json", "--isosurface", "0", "-o", folder / "i.stl"});
+    const auto mesh = mesh::load_mesh(folder / "i.stl");
+    ASSERT_TRUE(mesh);
+    for (const mesh::Triangle& t : (*mesh)->triangles()) {
+      double x = 0;
+      for (int c = 0; c < 3; ++c) x += (*mesh)->vertices()[t[static_cast<std::size_t>(c)]].x / 3;
+      EXPECT_FALSE(in_hole(x, 0)) << name;
+    }
+    EXPECT_EQ((*mesh)->triangles().size(), 60u) << name;
+    run({"export", folder / "t.json", "--slice", "0", "--spacing", "0.25", "-o", folder / "s.csv"});
+    const Table slice = Table::read(folder / "s.csv");
+    int holes = 0;
+    for (std::size_t row = 0; row < slice.rows(); ++row) holes += in_hole(slice.number(row, "x"), 1e-6) ? 1 : 0;
+    EXPECT_EQ(holes, 0) << name;
+    EXPECT_GT(slice.rows(), 100u);
+  }
+  // the hand on the surface and on a line
+  const std::string links[] = {R"({"name": "link", "type": "isosurface", "field": "v", "level": 2.6})",
+                               R"({"name": "link", "type": "streamline", "field": "w", "seed": [1, 2.3, 2.5]})"};
+  for (const std::string& link : links) {
+    test::write_file(folder / "h.json", R"({"fields": {"v": {"file": "layer.vti", "grid": "v"}, "w": {"file": "layer.vti", "grid": "w"}},
+      "chain": [)" + link + "]}");
+    run({"replay", folder / "h.json", "--probe", folder / "p.csv", "-o", folder / "h.csv"});
+    const Table felt = Table::read(folder / "h.csv");
+    for (std::size_t row = 0; row < felt.rows(); ++row)
+      EXPECT_FALSE(in_hole(felt.number(row, "link_x"), 1e-3) && felt.text(row, "link_status") == "OK") << link << row;
+  }
+}
+#endif
+
+}  // namespace holes_commands_test
+}  // namespace catena

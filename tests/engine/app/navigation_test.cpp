@@ -1,0 +1,361 @@
+#include "engine/app/viewer/input/navigation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/app/haptics/haptic_device_setup.h"
+#include "engine/app/viewer/input/commands.h"
+#include "engine/base/camera_limits.h"
+
+namespace catena::app {
+namespace controls_test {
+
+Navigation controls() {
+  Navigation c;
+  c.view = c.home = {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4};
+  return c;
+}
+
+/// A notch of the wheel at the distance 10: 1 % of the height that the picture shows there.
+const double kNotch = 0.01 * 2 * 10 * std::tan(15 * std::numbers::pi / 180);
+
+Input input(double dx, double dy, double wheel = 0) {
+  Input i;
+  i.width = 320;
+  i.height = 240;
+  i.dx = dx;
+  i.dy = dy;
+  i.wheel = wheel;
+  return i;
+}
+
+TEST(Navigation, MotionWithoutAButtonDoesNothing) {
+  Navigation c = controls();
+  EXPECT_FALSE(apply(c, input(30, 20)).any());
+  EXPECT_EQ(c.view.position, c.home.position);
+}
+
+TEST(Navigation, ALeftDragOrbitsAtTheSameDistance) {
+  Navigation c = controls();
+  Input i = input(50, 0);
+  i.left = true;
+  const NavigationChanges changed = apply(c, i);
+  EXPECT_TRUE(changed.view);
+  EXPECT_FALSE(changed.probe);
+  EXPECT_NEAR(norm(c.view.position), 10, 1e-12);
+  EXPECT_LT(c.view.position.x, -1);  // the scene follows the pointer to the right: the eye goes left
+  EXPECT_NEAR(c.view.position.z, 0, 1e-12);
+
+  // dragging down shows the scene from above, and stops short of the pole
+  i = input(0, 1000);
+  i.left = true;
+  apply(c, i);
+  EXPECT_GT(c.view.position.z, 9.9);
+  EXPECT_GT(std::hypot(c.view.position.x, c.view.position.y), 0.1);
+  EXPECT_TRUE(apply(c, Action::reset_view, 4.0 / 3));
+  EXPECT_EQ(c.view.position, c.home.position);
+}
+
+TEST(Navigation, AViewAlongUpCanStillBeOrbited) {
+  render::View view{{0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 1};
+  orbit(view, 0.5, -0.5);
+  EXPECT_TRUE(is_finite(view.position));
+  EXPECT_NEAR(norm(view.position), 5, 1e-12);
+  EXPECT_GT(std::hypot(view.position.x, view.position.y), 1);
+}
+
+TEST(Navigation, PanMovesTheSceneWithThePointer) {
+  Navigation c = controls();
+  Input i = input(24, -12);
+  i.middle = true;
+  EXPECT_TRUE(apply(c, i).view);
+  const auto camera = render::make_camera(c.view, 320, 240, {});
+  const auto p = render::project(camera, Vec3(0.0));  // was in the middle
+  ASSERT_TRUE(p);
+  EXPECT_NEAR(p->x, 160 + 24, 1e-9);
+  EXPECT_NEAR(p->y, 120 - 12, 1e-9);
+}
+
+TEST(Navigation, TheWheelZooms) {
+  Navigation c = controls();
+  EXPECT_TRUE(apply(c, input(0, 0, 1)).view);
+  EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
+  c.view.orthographic = true;
+  apply(c, input(0, 0, -1));
+  EXPECT_NEAR(c.view.height, 4 / 0.9, 1e-12);
+  EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
+}
+
+TEST(Navigation, NeitherEyeNorHandLeavesTheWorld) {
+  for (const double notches : {30.0, -30.0})
+    for (const bool flat : {false, true})
+      for (const bool as_hand : {false, true}) {
+        Navigation c = controls();
+        c.view.orthographic = flat;
+        c.probe_mode = as_hand;
+        for (int k = 0; k < 1000; ++k) {
+          apply(c, input(50, -20, notches));
+          ASSERT_TRUE(is_finite(c.view.position) && is_finite(c.probe)) << k;
+          ASSERT_LE(std::max(max_abs(c.view.position), max_abs(c.probe)), kMaxCameraCoordinate) << k;
+          ASSERT_EQ(validate_view(c.view.position, c.view.target), "") << k;
+        }
+      }
+}
+
+TEST(Navigation, TheNumberKeysLookAlongTheAxesAtAllThatIsDrawn) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool back : {false, true})
+      for (const bool flat : {false, true}) {
+        Navigation c = controls();
+        c.bounds.extend(Vec3(1.0, 2.0, 3.0));
+        c.bounds.extend(Vec3(5.0, 3.0, 9.0));
+        c.view.orthographic = flat;
+        constexpr Action kAlong[2][3] = {{Action::view_along_plus_x, Action::view_along_plus_y, Action::view_along_plus_z},
+                                         {Action::view_along_minus_x, Action::view_along_minus_y, Action::view_along_minus_z}};
+        EXPECT_TRUE(apply(c, kAlong[back ? 1 : 0][axis], 320.0 / 240));
+        Vec3 along(0.0);
+        along[axis] = back ? -1 : 1;
+        EXPECT_LE(norm(direction(c.view.target - c.view.position) - along), 1e-12);
+        EXPECT_EQ(c.view.orthographic, flat);
+        const auto camera = render::make_camera(c.view, 320, 240, c.bounds);
+        double most_x = 0, most_y = 0;
+        for (int k = 0; k < 8; ++k) {
+          const auto p = render::project(camera, c.bounds.corner(k));
+          ASSERT_TRUE(p);
+          most_x = std::max(most_x, std::fabs(p->x - 160) / 160);
+          most_y = std::max(most_y, std::fabs(p->y - 120) / 120);
+        }
+        EXPECT_LE(std::max(most_x, most_y), 1);
+        EXPECT_GE(std::max(most_x, most_y), 0.8) << "and it fills the picture";
+      }
+}
+
+TEST(Navigation, FitKeepsTheDirectionAndWithoutBoundsNothingHappens) {
+  Navigation c = controls();
+  EXPECT_FALSE(apply(c, Action::fit_view, 4.0 / 3));
+  EXPECT_FALSE(apply(c, Action::view_along_plus_y, 4.0 / 3));
+  EXPECT_EQ(c.view.position, c.home.position);
+
+  c.bounds.extend(Vec3(4.0, 0.0, 0.0), 1);
+  EXPECT_TRUE(apply(c, Action::fit_view, 4.0 / 3));
+  EXPECT_LE(norm(c.view.target - Vec3(4.0, 0.0, 0.0)), 1e-12);
+  EXPECT_LE(norm(direction(c.view.target - c.view.position) - Vec3(0.0, 1.0, 0.0)), 1e-12);
+}
+
+TEST(Navigation, OKeepsTheSizeOfThingsInTheTargetsPlane) {
+  Navigation c = controls();
+  const Vec3 corner(1.5, 0.0, 1.0);
+  const auto place = [&] { return render::project(render::make_camera(c.view, 320, 240, {}), corner); };
+  const auto before = place();
+  EXPECT_TRUE(apply(c, Action::toggle_projection, 4.0 / 3));
+  EXPECT_TRUE(c.view.orthographic);
+  EXPECT_NEAR(place()->x, before->x, 1e-9);
+  EXPECT_NEAR(place()->y, before->y, 1e-9);
+  zoom(c.view, 0.5);
+  apply(c, Action::toggle_projection, 4.0 / 3);
+  EXPECT_FALSE(c.view.orthographic);
+  EXPECT_NEAR(norm(c.view.position), 5, 1e-9) << "what was zoomed stays zoomed";
+}
+
+TEST(Navigation, TheHandFollowsThePointerInThePicturesPlane) {
+  for (const int way : {0, 1}) {
+    Navigation c = controls();
+    c.probe = {0.2, 1.0, -0.3};
+    const auto camera = render::make_camera(c.view, 320, 240, {});
+    const auto before = render::project(camera, c.probe);
+    Input i = input(40, 25);
+    i.right = way == 0;
+    i.control = way == 1;
+    const NavigationChanges changed = apply(c, i);
+    EXPECT_TRUE(changed.probe);
+    EXPECT_FALSE(changed.view);
+    const auto after = render::project(camera, c.probe);
+    EXPECT_NEAR(after->x - before->x, 40, 1e-9);
+    EXPECT_NEAR(after->y - before->y, 25, 1e-9);
+    EXPECT_NEAR(after->z, before->z, 1e-12);
+  }
+}
+
+TEST(Navigation, InHandModeTheWheelIsDepthAndTheButtonIsTheDevices) {
+  Navigation c = controls();
+  c.probe_mode = true;
+  EXPECT_TRUE(apply(c, input(0, 0, 2)).probe);
+  EXPECT_NEAR(c.probe.y, 2 * kNotch, 1e-12);  // 1 % of the picture's height at the distance 10, twice, away from the eye
+  EXPECT_EQ(c.view.position, c.home.position);
+  Input i = input(0, 0);
+  i.left = true;
+  EXPECT_TRUE(apply(c, i).probe);
+  EXPECT_EQ(c.buttons, 1u);
+  EXPECT_FALSE(apply(c, i).any());
+  i.left = false;
+  EXPECT_TRUE(apply(c, i).probe);
+  EXPECT_EQ(c.buttons, 0u);
+}
+
+TEST(Navigation, AHandBehindTheEyeComesBackIntoThePicture) {
+  Navigation c = controls();
+  c.probe = {0.0, -50.0, 0.0};
+  Input i = input(1, 0);
+  i.right = true;
+  apply(c, i);
+  EXPECT_NEAR(c.probe.y, 0, 1e-12);
+}
+
+TEST(WorkspaceSetup, TheWorkspaceFillsTheDevicesReach) {
+  auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
+  ASSERT_TRUE(scene);
+  Bounds bounds;
+  bounds.extend(Vec3(10.0, 0.0, 0.0));
+  bounds.extend(Vec3(50.0, 4.0, 2.0));
+  fit_workspace(*scene, bounds, 0.2);
+  EXPECT_DOUBLE_EQ(scene->workspace.meters_per_unit, 0.005);
+  EXPECT_LE(norm(device_from_world(scene->workspace, {50.0, 2.0, 1.0}) - Vec3(0.1, 0.0, 0.0)), 1e-15);
+  EXPECT_EQ(scene->coupling.ramp_s, 0.02);
+  EXPECT_EQ(initial_probe_position(*scene, bounds), Vec3(30.0, 2.0, 1.0));
+}
+
+TEST(WorkspaceSetup, TheMiddleOfTheDevicesReachIsTheMiddleOfTheScene) {
+  auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
+  ASSERT_TRUE(scene);
+  Bounds bounds;
+  bounds.extend(Vec3(10.0, 0.0, 0.0));
+  bounds.extend(Vec3(50.0, 4.0, 2.0));
+  const Vec3 centre_m{0.0, 0.01, 0.12};
+  fit_workspace(*scene, bounds, 0.2, centre_m);
+  EXPECT_LE(norm(device_from_world(scene->workspace, bounds.center()) - centre_m), 1e-15);
+}
+
+TEST(WorkspaceSetup, AGivenWorkspaceAndRampStay) {
+  auto scene =
+      scene::parse_scene(R"({"fields": {}, "chain": [], "workspace": {"metres_per_unit": 3}, "coupling": {"ramp_s": 0.5}})", "test.json");
+  ASSERT_TRUE(scene);
+  Bounds bounds;
+  bounds.extend(Vec3(0.0), 1);
+  fit_workspace(*scene, bounds, 0.2);
+  EXPECT_EQ(scene->workspace.meters_per_unit, 3);
+  EXPECT_EQ(scene->coupling.ramp_s, 0.5);
+}
+
+TEST(WorkspaceSetup, TheHandBeginsAtTheFirstSeed) {
+  auto scene = scene::parse_scene(
+      R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0.5, 0]}]})",
+      "test.json");
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(initial_probe_position(*scene, {}), Vec3(1.0, 0.5, 0.0));
+}
+
+/// The pointer moves to the pixel (x, y) of the picture, from dx to the left.
+Input to_pixel(double x, double y, double dx = 1) {
+  Input i = input(dx, 0);
+  i.x = x - dx;
+  i.y = y;
+  return i;
+}
+
+TEST(Navigation, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
+  Navigation c = controls();
+  c.probe_mode = true;
+  c.pointer_hit = Vec3(0.7, 2, 0.3);
+  begin_probe_mode(c);
+  EXPECT_EQ(c.probe, Vec3(0.7, 2, 0.3));
+  const auto camera = render::make_camera(c.view, 320, 240, {});
+  c.pointer_hit = render::unproject(camera, 80, 60, 7.5);
+  EXPECT_TRUE(apply(c, to_pixel(80, 60)).probe);
+  EXPECT_LE(norm(c.probe - *c.pointer_hit), 1e-12);
+  // pushed in, it stays as deep below what is seen
+  Input wheel = to_pixel(80, 60, 0);
+  wheel.wheel = 3;
+  apply(c, wheel);
+  const double push = c.wheel_depth;
+  EXPECT_NEAR(push, 3 * 0.75 * kNotch, 1e-12);
+  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.5 + push, 1e-12);
+  EXPECT_NEAR(render::project(camera, c.probe)->x, 80, 1e-9) << "along the view";
+  c.pointer_hit = render::unproject(camera, 90, 65, 7.2);
+  apply(c, to_pixel(90, 65));
+  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
+  // where nothing is seen the depth stays, and a button holds it over whatever is seen
+  c.pointer_hit.reset();
+  apply(c, to_pixel(200, 100));
+  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
+  c.pointer_hit = render::unproject(camera, 210, 100, 3.0);
+  Input drag = to_pixel(210, 100);
+  drag.left = true;
+  apply(c, drag);
+  EXPECT_NEAR(render::project(camera, c.probe)->z, 7.2 + push, 1e-12);
+  EXPECT_NEAR(render::project(camera, c.probe)->x, 210, 1e-9);
+}
+
+TEST(Navigation, TheHandsDepthFollowsWhatHoldsIt) {
+  const auto at = [](double depth) {
+    Navigation c = controls();
+    c.probe_mode = true;
+    c.probe = {0, depth - 10, 0};
+    c.last_proxy = Vec3(0, 3, 0);
+    return c;
+  };
+  const auto depth = [](const Navigation& c) { return render::project(render::make_camera(c.view, 320, 240, {}), c.probe)->z; };
+  Navigation c = at(11);
+  Input still = to_pixel(160, 120, 0);
+  still.wheel = 1;
+  apply(c, still);
+  EXPECT_NEAR(depth(c), 11 + 1.1 * kNotch, 1e-9) << "the wheel alone presses";
+  c = at(11);
+  apply(c, to_pixel(190, 120, Navigation::kDepthBlendPixels / 2));
+  EXPECT_NEAR(depth(c), 12, 1e-9) << "half the way";
+  apply(c, to_pixel(190, 120, 10 * Navigation::kDepthBlendPixels));
+  EXPECT_NEAR(depth(c), 13, 1e-9) << "all of it, and no further";
+  // what is seen far before or behind is not what holds
+  c = at(13);
+  c.pointer_hit = Vec3(0, -4, 0);
+  apply(c, to_pixel(161, 120));
+  EXPECT_NEAR(depth(c), 13, 1e-9);
+  c.pointer_hit = Vec3(0, 3.2, 0);
+  apply(c, to_pixel(160, 120));
+  EXPECT_NEAR(depth(c), 13.2, 1e-9);
+  // only in hand mode
+  c = at(11);
+  c.probe_mode = false;
+  Input drag = input(30, 0);
+  drag.control = true;
+  apply(c, drag);
+  EXPECT_NEAR(depth(c), 11, 1e-9);
+}
+
+TEST(Navigation, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
+  const Vec3 force(0, 0, 4);
+  EXPECT_EQ(compliant_motion({0, 0, -1}, force, 8), Vec3(0, 0, -1 + 0.375)) << "half the greatest force takes half of three quarters";
+  EXPECT_EQ(compliant_motion({0, 0, -1}, 10.0 * force, 8), Vec3(0, 0, -0.25)) << "the hand is never stuck";
+  EXPECT_EQ(compliant_motion({0, 0, 1}, force, 8), Vec3(0, 0, 1));
+  EXPECT_EQ(compliant_motion({2, 1, 0}, force, 8), Vec3(2, 1, 0));
+  EXPECT_EQ(compliant_motion({0, 0, -1}, Vec3(0.0), 8), Vec3(0, 0, -1));
+  // the wheel pushes less where something pushes back, and pulls out as it is turned
+  Navigation c = controls();
+  c.probe_mode = true;
+  c.force_n = {0, -8, 0};
+  c.max_force_n = 8;
+  Input in = to_pixel(160, 120, 0), out = in;
+  in.wheel = 1;
+  out.wheel = -1;
+  apply(c, in);
+  EXPECT_NEAR(c.probe.y, 0.25 * kNotch, 1e-12);
+  apply(c, out);
+  EXPECT_NEAR(c.probe.y, 0.25 * kNotch - (1 + 0.025 * kNotch) * kNotch, 1e-12);
+}
+
+TEST(Navigation, InFlightALeftDragLooksAboutAndTheWheelSetsThePace) {
+  Navigation c = controls();
+  c.fly = true;
+  Input i = input(40, 0);
+  i.left = true;
+  EXPECT_TRUE(apply(c, i).view);
+  EXPECT_EQ(c.view.position, c.home.position);
+  EXPECT_GT(c.view.target.x, 0);
+  apply(c, input(0, 0, 2));
+  EXPECT_GT(c.fly_speed, 1);
+  EXPECT_EQ(c.view.position, c.home.position);
+}
+
+}  // namespace controls_test
+}  // namespace catena::app

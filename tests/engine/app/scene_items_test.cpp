@@ -1,0 +1,133 @@
+// What the panels add to a scene, what belongs together, and the values behind histograms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "engine/app/viewer/edit/histogram_cache.h"
+#include "engine/app/viewer/edit/item_templates.h"
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/scene/document.h"
+#include "render/extract/extract.h"
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace scene_edit_test {
+
+TEST(Histogram, BarsHoldEveryValueOnceWithBothEnds) {
+  const std::vector<float> sorted{0, 0, 0.5f, 1, 1, 1, 2};
+  const auto bars = histogram_bars(sorted, 0, 1, 2);
+  ASSERT_EQ(bars.size(), 2u);
+  EXPECT_FLOAT_EQ(bars[1], 1) << "0.5, 1, 1, 1";
+  EXPECT_FLOAT_EQ(bars[0], std::log1p(2.0f) / std::log1p(4.0f));
+  EXPECT_EQ(histogram_bars(sorted, 3, 4, 2), (std::vector<float>{0, 0}));
+  EXPECT_EQ(histogram_bars({}, 0, 1, 2), (std::vector<float>{0, 0}));
+  EXPECT_EQ(histogram_bars(sorted, 1, 1, 2), (std::vector<float>{0, 0}));
+  EXPECT_EQ(histogram_bars(sorted, std::nan(""), 1, 2), (std::vector<float>{0, 0}));
+  EXPECT_TRUE(histogram_bars(sorted, 0, 1, 0).empty());
+  EXPECT_EQ(quantile_of_sorted(sorted, 0.5), 1);
+  EXPECT_EQ(quantile_of_sorted({}, 0.5), 0);
+}
+
+constexpr const char* kFields =
+    R"({"fields": {"ball": {"analytic": "sphere", "resolution": 17}, "flow": {"analytic": "circle", "resolution": 17},
+                   "flat": {"analytic": "constant", "resolution": 5}, "exact": {"analytic": "torus"}},
+        "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1.25},
+                  {"name": "other", "type": "isosurface", "field": "exact", "level": 1.25},
+                  {"name": "deep", "type": "isosurface", "field": "ball", "level": 0.5}],
+        "isosurfaces": [{"field": "ball", "level": 1.25}, {"field": "ball", "level": 1}]})";
+
+class EditedScene : public testing::Test {
+ protected:
+  void SetUp() override {
+    test::write_file(folder_ / "s.json", kFields);
+    auto document = scene::Document::open(folder_ / "s.json");
+    ASSERT_TRUE(document) << document.error().message;
+    document_ = std::move(*document);
+    auto scene = document_->read();
+    ASSERT_TRUE(scene) << scene.error().message;
+    scene_ = std::move(*scene);
+  }
+  SortedSamples values_of(scene::Entity field) {
+    SortedSamples values;
+    for (int i = 0; i < 2000 && !values; ++i) {
+      values = values_.find_or_request(scene_, field);
+      if (!values) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return values;
+  }
+  test::TemporaryFolder folder_;
+  std::optional<scene::Document> document_;
+  scene::Scene scene_;
+  HistogramCache values_;
+};
+
+TEST_F(EditedScene, ValuesAreMadeOnceAndGoWithTheirField) {
+  const scene::Entity ball = scene::find_field(scene_, "ball"), flow = scene::find_field(scene_, "flow");
+  EXPECT_EQ(values_.find_or_request(scene_, ball), nullptr) << "nothing is loaded";
+  EXPECT_FALSE(values_.is_busy());
+  ASSERT_TRUE(scene::resolve_rendered_field(scene_, ball, {}));
+  ASSERT_TRUE(scene::resolve_rendered_field(scene_, flow, {}));
+  const SortedSamples of_ball = values_of(ball), of_flow = values_of(flow);
+  ASSERT_TRUE(of_ball && of_flow);
+  EXPECT_EQ(of_ball->size(), 17u * 17 * 17);
+  EXPECT_TRUE(std::is_sorted(of_flow->begin(), of_flow->end()));
+  EXPECT_NEAR(of_flow->back(), 2 * std::sqrt(2.0), 1e-6) << "the magnitude in the corner";
+  EXPECT_EQ(values_.find_or_request(scene_, ball), of_ball);
+  EXPECT_EQ(values_.find_or_request(scene_, flow), of_flow);
+  values_.prune(scene::Scene());
+  EXPECT_EQ(values_.find_or_request(scene_, flow), nullptr) << "made anew";
+}
+
+TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
+  int items = 0;
+  for (const char* name : {"ball", "flow", "flat", "exact"}) {
+    const auto drawn = scene::resolve_rendered_field(scene_, scene::find_field(scene_, name), {});
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines, ShowAs::glyphs}) {
+      if (!can_show(*drawn, as)) continue;
+      ++items;
+      const Outcome done =
+          document_->set(new_item_pointer(as), make_item_json(scene_, scene::find_field(scene_, name), *drawn, as, {}), to_string(as));
+      ASSERT_TRUE(done) << name << " as " << to_string(as) << ": " << done.error().message;
+    }
+  }
+  EXPECT_EQ(items, 3 + 3 + 3 + 3);
+  auto scene = document_->read();
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto packet = render::make_frame(*scene, 32, 32);
+  ASSERT_TRUE(packet) << packet.error().message;
+  EXPECT_EQ(packet->volumes.size(), 3u);
+  EXPECT_EQ(packet->isosurfaces.size(), 2u + 3);
+  EXPECT_EQ(packet->slices.size(), 4u);
+  EXPECT_GT(packet->tubes.size(), 20u);
+  ASSERT_EQ(packet->glyphs.size(), 1u);
+  EXPECT_GT(packet->glyphs[0].glyphs.size(), 100u) << "on the first slice";
+}
+
+TEST_F(EditedScene, TheFeltLevelIsTheSeenOne) {
+  std::vector<std::vector<std::string>> felt;
+  scene_.entities.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
+    felt.push_back(find_link_levels(scene_, entity_name(scene_, surface.field), surface.level));
+  });
+  ASSERT_EQ(felt.size(), 2u);
+  EXPECT_EQ(felt[0], std::vector<std::string>{"/chain/0/level"}) << "not the other field's, not the other level's";
+  EXPECT_TRUE(felt[1].empty());
+}
+
+TEST_F(EditedScene, ANewSurfaceIsTheOneThatIsFelt) {
+  const auto drawn = scene::resolve_rendered_field(scene_, scene::find_field(scene_, "ball"), {});
+  ASSERT_TRUE(drawn);
+  const std::string level = first_link_level(scene_, "ball");
+  EXPECT_EQ(level, "1.25") << "the first link's";
+  EXPECT_EQ(make_item_json(scene_, scene::find_field(scene_, "ball"), *drawn, ShowAs::isosurface, {}),
+            R"({"field": "ball", "level": 1.25})");
+  EXPECT_TRUE(first_link_level(scene_, "flow").empty());
+  auto unfelt = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}}})", "s.json");
+  ASSERT_TRUE(unfelt);
+  const std::string item = make_item_json(*unfelt, scene::find_field(*unfelt, "ball"), *drawn, ShowAs::isosurface, {});
+  EXPECT_EQ(item.find("1.25"), std::string::npos) << "else of its own range: " << item;
+}
+
+}  // namespace scene_edit_test
+}  // namespace catena::app

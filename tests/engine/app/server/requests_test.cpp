@@ -1,0 +1,88 @@
+#include "engine/app/server/requests.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace wishes_test {
+
+using namespace catena::app;
+
+TEST(ClientRequests, SayWhatAPageMayAskFor) {
+  const auto move = parse_request(R"({"do": "move", "number": 7, "pieces": [[1, 2, 3, -4, 0.5, 9]]})");
+  ASSERT_TRUE(move);
+  const auto& pieces = std::get<MoveRequest>(*move);
+  EXPECT_EQ(pieces.number, 7u);
+  ASSERT_EQ(pieces.inputs.size(), 1u);
+  EXPECT_EQ(pieces.inputs[0].dy, -4);
+  EXPECT_TRUE(pieces.inputs[0].left && pieces.inputs[0].shift && !pieces.inputs[0].middle && !pieces.inputs[0].control);
+  EXPECT_EQ(std::get<SizeRequest>(*parse_request(R"({"do": "size", "width": 640, "height": 480})")).height, 480u);
+  EXPECT_EQ(std::get<Action>(*parse_request(R"({"do": "fit"})")), Action::fit_view);
+  EXPECT_EQ(std::get<LevelRequest>(*parse_request(R"({"do": "level", "item": "isosurfaces[0]", "value": 2})")).value, 2);
+  const auto opacity = parse_request(R"({"do": "opacity", "item": "volumes[0]", "points": [[0, 0], [1, 5]]})");
+  ASSERT_TRUE(opacity);
+  EXPECT_LT(std::get<OpacityRequest>(*opacity).points[1].alpha, 1);
+  EXPECT_EQ(std::get<ControlRequest>(*parse_request(R"({"do": "take"})")), ControlRequest::take);
+  EXPECT_EQ(std::get<Action>(*parse_request(R"({"do": "undo"})")), Action::undo);
+  EXPECT_EQ(std::get<StepRequest>(*parse_request(R"({"do": "step", "value": 3})")).step, 3);
+  EXPECT_TRUE(std::get<RecordRequest>(*parse_request(R"({"do": "record"})")).on);
+  EXPECT_FALSE(std::get<RecordRequest>(*parse_request(R"({"do": "stop_recording"})")).on);
+  EXPECT_EQ(std::get<TuningRequest>(*parse_request(R"({"do": "plan", "place": 0.25})")).position, 0.25);
+  EXPECT_FALSE(std::get<TuningRequest>(*parse_request(R"({"do": "plan"})")).position);
+}
+
+TEST(ClientRequests, NothingElseIsTaken) {
+  for (const char* bad : {"",
+                          "{}",
+                          "[]",
+                          "null",
+                          "1",
+                          R"({"do": 1})",
+                          R"({"do": "quit"})",
+                          R"({"do": "save"})",
+                          R"({"do": "open", "path": "/etc/passwd"})",
+                          R"({"do": "move"})",
+                          R"({"do": "move", "pieces": []})",
+                          R"({"do": "move", "pieces": [[1, 2, 3]]})",
+                          R"({"do": "move", "pieces": [[1e300, 0, 0, 0, 0, 0]]})",
+                          R"({"do": "move", "pieces": [[0, 0, 0, 0, 0, 64]]})",
+                          R"({"do": "move", "pieces": [[0, 0, 0, 0, 0, 0.5]]})",
+                          R"({"do": "move", "number": -1, "pieces": [[0, 0, 0, 0, 0, 0]]})",
+                          R"({"do": "move", "pieces": [[0, 0, 0, 0, 0, 1e18]]})",
+                          R"({"do": "size", "width": 0, "height": 5})",
+                          R"({"do": "size", "width": 100000, "height": 100})",
+                          R"({"do": "size", "width": 100})",
+                          R"({"do": "level", "item": "x"})",
+                          R"({"do": "level", "item": 3, "value": 1})",
+                          R"({"do": "level", "item": "x", "value": 1e999})",
+                          R"({"do": "opacity", "item": "volumes[0]", "points": {}})",
+                          R"({"do": "step"})",
+                          R"({"do": "step", "value": -1})",
+                          R"({"do": "step", "value": 0.5})",
+                          R"({"do": "step", "value": 1e12})",
+                          R"({"do": "plan", "place": 1.5})",
+                          R"({"do": "plan", "place": "fast"})",
+                          R"({"do": "record", "do": "x"})",
+                          R"({"do": "map", "item": "volumes[0]"})"})
+    EXPECT_FALSE(parse_request(bad)) << bad;
+  std::string pieces;
+  for (std::size_t i = 0; i <= kMaxInputs; ++i) pieces += (i > 0 ? "," : "") + std::string("[0,0,0,0,0,0]");
+  EXPECT_FALSE(parse_request(R"({"do": "move", "pieces": [)" + pieces + "]}"));
+}
+
+TEST(ClientRequests, NoiseIsRefusedInOneLine) {
+  const std::string good = R"({"do": "opacity", "item": "volumes[0]", "points": [[0, 0], [0.5, 0.25], [1, 1]]})";
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    for (unsigned k = random() % 4 + 1; k > 0; --k) text[random() % text.size()] = static_cast<char>(random() % 256);
+    const auto wish = parse_request(text);
+    if (wish) continue;
+    ++refused;
+    EXPECT_EQ(wish.error().message.find('\n'), std::string::npos);
+  }
+  EXPECT_GT(refused, 1500);
+}
+
+}  // namespace wishes_test

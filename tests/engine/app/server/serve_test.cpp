@@ -1,0 +1,357 @@
+/// `catena serve` as a page sees it: pictures, the hand, what can be changed, who may change it.
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+
+#include "engine/base/folder_lock.h"
+#include "tests/engine/app/server/serve_process.h"
+
+namespace serve_test {
+
+namespace test = catena::test;
+using catena::json::Node;
+
+// a ball of which the hand feels the surface
+constexpr const char* kBall = R"({
+  "fields": {"ball": {"analytic": "sphere"}},
+  "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.5}],
+  "isosurfaces": [{"field": "ball", "level": 1}],
+  "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}
+})";
+
+struct Ball {
+  test::TemporaryFolder folder;
+  std::string path = folder / "ball.json";
+  Ball() { test::write_file(path, kBall); }
+};
+
+double number_of(const Node& node, const char* key) { return node.find(key) != nullptr ? node.find(key)->number : -1; }
+std::string word_of(const Node& node, const char* key) { return node.find(key) != nullptr ? node.find(key)->string : ""; }
+
+TEST(Serve, APageSeesMovesFeelsAndChanges) {
+  const Ball ball;
+  test::ServeProcess served(ball.path);
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  ASSERT_TRUE(page->is_open());
+  EXPECT_EQ(word_of(test::wait_for_message(*page, "role"), "hand"), "yours");
+  // coarse and quick at first, every pixel as it is when nothing moves
+  const test::SentFrame first = test::wait_for_frame(*page);
+  EXPECT_TRUE(first.file.starts_with("\xff\xd8\xff")) << "JPEG";
+  EXPECT_EQ(first.width, 160u);
+  const test::SentFrame last = test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.exact; });
+  EXPECT_TRUE(last.file.starts_with("\x89PNG"));
+  // an orbit: the picture that shows it says so
+  page->send(R"({"do": "move", "number": 5, "pieces": [[80, 60, 20, 0, 0, 1]]})");
+  const test::SentFrame turned = test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.motion == 5; });
+  EXPECT_GT(turned.number, last.number);
+  page->send(R"({"do": "first_view"})");
+  // another size
+  page->send(R"({"do": "size", "width": 200, "height": 100})");
+  EXPECT_EQ(test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.width == 200; }).height, 100u);
+  // the hand goes onto the ball, and the wheel pushes it in
+  page->send(R"({"do": "move", "number": 6, "pieces": [[100, 50, 0, 0, 0, 0]]})");
+  page->send(R"({"do": "hand"})");
+  // it began within the ball, too deep to be held: out, and in again from there
+  page->send(R"({"do": "move", "number": 7, "pieces": [[100, 50, 0, 0, -5, 0]]})");
+  test::wait_for_message(*page, "state", [](const Node& state) {
+    const Node* links = state.find("links");
+    return links != nullptr && links->items.size() == 1 && word_of(links->items[0], "status") == "FREE";
+  });
+  page->send(R"({"do": "move", "number": 8, "pieces": [[100, 50, 0, 0, 9, 0]]})");
+  const Node pushed = test::wait_for_message(*page, "state", [](const Node& state) { return number_of(state, "force") > 0.05; });
+  EXPECT_TRUE(pushed.find("hand") != nullptr && pushed.find("hand")->boolean);
+  ASSERT_TRUE(pushed.find("links") != nullptr && pushed.find("links")->items.size() == 1);
+  EXPECT_EQ(word_of(pushed.find("links")->items[0], "name"), "skin");
+  // a smaller ball, for eye and hand: the hand is outside
+  page->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.5})");
+  double force = -1;
+  const Node scene = test::wait_for_message(
+      *page, "scene", [](const Node& s) { return number_of(s.find("isosurfaces")->items.at(0), "level") == 0.5; },
+      [&](const Node& message) {
+        if (const Node* state = message.find("state")) force = number_of(*state, "force");
+      });
+  EXPECT_EQ(word_of(scene, "name"), "ball.json");
+  if (force != 0)
+    force = number_of(test::wait_for_message(*page, "state", [](const Node& s) { return number_of(s, "force") == 0; }), "force");
+  EXPECT_EQ(force, 0);
+  // what cannot be done is said, and changes nothing
+  for (const char* bad : {R"({"do": "level", "item": "isosurfaces[7]", "value": 1})", R"({"do": "map", "item": "volumes[0]", "name": "x"})",
+                          R"({"do": "quit"})", "nonsense"}) {
+    page->send(bad);
+    EXPECT_TRUE(test::wait_for_message(*page, "note").kind == catena::json::Kind::string) << bad;
+  }
+  EXPECT_EQ(served.interrupt_and_wait(), 0);
+  EXPECT_FALSE(page->read() && page->read() && page->read() && page->read() && page->read());
+  EXPECT_NE(served.out().find(" pictures for at most 1 page at a time"), std::string::npos) << served.out();
+  EXPECT_EQ(served.err(), "");
+  EXPECT_EQ(test::read_file(ball.path), kBall) << "nothing is written to the scene";
+}
+
+TEST(Serve, OnePageHasTheHandAndOthersWatch) {
+  const Ball ball;
+  test::ServeProcess served(ball.path);
+  ASSERT_NE(served.port(), 0) << served.err();
+  auto first = served.page();
+  EXPECT_EQ(word_of(test::wait_for_message(*first, "role"), "hand"), "yours");
+  const auto second = served.page();
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "taken");
+  EXPECT_EQ(number_of(test::wait_for_message(*first, "role", [](const Node& r) { return number_of(r, "viewers") == 2; }), "viewers"), 2);
+  EXPECT_NE(test::wait_for_frame(*second).number, 0u);
+  // who watches changes nothing
+  second->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.25})");
+  second->send(R"({"do": "take"})");
+  first->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.75})");
+  std::vector<double> levels;
+  test::wait_for_message(*second, "scene", [&](const Node& scene) {
+    levels.push_back(number_of(scene.find("isosurfaces")->items.at(0), "level"));
+    return levels.back() == 0.75;
+  });
+  for (const double level : levels) EXPECT_NE(level, 0.25);
+  // the hand is free when its page has gone
+  first->close();
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "free");
+  second->send(R"({"do": "take"})");
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "yours");
+  second->send(R"({"do": "give"})");
+  EXPECT_EQ(word_of(test::wait_for_message(*second, "role"), "hand"), "free");
+  const auto third = served.page();
+  EXPECT_EQ(word_of(test::wait_for_message(*third, "role"), "hand"), "yours") << "who comes while it is free";
+  EXPECT_EQ(served.interrupt_and_wait(), 0);
+}
+
+TEST(Serve, AVolumesTransferFunctionIsChanged) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "cloud.json", R"({"fields": {"f": {"analytic": "sphere", "resolution": 24}},
+    "volumes": [{"field": "f", "color": "viridis", "opacity": [[0, 0], [2, 0.5]]}], "camera": {"position": [0, -6, 0], "target": [0, 0, 0]}})");
+  test::ServeProcess served(folder / "cloud.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  const auto volume = [](const Node& scene) { return scene.find("volumes")->items.at(0); };
+  page->send(R"({"do": "opacity", "item": "volumes[0]", "points": [[0, 0.125], [1, 0.25], [2, 0]]})");
+  const Node scene = test::wait_for_message(*page, "scene", [&](const Node& s) { return volume(s).find("opacity")->items.size() == 3; });
+  EXPECT_EQ(volume(scene).find("opacity")->items[1].items[1].number, 0.25);
+  page->send(R"({"do": "map", "item": "volumes[0]", "name": "magma"})");
+  EXPECT_EQ(
+      word_of(volume(test::wait_for_message(*page, "scene", [&](const Node& s) { return word_of(volume(s), "map") == "magma"; })), "map"),
+      "magma");
+  // values that do not rise: refused as the scene's own would be
+  page->send(R"({"do": "opacity", "item": "volumes[0]", "points": [[1, 0.1], [0, 0.2]]})");
+  EXPECT_EQ(test::wait_for_message(*page, "note").kind, catena::json::Kind::string);
+}
+
+TEST(Serve, StepsUndoAndRecordings) {
+  const test::TemporaryFolder folder;
+  for (const char* step : {"0", "1", "2"}) {
+    const test::ProgramResult made = test::run_catena({"generate", "sphere", "--resolution", "12", "--scale", step[0] == '1' ? "2" : "1",
+                                                       "-o", folder / ("a_" + std::string(step) + ".vdb")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  test::write_file(folder / "series.json", R"({"fields": {"f": {"file": "a_*.vdb"}}, "isosurfaces": [{"field": "f", "level": 1}],
+    "chain": [{"name": "skin", "type": "isosurface", "field": "f", "level": 1, "free": "above"}], "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}})");
+  test::ServeProcess served(folder / "series.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  const auto step_is = [](int wanted) { return [wanted](const Node& s) { return number_of(*s.find("step"), "now") == wanted; }; };
+  EXPECT_EQ(number_of(*test::wait_for_message(*page, "state").find("step"), "count"), 3);
+  page->send(R"({"do": "step", "value": 1})");
+  test::wait_for_message(*page, "state", step_is(1));
+  page->send(R"({"do": "next_step"})");
+  test::wait_for_message(*page, "state", step_is(2));
+  page->send(R"({"do": "next_step"})");  // round and round
+  test::wait_for_message(*page, "state", step_is(0));
+  page->send(R"({"do": "play_steps"})");
+  for (const int wanted : {1, 2, 0})
+    EXPECT_EQ(test::wait_for_message(*page, "state", step_is(wanted)).kind, catena::json::Kind::object) << wanted;
+  page->send(R"({"do": "play_steps"})");
+
+  // what is changed is taken back
+  const auto level_is = [](double wanted) {
+    return [wanted](const Node& s) { return number_of(s.find("isosurfaces")->items.at(0), "level") == wanted; };
+  };
+  std::string undo;  // what is told once may come before the scene or after it
+  const auto look = [&](const Node& message) {
+    if (const Node* state = message.find("state")) undo = word_of(*state, "undo");
+  };
+  page->send(R"({"do": "level", "item": "isosurfaces[0]", "value": 0.5})");
+  test::wait_for_message(*page, "scene", level_is(0.5), look);
+  if (undo.empty())
+    test::wait_for_message(
+        *page, "state", [](const Node& state) { return word_of(state, "undo") != ""; }, look);
+  EXPECT_EQ(undo, "isolevel");
+  page->send(R"({"do": "undo"})");
+  EXPECT_EQ(test::wait_for_message(*page, "scene", level_is(1)).kind, catena::json::Kind::object);
+  page->send(R"({"do": "redo"})");
+  EXPECT_EQ(test::wait_for_message(*page, "scene", level_is(0.5)).kind, catena::json::Kind::object);
+
+  // what was felt can be fetched, and is a recording like any other; the next one takes its place
+  const auto fetched = [&](const std::string& name) {
+    const std::string answer = test::send_raw_request(
+        served.port(),
+        test::make_request("/" + name, {{"Host", "127.0.0.1:" + std::to_string(served.port())}, {"Cookie", served.cookie()}}));
+    return test::parse_status(answer) == 200 ? answer.substr(answer.find("\r\n\r\n") + 4) : "";
+  };
+  const auto file_is = [](const std::string& wanted) {
+    return [wanted](const Node& s) { return word_of(*s.find("recording"), "file") == wanted; };
+  };
+  for (const std::string name : {"recording-1.catlog", "recording-2.catlog"}) {
+    page->send(R"({"do": "record"})");
+    test::wait_for_message(*page, "state", [](const Node& s) {
+      return s.find("recording")->find("on")->boolean && number_of(*s.find("recording"), "mb") > 0;
+    });
+    EXPECT_EQ(fetched("recording-1.catlog"), "") << "it is not whole, or not there any more";
+    page->send(R"({"do": "stop_recording"})");
+    test::wait_for_message(*page, "state", file_is(name));
+    test::write_file(folder / name, fetched(name));
+    const test::ProgramResult info = test::run_catena({"replay", "--log", folder / name});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+  }
+  EXPECT_EQ(served.interrupt_and_wait(), 0);
+  EXPECT_EQ(served.err(), "");
+}
+
+TEST(Serve, StepsThatAreAddedAreShownOnceTheyAreWhole) {
+  const test::TemporaryFolder folder;
+  const auto file = [&](int step) { return folder / ("a_" + std::to_string(step) + ".vdb"); };
+  const test::ProgramResult made = test::run_catena({"generate", "sphere", "--resolution", "12", "-o", file(1)});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  test::ServeProcess served(file(1), {"--follow"});
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  EXPECT_EQ(number_of(*test::wait_for_message(*page, "state").find("step"), "count"), 1);
+  const std::string bytes = test::read_file(file(1));
+  test::write_file(file(2), bytes.substr(0, bytes.size() / 2));
+  test::write_file(file(10), bytes);
+  const auto newest_is = [](int count) {
+    return
+        [count](const Node& s) { return number_of(*s.find("step"), "count") == count && number_of(*s.find("step"), "now") == count - 1; };
+  };
+  test::wait_for_message(*page, "state", newest_is(2));
+  test::write_file(file(2), bytes);
+  test::wait_for_message(*page, "state", newest_is(3));
+  EXPECT_EQ(served.interrupt_and_wait(), 0);
+  EXPECT_EQ(served.err(), "");
+}
+
+TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "line.json", R"({"fields": {"flow": {"analytic": "circle"}},
+    "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.5, 0, 0]}],
+    "camera": {"position": [0, -5, 0], "target": [0, 0, 0]}})");
+  test::ServeProcess served(folder / "line.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  page->send(R"({"do": "plan", "place": 0.5})");
+  EXPECT_EQ(test::wait_for_message(*page, "note").kind, catena::json::Kind::string) << "nothing is measured yet";
+  page->send(R"({"do": "plan"})");
+  const auto planned = [](const Node& s) { return s.find("plan") != nullptr && s.find("plan")->kind == catena::json::Kind::object; };
+  const Node measured = test::wait_for_message(*page, "state", planned);
+  ASSERT_TRUE(planned(measured));
+  EXPECT_NE(word_of(*measured.find("plan"), "hand").find("curve"), std::string::npos);
+  page->send(R"({"do": "plan", "place": 0})");
+  const Node chosen = test::wait_for_message(*page, "state", [](const Node& s) { return word_of(s, "undo") == "plan"; });
+  EXPECT_EQ(word_of(chosen, "undo"), "plan");
+  EXPECT_TRUE(planned(chosen));
+}
+
+TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
+  const test::TemporaryFolder folder;
+  // a thin soft shell of a smooth field: what is as exact as can be told takes four times as long as what is quickest, so that a loaded
+  // machine confuses neither end
+  test::write_file(folder / "cloud.json", R"({"fields": {"f": {"analytic": "torus", "resolution": 128}},
+    "volumes": [{"field": "f", "opacity": [[-0.2, 0], [0, 0.2], [0.2, 0]]}], "camera": {"position": [0, -4, 2], "target": [0, 0, 0]}})");
+  test::ServeProcess served(folder / "cloud.json");
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  page->send(R"({"do": "plan"})");
+  const auto eye = [](const Node& s) {
+    const Node* plan = s.find("plan");
+    return plan != nullptr && plan->kind == catena::json::Kind::object ? word_of(*plan, "eye") : std::string();
+  };
+  const std::string measured = eye(test::wait_for_message(*page, "state", [&](const Node& s) { return !eye(s).empty(); }));
+  EXPECT_NE(measured.find("/255, "), std::string::npos) << measured;
+  // the slider's two ends; the place that is told is that of the stop that was chosen
+  const auto error_of = [](const std::string& words) { return std::stod(words.substr(words.find(": ") + 2)); };
+  const auto at = [&](const char* place, double least, double most) {
+    page->send(R"({"do": "plan", "place": )" + std::string(place) + "}");
+    return eye(test::wait_for_message(*page, "state", [&](const Node& s) {
+      const double told = eye(s).empty() ? -1 : number_of(*s.find("plan"), "place");
+      return word_of(s, "undo") == "plan" && told >= least && told <= most;
+    }));
+  };
+  const std::string fast = at("0", 0, 0.5), exact = at("1", 1, 1);
+  ASSERT_TRUE(!fast.empty() && !exact.empty()) << fast << " | " << exact;
+  EXPECT_LT(error_of(exact), error_of(fast)) << fast << " | " << exact;
+  EXPECT_NE(test::wait_for_frame(*page, [](const test::SentFrame& p) { return p.exact; }).number, 0u);
+  EXPECT_EQ(served.interrupt_and_wait(), 0);
+}
+
+TEST(Serve, WhatAKilledOneRecordedIsRemovedByTheNext) {
+  const test::TemporaryFolder temporary;
+  const auto make = [&](const char* name, std::time_t age_s) {
+    const std::string path = temporary / name;
+    std::filesystem::create_directory(path);
+    test::write_file(path + "/recording-1.catlog", "ticks");
+    const timespec then{std::time(nullptr) - age_s, 0}, both[2] = {then, then};
+    EXPECT_EQ(utimensat(AT_FDCWD, path.c_str(), both, 0), 0);
+    return path;
+  };
+  const std::string left = make("catena-serve-a", 3600), held = make("catena-serve-b", 3600), young = make("catena-serve-c", 0),
+                    other = make("somebodys", 3600);
+  const auto lock = catena::FolderLock::acquire(held);
+  ASSERT_TRUE(lock);
+  const Ball ball;
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before != nullptr ? before : "";
+  setenv("TMPDIR", temporary.path().c_str(), 1);
+  test::ServeProcess served(ball.path);
+  before != nullptr ? setenv("TMPDIR", kept.c_str(), 1) : unsetenv("TMPDIR");
+  ASSERT_NE(served.port(), 0) << served.err();
+  EXPECT_TRUE(test::exists(left)) << "nothing is looked for before somebody records";
+  const auto page = served.page();
+  page->send(R"({"do": "record"})");
+  test::wait_for_message(*page, "state", [](const Node& s) { return s.find("recording")->find("on")->boolean; });
+  EXPECT_FALSE(test::exists(left));
+  for (const std::string& path : {held, young, other}) EXPECT_TRUE(test::exists(path + "/recording-1.catlog")) << path;
+  EXPECT_EQ(served.interrupt_and_wait(), 0);
+}
+
+TEST(Serve, EndsWithTheProgramThatStartedIt) {
+  const Ball ball;
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+  const int before = dup(0);
+  dup2(ends[0], 0);
+  test::ServeProcess served(ball.path, {"--until-stdin-ends"});
+  dup2(before, 0);
+  for (const int end : {before, ends[0]}) close(end);
+  ASSERT_NE(served.port(), 0) << served.err();
+  const auto page = served.page();
+  ASSERT_EQ(write(ends[1], "x\n", 2), 2) << "what is said to it is of no interest";
+  EXPECT_NE(test::wait_for_frame(*page).number, 0u);
+  close(ends[1]);
+  EXPECT_EQ(test::wait_for_frame(*page, [](const test::SentFrame&) { return false; }).number, 0u);
+  EXPECT_EQ(served.wait(), 0);
+}
+
+TEST(Serve, BadInputIsOneLine) {
+  const Ball ball;
+  for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{{"serve", "missing.json"},
+                                                                                   {"serve", ball.path, "--address", "localhost"},
+                                                                                   {"serve", ball.path, "--port", "99999"},
+                                                                                   {"serve", ball.path, "--framed-by", "*"},
+                                                                                   {"serve", ball.path, "--quality", "pretty"},
+                                                                                   {"serve"}}) {
+    const test::ProgramResult result = test::run_catena(bad);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+}  // namespace serve_test

@@ -1,0 +1,201 @@
+/// Plans from the outside: the commands.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "engine/app/tuning/tradeoff/report/report.h"
+#include "tests/support/run_program.h"
+#include "tests/support/support.h"
+
+namespace plan_program_test {
+
+using namespace catena;
+
+constexpr const char* kScene = R"({"fields": {"flow": {"analytic": "helix"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, -1.2]%s}],
+  "workspace": {"metres_per_unit": 0.05}%s})";
+
+/// The program with a cache of its own.
+class TuningCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* cache = std::getenv("XDG_CACHE_HOME");
+    before_ = cache != nullptr ? cache : "";
+    ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+    std::string csv = "t,x,y,z\n";
+    for (int k = 0; k < 300; ++k) csv += fmt::format("{},{},{},{}\n", 1e-3 * k, 0.6 + 1e-4 * k, 1e-3 * k, -1.2);
+    test::write_file(folder_ / "p.csv", csv);
+  }
+  void TearDown() override {
+    if (before_.empty())
+      ::unsetenv("XDG_CACHE_HOME");
+    else
+      ::setenv("XDG_CACHE_HOME", before_.c_str(), 1);
+  }
+  std::string scene(const std::string& link = "", const std::string& more = "") const {
+    std::string text = kScene;
+    text.replace(text.find("%s"), 2, link);
+    text.replace(text.find("%s"), 2, more);
+    test::write_file(folder_ / "s.json", text);
+    return folder_ / "s.json";
+  }
+  test::ProgramResult replay(const std::vector<std::string>& more) const {
+    std::vector<std::string> all{"replay", folder_ / "s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "out.csv"};
+    all.insert(all.end(), more.begin(), more.end());
+    return test::run_catena(all);
+  }
+  std::string only_file() const {
+    std::string path;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "cache/catena/plans")) {
+      EXPECT_TRUE(path.empty());
+      path = entry.path().string();
+    }
+    return path;
+  }
+  test::TemporaryFolder folder_;
+  std::string before_;
+};
+
+TEST_F(TuningCommand, MeasuresOnceAndSaysWhatIsExpectedAndObserved) {
+  scene("", R"(, "plan": {"hand_error": 1e-6})");
+  const auto first = replay({});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_NE(first.out.find("plan hand_error=1e-06: curve "), std::string::npos) << first.out;
+  EXPECT_LT(first.out.find("expected: error"), first.out.find("observed: error")) << first.out;
+  const std::string kept = test::read_file(only_file());
+  // another wish goes by the same curves; so does the page of tradeoff
+  const auto second = replay({"--plan", "hand_error=1e-2"});
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_EQ(test::read_file(only_file()), kept);
+  EXPECT_TRUE(app::tradeoff::is_report(only_file()));
+  // damage costs a sentence
+  test::write_file(only_file(), kept.substr(0, 1000));
+  const auto third = replay({});
+  ASSERT_EQ(third.exit_code, 0) << third.err;
+  EXPECT_NE(third.out.find("it is damaged; it is not believed, and measured anew"), std::string::npos) << third.out;
+  EXPECT_TRUE(app::tradeoff::read_report(only_file()));
+}
+
+TEST_F(TuningCommand, LeavesWhatTheSceneStates) {
+  scene(R"(, "method": "rk4")");
+  const auto pinned = replay({"--plan", "hand_error=1"});
+  ASSERT_EQ(pinned.exit_code, 0) << pinned.err;
+  EXPECT_NE(pinned.out.find("the hand stays as it is"), std::string::npos) << pinned.out;
+  scene(R"(, "method": "dp54")");
+  const auto half = replay({"--plan", "hand_error=1e-5"});
+  ASSERT_EQ(half.exit_code, 0) << half.err;
+  EXPECT_NE(half.out.find("curve dp54, tolerance 1e-"), std::string::npos) << half.out;
+  scene(R"(, "tolerance": 2e-6, "follow": "online")");
+  const auto tolerance = replay({"--plan", "hand_error=1e-13"});
+  ASSERT_EQ(tolerance.exit_code, 0) << tolerance.err;
+  EXPECT_EQ(tolerance.out.find("selected"), std::string::npos) << tolerance.out;
+  EXPECT_EQ(tolerance.out.find("1e-07"), std::string::npos) << tolerance.out;
+}
+
+TEST_F(TuningCommand, ARecordingRepeatsToTheBitWhateverTheCacheSays) {
+  const std::string path = scene("", R"(, "plan": {"hand_error": 1e-2})");
+  const std::string log = folder_ / "r.catlog";
+  const auto felt = test::run_catena({"feel", path, "--device", "simulated", "--seconds", "0.3", "--realtime", "off", "--record", log});
+  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  EXPECT_NE(felt.out.find("plan hand_error=0.01: curve "), std::string::npos) << felt.out;
+  EXPECT_NE(felt.out.find("observed: error"), std::string::npos) << felt.out;
+  const auto repeats = [&](const std::vector<std::string>& words) {
+    const auto run = test::run_catena(words);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.out.find("all equal to the bit"), std::string::npos) << run.out;
+  };
+  // a cache that lies: every setting is exact, and what was quick is slow
+  std::string lies = test::read_file(only_file());
+  for (std::size_t at = 0; (at = lies.find("\"error\": ", at)) != std::string::npos; at += 9)
+    if (const auto end = lies.find_first_of(",}", at); lies[at + 9] != 'n') lies.replace(at + 9, end - at - 9, "1e-15");
+  for (std::size_t at = 0; (at = lies.find("\"median\": ", at)) != std::string::npos; at += 10) lies.insert(at + 10, "9");
+  test::write_file(only_file(), lies);
+  ASSERT_TRUE(app::tradeoff::read_report(only_file()));
+  repeats({"replay", "--log", log});
+  repeats({"replay", path, "--log", log});
+  std::filesystem::remove_all(folder_ / "cache");
+  repeats({"replay", "--log", log});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "cache"));  // nothing is measured
+  EXPECT_EQ(test::run_catena({"replay", "--log", log, "--plan", "hand_error=1"}).exit_code, 2);
+}
+
+TEST_F(TuningCommand, ASampledFieldBecomesCubicWhereThatIsNearerToTheTruth) {
+  ASSERT_EQ(test::run_catena({"generate", "lamb-oseen", "--resolution", "25", "-o", folder_ / "g.vdb"}).exit_code, 0);
+  const auto scene_with = [&](const char* name, const std::string& field) {
+    test::write_file(folder_ / name, R"({"fields": {"flow": )" + field + R"(}, "workspace": {"metres_per_unit": 0.05},
+      "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, 0]}], "plan": {"hand_error": 1e-4}})");
+    return folder_ / name;
+  };
+  const auto last_proxy = [&](const std::string& scene) {
+    const auto run = test::run_catena({"replay", scene, "--probe", folder_ / "p.csv", "-o", folder_ / "out.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const test::Table table = test::Table::read(folder_ / "out.csv");
+    const auto last = [&](const char* column) { return table.number(table.rows() - 1, column); };
+    return std::pair(run.out, Vec3{last("curve_x"), last("curve_y"), last("curve_z")});
+  };
+  const auto [exact, truth] = last_proxy(scene_with("exact.json", R"({"analytic": "lamb-oseen"})"));
+  const auto [stated, linear] = last_proxy(scene_with("stated.json", R"({"file": "g.vdb", "interpolation": "linear"})"));
+  const std::string open = scene_with("open.json", R"({"file": "g.vdb"})");
+  const auto [planned, cubic] = last_proxy(open);
+  EXPECT_EQ(exact.find("cubic"), std::string::npos) << exact;
+  EXPECT_EQ(stated.find("cubic"), std::string::npos) << stated;
+  EXPECT_NE(planned.find("field flow cubic"), std::string::npos) << planned;
+  EXPECT_LT(norm(cubic - truth), 0.2 * norm(linear - truth));
+  // before the first tick, and in the recording
+  const std::string log = folder_ / "r.catlog";
+  const auto felt = test::run_catena({"feel", open, "--device", "simulated", "--seconds", "0.2", "--realtime", "off", "--record", log});
+  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  std::filesystem::remove_all(folder_ / "cache");
+  for (const auto& words : {std::vector<std::string>{"replay", "--log", log}, {"replay", open, "--log", log}}) {
+    const auto again = test::run_catena(words);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.out.find("all equal to the bit"), std::string::npos) << again.out;
+  }
+}
+
+TEST_F(TuningCommand, BadWishesAreOneLine) {
+  const std::string path = scene();
+  for (const char* words :
+       {"x=3", "error", "error=", "error=0", "error=nan", "error=2,time=3", "hand_error=1,hand_time=1", "error=2,error=2", ","}) {
+    const auto run = replay({"--plan", words});
+    EXPECT_EQ(run.exit_code, 2) << words;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(test::exists(folder_ / "out.csv"));
+  }
+  const auto eye = replay({"--plan", "error=2"});
+  EXPECT_EQ(eye.exit_code, 2);
+  EXPECT_NE(eye.err.find("nothing is drawn here"), std::string::npos) << eye.err;
+  for (const char* plan : {R"({"erorr": 2})", R"({"error": 2, "time": 3})", "{}", R"({"error": 0})", "3", R"({"hand_time": "x"})"}) {
+    scene("", std::string(", \"plan\": ") + plan);
+    const auto run = replay({});
+    EXPECT_EQ(run.exit_code, 2) << plan;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+  EXPECT_EQ(test::run_catena({"render", path, "-o", folder_ / "x.png", "--plan", "error=2", "--quality", "draft"}).exit_code, 2);
+  EXPECT_EQ(test::run_catena({"view", path, "--plan", "error=2", "--quality", "draft"}).exit_code, 2);
+}
+
+TEST_F(TuningCommand, PicturesAreDrawnByPlan) {
+  test::write_file(folder_ / "v.json", R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
+    "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
+  const auto draw = [&](const std::string& plan) {
+    return test::run_catena({"render", folder_ / "v.json", "-o", folder_ / "v.png", "--size", "96x72", "--plan", plan});
+  };
+  const auto first = draw("error=3");
+  if (first.exit_code == 1) GTEST_SKIP() << first.err;
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_NE(first.out.find("plan error=3: "), std::string::npos) << first.out;
+  EXPECT_LT(first.out.find("expected: error"), first.out.find("observed: error")) << first.out;
+  const std::string kept = test::read_file(only_file());
+  EXPECT_EQ(draw("time=10000").exit_code, 0);
+  EXPECT_EQ(test::read_file(only_file()), kept);
+  // a stated quality stays
+  test::write_file(folder_ / "v.json", R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}}, "quality": "draft",
+    "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
+  EXPECT_NE(draw("error=3").out.find("the picture stays as it is"), std::string::npos);
+}
+
+}  // namespace plan_program_test

@@ -1,0 +1,127 @@
+// The transfer function and the isolevel edited in the window with real pointer events: what is saved, what is one step of undo.
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "engine/scene/scene.h"
+#include "render/image/image.h"
+#include "tests/support/drive_window.h"
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace viewer_look_test {
+
+// Quick pictures: a press and a move within one slow frame would be one event to ImGui. Pure green: the colour bar; pure magenta: the line
+// of the level; nothing else of the interface has them.
+constexpr const char* kScene = R"({
+  "fields": {"ball": {"analytic": "sphere", "resolution": 17}},
+  "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1}], // felt
+  "workspace": {"metres_per_unit": 0.05},
+  "volumes": [{"field": "ball", "color": [[0, 0, 1, 0], [4, 0, 1, 0]], "opacity": [[0, 0], [1, 0.25], [4, 0.04]], "opacity_unit": 1,
+               "visible": false}],
+  "isosurfaces": [{"field": "ball", "level": 1, "color": [1, 0, 1]}] })";
+
+bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
+
+/// The box of the pixels of one colour in the side window.
+struct Spot {
+  int left = 1 << 20, top = 1 << 20, right = -1, bottom = -1;
+  double x(double share) const { return left + share * (right + 1 - left); }
+};
+Spot find(const render::Image8& picture, int r, int g, int b) {
+  Spot spot;
+  for (int y = 0; y < static_cast<int>(picture.height); ++y)
+    for (int x = 0; x < std::min(320, static_cast<int>(picture.width)); ++x) {
+      const std::uint8_t* p = &picture.rgba[4 * (std::size_t(y) * picture.width + std::size_t(x))];
+      if (p[0] != r || p[1] != g || p[2] != b) continue;
+      spot.left = std::min(spot.left, x), spot.right = std::max(spot.right, x);
+      spot.top = std::min(spot.top, y), spot.bottom = std::max(spot.bottom, y);
+    }
+  return spot;
+}
+
+class ViewerAppearance : public testing::Test {
+ protected:
+  std::string view() const { return test::program_path() + " view " + scene_ + " --size 640x720 --quality draft"; }
+  int on_display(const std::string& script) {
+    test::write_file(folder_ / "script.sh", script);
+    const int status = std::system(
+        ("timeout 120 " + test::on_display("640x720") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string log() const { return test::read_file(folder_ / "log"); }
+
+  struct Saved {
+    scene::TransferFunction transfer;
+    double seen = 0, felt = 0;
+  };
+  Saved saved(const std::string& name) {
+    Saved all;
+    const auto scene = scene::read_scene(folder_ / name);
+    EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+    if (!scene) return all;
+    scene->entities.each<scene::Volume>([&](scene::Entity, const scene::Volume& v) { all.transfer = v.transfer; });
+    scene->entities.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& s) { all.seen = s.level; });
+    scene->entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { all.felt = link.node.find("level")->number; });
+    return all;
+  }
+  test::TemporaryFolder folder_;
+  std::string scene_ = folder_ / "s.json";
+};
+
+TEST_F(ViewerAppearance, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBack) {
+  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
+  test::write_file(scene_, kScene);
+  ASSERT_EQ(on_display(view() + " --frames 4 --window-screenshot " + (folder_ / "w.png")), 0) << log();
+  const auto window = render::read_png(folder_ / "w.png");
+  ASSERT_TRUE(window) << log();
+  const Spot bar = find(*window, 0, 255, 0), line = find(*window, 255, 0, 255);
+  ASSERT_GT(bar.right - bar.left, 200) << "the colour bar";
+  ASSERT_GT(line.bottom - line.top, 20) << "the line of the level";
+
+  // the plot lies above the bar, opacities by their square roots; 0.25 at the value 1 goes to about 0.64 at 2
+  const double bottom = bar.top - 8, height = 115.5;
+  const auto at = [](double x, double y) { return std::to_string(std::lround(x)) + " " + std::to_string(std::lround(y)); };
+  const double middle = 0.5 * (line.top + line.bottom), level = 0.5 * (line.left + line.right);
+  const auto drag = [&](const std::string& from, const std::string& half, const std::string& to) {
+    return "xdotool mousemove " + from + "; sleep 0.5; xdotool mousedown 1; sleep 0.5; xdotool mousemove " + half +
+           "; sleep 0.5; xdotool mousemove " + to + "; sleep 0.5; xdotool mouseup 1; sleep 0.5\n";
+  };
+  const auto wait_change = [&](const std::string& of) {
+    return "for i in $(seq 200); do cmp -s " + scene_ + " " + (folder_ / of) + " || break; sleep 0.1; done; sleep 0.2\n";
+  };
+  std::ostringstream script;
+  script << "cp " << scene_ << " " << (folder_ / "0.json") << "\n"
+         << view() << " &\n"
+         << "for i in $(seq 300); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done; sleep 1\n"
+         << drag(at(bar.x(0.25), bottom - 0.5 * height), at(bar.x(0.4), bottom - 0.6 * height), at(bar.x(0.5), bottom - 0.8 * height))
+         << drag(at(level, middle), at(level + 10, middle), at(level + 40, middle)) << "xdotool key ctrl+s\n"
+         << wait_change("0.json") << "cp " << scene_ << " " << (folder_ / "1.json") << "\n"
+         << "xdotool key ctrl+z; sleep 0.5; xdotool key ctrl+s\n"
+         << wait_change("1.json") << "cp " << scene_ << " " << (folder_ / "2.json") << "\nxdotool key ctrl+q; wait $!\n";
+  ASSERT_EQ(on_display(script.str()), 0) << log();
+
+  const Saved edited = saved("1.json");
+  ASSERT_EQ(edited.transfer.opacities.size(), 3u);
+  EXPECT_NEAR(edited.transfer.opacities[1].value, 2, 0.1);
+  EXPECT_NEAR(edited.transfer.opacities[1].alpha, 0.64, 0.05);
+  EXPECT_EQ(edited.transfer.opacities[2].alpha, 0.04);
+  EXPECT_GT(edited.seen, 1.3);
+  EXPECT_LT(edited.seen, 1.8);
+  EXPECT_EQ(edited.felt, edited.seen) << "what is seen is what is felt";
+  EXPECT_NE(test::read_file(folder_ / "1.json").find("// felt"), std::string::npos);
+
+  // the whole drag of the level is taken back, and nothing more
+  const Saved back = saved("2.json");
+  EXPECT_EQ(back.seen, 1);
+  EXPECT_EQ(back.felt, 1);
+  EXPECT_EQ(back.transfer.opacities[1].alpha, edited.transfer.opacities[1].alpha);
+}
+
+}  // namespace viewer_look_test
+}  // namespace catena::app

@@ -1,0 +1,61 @@
+/// `catena view --xr` on the scripted runtime (tests/xr_runtime) and a virtual display.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "tests/support/child_test.h"
+#include "tests/support/drive_window.h"
+#include "tests/support/support.h"
+
+namespace catena::app::viewer_xr_fixture {
+
+inline constexpr const char* kScene = R"({
+  "fields": {"s": {"analytic": "sphere"}},
+  "chain": [{"name": "ball", "type": "isosurface", "field": "s", "level": 1}],
+  "isosurfaces": [{"field": "s", "level": 1, "color": [1, 0.5, 0.2]}],
+  "camera": {"position": [0, -6, 3], "target": [0, 0, 0]} })";
+
+class ViewerXr : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::exists(test::binary_dir() + "/libcatena_xr_runtime.so")) GTEST_SKIP() << "the scripted runtime was not built";
+    test::write_file(folder_ / "scene.json", kScene);
+  }
+  int run_view(const std::string& options, const std::string& words, const std::string& runtime) {
+    test::write_file(folder_ / "script.sh", "export HOME=" + folder_.path() + " XR_RUNTIME_JSON=" + runtime + " CATENA_XR_SCRIPT='" +
+                                                words + " record=" + (folder_ / "record") + "'\nexec " + test::program_path() + " view " +
+                                                (folder_ / "scene.json") + " --xr --size 320x240 " + options + "\n");
+    std::filesystem::remove(std::filesystem::path(folder_ / "record"));  // of a run before
+    const int status = std::system(
+        ("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int run_view(const std::string& options, const std::string& words) {
+    return run_view(options, words, test::binary_dir() + "/xr_runtime.json");
+  }
+  std::string log() const { return test::read_file(folder_ / "log"); }
+  /// A number of what the runtime has seen.
+  double runtime_count(const std::string& word) const {
+    std::istringstream in(test::read_file(folder_ / "record"));
+    std::string name;
+    for (double value = 0; in >> name >> value;)
+      if (name == word) return value;
+    return -1;
+  }
+  /// Beside what a slow machine is told of its frame rate.
+  int headset_error_count() const {
+    std::istringstream in(log());
+    int count = 0;
+    for (std::string line; std::getline(in, line);) count += line.starts_with("catena: the headset could not");
+    return count;
+  }
+  test::TemporaryFolder folder_;
+};
+
+}  // namespace catena::app::viewer_xr_fixture

@@ -1,0 +1,363 @@
+// catena view --xr against the scripted runtime (tests/xr_runtime), on a virtual display; what its hands do, without one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "engine/app/haptics/device_file.h"
+#include "engine/app/viewer/scene/scene_model.h"
+#include "engine/app/viewer/xr/xr_controllers.h"
+#include "engine/app/viewer/xr/xr_session.h"
+#include "engine/base/clock.h"
+#include "haptics/device/device_settings.h"
+#include "render/image/image.h"
+#include "tests/engine/app/open_scene_model.h"
+#include "tests/engine/app/viewer_xr_fixture.h"
+#if __has_include(<openxr/openxr.h>)
+#include "tests/render/xr/xr_fixture.h"
+#endif
+
+namespace catena::app {
+namespace viewer_xr_test {
+
+using viewer_xr_fixture::kScene;
+using viewer_xr_fixture::ViewerXr;
+
+TEST_F(ViewerXr, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
+  ASSERT_EQ(run_view("--frames 8 --screenshot " + (folder_ / "eye.png"), "size=96x80"), 0) << log();
+  EXPECT_GE(runtime_count("pictures"), 7);
+  EXPECT_EQ(runtime_count("moved"), 0);
+  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(runtime_count("objects"), 0);
+  EXPECT_NE(log().find("headset: "), std::string::npos) << log();
+  EXPECT_EQ(headset_error_count(), 0) << log();
+  const auto eye = render::read_png(folder_ / "eye.png");
+  ASSERT_TRUE(eye) << eye.error().message;
+  // the ball is straight ahead, and orange
+  EXPECT_EQ(eye->width * 80, eye->height * 96);
+  std::size_t orange = 0;
+  for (std::size_t i = 0; i < eye->rgba.size(); i += 4) orange += eye->rgba[i] > eye->rgba[i + 2] + 40;
+  EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
+}
+
+/// Wherever the runtime's space begins: the world is put before the head, where the first picture finds it.
+TEST_F(ViewerXr, TheWorldStandsBeforeTheHead) {
+  ASSERT_EQ(run_view("--frames 4 --screenshot " + (folder_ / "eye.png"), "size=96x80 head=3:0.5:-2"), 0) << log();
+  const auto eye = render::read_png(folder_ / "eye.png");
+  ASSERT_TRUE(eye) << eye.error().message;
+  std::size_t orange = 0;
+  for (std::size_t i = 0; i < eye->rgba.size(); i += 4) orange += eye->rgba[i] > eye->rgba[i + 2] + 40;
+  EXPECT_GT(orange, eye->rgba.size() / 4 / 100);
+}
+
+TEST_F(ViewerXr, WithoutARuntimeItSaysSoInOneLine) {
+  EXPECT_EQ(run_view("--frames 2", "", "/nowhere/runtime.json"), 1) << log();
+  EXPECT_EQ(headset_error_count(), 1) << log();
+  EXPECT_NE(log().find("expected an OpenXR runtime"), std::string::npos) << log();
+}
+
+/// Where the eyes look goes into the recording, beside head and hands.
+TEST_F(ViewerXr, TheGazeIsRecorded) {
+  const std::string log = folder_ / "hand.catlog", table = folder_ / "poses.csv";
+  ASSERT_EQ(run_view("--frames 12 --record " + log, "size=32x32 gaze=0.25:-0.1"), 0) << this->log();
+  ASSERT_EQ(std::system((test::program_path() + " export " + log + " -o " + (folder_ / "ticks.csv") + " --poses " + table + " > " +
+                         (folder_ / "log") + " 2>&1")
+                            .c_str()),
+            0)
+      << this->log();
+  std::istringstream in(test::read_file(table));
+  std::string header, line, last;
+  std::getline(in, header);
+  while (std::getline(in, line)) last = line;
+  const auto value = [&](const std::string& name) {
+    std::istringstream names(header), values(last);
+    std::string one, number;
+    while (std::getline(names, one, ',') && std::getline(values, number, ','))
+      if (one == name) return std::atof(number.c_str());
+    ADD_FAILURE() << "no column " << name << " in " << header;
+    return 0.0;
+  };
+  const Quat turn(value("gaze_qw"), value("gaze_qx"), value("gaze_qy"), value("gaze_qz"));
+  const Vec3 ahead = rotate(turn, Vec3(0.0, 0.0, -1.0));
+  EXPECT_NEAR(ahead.x / -ahead.z, 0.25, 1e-4) << last;
+  EXPECT_NEAR(ahead.y / -ahead.z, -0.1, 1e-4) << last;
+}
+
+/// The menu button brings the window into the room, as a quad over the picture.
+TEST_F(ViewerXr, TheWindowComesIntoTheRoom) {
+  ASSERT_EQ(run_view("--frames 24", "size=48x40 menu=5:8"), 0) << log();
+  EXPECT_GT(runtime_count("quads"), 0);
+  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(runtime_count("objects"), 0);
+}
+
+/// A session that runs and is not seen: pictures are counted in the window.
+TEST_F(ViewerXr, ANumberOfPicturesEndsWhereNobodySeesThem) {
+  EXPECT_EQ(run_view("--frames 12", "size=32x32 state=4:VISIBLE state=4:SYNCHRONIZED"), 0) << log();
+  EXPECT_LE(runtime_count("pictures"), 4);
+  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
+}
+
+/// What a display's period and size should not be, and what belongs to a flat picture.
+TEST_F(ViewerXr, OddHeadsetsAndOptionsOfFlatPicturesEndInTime) {
+  for (const char* words : {"size=32x32 period_ms=0", "size=0x0", "size=0x0 period_ms=0"}) {
+    EXPECT_EQ(run_view("--frames 12", words), 0) << words << log();
+    EXPECT_GE(runtime_count("pictures"), 11) << words;
+    EXPECT_EQ(runtime_count("illegal"), 0) << words << test::read_file(folder_ / "record");
+    EXPECT_EQ(headset_error_count(), 0) << words << log();
+  }
+  std::string scene = kScene;
+  scene.insert(scene.rfind('}'), R"(, "screens": [{"name": "front", "lower_left": [-2, 0, -1], "lower_right": [2, 0, -1],
+                                                "upper_left": [-2, 0, 1]}])");
+  test::write_file(folder_ / "scene.json", scene);
+  for (const char* options : {"--frames 12 --screen front", "--frames 12 --stereo side-by-side"}) {
+    EXPECT_EQ(run_view(options, "size=32x32"), 0) << options << log();
+    EXPECT_GE(runtime_count("pictures"), 11) << options;
+    EXPECT_EQ(runtime_count("illegal"), 0) << options << test::read_file(folder_ / "record");
+  }
+}
+
+/// What is not registered is asked for, on the terminal and on the panel in the room; the menu button puts it off.
+TEST_F(ViewerXr, ADeviceOnTheDeskIsAskedForItsPlaces) {
+  ASSERT_EQ(run_view("--device simulated --frames 24", "size=48x40"), 0) << log();
+  EXPECT_NE(log().find("Touch three places, not on one line, with the handle of simulated"), std::string::npos) << log();
+  EXPECT_GT(runtime_count("quads"), 0);
+  EXPECT_EQ(log().find("is not registered"), std::string::npos) << log();
+  ASSERT_EQ(run_view("--device simulated --frames 24", "size=48x40 menu=6:8"), 0) << log();
+  EXPECT_NE(log().find("catena: simulated is not registered; G, or the panel Device, asks"), std::string::npos) << log();
+  EXPECT_EQ(runtime_count("illegal"), 0) << test::read_file(folder_ / "record");
+}
+
+/// The controller touches three places, the simulated hand the same ones; the file says where the device stands, and can be given again.
+/// The device lies as the stage does, its origin at (0.2, 0.1, -0.5) of it.
+TEST_F(ViewerXr, ThreeTouchesAreKeptInTheFile) {
+  const std::array<Vec3, 3> touched{Vec3(0, 0, 0), Vec3(0.05, 0, 0), Vec3(0, 0.05, 0.01)};
+  const Vec3 origin(0.2, 0.1, -0.5), stage(0.1, -1, 0.3);
+  std::string path = "t,x,y,z,buttons\n", words = "size=16x16 stage=0.1:-1:0.3";
+  for (std::size_t k = 0; k < touched.size(); ++k) {
+    const Vec3 &p = touched[k], room = stage + origin + p;
+    const double t = 1.5 + 0.8 * double(k);
+    path += fmt::format("{0},{3},{4},{5},0\n{1},{3},{4},{5},1\n{2},{3},{4},{5},0\n", k == 0 ? 0 : t - 0.2, t, t + 0.4, p.x, p.y, p.z);
+    words += fmt::format(" grip={}:{}:{}:{} select={}:{}", 10 + 40 * k, room.x, room.y, room.z, 15 + 40 * k, 35 + 40 * k);
+  }
+  test::write_file(folder_ / "path.csv", path);
+  test::write_file(folder_ / "arm.json", "{\n  \"type\": \"simulated\",  // mine\n  \"friction\": 0\n}\n");
+  const std::string device = "--device simulated:" + (folder_ / "path.csv") + " --device-file " + (folder_ / "arm.json");
+  ASSERT_EQ(run_view(device + " --seconds 4.5", words), 0) << log();
+  EXPECT_NE(log().find("is registered: 0."), std::string::npos) << log();
+  EXPECT_NE(log().find("where it stands was written to"), std::string::npos) << log();
+  const std::string kept = test::read_file(folder_ / "arm.json");
+  EXPECT_NE(kept.find("// mine"), std::string::npos) << kept;
+  scene::Scene scene;
+  ASSERT_TRUE(apply_device_file(folder_ / "arm.json", scene)) << kept;
+  const auto settings = haptics::read_device_settings(*scene.device, folder_ / "arm.json");
+  ASSERT_TRUE(settings && settings->room_registration) << kept;
+  EXPECT_LT(norm(settings->room_registration->origin_m - origin), 1e-3) << kept;
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(settings->room_registration->room_from_workspace[axis][axis], 0.999) << kept;
+  // given again, nothing is asked for
+  ASSERT_EQ(run_view(device + " --frames 6", "size=16x16 stage=0.1:-1:0.3"), 0) << log();
+  EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
+}
+
+/// The file says where the device stands: its origin is 0.2 m to the right of the stage's and 0.5 m before it.
+TEST_F(ViewerXr, ADeviceThatIsRegisteredLiesInTheRoom) {
+  test::write_file(folder_ / "arm.json", R"({"type": "simulated", "friction": 0, "room_origin": [0.2, 0, -0.5],
+    "room_rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})");
+  ASSERT_EQ(run_view("--device simulated --device-file " + (folder_ / "arm.json") + " --seconds 2", "size=48x40 stage=0.1:-1:0.3"), 0)
+      << log();
+  EXPECT_EQ(log().find("Touch three places"), std::string::npos) << log();
+  // the head, 2 cm above the room's origin and 1 cm behind it, is where the camera is; the room's z is the view's back, level
+  const Vec3 camera(0, -6, 3), up(0, 0, 1), back = direction(Vec3(0, -6, 0)), right = cross(up, back);
+  const double metres_per_unit = 0.7 / norm(camera);
+  const Vec3 room(0.1 + 0.2, -1 - 0.02, 0.3 - 0.5 - 0.01);
+  const Vec3 expected = camera + (right * room.x + up * room.y + back * room.z) / metres_per_unit;
+  Vec3 probe(0.0);
+  const std::string text = log();
+  const std::size_t at = text.find("probe ");
+  ASSERT_NE(at, std::string::npos) << text;
+  ASSERT_EQ(std::sscanf(text.c_str() + at, "probe %lf %lf %lf", &probe.x, &probe.y, &probe.z), 3);
+  EXPECT_LT(norm(probe - expected), 0.02) << text;
+}
+
+constexpr double kDt = 1.0 / 90;
+const Vec3 kHead(0.0, 1.6, 0.0);
+
+XrHand hand_at(const Vec3& position, double grab = 0) {
+  XrHand hand;
+  hand.is_tracked = true;
+  hand.position_m = position;
+  hand.squeeze = grab;
+  return hand;
+}
+
+TEST(XrControllers, WhatIsSqueezedStaysInTheHandAndNothingIsFeltMeanwhile) {
+  XrControllers hands;
+  Placement placement;
+  placement.meters_per_unit = 0.1;
+  const Vec3 from(0.2, 1.0, -0.5), to(0.4, 1.1, -0.3);
+  const Vec3 held = placement.to_world(from);
+  hands.update({XrHand{}, hand_at(from)}, kHead, kDt, placement);
+  EXPECT_TRUE(hands.make_controller_pose(hand_at(from), 1).tracked);
+  hands.update({XrHand{}, hand_at(from, 1)}, kHead, kDt, placement);
+  EXPECT_TRUE(hands.is_grabbing_world());
+  EXPECT_FALSE(hands.make_controller_pose(hand_at(from, 1), 2).tracked);
+  hands.update({XrHand{}, hand_at(to, 0.5)}, kHead, kDt, placement);  // between up and down: still held
+  EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);
+  EXPECT_GT(hands.vignette_strength(), 0);
+  hands.update({XrHand{}, hand_at(to, 0.3)}, kHead, kDt, placement);
+  EXPECT_FALSE(hands.is_grabbing_world());
+  EXPECT_TRUE(hands.make_controller_pose(hand_at(to), 3).tracked);
+  hands.update({XrHand{}, hand_at(from)}, kHead, kDt, placement);
+  EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);  // it was let go
+}
+
+TEST(XrControllers, AHandThatVanishesWhileItHoldsDoesNotMoveTheWorld) {
+  XrControllers hands;
+  Placement placement;
+  placement.meters_per_unit = 0.1;
+  const Vec3 left(-0.2, 1.0, -0.5), right(0.2, 1.0, -0.5), middle = placement.to_world((left + right) / 2.0);
+  const auto stays = [&] { return norm(placement.to_room(middle) - (left + right) / 2.0) < 1e-12 && placement.meters_per_unit == 0.1; };
+  for (int k = 0; k < 3; ++k) hands.update({hand_at(left, 1), hand_at(right, 1)}, kHead, kDt, placement);
+  // what a runtime says of a hand that it has lost: nothing that is one, the button as it was
+  XrHand lost = hand_at(Vec3(std::nan("")), 1);
+  lost.orientation = Quat(std::nan(""), 0.0, 0.0, 0.0);
+  lost.is_tracked = false;
+  hands.update({lost, hand_at(right, 1)}, kHead, kDt, placement);
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(hands.is_grabbing_world());
+  hands.update({lost, lost}, kHead, kDt, placement);
+  EXPECT_TRUE(stays());
+  EXPECT_FALSE(hands.is_grabbing_world());
+  EXPECT_FALSE(hands.grab_center({lost, lost}));
+  EXPECT_FALSE(hands.make_controller_pose(lost, 1).tracked);
+  // found elsewhere, still squeezed: it takes hold there
+  hands.update({hand_at(left + Vec3(1, 1, 1), 1), lost}, kHead, kDt, placement);
+  EXPECT_TRUE(stays());
+  EXPECT_TRUE(hands.is_grabbing_world());
+}
+
+TEST(XrControllers, TheStickTurnsThePersonAndTheWorldTheOtherWay) {
+  XrControllers hands;
+  Placement placement;
+  const Vec3 ahead = placement.to_world(kHead + Vec3(0.0, 0.0, -1.0));
+  XrHand right = hand_at({0.2, 1.0, -0.3});
+  right.stick_x = -1;  // to the left
+  hands.update({XrHand{}, right}, kHead, kDt, placement);
+  const Vec3 now = placement.to_room(ahead) - kHead;
+  EXPECT_GT(now.x, 0.1);  // what was ahead is to the right
+  EXPECT_NEAR(now.y, 0, 1e-12);
+  EXPECT_EQ(hands.vignette_strength(), 0);  // a step is no motion
+}
+
+TEST(XrControllers, AVibrationStopsWithTheFocus) {
+  XrControllers hands;
+  haptics::PeakDetector peaks;
+  const XrHand hand = hand_at({0.0, 1.0, -0.3});
+  using What = haptics::VibrationSender::Action;
+  std::int64_t now = 1'000'000;
+  const auto push = [&](double n) {
+    haptics::ForceSample tick;
+    tick.requested_force_n = {n, 0.0, 0.0};
+    peaks.add(tick);
+  };
+  (void)hands.next_vibration(peaks, now, true, hand);
+  push(0);
+  push(1.5);
+  const auto felt = hands.next_vibration(peaks, now += 11'000'000, true, hand);
+  EXPECT_EQ(felt.action, What::vibrate);
+  EXPECT_GT(felt.vibration.amplitude, 0.5);
+  push(0);
+  EXPECT_EQ(hands.next_vibration(peaks, now += 11'000'000, false, hand).action, What::stop);
+  push(1.5);
+  EXPECT_EQ(hands.next_vibration(peaks, now += 11'000'000, false, hand).action, What::nothing);
+}
+
+#if __has_include(<openxr/openxr.h>)
+
+/// A scripted clock of milliseconds, and a hand that goes one unit a millisecond: where it is drawn says from when it is. The runtime's
+/// wait and the making of a packet take their scripted time, as in the window's loop, which looks at the hand before both.
+struct LateHand {
+  double now_ms = 0;
+  double wait_ms(std::uint64_t frame) const { return 4 + double(frame % 6); }
+  double packet_ms() const { return 1.5; }
+  Vec3 place() const { return Vec3(now_ms, 0, 0); }
+};
+
+/// Run as a process on a display of its own, by the case after it.
+TEST(LateLatching, DISABLED_Child) {
+  const std::string result = test::child_variable("CATENA_LATCHING");
+  if (result.empty()) GTEST_SKIP() << "it is run by the case after it";
+  test::xr_rig::Runtime runtime;
+  ASSERT_TRUE(runtime.found());
+  runtime.script().width = runtime.script().height = 16;
+  LateHand hand;
+  runtime.script().on_frame = [&](std::uint64_t frame, test::xr_runtime::Script&) { hand.now_ms += hand.wait_ms(frame); };
+  auto window = Window::create(64, 64, "latching");
+  ASSERT_TRUE(window) << window.error().message;
+  auto headset = HeadsetSession::open();
+  ASSERT_TRUE(headset) << headset.error().message;
+  Presenter::Options options;
+  (*headset)->configure(options);
+  auto screen = Presenter::open(**window, options);
+  ASSERT_TRUE(screen) << screen.error().message;
+  test::TemporaryFolder folder;
+  std::optional<SceneModel> host;
+  test::open_scene(folder, kScene, host);
+  HapticSession holder(HapticSession::Options{});
+  ASSERT_TRUE(holder.open_device(host->scene()));
+
+  Vec3 looked_at(0.0);
+  std::vector<double> late_ms, early_ms;  // how old the hand is that each eye shows, and would be
+  HeadsetSession::FrameCallbacks content;
+  content.make_packet = [&]() -> Result<render::FramePacket> {
+    render::FramePacket packet = test::xr_rig::ball_packet({0.0, 0.0, -1.0}, 0.3);
+    render::CursorItem& cursor = packet.cursors.emplace_back();
+    cursor.probe = looked_at;
+    cursor.radius = 0.1;
+    hand.now_ms += hand.packet_ms();
+    return packet;
+  };
+  content.late_latch = [&](render::FramePacket& packet) { packet.cursors[0].probe = hand.place(); };
+  content.apply_view = [&](const render::View&, render::FramePacket& packet) {
+    late_ms.push_back(hand.now_ms - packet.cursors[0].probe.x);
+    early_ms.push_back(hand.now_ms - looked_at.x);
+  };
+  content.classify_rays = [](const render::FramePacket&) { return render::QualityLevelOptions{}; };
+  for (int k = 0; k < 200 && late_ms.size() < 120; ++k) {
+    looked_at = hand.place();
+    ASSERT_TRUE((*headset)->poll(**screen, now_ns(), [](const std::string&) {}));
+    if (!(*headset)->is_running()) continue;
+    const auto drawn = (*headset)->draw(**screen, holder, content);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+  }
+  ASSERT_EQ(late_ms.size(), 120u) << "two eyes, sixty pictures";
+  EXPECT_EQ(*std::ranges::max_element(late_ms), 0) << "each eye shows the hand as it is when its picture is drawn";
+  double gain = 0;
+  for (std::size_t k = 0; k < late_ms.size(); ++k) gain += (early_ms[k] - late_ms[k]) / double(late_ms.size());
+  test::write_file(result, fmt::format("{}", gain));
+  (*headset)->request_exit();
+}
+
+/// The hand in the picture is newer by the whole wait for the frame (4 to 9 ms here) and the making of the packet (1.5 ms).
+TEST(LateLatching, TheHandIsNewerByTheWaitAndThePacket) {
+  if (!test::exists(test::binary_dir() + "/libcatena_xr_runtime.so")) GTEST_SKIP() << "the scripted runtime was not built";
+  if (!test::can_drive_windows()) GTEST_SKIP() << "there is no virtual display";
+  test::TemporaryFolder folder;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const int status =
+      std::system(("env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX HOME=" + folder.path() + " CATENA_LATCHING=" + (folder / "gain") +
+                   " timeout 60 " + test::on_display("320x240") + self +
+                   " --gtest_filter=LateLatching.DISABLED_Child --gtest_also_run_disabled_tests > " + (folder / "log") + " 2>&1")
+                      .c_str());
+  ASSERT_EQ(status, 0) << test::read_file(folder / "log");
+  EXPECT_NEAR(std::stod(test::read_file(folder / "gain")), 6.5 + 1.5, 0.1) << "milliseconds";
+}
+
+#endif
+
+}  // namespace viewer_xr_test
+}  // namespace catena::app

@@ -1,0 +1,28 @@
+#include "engine/base/durable_append.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/support.h"
+
+namespace append_file_test {
+
+using namespace catena;
+
+TEST(DurableAppend, TheHeaderComesOnceAndRowsFollow) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "t.csv";
+  ASSERT_TRUE(append_durably(path, "a,b\n", "1,2\n"));
+  ASSERT_TRUE(append_durably(path, "a,b\n", "3,4\n"));
+  EXPECT_EQ(test::read_file(path), "a,b\n1,2\n3,4\n");
+}
+
+TEST(DurableAppend, WhatCannotBeWrittenIsOneLine) {
+  const test::TemporaryFolder folder;
+  for (const std::string& path : {std::string("/dev/full"), folder / "no/such.csv"}) {
+    const Outcome done = append_durably(path, "a\n", "1\n");
+    ASSERT_FALSE(done) << path;
+    EXPECT_EQ(done.error().message.find(path + ": cannot write: "), 0u) << done.error().message;
+  }
+}
+
+}  // namespace append_file_test

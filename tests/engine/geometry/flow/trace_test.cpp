@@ -1,0 +1,403 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "engine/geometry/flow/curve.h"
+#include "engine/geometry/flow/flow.h"
+#include "engine/io/volume/load_field.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/support/support.h"
+
+namespace catena::flow {
+namespace trace_test {
+
+using test::analytic_vector;
+using test::lambda_field;
+using test::sample_vector_grid;
+
+CurvePtr traced(const Flow& flow, const Vec3& seed, double length = 0) {
+  TraceOptions options;
+  options.length = length;
+  auto curve = trace(flow, seed, options);
+  EXPECT_TRUE(curve) << (curve ? "" : curve.error().message);
+  return curve ? *curve : nullptr;
+}
+
+field::LoadRequest request_for(const std::string& path, const std::string& grid) {
+  field::LoadRequest request;
+  request.path = path;
+  request.grid = grid;
+  return request;
+}
+
+/// The classic method with tiny steps in arc length, stages wherever they fall: the independent reference.
+Vec3 brute_force(const Flow& flow, Vec3 p, double length, double step) {
+  field::Cursor cursor;
+  const int steps = static_cast<int>(std::ceil(std::fabs(length) / step));
+  const double h = length / steps;
+  for (int i = 0; i < steps; ++i) {
+    const auto u = [&](const Vec3& q) { return direction(flow.field->sample(q, cursor).value); };
+    const Vec3 a = u(p), b = u(p + 0.5 * h * a), c = u(p + 0.5 * h * b), d = u(p + h * c);
+    p += h / 6 * (a + 2.0 * b + 2.0 * c + d);
+  }
+  return p;
+}
+
+/// Every curve: s rises, tangents are unit, the seed is a knot at s = 0.
+void expect_sound(const Curve& curve, const Vec3& seed) {
+  bool has_seed = false;
+  for (const Knot& knot : curve.knots()) {
+    EXPECT_NEAR(norm(knot.t), 1, 1e-14);
+    EXPECT_TRUE(is_finite(knot.p));
+    if (knot.s == 0) {
+      has_seed = true;
+      EXPECT_EQ(knot.p, seed);
+    }
+  }
+  EXPECT_TRUE(has_seed);
+}
+
+TEST(Trace, CircleIsOneLapAndExact) {
+  for (const double radius : {1e-5, 0.05, 0.3, 1.5, 5.0}) {
+    const auto field = analytic_vector("circle");
+    const Vec3 seed(radius * 0.6, -radius * 0.8, 0.25);
+    const auto curve = traced({field.get()}, seed);
+    expect_sound(*curve, seed);
+    ASSERT_TRUE(curve->is_closed()) << radius;
+    EXPECT_EQ(curve->last_end(), Termination::lap);
+    EXPECT_NEAR(curve->period(), 2 * M_PI * radius, 1e-9 * 4);
+    EXPECT_EQ(curve->knots().back().p, seed);
+    double worst = 0;
+    for (int i = 0; i <= 5000; ++i) {
+      const double s = curve->period() * i / 5000;
+      const Vec3 p = curve->position(s);
+      const double angle = s / radius;
+      const Vec3 exact(seed.x * std::cos(angle) - seed.y * std::sin(angle), seed.x * std::sin(angle) + seed.y * std::cos(angle), seed.z);
+      worst = std::max(worst, norm(p - exact));
+    }
+    EXPECT_LE(worst, 1e-9 * 4) << radius;
+    std::printf("circle R %g: %zu knots, error/L %.2e\n", radius, curve->knots().size(), worst / 4);
+  }
+}
+
+TEST(Trace, HelixIsExactInBothDirections) {
+  const auto field = lambda_field([](const Vec3& p) { return Vec3(-2 * p.y, 2 * p.x, 0.5); });
+  const Vec3 seed(0.7, 0.0, 0.1);
+  const auto curve = traced({field.get()}, seed, 6);
+  expect_sound(*curve, seed);
+  EXPECT_FALSE(curve->is_closed());
+  EXPECT_EQ(curve->first_end(), Termination::length);
+  EXPECT_NEAR(curve->knots().front().s, -6, 1e-12);
+  EXPECT_NEAR(curve->knots().back().s, 6, 1e-12);
+  const double speed = std::sqrt(1.4 * 1.4 + 0.25);
+  for (int i = 0; i <= 2000; ++i) {
+    const double s = -6 + 12.0 * i / 2000, t = s / speed;
+    EXPECT_LE(norm(curve->position(s) - Vec3(0.7 * std::cos(2 * t), 0.7 * std::sin(2 * t), 0.1 + 0.5 * t)), 4e-9);
+  }
+}
+
+TEST(Trace, FieldScaleGivesTheSameLine) {
+  for (const double scale : {1e-300, 1e300}) {
+    const auto one = lambda_field([](const Vec3& p) { return Vec3(-p.y, p.x, 0.3); });
+    const auto scaled = lambda_field([scale](const Vec3& p) { return scale * Vec3(-p.y, p.x, 0.3); });
+    const auto a = traced({one.get()}, Vec3(0.5, 0.1, 0.0), 4), b = traced({scaled.get()}, Vec3(0.5, 0.1, 0.0), 4);
+    for (const double s : {-3.9, -1.0, 0.3, 4.0}) EXPECT_LE(norm(a->position(s) - b->position(s)), 1e-9);
+  }
+}
+
+TEST(Trace, NodeEndsCriticalOnIt) {
+  const auto field = lambda_field([](const Vec3& p) { return Vec3(-p.x, -2 * p.y, -1.5 * p.z); });
+  for (const Vec3& seed : {Vec3(1.0, 0.0, 0.0), Vec3(0.3, 0.9, -0.5), Vec3(0.0, 0.0, 1.0)}) {
+    const auto curve = traced({field.get()}, seed, 8);
+    expect_sound(*curve, seed);
+    EXPECT_EQ(curve->last_end(), Termination::critical);
+    EXPECT_LE(norm(curve->knots().back().p), 1e-6 * 4);
+    EXPECT_EQ(curve->first_end(), Termination::length);
+  }
+}
+
+TEST(Trace, SaddleEndsCriticalOnStraightAndCurvedManifolds) {
+  const auto straight = lambda_field([](const Vec3& p) { return Vec3(p.x, -p.y, 0.0); });
+  const auto curve = traced({straight.get()}, Vec3(0.0, 1.0, 0.5), 3);
+  EXPECT_EQ(curve->last_end(), Termination::critical);
+  EXPECT_LE(norm(curve->knots().back().p - Vec3(0.0, 0.0, 0.5)), 4e-6);
+  // the stable manifold is x = y^2 / 3
+  const auto curved = lambda_field([](const Vec3& p) { return Vec3(p.x - p.y * p.y, -p.y, 0.0); });
+  const auto bent = traced({curved.get()}, Vec3(1.0 / 3, 1.0, 0.0), 3);
+  EXPECT_EQ(bent->last_end(), Termination::critical);
+  EXPECT_LE(norm(bent->knots().back().p), 4e-6);
+  // beside it, the line turns away
+  const auto beside = traced({straight.get()}, Vec3(1e-2, 1.0, 0.5), 3);
+  EXPECT_EQ(beside->last_end(), Termination::length);
+  EXPECT_NEAR(beside->knots().back().p.x * beside->knots().back().p.y, 1e-2, 1e-8);
+}
+
+TEST(Trace, FocusAndLeastSpeedEndCritical) {
+  const auto focus = lambda_field([](const Vec3& p) { return Vec3(-p.y - 0.3 * p.x, p.x - 0.3 * p.y, 0.0); });
+  const auto spiral = traced({focus.get()}, Vec3(0.5, 0.0, 0.0), 20);
+  EXPECT_EQ(spiral->last_end(), Termination::critical);
+  EXPECT_LE(norm(spiral->knots().back().p), 4e-5);
+  const auto slowing = lambda_field([](const Vec3& p) { return Vec3(1 - 0.5 * p.x, 0.0, 0.0); });
+  const auto curve = traced({slowing.get(), false, 0.25}, Vec3(0.0), 8);
+  EXPECT_EQ(curve->last_end(), Termination::critical);
+  EXPECT_NEAR(curve->knots().back().p.x, 1.5, 1e-8);
+}
+
+TEST(Trace, BadSeedsAreOneSentence) {
+  const auto circle = analytic_vector("circle");
+  EXPECT_FALSE(trace({circle.get()}, Vec3(std::nan(""), 0.0, 0.0)));
+  EXPECT_FALSE(trace({circle.get()}, Vec3(0.0)));
+  EXPECT_FALSE(trace({circle.get(), false, 0.5}, Vec3(0.4, 0.0, 0.0)));
+  const auto grid = sample_vector_grid(field::Mapping{}, {8, 8, 8}, [](const Vec3&) { return Vec3(1.0, 0.0, 0.0); });
+  const auto outside = trace({grid.get()}, Vec3(9.0, 1.0, 1.0));
+  ASSERT_FALSE(outside);
+  EXPECT_NE(outside.error().message.find("outside"), std::string::npos);
+  EXPECT_NE(outside.error().message.find("9"), std::string::npos);
+  EXPECT_EQ(outside.error().message.find('\n'), std::string::npos);
+}
+
+TEST(Trace, UniformGridEndsExactlyOnTheFaces) {
+  const auto mapping = field::Mapping::from_linear(Mat3(0.5, 0, 0, 0, 0.25, 0, 0, 0, 2), Vec3(-1.0, 3.0, -7.0));
+  const auto grid = sample_vector_grid(mapping, {9, 7, 5}, [](const Vec3&) { return Vec3(1.0, 0.25, -0.125); });
+  const Vec3 seed(0.3, 3.9, -2.0);
+  const auto curve = traced({grid.get()}, seed);
+  expect_sound(*curve, seed);
+  EXPECT_EQ(curve->first_end(), Termination::boundary);
+  EXPECT_EQ(curve->last_end(), Termination::boundary);
+  const Vec3 a = mapping.index_from_world(curve->knots().front().p), b = mapping.index_from_world(curve->knots().back().p);
+  EXPECT_NEAR(a.x, 0, 1e-13);
+  EXPECT_NEAR(b.y, 6, 1e-13);
+  for (const Knot& knot : curve->knots()) EXPECT_LE(norm(cross(knot.p - seed, direction(Vec3(1.0, 0.25, -0.125)))), 1e-13);
+}
+
+TEST(Trace, EveryPassageOfAFaceIsAKnotOnIt) {
+  const auto mapping = field::Mapping::from_linear(Mat3(4.0 / 23), Vec3(-2.0));
+  const auto grid = sample_vector_grid(mapping, {24, 24, 24}, [](const Vec3& p) { return Vec3(-p.y, p.x, 0.2 + 0.1 * p.x); });
+  const auto curve = traced({grid.get()}, Vec3(0.8, 0.1, 0.0), 6);
+  ASSERT_TRUE(curve);
+  for (std::size_t k = 1; k < curve->knots().size(); ++k) {
+    const Vec3 a = mapping.index_from_world(curve->knots()[k - 1].p), b = mapping.index_from_world(curve->knots()[k].p);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = std::min(a[axis], b[axis]), hi = std::max(a[axis], b[axis]);
+      EXPECT_LE(std::floor(hi - 1e-9) - std::floor(lo + 1e-9), 0) << k;
+    }
+  }
+}
+
+TEST(Trace, GridLinesAgreeWithTinySteps) {
+  // anisotropic, rotated, negative origin
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  const Mat3 turn(c, s, 0, -s, c, 0, 0, 0, 1);
+  const auto mapping = field::Mapping::from_linear(turn * Mat3(0.1, 0, 0, 0, 0.13, 0, 0, 0, 0.17), Vec3(-1.2, -2.1, -1.9));
+  const auto abc = analytic_vector("abc");
+  field::Cursor cursor;
+  const auto grid = sample_vector_grid(mapping, {32, 28, 24}, [&](const Vec3& p) { return abc->sample(p, cursor).value; });
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(0.3, 0.7);
+  double worst = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 seed = mapping.world_from_index(Vec3(31 * place(random), 27 * place(random), 23 * place(random)));
+    const auto curve = traced({grid.get()}, seed, 1.5);
+    expect_sound(*curve, seed);
+    for (const double at : {0.5 * curve->knots().back().s, 0.9 * curve->knots().front().s})
+      worst = std::max(worst, norm(curve->position(at) - brute_force({grid.get()}, seed, at, 2e-5)));
+  }
+  std::printf("grid against tiny steps: error/L %.2e\n", worst / grid->domain_length());
+  EXPECT_LE(worst / grid->domain_length(), 1e-9);
+}
+
+TEST(Trace, HillFloorOfTheGrid) {
+  // the grid's own error, within 20 %
+  const auto hill = analytic_vector("hill");
+  const Vec3 seed(0.5, 0.0, 0.0);
+  const auto exact = traced({hill.get()}, seed, 3.2);
+  const struct {
+    int nodes;
+    double floor;
+  } cases[] = {{32, 1.2e-3}, {64, 2.8e-4}, {128, 7.1e-5}};
+  for (const auto& c : cases) {
+    const auto grid = field::sample_on_grid(*hill, c.nodes, -1.2, 1.2);
+    const auto curve = traced({grid.get()}, seed, 3.2);
+    double worst = 0;
+    for (const Knot& knot : curve->knots()) {
+      // cross-track: distance to the exact curve near the same arc length
+      double nearest = 1;
+      for (int i = -200; i <= 200; ++i) nearest = std::min(nearest, norm(knot.p - exact->position(knot.s + i * 2e-4)));
+      worst = std::max(worst, nearest);
+    }
+    std::printf("hill %d: %zu knots, cross-track/3.2 %.3g\n", c.nodes, curve->knots().size(), worst / 3.2);
+    EXPECT_NEAR(worst / 3.2, c.floor, 0.2 * c.floor) << c.nodes;
+  }
+}
+
+TEST(Trace, MaskedCellsAreABoundary) {
+  const field::Index3 size{10, 10, 10};
+  std::vector<std::uint8_t> valid(1000, 1);
+  for (int k = 0; k < 10; ++k)
+    for (int j = 0; j < 10; ++j) valid[static_cast<std::size_t>(7 + 10 * j + 100 * k)] = 0;
+  const auto grid = sample_vector_grid(
+      field::Mapping{}, size, [](const Vec3&) { return Vec3(1.0, 0.1, 0.0); }, valid);
+  const auto curve = traced({grid.get()}, Vec3(3.5, 4.0, 4.5));
+  EXPECT_EQ(curve->last_end(), Termination::boundary);
+  EXPECT_EQ(curve->knots().back().p.x, 6.0);
+  EXPECT_FALSE(trace({grid.get()}, Vec3(6.5, 4.0, 4.5)));
+  EXPECT_TRUE(trace({grid.get()}, Vec3(6.0, 4.0, 4.5)));
+}
+
+TEST(Trace, NotANumberInTheWayIsABoundary) {
+  const auto grid = sample_vector_grid(field::Mapping{}, {8, 8, 8}, [](const Vec3& p) {
+    return p.x == 5 && p.y == 4 ? Vec3(std::nan("")) : Vec3(1 + 0.01 * p.x, 0.0, 0.0);
+  });
+  const auto curve = traced({grid.get()}, Vec3(1.5, 3.5, 3.5));
+  EXPECT_EQ(curve->last_end(), Termination::boundary);
+  EXPECT_EQ(curve->knots().back().p.x, 4.0);
+}
+
+TEST(Trace, LapsCloseAlsoOnFacesAndNodes) {
+  const auto grid = field::sample_on_grid(*analytic_vector("circle"), 41, -2, 2);
+  for (const Vec3& seed : {Vec3(0.0, -1.2, 0.0), Vec3(0.0, 0.9, 0.0), Vec3(0.5, 0.0, 1.0), Vec3(-0.9, 0.0, 0.4),
+                           Vec3(0.0, 1.6384480463519915, 0.0), Vec3(0.3, 0.4, 0.1), Vec3(1.0, 0.0, -0.05)}) {
+    const auto curve = traced({grid.get()}, seed);
+    ASSERT_TRUE(curve->is_closed()) << seed.x << " " << seed.y;
+    EXPECT_EQ(curve->knots().back().p, seed);
+    EXPECT_NEAR(curve->period(), 2 * M_PI * std::hypot(seed.x, seed.y), 1e-6);
+  }
+}
+
+TEST(Trace, FlatFieldsAlongFacesAndEdges) {
+  const auto grid = sample_vector_grid(field::Mapping{}, {12, 12, 4}, [](const Vec3& p) { return Vec3(-(p.y - 5.5), p.x - 5.5, 0.0); });
+  for (const Vec3& seed : {Vec3(8.0, 5.5, 0.0), Vec3(8.0, 5.0, 1.0), Vec3(7.0, 7.0, 3.0), Vec3(5.5, 2.0, 2.5)}) {
+    const auto curve = traced({grid.get()}, seed);
+    ASSERT_TRUE(curve);
+    EXPECT_TRUE(curve->is_closed());
+    EXPECT_NEAR(curve->period(), 2 * M_PI * norm(seed - Vec3(5.5, 5.5, seed.z)), 1e-5);
+    for (const Knot& knot : curve->knots()) EXPECT_EQ(knot.p.z, seed.z);
+  }
+  // one layer, and lines along edges
+  const auto layer = sample_vector_grid(field::Mapping{}, {12, 12, 1}, [](const Vec3&) { return Vec3(0.0, -1.0, 0.0); });
+  const auto line = traced({layer.get()}, Vec3(4.0, 5.0, 0.0));
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->knots().front().p.y, 11.0);
+  EXPECT_EQ(line->knots().back().p.y, 0.0);
+}
+
+TEST(Trace, ZeroInACellEndsTheLine) {
+  const auto grid = sample_vector_grid(field::Mapping{}, {16, 16, 16}, [](const Vec3& p) { return Vec3(7.3, 7.6, 7.2) - p; });
+  for (const Vec3& seed : {Vec3(2.0, 3.0, 4.0), Vec3(12.0, 7.0, 9.5)}) {
+    const auto curve = traced({grid.get()}, seed);
+    EXPECT_EQ(curve->last_end(), Termination::critical);
+    EXPECT_LE(norm(curve->knots().back().p - Vec3(7.3, 7.6, 7.2)), 1e-5 * 15);
+    EXPECT_EQ(curve->first_end(), Termination::boundary);
+  }
+}
+
+TEST(Trace, LineFieldsKeepTheirWayThroughSignFlips) {
+  const auto helix = [](const Vec3& p) { return direction(Vec3(-2 * p.y, 2 * p.x, 0.5)); };
+  const auto mapping = field::Mapping::from_linear(Mat3(4.0 / 31), Vec3(-2.0));
+  const auto steady = sample_vector_grid(mapping, {32, 32, 32}, helix);
+  int n = 0;
+  std::mt19937 random(5);
+  const auto flipping =
+      sample_vector_grid(mapping, {32, 32, 32}, [&](const Vec3& p) { return (random() & 1 ? 1.0 : -1.0) * helix(p) + 0.0 * n++; });
+  const Vec3 seed(1.0, 0.2, 0.1);
+  const auto vector = traced({steady.get()}, seed, 3), line = traced({steady.get(), true}, seed, 3);
+  const auto flipped = traced({flipping.get(), true}, seed, 3);
+  const auto sense = [&](const Curve& other) { return dot(vector->position(0.01) - seed, other.position(0.01) - seed) > 0 ? 1 : -1; };
+  for (const double s : {-2.0, -0.5, 1.0, 2.0}) {
+    EXPECT_LE(norm(line->position(sense(*line) * s) - flipped->position(sense(*flipped) * s)), 1e-12) << s;
+    // dyads are another interpolation than vectors: they agree to the grid's own error
+    EXPECT_LE(norm(line->position(sense(*line) * s) - vector->position(s)), 2e-5) << s;
+  }
+}
+
+TEST(Trace, NoiseAlwaysEnds) {
+  // the worst of fields: no cell agrees with the next in direction, seeds on nodes, edges and faces; vectors and lines
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> value(-1, 1);
+  for (const bool line : {false, true}) {
+    const auto mapping = field::Mapping::from_linear(Mat3(0.5, 0.1, 0, 0, 0.25, 0, 0.05, 0, 1), Vec3(-3.0, 5.0, 0.0));
+    const auto grid =
+        sample_vector_grid(mapping, {12, 12, 12}, [&](const Vec3&) { return Vec3(value(random), value(random), value(random)); });
+    for (int i = 0; i < 60; ++i) {
+      Vec3 index(5.5 + 5 * value(random), 5.5 + 5 * value(random), 5.5 + 5 * value(random));
+      for (int axis = 0; axis < 3; ++axis)
+        if (random() % 2) index[axis] = std::floor(index[axis]);
+      const Vec3 seed = mapping.world_from_index(index);
+      TraceOptions options;
+      options.length = 20;
+      const auto curve = trace({grid.get(), line, i % 4 == 0 ? 0.3 : 0.0}, seed, options);
+      if (!curve) continue;
+      expect_sound(**curve, seed);
+      for (std::size_t k = 1; k < (*curve)->knots().size(); ++k) {
+        const Knot &a = (*curve)->knots()[k - 1], &b = (*curve)->knots()[k];
+        ASSERT_LE(norm(b.p - a.p), (b.s - a.s) * (1 + 1e-6) + 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Trace, HeartFibresAreSmooth) {
+  const std::string path = test::shared_data("ideal_lv_fibres.vdb");
+  if (path.empty()) GTEST_SKIP() << "ideal_lv_fibres.vdb is not beside the checkout";
+  auto loaded = field::load(request_for(path, "fibre"));
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  const auto& field = loaded->vector;
+  const field::Box& box = field->index_box();
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(0, 1);
+  int lines = 0;
+  for (int i = 0; i < 4000 && lines < 20; ++i) {
+    const Vec3 index(box.lo.x + place(random) * (box.hi.x - box.lo.x), box.lo.y + place(random) * (box.hi.y - box.lo.y),
+                     box.lo.z + place(random) * (box.hi.z - box.lo.z));
+    field::Cursor cursor;
+    const Vec3 seed = field->mapping().world_from_index(index);
+    if (!field->sample(seed, cursor).inside) continue;
+    const auto curve = trace({field.get(), true, 0}, seed);
+    if (!curve) continue;
+    ++lines;
+    const auto& knots = (*curve)->knots();
+    for (std::size_t k = 1; k < knots.size(); ++k) {
+      ASSERT_NEAR(norm(knots[k].t), 1, 1e-12);
+      const double gap = knots[k].s - knots[k - 1].s;
+      ASSERT_GT(dot(knots[k].t, knots[k - 1].t), 0.5) << "line " << lines << " knot " << k << " gap " << gap;
+    }
+  }
+  EXPECT_EQ(lines, 20);
+}
+
+// before, a place whose own rounding is coarser than the tolerance made steps of 1e-13 L without end
+TEST(Trace, FarFromTheOriginTheRoundingIsTheTolerance) {
+  const auto made = field::make_analytic("helix");
+  ASSERT_TRUE(made);
+  for (const double far : {1e6, 1e9, 1e15, 1e30}) {
+    const auto curve = trace({made->vector.get()}, {0.5, 0, far}, {});
+    ASSERT_TRUE(curve) << curve.error().message;
+    EXPECT_LT((*curve)->knots().size(), 100000u) << far;
+    for (const Knot& knot : (*curve)->knots()) ASSERT_TRUE(is_finite(knot.p) && is_finite(knot.t)) << far;
+  }
+}
+
+TEST(Trace, RealFlowsEndAndStayBounded) {
+  const std::string path = test::shared_data("combustor_cfd.vdb");
+  if (path.empty()) GTEST_SKIP() << "combustor_cfd.vdb is not beside the checkout";
+  auto loaded = field::load(request_for(path, "velocity"));
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  const Flow flow{loaded->vector.get()};
+  const Vec3 seed(1.6, -0.57, 27.09);
+  const auto curve = traced(flow, seed);
+  expect_sound(*curve, seed);
+  std::printf("combustor: %zu knots, s %.3f %s .. %.3f %s, closed %d\n", curve->knots().size(), curve->knots().front().s,
+              to_string(curve->first_end().termination), curve->knots().back().s, to_string(curve->last_end().termination),
+              curve->is_closed());
+  double worst = 0;
+  for (const double fraction : {0.3, 0.9}) {
+    const double s = std::min(fraction * curve->knots().back().s, 8.0);
+    worst = std::max(worst, norm(curve->position(s) - brute_force(flow, seed, s, 2e-5)));
+  }
+  std::printf("combustor against tiny steps: error/L %.2e\n", worst / loaded->vector->domain_length());
+  EXPECT_LE(worst / loaded->vector->domain_length(), 1e-9);
+}
+
+}  // namespace trace_test
+}  // namespace catena::flow

@@ -1,0 +1,201 @@
+#include "engine/io/curves/load_curves.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "engine/base/memory_limit.h"
+#include "tests/support/curve_files.h"
+#include "tests/support/support.h"
+
+namespace catena::curves {
+namespace load_test {
+
+using namespace catena::test;
+
+std::string message_of(const Result<CurveSet>& set) { return set ? "" : set.error().message; }
+
+const std::vector<std::vector<Vec3>> kLines{{{1, 2, 3}, {1.5, 2.25, -3}, {8, 0, 0}}, {{-1, 0, 0.125}, {-1, 4, 0.125}}};
+
+void expect_lines(const Result<CurveSet>& set, const std::vector<std::vector<Vec3>>& lines, double error = 0) {
+  ASSERT_TRUE(set) << message_of(set);
+  ASSERT_EQ(set->line_count(), lines.size());
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    ASSERT_EQ(set->line_offsets[k + 1] - set->line_offsets[k], lines[k].size());
+    for (std::size_t i = 0; i < lines[k].size(); ++i) {
+      const std::uint32_t point = set->line_offsets[k] + static_cast<std::uint32_t>(i);
+      EXPECT_LE(max_abs(Vec3(set->points[point]) - lines[k][i]), error) << k << " " << i;
+      EXPECT_EQ(set->line_of(point), k);
+    }
+  }
+}
+
+TEST(Tck, EveryDatatype) {
+  for (const char* type : {"Float32LE", "Float32BE", "Float64LE", "Float64BE"}) {
+    const auto set = parse_tck(tck_bytes(kLines, type), "a.tck");
+    expect_lines(set, kLines);
+    EXPECT_TRUE(set->is_patient_space);
+    EXPECT_EQ(set->unit, "mm");
+    EXPECT_EQ(set->min_corner, Vec3(-1, 0, -3));
+    EXPECT_EQ(set->max_corner, Vec3(8, 4, 3));
+    EXPECT_EQ(set->note, "");
+  }
+}
+
+TEST(Tck, LeavesOutWhatHasNoLength) {
+  auto lines = kLines;
+  lines.push_back({{5, 5, 5}});
+  lines.push_back({{5, 5, 5}, {5, 5, 5}});
+  lines[0].insert(lines[0].begin() + 1, lines[0][0]);
+  const auto set = parse_tck(tck_bytes(lines, "Float32LE"), "a.tck");
+  expect_lines(set, kLines);
+  EXPECT_EQ(set->note, "2 lines without a length left out");
+  EXPECT_EQ(message_of(parse_tck(tck_bytes({{{5, 5, 5}}}, "Float32LE"), "a.tck")),
+            "a.tck: holds no line of two different points (1 without a length); one or more were expected");
+}
+
+TEST(Tck, RefusesWithPlaceAndExpectation) {
+  const std::string good = tck_bytes(kLines, "Float32LE");
+  EXPECT_EQ(message_of(parse_tck(good.substr(0, good.size() - 1), "a.tck")),
+            "a.tck: the file ends within its lines; a last triple of infinities was expected");
+  EXPECT_EQ(message_of(parse_tck("mrtrix image\nEND\n", "a.tck")),
+            "a.tck: line 1: \"mrtrix image\" begins the file; \"mrtrix tracks\" was expected");
+  EXPECT_EQ(message_of(parse_tck(tck_bytes(kLines, "Int16LE"), "a.tck")),
+            "a.tck: line 3: the datatype is \"Int16LE\"; one of Float32LE, Float32BE, Float64LE, Float64BE was expected");
+  EXPECT_EQ(message_of(parse_tck("mrtrix tracks\ndatatype: Float32LE\nfile: . 99999\nEND\n", "a.tck")),
+            "a.tck: line 4: the triples begin at byte 99999; a place from 52 to 52 was expected");
+  EXPECT_EQ(message_of(parse_tck("mrtrix tracks\ndatatype: Float32LE\nfile: other.dat 0\nEND\n", "a.tck")),
+            "a.tck: line 3: the triples are in \"other.dat 0\"; \". OFFSET\", this very file, was expected");
+  EXPECT_NE(message_of(parse_tck("mrtrix tracks\ndatatype: Float32LE\n", "a.tck")).find("a line END was expected"), std::string::npos);
+  auto far = kLines;
+  far[1][1].y = 1e16;
+  EXPECT_NE(message_of(parse_tck(tck_bytes(far, "Float64LE"), "a.tck")).find("of line 1 is no place"), std::string::npos);
+}
+
+// voxmm -> world by hand: voxels of 2 x 3 x 4 mm, 10 x 20 x 30 of them
+TEST(Trk, CoordinatesByTheHeader) {
+  TrkFile file;
+  file.lines = kLines;
+  file.voxel = {2, 3, 4};
+  file.dim = {10, 20, 30};
+  file.order = "RAS";
+  file.vox_to_ras = {{{2, 0, 0, -5}, {0, 3, 0, 7}, {0, 0, 4, 100}, {0, 0, 0, 1}}};
+  // the matrix is voxel size and shift: world = voxmm - half a voxel + shift
+  auto moved = kLines;
+  for (auto& line : moved)
+    for (Vec3& p : line) p += Vec3(-6, 5.5, 98);
+  for (const bool big : {false, true}) {
+    file.big_endian = big;
+    expect_lines(parse_trk(file.bytes(), "a.trk"), moved, 1e-5);
+  }
+  // LPS: the first two axes are counted from the other end of 10 and 20 voxels: 2 * 9 - (x - 1), 3 * 19 - (y - 1.5)
+  file.order = "LPS";
+  auto turned = kLines;
+  for (auto& line : turned)
+    for (Vec3& p : line) p = Vec3(18 - (p.x - 1) - 5, 57 - (p.y - 1.5) + 7, p.z - 2 + 100);
+  expect_lines(parse_trk(file.bytes(), "a.trk"), turned, 1e-5);
+  file.order = "";  // means the same
+  expect_lines(parse_trk(file.bytes(), "a.trk"), turned, 1e-5);
+  // axes exchanged: the file's first voxel axis is the matrix's second one
+  file.order = "ARS";
+  auto swapped = kLines;
+  for (auto& line : swapped)
+    for (Vec3& p : line) {
+      const Vec3 voxel = Vec3(p.x / 2, p.y / 3, p.z / 4) - Vec3(0.5);
+      p = Vec3(2 * voxel.y - 5, 3 * voxel.x + 7, 4 * voxel.z + 100);
+    }
+  expect_lines(parse_trk(file.bytes(), "a.trk"), swapped, 1e-5);
+}
+
+// nibabel 5.0.0 of the same bytes: an oblique matrix whose axes run P, L, S, in a file of order RAS. (Where
+// axes are exchanged and differ in length, NiBabel counts from the other axis' end.)
+TEST(Trk, AsNibabelReadsAnObliqueMatrix) {
+  TrkFile file;
+  file.lines = {{{1, 2, 3}, {10, 20, 30}}};
+  file.voxel = {2, 2, 3};
+  file.dim = {12, 12, 13};
+  file.order = "RAS";
+  file.vox_to_ras = {{{0.1f, -1.9f, 0.2f, 30}, {-1.9f, -0.1f, 0.3f, 40}, {0.2f, 0.3f, 2.9f, -50}, {0, 0, 0, 1}}};
+  const auto set = parse_trk(file.bytes(), "a.trk");
+  expect_lines(set, {{{10.25000, 19.10000, -43.15000}, {19.70000, 39.35000, -20.20000}}}, 1e-4);
+}
+
+TEST(Trk, VersionOneHasNoMatrix) {
+  TrkFile file;
+  file.lines = kLines;
+  file.version = 1;
+  file.order = "RAS";
+  const auto set = parse_trk(file.bytes(), "a.trk");
+  auto moved = kLines;
+  for (auto& line : moved)
+    for (Vec3& p : line) p -= Vec3(0.5);
+  expect_lines(set, moved, 1e-6);
+  EXPECT_FALSE(set->is_patient_space);
+}
+
+TEST(Trk, ScalarsAreValuesAndPropertiesAreSkipped) {
+  TrkFile file;
+  file.lines = kLines;
+  file.order = "RAS";
+  file.scalars = {"FA", ""};
+  file.properties = 2;
+  for (const int count : {0, 2}) {  // 0: to the end
+    file.count = count;
+    const auto set = parse_trk(file.bytes(), "a.trk");
+    ASSERT_TRUE(set) << message_of(set);
+    ASSERT_EQ(set->values.size(), 2u);
+    ASSERT_NE(set->find_values("FA"), nullptr);
+    EXPECT_EQ(set->find_values("FA")->values, (std::vector<float>{0, 1, 2, 100, 101}));
+    EXPECT_EQ(set->find_values("scalar_1")->values, (std::vector<float>{0.5, 1.5, 2.5, 100.5, 101.5}));
+    EXPECT_EQ(set->note, "2 properties of each line skipped");
+  }
+}
+
+TEST(Trk, RefusesWithPlaceAndExpectation) {
+  TrkFile file;
+  file.lines = kLines;
+  const std::string good = file.bytes();
+  EXPECT_EQ(message_of(parse_trk(good.substr(0, 999), "a.trk")),
+            "a.trk: is no TrackVis file; a header of 1000 bytes that begins with \"TRACK\" was expected");
+  EXPECT_NE(message_of(parse_trk(good.substr(0, good.size() - 1), "a.trk")).find("a.trk: line 1, byte 1040: the line says"),
+            std::string::npos);
+  file.count = 3;
+  EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")),
+            "a.trk: line 2, byte 1068: the file ends before the line; its number of points was expected");
+  file.count = 2;
+  file.order = "RLS";
+  EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: the voxel order is \"RLS\"; three letters such as \"LPS\" were expected");
+  file.order = "RAS";
+  file.voxel.y = 0;
+  EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: the voxel size is (1, 0, 1); three numbers > 0 were expected");
+  file.voxel.y = 1;
+  file.version = 7;
+  EXPECT_EQ(message_of(parse_trk(file.bytes(), "a.trk")), "a.trk: is of version 7; 1, 2 or 3 was expected");
+  file.version = 2;
+  file.vox_to_ras[0] = {0, 0, 0, 0};
+  EXPECT_NE(message_of(parse_trk(file.bytes(), "a.trk")).find("has no inverse"), std::string::npos);
+}
+
+TEST(CurveFiles, MemoryIsAskedForFirst) {
+  const std::vector<Vec3> line(200000, Vec3(1, 2, 3));
+  set_memory_limit(std::uint64_t{1} << 20);
+  const auto set = parse_tck(tck_bytes({line}, "Float32LE"), "a.tck");
+  set_memory_limit(std::nullopt);
+  EXPECT_NE(message_of(set).find("a.tck: 200002 points needs"), std::string::npos) << message_of(set);
+}
+
+TEST(CurveFiles, ByTheirEnding) {
+  TemporaryFolder folder;
+  write_file(folder / "a.TCK", tck_bytes(kLines, "Float32LE"));
+  const auto set = load_curves(folder / "a.TCK");
+  ASSERT_TRUE(set);
+  EXPECT_EQ((*set)->line_count(), 2u);
+  EXPECT_TRUE(is_curve_file("x.trk"));
+  EXPECT_FALSE(is_curve_file("x.obj"));
+  const auto none = load_curves(folder / "none.trk");
+  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtp, .vtk, .vtu, .pvd or .series) was expected"), std::string::npos)
+      << none.error().message;
+}
+
+}  // namespace load_test
+}  // namespace catena::curves

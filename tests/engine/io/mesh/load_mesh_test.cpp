@@ -1,0 +1,151 @@
+#include "engine/io/mesh/load_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/base/memory_limit.h"
+#include "tests/support/mesh_shapes.h"
+#include "tests/support/support.h"
+
+namespace catena::mesh {
+namespace load_test {
+
+using namespace catena::test;
+
+std::string message_of(const Result<TriangleSoup>& soup) { return soup ? "" : soup.error().message; }
+
+void expect_box(const TriangleSoup& soup) {
+  const MeshPtr mesh = make_mesh_from(soup);
+  EXPECT_EQ(mesh->triangles().size(), 12u);
+  EXPECT_EQ(mesh->vertices().size(), 8u);
+  EXPECT_EQ(mesh->open_edges() + mesh->misoriented_edges(), 0u);
+  EXPECT_EQ(mesh->min_corner(), Vec3(-1, -2, -3));
+  EXPECT_EQ(mesh->max_corner(), Vec3(1, 2, 3));
+}
+
+const TriangleSoup kBox = box_soup({-1, -2, -3}, {1, 2, 3});
+
+TEST(Stl, BinaryAndText) {
+  const auto binary = parse_stl(binary_stl(kBox), "a.stl"), text = parse_stl(text_stl(kBox), "a.stl");
+  ASSERT_TRUE(binary) << message_of(binary);
+  ASSERT_TRUE(text) << message_of(text);
+  expect_box(*binary);
+  expect_box(*text);
+  // binary, whatever its header says; text in capitals, two solids, Windows line ends
+  std::string named = binary_stl(kBox);
+  named.replace(0, 5, "solid");
+  ASSERT_TRUE(parse_stl(named, "a.stl"));
+  std::string loud = text_stl(kBox) + text_stl(kBox);
+  for (char& c : loud) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  for (std::size_t at = 0; (at = loud.find('\n', at)) != std::string::npos; at += 2) loud.replace(at, 1, "\r\n");
+  const auto twice = parse_stl(loud, "a.stl");
+  ASSERT_TRUE(twice) << message_of(twice);
+  EXPECT_EQ(twice->triangles.size(), 24u);
+}
+
+TEST(Stl, RefusesWithPlaceAndExpectation) {
+  const std::string binary = binary_stl(kBox);
+  EXPECT_EQ(message_of(parse_stl(binary.substr(0, 300), "a.stl")),
+            "a.stl: byte 80: says 12 triangles, which take 684 bytes, but the file has 300; a whole STL file was expected");
+  EXPECT_NE(message_of(parse_stl(binary + "x", "a.stl")).find("684 bytes, but the file has 685"), std::string::npos);
+  EXPECT_NE(message_of(parse_stl("", "a.stl")).find("at least 84 bytes"), std::string::npos);
+  std::string nan = binary;
+  const float bad = NAN;
+  std::memcpy(nan.data() + 84 + 50 + 12 + 4, &bad, 4);
+  EXPECT_EQ(message_of(parse_stl(nan, "a.stl")), "a.stl: byte 150: a corner of triangle 2 is not finite; finite numbers were expected");
+  std::string lie = binary;
+  const std::uint32_t count = 0xffffffff;
+  std::memcpy(lie.data() + 80, &count, 4);
+  EXPECT_NE(message_of(parse_stl(lie, "a.stl")).find("says 4294967295 triangles"), std::string::npos);
+
+  EXPECT_EQ(message_of(parse_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n", "a.stl")),
+            "a.stl:4: \"x\" stands here; a finite number was expected");
+  EXPECT_EQ(message_of(parse_stl("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n", "a.stl")),
+            "a.stl:4: \"inf\" stands here; a finite number was expected");
+  EXPECT_NE(message_of(parse_stl("solid a\nfacet normal 0 0 1\nouter loop\n", "a.stl")).find("ends too early; \"vertex\""),
+            std::string::npos);
+}
+
+const std::string kObj = R"(# a box
+mtllib box.mtl
+o box
+v -1 -2 -3
+v 1 -2 -3 0.5 0.5 0.5
+v 1 2 -3
+v -1 2 -3
+v -1 -2 3 1.0
+v 1 -2 3
+v 1 2 3
+v -1 2 \
+ 3
+vt 0 0
+vn 0 0 1
+usemtl red
+s off
+f 4 3 2 1
+f 5/1 6/1 7/1 8/1   # with texture
+f 1//1 2//1 6//1 5//1
+f -6/1/1 -5/1/1 -1/1/1 -2/1/1
+f 1 5 8 4
+f 2 3 7 6
+)";
+
+TEST(Obj, PolygonsNegativeIndicesAndComments) {
+  const auto soup = parse_obj(kObj, "a.obj");
+  ASSERT_TRUE(soup) << message_of(soup);
+  expect_box(*soup);
+}
+
+TEST(Obj, RefusesWithPlaceAndExpectation) {
+  EXPECT_EQ(message_of(parse_obj("v 0 0 0\nf 1 2 3\n", "a.obj")), "a.obj:2: \"2\" names a vertex that is not there; 1 to 1 was expected");
+  EXPECT_EQ(message_of(parse_obj("v 0 0 nan\n", "a.obj")), "a.obj:1: \"nan\" is no coordinate; three finite numbers were expected");
+  EXPECT_EQ(message_of(parse_obj("v 0 0\n", "a.obj")), "a.obj:1: a vertex ends too early; three finite numbers were expected");
+  EXPECT_EQ(message_of(parse_obj("v 0 0 0\nv 1 0 0\nf 1 2\n", "a.obj")), "a.obj:3: a face has 2 corners; at least 3 were expected");
+  EXPECT_NE(message_of(parse_obj("v 0 0 0\nf 0 1 1\n", "a.obj")).find("\"0\" is no corner"), std::string::npos);
+  EXPECT_NE(message_of(parse_obj("hello\n", "a.obj")).find("a.obj:1: \"hello\" is no statement"), std::string::npos);
+}
+
+TEST(LoadMesh, FilesPlacementAndFaults) {
+  TemporaryFolder folder;
+  write_file(folder / "box.STL", binary_stl(kBox));
+  write_file(folder / "box.obj", kObj);
+  const auto stl = load_mesh(folder / "box.STL", {2, {10, 0, 0}}), obj = load_mesh(folder / "box.obj");
+  ASSERT_TRUE(stl);
+  ASSERT_TRUE(obj);
+  EXPECT_EQ((*stl)->min_corner(), Vec3(8, -4, -6));
+  EXPECT_EQ((*stl)->domain_length(), 12);
+  EXPECT_EQ((*obj)->domain_length(), 6);
+  EXPECT_NE((*stl)->version(), (*obj)->version());
+  EXPECT_FALSE(load_mesh(folder / "none.stl"));
+  EXPECT_FALSE(load_mesh(folder.path() + "/"));
+  write_file(folder / "box.ply", kObj);
+  EXPECT_FALSE(load_mesh(folder / "box.ply"));
+  write_file(folder / "empty.obj", "# nothing\n");
+  EXPECT_EQ(load_mesh(folder / "empty.obj").error().message, (folder / "empty.obj") + ": holds no triangle; at least one was expected");
+}
+
+// before: 1.45 GB for 3 million triangles, whatever was allowed
+TEST(Mesh, AsksForItsMemoryAndHoldsIt) {
+  const TriangleSoup ball = sphere_soup(64);
+  const std::string stl = binary_stl(ball), text = text_stl(ball);
+  std::string obj;
+  for (int i = 0; i < 20000; ++i) obj += "v 0 0 " + std::to_string(i) + "\n";
+  set_memory_limit(1000000);
+  for (const std::string& message :
+       {message_of(parse_stl(stl, "a.stl")), message_of(parse_stl(text, "a.stl")), message_of(parse_obj(obj, "a.obj"))})
+    EXPECT_NE(message.find("MB of memory, expected at most 1 MB"), std::string::npos) << message;
+  const auto made = make_mesh(ball, "ball");
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("ball: a mesh of " + std::to_string(ball.triangles.size()) + " triangles needs"), std::string::npos)
+      << made.error().message;
+  set_memory_limit(100000000);
+  {
+    const auto held = make_mesh(ball, "ball");
+    ASSERT_TRUE(held);
+    EXPECT_EQ(available_memory(), 100000000 - (*held)->bytes());
+  }
+  EXPECT_EQ(available_memory(), 100000000u);
+  set_memory_limit(std::nullopt);
+}
+
+}  // namespace load_test
+}  // namespace catena::mesh

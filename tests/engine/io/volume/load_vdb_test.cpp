@@ -1,0 +1,401 @@
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Dense.h>
+
+#include "engine/field/analytic/analytic.h"
+#include "engine/io/volume/load_field.h"
+#include "tests/engine/field/field_helpers.h"
+#include "tests/support/support.h"
+
+namespace catena::field {
+namespace load_vdb_test {
+
+using catena::test::TemporaryFolder;
+using test::Block;
+
+LoadRequest request(const std::string& path, const std::string& grid = {}) {
+  LoadRequest r;
+  r.path = path;
+  r.grid = grid;
+  return r;
+}
+
+/// The message of the error; fails the test when there is none, or when it is not one line about `path`.
+std::string error_of(const LoadRequest& r) {
+  const auto result = load(r);
+  if (result) {
+    ADD_FAILURE() << "loaded: " << r.path;
+    return {};
+  }
+  EXPECT_EQ(result.error().message.find('\n'), std::string::npos);
+  EXPECT_EQ(result.error().message.find(r.path), 0u) << result.error().message;
+  return result.error().message;
+}
+
+testing::AssertionResult has(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "\"" << part << "\" is not in: " << text;
+}
+
+/// A grid of the numbers x + 10 y + 100 z over 4 x 5 x 6 voxels from (-2, 3, 0).
+template <class Grid>
+typename Grid::Ptr numbers(const std::string& name) {
+  auto grid = Grid::create();
+  grid->setName(name);
+  auto accessor = grid->getAccessor();
+  for (int z = 0; z < 6; ++z)
+    for (int y = 3; y < 8; ++y)
+      for (int x = -2; x < 2; ++x) accessor.setValue({x, y, z}, typename Grid::ValueType(x + 10 * y + 100 * z));
+  return grid;
+}
+
+void save(const std::string& path, const openvdb::GridPtrVec& grids) {
+  openvdb::initialize();
+  openvdb::io::File file(path);
+  file.write(grids);
+  file.close();
+}
+
+TEST(LoadVdb, ReadsEveryScalarType) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  auto half = numbers<openvdb::FloatGrid>("half");
+  half->setSaveFloatAsHalf(true);
+  save(folder / "a.vdb", {numbers<openvdb::FloatGrid>("float"), half, numbers<openvdb::DoubleGrid>("double"),
+                          numbers<openvdb::Int32Grid>("int32"), numbers<openvdb::Int64Grid>("int64")});
+  for (const char* name : {"float", "half", "double", "int32", "int64"}) {
+    const auto field = load(request(folder / "a.vdb", name));
+    ASSERT_TRUE(field) << field.error().message;
+    const ScalarGrid& grid = *field->scalar->grid();
+    EXPECT_EQ(grid.name(), name);
+    EXPECT_EQ(grid.index_box().lo, Vec3(-2, 3, 0));
+    EXPECT_EQ(grid.index_box().hi, Vec3(1, 7, 5));
+    Cursor cursor;
+    const ScalarSample s = grid.sample(Vec3(-0.5, 4.25, 3.5), cursor);
+    EXPECT_TRUE(s.inside);
+    EXPECT_NEAR(s.value, -0.5 + 42.5 + 350, 1e-9) << name;
+    EXPECT_NEAR(norm(s.gradient - Vec3(1, 10, 100)), 0, 1e-9);
+    EXPECT_EQ(grid.min_value(), 28);
+    EXPECT_EQ(grid.max_value(), 571);
+  }
+  const auto info = describe_grids(folder / "a.vdb");
+  ASSERT_TRUE(info) << info.error().message;
+  ASSERT_EQ(info->size(), 5u);
+  for (const GridInfo& i : *info) {
+    EXPECT_EQ(i.type, i.name);
+    EXPECT_EQ(i.size, (Index3{4, 5, 6}));
+    EXPECT_EQ(i.first_index, (Index3{-2, 3, 0}));
+    EXPECT_EQ(i.stats.active_voxels, 120u);
+    EXPECT_EQ(i.stats.max, 571);
+    EXPECT_TRUE(i.is_usable);
+    EXPECT_FALSE(i.is_vector);
+    EXPECT_GT(i.bytes, 0u);
+  }
+}
+
+TEST(LoadVdb, ReadsEveryVectorType) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  save(folder / "v.vdb",
+       {numbers<openvdb::Vec3SGrid>("vec3s"), numbers<openvdb::Vec3DGrid>("vec3d"), numbers<openvdb::Vec3IGrid>("vec3i")});
+  for (const char* name : {"vec3s", "vec3d", "vec3i"}) {
+    const auto field = load(request(folder / "v.vdb", name));
+    ASSERT_TRUE(field) << field.error().message;
+    Cursor cursor;
+    EXPECT_NEAR(norm(field->vector->sample(Vec3(0, 5, 2.5), cursor).value - Vec3(300.0)), 0, 1e-9);
+    EXPECT_NEAR(field->vector->grid()->stats().max, 571 * std::sqrt(3.0), 1e-9);
+    EXPECT_EQ(field->vector->grid()->stats().component_max, Vec3(571.0));
+  }
+}
+
+TEST(LoadVdb, RoundTripKeepsEveryBitAndTheTransform) {
+  TemporaryFolder folder;
+  const Block block = test::random_block({20, 9, 13}, 1);
+  std::vector<std::uint8_t> valid(block.values.size(), 1);
+  for (std::size_t n = 0; n < valid.size(); n += 7) valid[n] = 0;
+  for (const Mapping& mapping : test::mappings()) {
+    const auto grid = make_scalar_grid("g", mapping, block.size, block.values, valid);
+    AnyField any;
+    any.scalar = grid;
+    const auto written = write_vdb(folder / "w.vdb", {{any, "density"}});
+    ASSERT_TRUE(written) << written.error().message;
+    const auto back = load(request(folder / "w.vdb"));
+    ASSERT_TRUE(back) << back.error().message;
+    const ScalarGrid& g = *back->scalar->grid();
+    EXPECT_EQ(g.name(), "density");
+    EXPECT_TRUE(g.has_mask());
+    std::vector<float> values(block.values.size());
+    g.read_block({0, 0, 0}, block.size, values);
+    EXPECT_EQ(values, block.values);
+    std::vector<std::uint8_t> before(valid.size()), after(valid.size());
+    grid->read_cell_validity({0, 0, 0}, block.size, before);
+    g.read_cell_validity({0, 0, 0}, block.size, after);
+    EXPECT_EQ(before, after);
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(norm(g.mapping().world_from_index_linear[a] - mapping.world_from_index_linear[a]), 0, 1e-14);
+    EXPECT_EQ(g.mapping().origin, mapping.origin);
+    EXPECT_EQ(g.min_value(), grid->min_value());
+  }
+}
+
+TEST(LoadVdb, VectorsAndTheVentricleRoundTrip) {
+  TemporaryFolder folder;
+  std::vector<NamedGrid> items;
+  for (const auto part : analytic_parts("left-ventricle")) {
+    const AnyField f = make_analytic("left-ventricle", {.scale = 1, .direction = Vec3(1, 0, 0), .part = std::string(part)}).value();
+    AnyField g;
+    if (f.scalar) g.scalar = sample_on_grid(*f.scalar, 33, -2, 2);
+    if (f.vector) g.vector = sample_on_grid(*f.vector, 33, -2, 2);
+    items.push_back({g, std::string(part)});
+  }
+  ASSERT_TRUE(write_vdb(folder / "lv.vdb", items));
+  const auto info = describe_grids(folder / "lv.vdb").value();
+  ASSERT_EQ(info.size(), 4u);
+  std::vector<std::string> names;
+  for (const GridInfo& i : info) names.push_back(i.name + " " + i.type);
+  EXPECT_EQ(names, (std::vector<std::string>{"density float", "transmural float", "fibre vec3s", "valid bool"}));
+  EXPECT_FALSE(info[3].is_usable);
+  EXPECT_EQ(info[0].stats.active_voxels, load(request(folder / "lv.vdb", "density")).value().scalar->grid()->stats().active_voxels);
+  EXPECT_LT(info[0].stats.active_voxels, 33u * 33 * 33) << "outside the wall nothing is valid";
+  const auto fibre = load(request(folder / "lv.vdb", "fibre")).value().vector;
+  const VectorGrid& sampled = *items[2].field.vector->grid();
+  std::vector<float> a(3 * 33 * 33 * 33), b(a.size());
+  sampled.read_block({0, 0, 0}, {33, 33, 33}, a);
+  fibre->grid()->read_block({0, 0, 0}, {33, 33, 33}, b);
+  EXPECT_EQ(a, b);
+  Cursor ca, cb;
+  for (int x = 0; x < 32; ++x)
+    for (int z = 0; z < 32; ++z) EXPECT_EQ(sampled.cell({x, 16, z}, ca).valid, fibre->grid()->cell({x, 16, z}, cb).valid);
+}
+
+TEST(LoadVdb, OnlyTheNamedGridIsRead) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  save(folder / "a.vdb", {numbers<openvdb::FloatGrid>("a"), numbers<openvdb::FloatGrid>("b"), numbers<openvdb::Vec3SGrid>("c")});
+  const LoadCounters before = load_counters();
+  ASSERT_TRUE(load(request(folder / "a.vdb", "b")));
+  const LoadCounters after = load_counters();
+  EXPECT_EQ(after.files - before.files, 1u);
+  EXPECT_EQ(after.grids - before.grids, 1u);
+  EXPECT_EQ(after.masks - before.masks, 0u);
+}
+
+TEST(LoadVdb, MaskByValueAndOnDemand) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  auto valid = openvdb::BoolGrid::create(false);
+  valid->setName("valid");
+  auto accessor = valid->getAccessor();
+  for (int z = 0; z < 6; ++z)
+    for (int y = 3; y < 8; ++y)
+      for (int x = -2; x < 2; ++x) accessor.setValue({x, y, z}, x < 1);  // active and false is not valid
+  auto other = valid->deepCopy();
+  other->setName("shifted");
+  other->setTransform(openvdb::math::Transform::createLinearTransform(2.0));
+  save(folder / "m.vdb", {numbers<openvdb::FloatGrid>("density"), valid, other});
+  Cursor cursor;
+  const auto masked = load(request(folder / "m.vdb", "density")).value().scalar;
+  EXPECT_TRUE(masked->sample(Vec3(-0.5, 4, 2), cursor).inside);
+  EXPECT_FALSE(masked->sample(Vec3(0.5, 4, 2), cursor).inside);
+  EXPECT_EQ(masked->max_value(), 570);
+  // what is described is what is loaded
+  for (const GridStats& stats : {masked->grid()->stats(), describe_grids(folder / "m.vdb").value().at(0).stats}) {
+    EXPECT_EQ(stats.active_voxels, 90u);
+    EXPECT_EQ(stats.max, 570);
+  }
+  EXPECT_EQ(describe_grids(folder / "m.vdb").value().at(0).display_range.hi, 570);
+  LoadRequest r = request(folder / "m.vdb");
+  r.mask_grid = std::nullopt;
+  const auto bare = load(r).value().scalar;
+  EXPECT_TRUE(bare->sample(Vec3(0.5, 4, 2), cursor).inside);
+  EXPECT_FALSE(bare->grid()->has_mask());
+  r.mask_grid = "nowhere";
+  EXPECT_TRUE(load(r));
+  r.mask_required = true;
+  EXPECT_TRUE(has(error_of(r), "nowhere"));
+  r.mask_grid = "density";
+  EXPECT_TRUE(has(error_of(r), "expected bool"));
+  r.mask_grid = "shifted";
+  EXPECT_TRUE(has(error_of(r), "transform"));
+}
+
+TEST(LoadVdb, InactiveVoxelsHoldTheBackground) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create(-7.f);
+  grid->setName("sparse");
+  auto accessor = grid->getAccessor();
+  accessor.setValue({0, 0, 0}, 1.f);
+  accessor.setValue({100, 40, 30}, 3.f);
+  save(folder / "s.vdb", {grid});
+  const auto field = load(request(folder / "s.vdb")).value().scalar;
+  Cursor cursor;
+  EXPECT_NEAR(field->sample(Vec3(0.25, 0, 0), cursor).value, 0.75 - 7 * 0.25, 1e-12);
+  EXPECT_TRUE(field->sample(Vec3(50, 20, 10), cursor).inside);
+  EXPECT_EQ(field->sample(Vec3(50, 20, 10), cursor).value, -7);
+  EXPECT_EQ(field->min_value(), 1);
+  EXPECT_EQ(field->grid()->background(), -7.f);
+}
+
+TEST(LoadVdb, EveryBadGridHasItsSentence) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  auto empty = openvdb::FloatGrid::create();
+  empty->setName("empty");
+  auto frustum = numbers<openvdb::FloatGrid>("frustum");
+  frustum->setTransform(openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 2));
+  auto nan = numbers<openvdb::FloatGrid>("nan");
+  for (auto it = nan->beginValueOn(); it; ++it) it.setValue(std::nanf(""));
+  auto flags = numbers<openvdb::BoolGrid>("flags");
+  auto invalid = openvdb::BoolGrid::create(false);
+  invalid->setName("invalid");
+  save(folder / "b.vdb", {empty, frustum, nan, flags, invalid, numbers<openvdb::FloatGrid>("good")});
+  const std::string path = folder / "b.vdb";
+  EXPECT_TRUE(has(error_of(request(path)), "several grids"));
+  EXPECT_TRUE(has(error_of(request(path, "godo")), "good (float)"));
+  EXPECT_TRUE(has(error_of(request(path, "empty")), "no active voxels"));
+  EXPECT_TRUE(has(error_of(request(path, "frustum")), "frustum"));
+  EXPECT_TRUE(has(error_of(request(path, "nan")), "finite"));
+  EXPECT_TRUE(has(error_of(request(path, "flags")), "type bool"));
+  LoadRequest r = request(path, "good");
+  r.mask_grid = "invalid";
+  EXPECT_TRUE(has(error_of(r), "no valid voxel"));
+  EXPECT_TRUE(load(request(path, "good")));
+  const auto info = describe_grids(path);
+  ASSERT_TRUE(info);
+  for (const GridInfo& i : *info) EXPECT_EQ(i.is_usable, i.name == "good") << i.name;
+}
+
+TEST(LoadVdb, VoxelsAtTheEndsOfTheIndexRange) {
+  TemporaryFolder folder;
+  auto far = numbers<openvdb::FloatGrid>("far");
+  far->tree().setValue({2147483647, 0, 0}, 1.f);
+  far->tree().setValue({-2147483647 - 1, 0, 0}, 1.f);
+  save(folder / "far.vdb", {far});
+  EXPECT_TRUE(has(error_of(request(folder / "far.vdb")), "(-2147483648, 0, 0) to (2147483647, 7, 5), expected indices within"));
+  const auto grids = describe_grids(folder / "far.vdb");
+  ASSERT_TRUE(grids) << grids.error().message;
+  EXPECT_EQ(grids->at(0).size, Size3(4294967296, 8, 6));
+  EXPECT_FALSE(grids->at(0).is_usable);
+}
+
+TEST(LoadVdb, TilesOfAnyExtentCostNothing) {
+  TemporaryFolder folder;
+  auto wide = numbers<openvdb::FloatGrid>("wide");
+  for (int n = 1; n <= 8; ++n) wide->tree().addTile(3, {4096 * n, 0, 0}, 7.f, true);
+  save(folder / "wide.vdb", {wide});
+  const auto field = load(request(folder / "wide.vdb"));
+  ASSERT_TRUE(field) << field.error().message;
+  EXPECT_LT(field->get()->bytes(), 4'000'000u);
+  Cursor cursor;
+  EXPECT_EQ(field->scalar->sample(Vec3(20000.5, 2000, 2000), cursor).value, 7);
+  EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120 + 8 * (std::uint64_t{1} << 36));
+  // a mask of tiles and single voxels
+  auto valid = openvdb::BoolGrid::create(false);
+  valid->setName("valid");
+  valid->tree().addTile(3, {4096, 0, 0}, true, true);
+  valid->tree().addTile(2, {2 * 4096 + 128, 0, 0}, true, true);
+  valid->tree().addTile(1, {2 * 4096 + 8, 0, 0}, true, true);
+  for (int x = 0; x < 5; ++x) valid->tree().setValue({3 * 4096 + x, 0, 0}, true);
+  save(folder / "masked.vdb", {wide, valid});
+  const auto described = describe_grids(folder / "masked.vdb");
+  ASSERT_TRUE(described) << described.error().message;
+  const GridInfo& info = described->at(0);
+  EXPECT_EQ(info.stats.active_voxels, (std::uint64_t{1} << 36) + (std::uint64_t{1} << 21) + 512 + 5);
+  EXPECT_EQ(info.stats.min, 7);
+}
+
+/// A grid that has the tree of another one.
+TEST(LoadVdb, ASharedTreeIsRead) {
+  TemporaryFolder folder;
+  const auto one = numbers<openvdb::FloatGrid>("one");
+  const auto two = one->copy();
+  two->setName("two");
+  save(folder / "shared.vdb", {one, two});
+  for (const char* name : {"one", "two"}) {
+    const auto field = load(request(folder / "shared.vdb", name));
+    ASSERT_TRUE(field) << field.error().message;
+    EXPECT_EQ(field->get()->name(), name);
+    EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120u);
+  }
+}
+
+TEST(LoadVdb, SomeNansLoadAndAreCounted) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  auto grid = numbers<openvdb::FloatGrid>("g");
+  grid->tree().setValue({0, 5, 3}, std::nanf(""));
+  save(folder / "n.vdb", {grid});
+  const auto field = load(request(folder / "n.vdb"));
+  ASSERT_TRUE(field);
+  EXPECT_EQ(field->scalar->grid()->stats().nan_count, 1u);
+}
+
+TEST(LoadVdb, RepeatedNamesAreNumbered) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  auto second = numbers<openvdb::FloatGrid>("same");
+  second->tree().setValue({0, 5, 3}, 9999.f);
+  save(folder / "r.vdb", {numbers<openvdb::FloatGrid>("same"), second});
+  EXPECT_TRUE(has(error_of(request(folder / "r.vdb", "other")), "same[1]"));
+  EXPECT_EQ(load(request(folder / "r.vdb", "same[1]")).value().scalar->max_value(), 9999);
+  EXPECT_EQ(load(request(folder / "r.vdb", "same[0]")).value().scalar->max_value(), 571);
+}
+
+TEST(LoadVdb, BadFilesNeverPassAndNeverCrash) {
+  TemporaryFolder folder;
+  openvdb::initialize();
+  EXPECT_TRUE(has(error_of(request(folder / "absent.vdb")), "no such file"));
+  EXPECT_TRUE(has(error_of(request(folder.path())), "folder"));
+  catena::test::write_file(folder / "empty.vdb", "");
+  EXPECT_TRUE(has(error_of(request(folder / "empty.vdb")), "empty"));
+  catena::test::write_file(folder / "text.vdb", std::string(500, 'x'));
+  EXPECT_TRUE(has(error_of(request(folder / "text.vdb")), "not a .vdb"));
+  catena::test::write_file(folder / "a.txt", "hello");
+  EXPECT_TRUE(has(error_of(request(folder / "a.txt")), "expected a data file (.vdb"));
+  // cut at every length that matters
+  auto noise = openvdb::FloatGrid::create();
+  noise->setName("noise");
+  test::Random random(3);
+  for (int n = 0; n < 4000; ++n)
+    noise->tree().setValue(
+        {static_cast<int>(random.uniform(0, 20)), static_cast<int>(random.uniform(0, 20)), static_cast<int>(random.uniform(0, 20))},
+        static_cast<float>(random.uniform(0, 1)));
+  noise->setSaveFloatAsHalf(true);
+  save(folder / "whole.vdb", {noise, numbers<openvdb::FloatGrid>("b")});
+  const std::string whole = catena::test::read_file(folder / "whole.vdb");
+  ASSERT_TRUE(load(request(folder / "whole.vdb", "noise")));
+  for (std::size_t length = 0; length < whole.size(); length += length < 700 ? 5 : 397) {
+    catena::test::write_file(folder / "cut.vdb", whole.substr(0, length));
+    error_of(request(folder / "cut.vdb", "noise"));
+    EXPECT_FALSE(describe_grids(folder / "cut.vdb"));
+  }
+  catena::test::write_file(folder / "cut.vdb", whole.substr(0, whole.size() - 1));
+  EXPECT_TRUE(has(error_of(request(folder / "cut.vdb", "b")), "cut short"));
+}
+
+TEST(WriteVdb, EveryFailureIsToldAndLeavesNothing) {
+  TemporaryFolder folder;
+  AnyField any;
+  any.scalar = sample_on_grid(*make_analytic("sphere").value().scalar, 8, -2, 2);
+  const auto missing = write_vdb(folder / "nowhere/x.vdb", {{any, "sphere"}});
+  ASSERT_FALSE(missing);
+  EXPECT_TRUE(has(missing.error().message, "does not exist"));
+  EXPECT_FALSE(write_vdb(folder.path(), {{any, "sphere"}}));
+  const auto full = write_vdb("/dev/full", {{any, "sphere"}});
+  ASSERT_FALSE(full);
+  EXPECT_TRUE(has(full.error().message, "No space left"));
+  EXPECT_TRUE(write_vdb("/dev/null", {{any, "sphere"}}));
+  // different masks cannot share a file
+  std::vector<float> ones(27, 1.f);
+  std::vector<std::uint8_t> a(27, 1), b(27, 1);
+  a[0] = 0, b[26] = 0;
+  AnyField ga, gb;
+  ga.scalar = make_scalar_grid("a", {}, {3, 3, 3}, ones, a);
+  gb.scalar = make_scalar_grid("b", {}, {3, 3, 3}, ones, b);
+  EXPECT_FALSE(write_vdb(folder / "x.vdb", {{ga, "a"}, {gb, "b"}}));
+  EXPECT_FALSE(catena::test::exists(folder / "x.vdb"));
+  EXPECT_TRUE(write_vdb(folder / "x.vdb", {{ga, "a"}, {ga, "b"}}));
+}
+
+}  // namespace load_vdb_test
+}  // namespace catena::field

@@ -1,0 +1,275 @@
+/// What VTK's flags, masks and gaps leave of a file's data, in every form of grid.
+#include <gtest/gtest.h>
+
+#include "engine/base/memory_limit.h"
+#include "engine/geometry/mesh/isosurface.h"
+#include "engine/io/client.h"
+#include "engine/io/volume/load_field.h"
+#include "engine/io/volume/write_field.h"
+#include "tests/engine/io/vtk/blanked_grid_files.h"
+#include "tests/fuzz/mutate.h"
+#include "tests/support/support.h"
+
+namespace catena::field {
+namespace holes_test {
+
+namespace files = test::vtk_files;
+using files::Form;
+constexpr Form kForms[] = {Form::image, Form::rectilinear, Form::structured, Form::unstructured};
+
+double sum(const Vec3& p) { return 1 + 2 * p.x + 3 * p.y + 5 * p.z; }
+
+class BlankedCells : public testing::Test {
+ protected:
+  std::string file(const std::string& name, const std::string& bytes) {
+    test::write_file(folder_ / name, bytes);
+    return folder_ / name;
+  }
+  static AnyField read(const std::string& path, const std::string& grid = "v") {
+    LoadRequest request;
+    request.path = path;
+    request.grid = grid;
+    auto field = load(request);
+    EXPECT_TRUE(field) << (field ? "" : field.error().message);
+    return field ? std::move(*field) : AnyField{};
+  }
+  static std::string all_notes(const AnyField& field) {
+    std::string all;
+    for (const std::string& note : field.notes) all += note + "\n";
+    return all;
+  }
+  test::TemporaryFolder folder_;
+};
+
+bool inside(const AnyField& field, const Vec3& p) {
+  Cursor cursor;
+  return field.scalar->sample(p, cursor).inside;
+}
+
+struct Allowance {
+  explicit Allowance(std::uint64_t bytes) { set_memory_limit(bytes); }
+  ~Allowance() { set_memory_limit(std::nullopt); }
+};
+
+/// CellCache 4 x 4 x 4; the one from (1, 1, 1) and the point at (3, 3, 3).
+constexpr int kCell = 21, kPoint = 93;
+
+TEST_F(BlankedCells, EveryFlagMeansWhatItMeansToVtkInEveryFormOfGrid) {
+  struct Case {
+    int flag;
+    bool of_cells, hole;
+  };
+  constexpr Case cases[] = {{1, true, false},  {2, true, false}, {4, true, false},  {8, true, true},
+                            {16, true, false}, {32, true, true}, {1, false, false}, {2, false, true}};
+  for (const Form form : kForms)
+    for (const char* type : {"UInt8", "Int32"})
+      for (const auto& [flag, of_cells, hole] : cases) {
+        if (type[0] == 'I' && flag != 32 && flag != 2) continue;
+        SCOPED_TRACE(fmt::format("{} flag {} of {} as {}", files::file_extension(form), flag, of_cells ? "cells" : "points", type));
+        files::Flags flags;
+        flags.type = type;
+        (of_cells ? flags.cells : flags.points) = [&, at = of_cells ? kCell : kPoint, f = flag](int i) { return i == at ? f : 0; };
+        const AnyField field = read(file(std::string("a") + files::file_extension(form), files::boxes(form, 4, sum, flags)));
+        // a hidden cell of one; the eight cells about a hidden point
+        const Vec3 middle = of_cells ? Vec3(1.5) : Vec3(3.0), far(of_cells ? 0.9 : 1.4);
+        for (const Vec3& offset : {Vec3(0.0), Vec3(far.x / 3, 0, 0), Vec3(0, -far.x / 3, far.x / 3)})
+          EXPECT_EQ(inside(field, middle + offset), !hole) << offset.x << " " << offset.y;
+        // a voxel of a resampled grid beside it there are data
+        for (int axis = 0; axis < 3; ++axis) {
+          Vec3 p = middle;
+          p[axis] -= of_cells ? 0.6 : 1.1;
+          Cursor cursor;
+          const ScalarSample sample = field.scalar->sample(p, cursor);
+          EXPECT_TRUE(sample.inside);
+          EXPECT_NEAR(sample.value, sum(p), 1e-3);
+        }
+      }
+}
+
+/// The grid varied from run to run, and a value that is no number spread over a voxel more.
+TEST_F(BlankedCells, CellsWithAValueThatIsNotFiniteAreNoData) {
+  for (const Form form : {Form::rectilinear, Form::structured, Form::unstructured})
+    for (const std::string name : {"v", "c"}) {
+      SCOPED_TRACE(name + files::file_extension(form));
+      const auto value = [&](const Vec3& p) { return p == Vec3(3.0) || p == Vec3(1.5) ? std::nan("") : sum(p); };
+      const AnyField field = read(file("n" + name + files::file_extension(form), files::boxes(form, 4, value)), name);
+      const Vec3 middle = name == "v" ? Vec3(3.0) : Vec3(1.5);
+      const double half = name == "v" ? 1 : 0.5;
+      EXPECT_FALSE(inside(field, middle));
+      EXPECT_FALSE(inside(field, middle + Vec3(0.8 * half)));
+      Cursor cursor;
+      const ScalarSample sample = field.scalar->sample(middle - Vec3(half + 0.1, 0, 0), cursor);
+      EXPECT_TRUE(sample.inside);
+      EXPECT_NEAR(sample.value, sum(middle - Vec3(half + 0.1, 0, 0)), name == "v" ? 1e-3 : 3);
+      EXPECT_NE(all_notes(field).find(name == "v" ? "1 values of points" : "1 values of cells"), std::string::npos);
+    }
+}
+
+TEST_F(BlankedCells, WhatIsHiddenLeaksIntoNoValueAndNoRange) {
+  // a layer of hidden cells that hold -9999, and points that only they have
+  const auto is_hidden = [](int cell) { return cell / 16 >= 2; };
+  const auto value = [](const Vec3& p) { return p.z > 2.25 ? -9999 : sum(p); };
+  for (const Form form : kForms) {
+    SCOPED_TRACE(files::file_extension(form));
+    files::Flags flags;
+    flags.cells = [&](int i) { return is_hidden(i) ? 32 : 0; };
+    const std::string path = file(std::string("b") + files::file_extension(form), files::boxes(form, 4, value, flags));
+    const auto grids = describe_grids(path);
+    ASSERT_TRUE(grids);
+    for (const std::string name : {"v", "c"}) {
+      const AnyField field = read(path, name);
+      const auto& info = *std::find_if(grids->begin(), grids->end(), [&](const GridInfo& g) { return g.name == name; });
+      EXPECT_GT(info.stats.min, 0) << name;
+      EXPECT_EQ(field.scalar->min_value(), info.stats.min) << name;
+      EXPECT_EQ(field.scalar->max_value(), info.stats.max) << name;
+      Cursor cursor;
+      const ScalarSample sample = field.scalar->sample({2, 2, 1.4}, cursor);
+      EXPECT_TRUE(sample.inside);
+      EXPECT_NEAR(sample.value, sum({2, 2, 1.4}), name == "c" && form != Form::image ? 2.6 : 1e-3) << name;
+      EXPECT_FALSE(inside(field, {2, 2, 3}));
+    }
+  }
+}
+
+TEST_F(BlankedCells, EverythingThatReadsAGridAgreesOnOneLayerOfHiddenCells) {
+  files::Flags flags;
+  flags.cells = [](int i) { return i % 6 == 3 ? 32 : 0; };  // 3 <= x <= 4 of 6
+  const std::string path = file("layer.vti", files::boxes(
+                                                 Form::image, 6, [](const Vec3& p) { return p.y + 0.1 * p.x; }, flags));
+  const AnyField field = read(path);
+  LoadRequest cropped;
+  cropped.path = path;
+  cropped.grid = "v";
+  cropped.crop = Box{{2, 0, 0}, {5, 6, 6}};
+  std::vector<std::pair<std::string, AnyField>> same{{"file", field}, {"crop", load(cropped).value()}};
+  AnyField cubic;
+  cubic.scalar = field.scalar->grid()->as_cubic().value();
+  same.push_back({"cubic", cubic});
+  for (const char* name : {"again.vdb", "again.vti"}) {
+    ASSERT_TRUE(write_field(folder_ / name, field, "v", {}));
+    same.push_back({name, read(folder_ / name)});
+  }
+  for (const auto& [name, one] : same) {
+    SCOPED_TRACE(name);
+    const ScalarGrid& grid = *one.scalar->grid();
+    Cursor cursor;
+    for (const double x : {2.1, 2.9, 3.1, 3.5, 3.9, 4.1, 4.9}) {
+      const Vec3 p(x, 2.5, 2.5);
+      const bool hole = x > 3 && x < 4;
+      EXPECT_EQ(grid.sample(p, cursor).inside, !hole) << x;
+      EXPECT_EQ(grid.status_outside(p, cursor), hole ? SampleStatus::masked : SampleStatus::ok) << x;
+      EXPECT_EQ(grid.cell(grid.cell_base(grid.mapping().index_from_world(p)), cursor).valid, !hole) << x;
+    }
+    const auto surface = mesh::extract_isosurface(grid, 2.6, mesh::OutwardSide::higher, "s");
+    ASSERT_TRUE(surface);
+    double sides[2] = {0, 0};
+    for (const auto& t : surface->triangles) {
+      const Vec3 middle = (surface->vertices[t[0]] + surface->vertices[t[1]] + surface->vertices[t[2]]) * (1.0 / 3);
+      EXPECT_FALSE(middle.x > 3 && middle.x < 4);
+      ++sides[middle.x > 3.5 ? 1 : 0];
+    }
+    EXPECT_GT(sides[0], 0);
+    EXPECT_GT(sides[1], 0);
+  }
+  // a format of voxels alone says what it loses
+  EXPECT_NE(lost_mask_note("a.nrrd", field).find("36 cells without a value"), std::string::npos) << lost_mask_note("a.nrrd", field);
+  EXPECT_TRUE(lost_mask_note("a.vti", field).empty());
+}
+
+TEST_F(BlankedCells, AGapBetweenBlocksHasNoValueWhicheverWayItLies) {
+  for (const double angle : {0.0, 5.6 * std::numbers::pi / 180}) {
+    std::vector<std::pair<Vec3, Vec3>> boxes;
+    for (int i = 0; i < 4; ++i)
+      for (int side = 0; side < 2; ++side) boxes.push_back({Vec3(i + 4.2 * side, 0, 0), Vec3(i + 1 + 4.2 * side, 4, 4)});
+    const AnyField field = read(file("gap.vtu", files::hexahedra(boxes, angle, sum)));
+    const auto turned = [&](const Vec3& p) {
+      return Vec3(p.x * std::cos(angle) - p.y * std::sin(angle), p.x * std::sin(angle) + p.y * std::cos(angle), p.z);
+    };
+    const double voxel = max_abs(field.get()->mapping().world_from_index_linear[0]);
+    EXPECT_LT(voxel, 0.1);
+    int lost = 0, filled = 0;
+    test::Random random{11};
+    const auto unit = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p(0.05 + 3.9 * unit() + (i % 2 == 0 ? 4.2 : 0), 0.05 + 3.9 * unit(), 0.05 + 3.9 * unit());
+      Cursor cursor;
+      const ScalarSample sample = field.scalar->sample(turned(p), cursor);
+      lost += sample.inside ? 0 : 1;
+      EXPECT_TRUE(!sample.inside || std::fabs(sample.value - sum(p)) < 0.3) << sample.value;
+      filled += inside(field, turned({4.1, p.y, p.z})) ? 1 : 0;
+    }
+    EXPECT_EQ(lost, 0);
+    EXPECT_EQ(filled, 0);
+    EXPECT_NE(all_notes(field).find("of random places in the whole box"), std::string::npos) << all_notes(field);
+  }
+}
+
+TEST_F(BlankedCells, AGapNarrowerThanVoxelsIsCounted) {
+  const Allowance allowance(16'000'000);
+  std::vector<std::pair<Vec3, Vec3>> boxes;
+  for (int i = 0; i < 40; ++i) boxes.push_back({Vec3(i * 10, 0, 0), Vec3(i * 10 + 9.98, 400, 400)});
+  EXPECT_NE(all_notes(read(file("thin.vtu", files::hexahedra(boxes, 0, sum)))).find("in the middle of gaps too narrow"), std::string::npos);
+}
+
+TEST_F(BlankedCells, PolyhedraHoldALinearFieldToTheirFaces) {
+  const AnyField field = read(file("p.vtu", files::polyhedra(4, sum)));
+  test::Random random{5};
+  const auto unit = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
+  int wrong = 0;
+  constexpr int kPlaces = 4000;
+  for (int i = 0; i < kPlaces; ++i) {
+    const Vec3 p = Vec3(4.0) * Vec3(unit(), unit(), unit());
+    Cursor cursor;
+    const ScalarSample sample = field.scalar->sample(p, cursor);
+    wrong += sample.inside && std::fabs(sample.value - sum(p)) < 0.01 * sum(p) ? 0 : 1;
+  }
+  EXPECT_LE(wrong, kPlaces / 1000);
+  EXPECT_EQ(field.scalar->min_value(), 1) << "not that of a point without a cell";
+  EXPECT_EQ(all_notes(field).find("lost"), std::string::npos) << all_notes(field);
+}
+
+TEST_F(BlankedCells, ASmallCellKeepsItsPeakOrTheNoteTellsTheLoss) {
+  const Allowance allowance(16'000'000);
+  const auto boxes = [](double small, double aside) {
+    std::vector<std::pair<Vec3, Vec3>> all;
+    for (int i = 0; i < 5; ++i) all.push_back({Vec3(i, 0, 0), Vec3(i + 1, 1, 1)});
+    all.push_back({Vec3(5, aside, aside), Vec3(5 + small, aside + small, aside + small)});
+    return all;
+  };
+  const auto peak = [](const Vec3& p) { return p.x > 5 ? 100.0 : 1.0; };
+  const AnyField kept = read(file("kept.vtu", files::hexahedra(boxes(0.05, 0), 0, peak)));
+  EXPECT_EQ(all_notes(kept).find("is lost"), std::string::npos) << all_notes(kept);
+  EXPECT_EQ(kept.scalar->max_value(), 100);
+  const AnyField lost = read(file("lost.vtu", files::hexahedra(boxes(0.001, 0.4003), 0, peak)));
+  EXPECT_NE(all_notes(lost).find("the greatest value, 100, is lost"), std::string::npos) << all_notes(lost);
+}
+
+TEST_F(BlankedCells, TheGridFollowsFromTheFileAndWhatIsStatedAlone) {
+  const std::string path = file("w.vtu", files::hexahedra({{Vec3(0.0), Vec3(1.0)}, {Vec3(1, 0, 0), Vec3(2, 1, 1)}}, 0,
+                                                          [](const Vec3& p) { return p.x * p.x + p.y; }));
+  const auto size = [&] { return describe_grids(path).value().front().size; };
+  const Size3 whole = size();
+  EXPECT_EQ(read(path).get()->index_box().hi.x + 1, static_cast<double>(whole.x));
+  std::vector<Size3> sizes;
+  for (const std::uint64_t bytes : {std::uint64_t{4} << 30, std::uint64_t{1} << 30, std::uint64_t{2'000'000}}) {
+    set_memory_limit(bytes);
+    sizes.push_back(size());
+    const AnyField field = read(path);
+    EXPECT_EQ(all_notes(field).find("--memory") != std::string::npos, bytes == 2'000'000) << all_notes(field);
+    set_memory_limit(std::nullopt);
+  }
+  EXPECT_EQ(sizes[0], whole);
+  EXPECT_EQ(sizes[1], whole);
+  EXPECT_LT(sizes[2].x, whole.x);
+  // nothing is stated, and too little is free
+  reader_settings().memory_bytes = 300'000;
+  LoadRequest request;
+  request.path = path;
+  const auto refused = load(request);
+  reader_settings().memory_bytes = 0;
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("--memory 1 resamples it to fewer voxels"), std::string::npos) << refused.error().message;
+}
+
+}  // namespace holes_test
+}  // namespace catena::field

@@ -1,0 +1,312 @@
+#include <gtest/gtest.h>
+
+#include "engine/base/json_edit.h"
+#include "engine/io/volume/load_field.h"
+#include "engine/scene/document.h"
+#include "engine/scene/streamlines.h"
+#include "engine/scene/to_json.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace carry_over_test {
+
+Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
+  auto scene = parse_scene(text, path);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? std::move(*scene) : Scene{};
+}
+
+std::string edited(const std::string& text, std::string_view pointer, const std::string& value) {
+  const auto result = json::set_value(text, "scene.json", pointer, value);
+  EXPECT_TRUE(result) << result.error().message;
+  return result ? *result : text;
+}
+
+std::uint64_t version(Scene& scene, const char* name) {
+  const auto any = resolve_field(scene, name, {});
+  EXPECT_TRUE(any) << any.error().message;
+  return any ? any->get()->version() : 0;
+}
+std::uint64_t drawn_version(Scene& scene, const char* name) {
+  const auto any = resolve_rendered_field(scene, find_field(scene, name), {});
+  EXPECT_TRUE(any) << any.error().message;
+  return any ? any->get()->version() : 0;
+}
+
+template <class T>
+Entity only(const Scene& scene) {
+  Entity found;
+  scene.entities.each<T>([&](Entity e, const T&) { found = e; });
+  return found;
+}
+
+const std::string kText = R"({
+  "fields": {"s": {"analytic": "sphere", "resolution": 8}, "t": {"analytic": "sphere", "scale": 2, "resolution": 8}, "v": {"analytic": "circle"}},
+  "volumes": [{"field": "s"}],
+  "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0]]},
+                  {"field": "v", "seeds": {"line": {"from": [0.2, 0, 0], "to": [1, 0, 0], "count": 3}}}]
+})";
+
+std::vector<Entity> sets_of(const Scene& scene) {
+  std::vector<Entity> sets;
+  scene.entities.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { sets.push_back(e); });
+  return sets;
+}
+
+TEST(ReloadState, FieldsAreLoadedOnce) {
+  Scene old = scene_of(kText);
+  const std::uint64_t s = version(old, "s"), t = version(old, "t"), drawn_s = drawn_version(old, "s"), drawn_t = drawn_version(old, "t");
+  std::string text = edited(kText, "/fields/t/scale", "3");
+  text = edited(text, "/fields/again", R"({"analytic": "sphere", "resolution": 9})");
+  Scene fresh = scene_of(text);
+  transfer_state(old, fresh);
+  EXPECT_EQ(version(fresh, "s"), s);
+  EXPECT_EQ(drawn_version(fresh, "s"), drawn_s);
+  EXPECT_NE(version(fresh, "t"), t);
+  EXPECT_NE(drawn_version(fresh, "t"), drawn_t);
+  EXPECT_EQ(version(fresh, "again"), s);  // one formula is one field, drawn on two grids
+  EXPECT_NE(drawn_version(fresh, "again"), drawn_s);
+}
+
+TEST(ReloadState, FilesAreReadOnceAndFollowTheirGridAndMask) {
+  const test::TemporaryFolder folder;
+  const auto ball = *field::make_analytic("sphere"), swirl = *field::make_analytic("circle");
+  ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, "ball"},
+                                                  {{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)}, "flow"}}));
+  test::write_file(folder / "q.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3\n");
+  const std::string text = R"({"fields": {"a": {"file": "a.vdb", "grid": "ball"}}, "volumes": [{"field": "a"}],
+                               "meshes": [{"name": "m", "file": "q.obj"}, {"name": "n", "file": "q.obj", "scale": 2}]})";
+  Scene old = scene_of(text, folder / "s.json");
+  const std::uint64_t a = drawn_version(old, "a");
+  const auto m = resolve_mesh(old, "m", {}), n = resolve_mesh(old, "n", {});
+  ASSERT_TRUE(m && n);
+  const auto loads = field::load_counters().grids;
+  std::string changed = edited(text, "/meshes/1/scale", "3");
+  changed = edited(changed, "/volumes/0/shade", "true");
+  Scene fresh = scene_of(edited(changed, "/fields/b", R"({"file": "./a.vdb", "grid": "ball"})"), folder / "s.json");
+  transfer_state(old, fresh);
+  EXPECT_EQ(drawn_version(fresh, "a"), a);
+  EXPECT_EQ(version(fresh, "b"), a);
+  EXPECT_EQ(*resolve_mesh(fresh, "m", {}), *m);
+  EXPECT_NE(*resolve_mesh(fresh, "n", {}), *n);
+  EXPECT_EQ(field::load_counters().grids, loads);
+  Scene other = scene_of(edited(changed, "/fields/a", R"({"file": "a.vdb", "grid": "flow"})"), folder / "s.json");
+  transfer_state(fresh, other);
+  EXPECT_NE(version(other, "a"), a);
+  EXPECT_EQ(field::load_counters().grids, loads + 1);
+}
+
+TEST(ReloadState, LinesAreTheSameObjects) {
+  Scene old = scene_of(kText);
+  std::vector<std::vector<flow::CurvePtr>> lines;
+  for (const Entity set : sets_of(old)) lines.push_back(*resolve_lines(old, set));
+  // their looks change, not what they follow
+  std::string text = edited(kText, "/streamlines/0/color", "[1, 1, 0]");
+  text = edited(text, "/streamlines/1/radius", "0.03");
+  Scene fresh = scene_of(text);
+  transfer_state(old, fresh);
+  std::vector<Entity> sets = sets_of(fresh);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(*resolve_lines(fresh, sets[i]), lines[i]) << i;
+  // other seeds: what stays of them stays
+  text = edited(text, "/streamlines/0/seeds/1", "[0.25, 0, 0]");
+  text = edited(text, "/streamlines/1/seeds/line/count", "2");
+  Scene third = scene_of(text);
+  transfer_state(fresh, third);
+  sets = sets_of(third);
+  const auto points = resolve_lines(third, sets[0]), pattern = resolve_lines(third, sets[1]);
+  ASSERT_TRUE(points && pattern);
+  EXPECT_EQ((*points)[0], lines[0][0]);
+  EXPECT_NE((*points)[1], lines[0][1]);
+  EXPECT_EQ(pattern->size(), 2u);
+  // another field: none
+  Scene fourth = scene_of(edited(text, "/fields/v/scale", "2"));
+  transfer_state(third, fourth);
+  EXPECT_NE((*resolve_lines(fourth, sets_of(fourth)[0]))[0], lines[0][0]);
+}
+
+TEST(ReloadState, CurvesThatNothingUsesAreGivenUp) {
+  Scene scene = scene_of(kText);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(resolve_lines(scene, sets_of(scene)[0]));
+    Scene fresh = scene_of(edited(kText, "/streamlines/0/seeds/1", "[" + to_json(0.5 + 0.01 * i) + ", 0, 0]"));
+    transfer_state(scene, fresh);
+    scene = std::move(fresh);
+  }
+  EXPECT_LE(scene.traced_curves.size(), 4u);
+}
+
+TEST(ReloadState, AutomaticColoursAreMadeOnce) {
+  Scene old = scene_of(kText);
+  drawn_version(old, "s");
+  const TransferFunction made = old.entities.get<Volume>(only<Volume>(old)).transfer;
+  ASSERT_FALSE(made.colors.empty() || made.extinctions.empty());
+  const auto carried = [&](const std::string& text) {
+    Scene before = scene_of(kText);
+    drawn_version(before, "s");
+    Scene fresh = scene_of(text);
+    transfer_state(before, fresh);
+    return fresh.entities.get<Volume>(only<Volume>(fresh)).transfer;
+  };
+  const TransferFunction shaded = carried(edited(kText, "/volumes/0/shade", "true"));
+  EXPECT_EQ(to_json(shaded.colors), to_json(made.colors));
+  EXPECT_EQ(to_json(shaded.extinctions), to_json(made.extinctions));
+  const TransferFunction opaque = carried(edited(kText, "/volumes/0/opacity", "[[0, 0.1]]"));
+  EXPECT_EQ(to_json(opaque.colors), to_json(made.colors));
+  EXPECT_TRUE(opaque.extinctions.empty());
+  const TransferFunction ranged = carried(edited(kText, "/volumes/0/range", "[0, 1]"));
+  EXPECT_TRUE(ranged.colors.empty() && ranged.extinctions.empty());
+  const TransferFunction other = carried(edited(kText, "/volumes/0/field", "\"t\""));
+  EXPECT_TRUE(other.colors.empty() && other.extinctions.empty());
+  const TransferFunction named = carried(edited(kText, "/volumes/0/color", "\"magma\""));
+  EXPECT_TRUE(named.colors.empty());
+  EXPECT_EQ(to_json(named.extinctions), to_json(made.extinctions));
+}
+
+/// What another room keeps beside an entity.
+struct Beside {
+  int value = 0;
+};
+
+TEST(ReloadState, WhatOthersKeepGoesWithAnEqualDescription) {
+  const auto carried = [](const std::string& text) {
+    Scene old = scene_of(kText);
+    const std::vector<Entity> sets = sets_of(old);
+    old.cache.emplace<Beside>(sets[0], {1});
+    old.cache.emplace<Beside>(sets[1], {2});
+    Scene fresh = scene_of(text);
+    transfer_state(old, fresh);
+    std::string values;
+    for (const Entity e : sets_of(fresh)) values += fresh.cache.has<Beside>(e) ? std::to_string(fresh.cache.get<Beside>(e).value) : "-";
+    return values;
+  };
+  EXPECT_EQ(carried(kText), "12");
+  EXPECT_EQ(carried(edited(kText, "/background", "[0, 0, 0]")), "12");
+  EXPECT_EQ(carried(edited(kText, "/streamlines/0/radius", "0.1")), "-2");
+  EXPECT_EQ(carried(*json::remove_value(kText, "", "/streamlines/0")), "2");
+  EXPECT_EQ(carried(*json::insert_item(kText, "", "/streamlines/0", R"({"field": "v", "seeds": [[1, 1, 0]]})")), "-12");
+  // any field may be what it means
+  EXPECT_EQ(carried(edited(kText, "/fields/t/scale", "3")), "--");
+}
+
+TEST(ReloadState, TheHandStaysWhereItIs) {
+  Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25, "ghost": false, "drop_line": true}})");
+  Cursor& cursor = old.entities.get<Cursor>(old.cursor);
+  cursor.probe = {1, 2, 3};
+  cursor.names = {"a"};
+  cursor.proxies = {{1, 2, 4}};
+  cursor.visible = true;
+  old.animation_phase = 3.5;
+  transfer_state(old, fresh);
+  const Cursor& after = fresh.entities.get<Cursor>(fresh.cursor);
+  EXPECT_EQ(after.probe, Vec3(1, 2, 3));
+  EXPECT_EQ(after.names, std::vector<std::string>{"a"});
+  EXPECT_EQ(after.proxies.size(), 1u);
+  EXPECT_TRUE(after.visible);
+  EXPECT_EQ(after.size, 0.25);
+  EXPECT_FALSE(after.show_occluded);
+  EXPECT_TRUE(after.drop_line);
+  EXPECT_EQ(fresh.animation_phase, 3.5);
+}
+
+// ---- widgets ----
+
+Scene scene_with_widget(const std::string& name, const std::string& item, const widget::Pose& pose) {
+  Scene scene = scene_of("{}");
+  Widget widget;
+  widget.where = *json::parse(item, "");
+  widget.spec.kind = widget::Kind::seed;
+  widget.spec.pose = widget.report.pose = pose;
+  const Entity e = scene.entities.create();
+  scene.entities.emplace<Name>(e, {name});
+  scene.entities.emplace<Widget>(e, std::move(widget));
+  return scene;
+}
+
+widget::Pose at(const Vec3& p) {
+  widget::Pose pose;
+  pose.points[0] = p;
+  return pose;
+}
+
+TEST(ReloadState, AWidgetStaysWhereTheHandHasPutIt) {
+  const auto carried = [](const std::string& name, const std::string& item, const widget::Pose& pose) {
+    Scene old = scene_with_widget("w", R"({"position": [0, 0, 0], "radius": 1})", at({0, 0, 0}));
+    Widget& before = old.entities.get<Widget>(only<Widget>(old));
+    before.spec.revision = before.report.revision = 4;
+    before.report.pose = at({5, 6, 7});
+    before.report.mode = widget::Mode::drag;
+    Scene fresh = scene_with_widget(name, item, pose);
+    transfer_state(old, fresh);
+    return fresh.entities.get<Widget>(only<Widget>(fresh));
+  };
+  // its place in the text is the same, whatever else changed
+  const Widget kept = carried("w", R"({"position": [0, 0, 0], "radius": 2})", at({0, 0, 0}));
+  EXPECT_EQ(kept.report.pose, at({5, 6, 7}));
+  EXPECT_EQ(kept.report.mode, widget::Mode::drag);
+  EXPECT_EQ(kept.spec.revision, 4u);
+  // the text was set to where the hand has it
+  const Widget written = carried("w", R"({"position": [5, 6, 7]})", at({5, 6, 7}));
+  EXPECT_EQ(written.report.mode, widget::Mode::drag);
+  EXPECT_EQ(written.spec.revision, 4u);
+  EXPECT_EQ(written.spec.pose, at({5, 6, 7}));
+  // and elsewhere: the text's
+  const Widget moved = carried("w", R"({"position": [1, 1, 1]})", at({1, 1, 1}));
+  EXPECT_EQ(moved.report.pose, at({1, 1, 1}));
+  EXPECT_EQ(moved.report.mode, widget::Mode::idle);
+  EXPECT_EQ(moved.spec.revision, 5u);
+  EXPECT_EQ(moved.report.revision, 5u);
+  // another widget
+  const Widget other = carried("x", R"({"position": [0, 0, 0], "radius": 1})", at({0, 0, 0}));
+  EXPECT_EQ(other.report.pose, at({0, 0, 0}));
+  EXPECT_EQ(other.spec.revision, 0u);
+}
+
+// ---- values ----
+
+TEST(WriteValues, AreReadBack) {
+  Camera camera;
+  camera.position = {0.1, 1.0 / 3, -1e-7};
+  camera.target = {5, 6, 7e14};
+  camera.up = {0.3, 0.2, 0.1};
+  camera.orthographic = true;
+  camera.ortho_height = 2.0 / 3;
+  const std::vector<TransferFunction::ColorPoint> colors{{0.1, {0.1f, 0.2f, 0.3f}}, {0.7, {1, 0, 0.96f}}};
+  const std::vector<TransferFunction::OpacityPoint> opacities{{0.1, 0}, {1.0 / 3, 0.25}};
+  const std::string text =
+      "{\"fields\": {\"s\": {\"analytic\": \"sphere\"}}, \"camera\": " + to_json(camera) + ", \"volumes\": [{\"field\": " + to_json("s") +
+      ", \"color\": " + to_json(colors) + ", \"opacity\": " + to_json(opacities) + ", \"shade\": " + to_json(true) + "}], \"clip\": [" +
+      to_json(ClipPlane{{{1, 2, 3}, {0.1, 0.2, 0.3}}}) + "], \"background\": " + to_json(Background{{0.1f, 0, 1}, false}) +
+      ", \"lights\": [" + to_json(Light{{1, 2, 3}, {1, 0.5f, 0.1f}, 0.7, true}) + "]}";
+  const Scene scene = scene_of(text);
+  EXPECT_EQ(to_json(scene.camera), to_json(camera));
+  EXPECT_EQ(scene.camera.position, camera.position);
+  EXPECT_EQ(scene.camera.ortho_height, camera.ortho_height);
+  const Volume& volume = scene.entities.get<Volume>(only<Volume>(scene));
+  EXPECT_EQ(volume.transfer.colors[1].color.b, 0.96f);
+  EXPECT_EQ(to_json(volume.transfer.colors), "[[0.1, 0.1, 0.2, 0.3], [0.7, 1, 0, 0.96]]");
+  EXPECT_EQ(to_json(volume.transfer.opacities), to_json(opacities));
+  EXPECT_EQ(scene.clip_planes.at(0).normal, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(scene.background.color.r, 0.1f);
+  EXPECT_EQ(to_json(scene.lights.at(0)), to_json(Light{{1, 2, 3}, {1, 0.5f, 0.1f}, 0.7, true}));
+  EXPECT_EQ(to_json(Background{{}, true}), "\"transparent\"");
+}
+
+TEST(WriteValues, APoseHasTheKeysOfItsKind) {
+  widget::Pose pose;
+  pose.points = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  pose.orientation = Quat(0.5, 0.5, -0.5, 0.5);
+  const auto keys = [&](widget::Kind kind) {
+    std::string text;
+    for (const auto& [key, value] : pose_members(kind, pose)) text += key + "=" + value.value_or("none") + " ";
+    return text;
+  };
+  EXPECT_EQ(keys(widget::Kind::cutting_plane), "center=[1, 2, 3] normal=none orientation=[0.5, 0.5, -0.5, 0.5] ");
+  EXPECT_EQ(keys(widget::Kind::seed), "position=[1, 2, 3] ");
+  EXPECT_EQ(keys(widget::Kind::isolevel), "position=[1, 2, 3] ");
+  EXPECT_EQ(keys(widget::Kind::rake), "from=[1, 2, 3] to=[4, 5, 6] ");
+  EXPECT_EQ(keys(widget::Kind::ruler), "from=[1, 2, 3] to=[4, 5, 6] ");
+  EXPECT_EQ(keys(widget::Kind::box), "lo=[1, 2, 3] hi=[4, 5, 6] ");
+}
+
+}  // namespace carry_over_test
+}  // namespace catena::scene

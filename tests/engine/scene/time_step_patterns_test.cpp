@@ -1,0 +1,131 @@
+/// Patterns of files, and steps that are added while a scene shows them.
+#include "engine/scene/follow_files.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "engine/io/field_cache.h"
+#include "engine/scene/time_steps.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace follow_test {
+
+TEST(SeriesPattern, FilesOfOneSeriesInAnyOrder) {
+  const test::TemporaryFolder folder;
+  for (const char* name :
+       {"w_1.vti", "w_2.vti", "w_10.vti", "w_mean.vti", "t0.001.vtu", "t0.0015.vtu", "t0.01.vtu", "3.nii.gz", "20.nii.gz"})
+    test::write_file(folder / name, "");
+  std::filesystem::create_directory(folder / "other");
+  test::write_file(folder / "other/w_1.vti", "");
+  const struct {
+    std::vector<const char*> files;
+    const char* pattern;  // or what the error says
+    std::vector<const char*> order;
+  } kCases[] = {
+      {{"w_10.vti", "w_2.vti", "w_1.vti"}, "w_{1,2,10}.vti", {"w_1.vti", "w_2.vti", "w_10.vti"}},
+      {{"w_10.vti", "w_1.vti", "w_10.vti"}, "w_{1,10}.vti", {"w_1.vti", "w_10.vti"}},
+      {{"t0.01.vtu", "t0.001.vtu", "t0.0015.vtu"}, "t*.vtu", {"t0.001.vtu", "t0.0015.vtu", "t0.01.vtu"}},
+      {{"20.nii.gz", "3.nii.gz"}, "*.nii.gz", {"3.nii.gz", "20.nii.gz"}},
+      {{"w_mean.vti"}, "w_mean.vti", {}},
+      {{"w_mean.vti", "w_1.vti"}, "are no series", {}},
+      {{"w_1.vti", "t0.01.vtu"}, "are no series", {}},
+      {{"w_1.vti", "other/w_1.vti"}, "different folders", {}},
+      {{"w_1.vti", "w_3.vti"}, "there is no such file", {}},
+      {{"w_1.vti", "other/../w_2.vti"}, "w_{1,2}.vti", {"w_1.vti", "w_2.vti"}},
+      {{"w_?.vti"}, "there is no such file; a name with a *", {}},
+      {{"w_{1..3}.vti"}, "there is no such file; a name with a *", {}},
+  };
+  for (const auto& one : kCases) {
+    std::vector<std::string> files, order;
+    for (const char* file : one.files) files.push_back(folder / file);
+    for (const char* file : one.order) order.push_back(folder / file);
+    const auto pattern = make_pattern(files);
+    if (!pattern) {
+      EXPECT_NE(pattern.error().message.find(one.pattern), std::string::npos) << pattern.error().message;
+      continue;
+    }
+    EXPECT_EQ(*pattern, folder / one.pattern);
+    if (!order.empty()) {
+      EXPECT_EQ(expand_pattern(*pattern), order);
+    }
+  }
+  EXPECT_EQ(expand_pattern(folder / "w_{1,1,2}.vti").size(), 2u);
+  EXPECT_FALSE(find_followable_path(folder / "missing_1.vti"));
+  // a file that is really called so
+  test::write_file(folder / "x_*.vti", "");
+  EXPECT_FALSE(is_pattern(folder / "x_*.vti"));
+}
+
+void settle(const std::string& path) {
+  const timespec past[2] = {{::time(nullptr) - 60, 0}, {::time(nullptr) - 60, 0}};
+  ASSERT_EQ(::utimensat(AT_FDCWD, path.c_str(), past, 0), 0);
+}
+
+class GrowingSeries : public testing::Test {
+ protected:
+  ~GrowingSeries() override { field::clear_cache(); }
+  void write(int step, bool half = false) {
+    const std::string path = file(step);
+    std::vector<float> values(64, static_cast<float>(step));
+    values[5] += 0.5f;
+    field::AnyField field;
+    field.scalar = field::make_scalar_grid("r", field::Mapping::from_linear(Mat3(1.0), Vec3(0.0)), {4, 4, 4}, values);
+    EXPECT_TRUE(field::write_vdb(folder_ / "whole.vdb", {{field, "r"}}));
+    const std::string bytes = test::read_file(folder_ / "whole.vdb");
+    test::write_file(path, half ? bytes.substr(0, bytes.size() / 2) : bytes);
+  }
+  std::string file(int step) { return folder_ / ("f_" + std::to_string(step) + ".vdb"); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(GrowingSeries, AStepCountsOnceItIsWholeAndAtRest) {
+  for (const int step : {8, 9}) write(step), settle(file(step));
+  auto scene = parse_scene(R"({"fields": {"r": {"file": "f_*.vdb"}}})", folder_ / "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(step_count(*scene), 2);
+  ASSERT_TRUE(start_following(*scene));
+  EXPECT_EQ(step_count(*scene), 1) << "the newest may be half written";
+  ASSERT_TRUE(resolve_field(*scene, find_field(*scene, "r"), {}));
+  const auto look = [&] {
+    std::vector<FollowedSource> all = followed_sources(*scene);
+    for (FollowedSource& one : all) poll_steps(one);
+    return apply_steps(*scene, all);
+  };
+  EXPECT_TRUE(look());
+  EXPECT_EQ(step_count(*scene), 2);
+  // half written, whether at rest or not; of another series
+  write(10, /*half=*/true);
+  EXPECT_FALSE(look());
+  settle(file(10));
+  EXPECT_FALSE(look());
+  std::filesystem::copy_file(file(9), folder_ / "f_mean.vdb");
+  settle(folder_ / "f_mean.vdb");
+  EXPECT_FALSE(look());
+  // whole, but it has just been changed
+  write(10);
+  EXPECT_FALSE(look());
+  settle(file(10));
+  EXPECT_TRUE(look());
+  EXPECT_EQ(step_count(*scene), 3);
+  set_step(*scene, 2);
+  EXPECT_TRUE(field::is_cached(*scene->entities.get<FieldSource>(find_field(*scene, "r")).file));
+  const auto newest = resolve_field(*scene, find_field(*scene, "r"), {});
+  ASSERT_TRUE(newest) << newest.error().message;
+  EXPECT_EQ(newest->scalar->min_value(), 10);
+}
+
+TEST_F(GrowingSeries, WhatIsFollowedOfAName) {
+  for (const int step : {1, 2}) write(step);
+  EXPECT_EQ(*find_followable_path(file(1)), folder_ / "f_*.vdb");
+  EXPECT_EQ(*find_followable_path(folder_ / "f_{1,2}.vdb"), folder_ / "f_*.vdb");
+  EXPECT_EQ(*find_followable_path(folder_ / "f_*.vdb"), folder_ / "f_*.vdb");
+  EXPECT_EQ(*find_followable_path(folder_ / "run.pvd"), folder_ / "run.pvd");
+  EXPECT_FALSE(find_followable_path(folder_ / "whole.vdb"));
+}
+
+}  // namespace follow_test
+}  // namespace catena::scene

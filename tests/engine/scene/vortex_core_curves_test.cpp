@@ -1,0 +1,72 @@
+#include "engine/scene/vortex_core_curves.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/scene/document.h"
+
+namespace catena::scene {
+namespace traced_cores_test {
+
+Result<Scene> scene_with(const std::string& curves, const std::string& more = "") {
+  return parse_scene(R"({"fields": {"ring": {"analytic": "hill"}, "abc": {"analytic": "abc"}, "still": {"analytic": "uniform"},
+    "ball": {"analytic": "sphere"}},
+"curves": [{"name": "core", )" +
+                         curves + "}]" + more + "}",
+                     "scene.json");
+}
+
+Result<curves::CurveSetPtr> traced(Scene& scene) { return resolve_curves(scene, find_named<CurvesSource>(scene, "core")); }
+
+TEST(TracedCores, AreTheLinesThatALinkFeels) {
+  auto scene = scene_with(R"("vortex_cores": {"field": "ring"})");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto set = traced(*scene);
+  ASSERT_TRUE(set) << set.error().message;
+  ASSERT_EQ((*set)->line_count(), 1u);
+  EXPECT_EQ((*set)->points.front(), (*set)->points.back()) << "closed";
+  EXPECT_NE((*set)->find_values("swirl"), nullptr);
+  // chords included: 1e-6 L and the rounding of single precision
+  for (std::size_t k = 0; k + 1 < (*set)->points.size(); ++k) {
+    const Vec3 p = 0.5 * (Vec3((*set)->points[k]) + Vec3((*set)->points[k + 1]));
+    ASSERT_LE(norm(p - direction(Vec3(p.x, p.y, 0)) * std::sqrt(0.5)), 4e-6 + 2e-7) << k;
+  }
+  const auto field = resolve_field(*scene, "ring", {});
+  const auto cores = flow::find_vortex_cores(field->vector, {});
+  EXPECT_EQ(scene->entities.get<CurvesSource>(find_named<CurvesSource>(*scene, "core")).vortex_cores->cores, *cores) << "one object";
+}
+
+TEST(TracedCores, StayWhereAnEditLeavesThemAlone) {
+  auto old = scene_with(R"("vortex_cores": {"field": "ring"})");
+  const auto set = traced(*old);
+  for (const auto& [curves, same] : {std::pair(R"("vortex_cores": {"field": "ring"}, "color": [1, 0, 0])", true),
+                                     std::pair(R"("vortex_cores": {"field": "ring", "criterion": "vorticity"})", false)}) {
+    auto fresh = scene_with(curves);
+    transfer_state(*old, *fresh);
+    const auto now = traced(*fresh);
+    ASSERT_TRUE(set && now);
+    EXPECT_EQ(*now == *set, same) << curves;
+    transfer_state(*fresh, *old);
+  }
+}
+
+TEST(TracedCores, SayWhereThereIsNone) {
+  const auto message = [](const std::string& curves) {
+    auto scene = scene_with(curves);
+    if (!scene) return scene.error().message;
+    const auto set = traced(*scene);
+    return set ? std::string("no error") : set.error().message;
+  };
+  const auto says = [&](const std::string& curves, const char* part) {
+    const std::string text = message(curves);
+    EXPECT_EQ(text.rfind("scene.json:3:", 0), 0u) << text;
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  says(R"("vortex_cores": {"field": "abc", "criterion": "vorticity"})", "everywhere");
+  says(R"("vortex_cores": {"field": "still"})", "no vortex core");
+  says(R"("vortex_cores": {"field": "ball"})", "a vector field was expected");
+  says(R"("vortex_cores": {"field": "nobody"})", "unknown field");
+  says(R"("radius": 1)", "neither");
+}
+
+}  // namespace traced_cores_test
+}  // namespace catena::scene

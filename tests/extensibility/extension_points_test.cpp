@@ -1,0 +1,134 @@
+// A constraint and a file format that only this test has, each in one place and with one line of registration: they are in the reader, the
+// schema, the writer, the panel, the ruler and the document, with nothing said about them anywhere else.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "engine/app/cli/scene_schema.h"
+#include "engine/app/viewer/edit/chain_editing.h"
+#include "engine/base/text.h"
+#include "engine/io/volume/formats.h"
+#include "engine/scene/document.h"
+#include "engine/scene/ruler.h"
+#include "engine/schema/documents.h"
+#include "haptics/build/build_program.h"
+#include "haptics/constraints/registry.h"
+#include "tests/extensibility/level_ball.h"
+#include "tests/support/support.h"
+
+namespace newcomer_test {
+
+using namespace catena;
+using namespace catena::haptics;
+
+// ---- the format: eight numbers as text, the corners of a cube of edge 1 ----
+
+Result<std::vector<field::GridInfo>> describe_corners(const std::string&, int /*step*/) {
+  field::GridInfo info;
+  info.name = "corners";
+  return std::vector<field::GridInfo>{info};
+}
+Result<field::AnyField> load_corners(const field::LoadRequest& request) {
+  field::LoadRequest like;
+  CATENA_TRY(const std::string text, read_text_file(request.path, "eight numbers"));
+  // the numbers as a .raw file beside it: what a reader of a real format would make in memory
+  std::vector<float> values;
+  std::istringstream in(text);
+  for (float v = 0; in >> v;) values.push_back(v);
+  if (values.size() != 8) return Error{request.path + ": has " + std::to_string(values.size()) + " numbers; eight were expected"};
+  like.path = request.path + ".raw";
+  test::write_file(like.path, std::string(reinterpret_cast<const char*>(values.data()), 32));
+  like.raw.emplace();
+  like.raw->shape = {2, 2, 2};
+  return field::load(like);
+}
+
+field::FileFormat corners_format() {
+  field::FileFormat format;
+  format.extensions = {".corners"};
+  format.load = load_corners;
+  format.describe = describe_corners;
+  return format;
+}
+
+struct Registered {
+  Registered() {
+    register_constraint(level_ball_constraint());
+    field::register_format(corners_format());
+  }
+};
+
+struct ExtensionPoints : testing::Test {
+  ExtensionPoints() { static const Registered once; }
+  test::TemporaryFolder folder;
+  std::string scene_text() const {
+    test::write_file(folder / "a.corners", "0 1 1 2 1 2 2 3\n");
+    return R"({"fields": {"a": {"file": "a.corners"}, "ball": {"analytic": "sphere"}},
+ "chain": [{"name": "skin", "type": "shell", "field": "ball", "level": 1, "glow": 2}],
+ "widgets": [{"name": "u", "type": "ruler", "from": [1.1, 0, 0], "to": [0, 1.1, 0], "along": ["skin"]}]})";
+  }
+};
+
+TEST_F(ExtensionPoints, AreReadFeltAndLoaded) {
+  auto scene = scene::parse_scene(scene_text(), folder / "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto program = build_program(*scene);
+  ASSERT_TRUE(program) << program.error().message;
+  ASSERT_FALSE((*program)->links.empty());
+  EXPECT_EQ((*program)->links[0].name, "skin");
+  const auto loaded = scene::resolve_field(*scene, scene::find_field(*scene, "a"), {});
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  field::Cursor cursor;
+  EXPECT_EQ(loaded->scalar->sample(Vec3(0.5), cursor).value, 1.5);
+
+  const auto wrong = scene::parse_scene(R"({"fields": {"a": {"file": "a.corner"}}})", folder / "s.json");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find("a data file (.vdb"), std::string::npos) << wrong.error().message;
+  auto unknown = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}},
+ "chain": [{"name": "skin", "type": "shell", "field": "ball", "level": 1, "glo": 2}]})",
+                                    "s.json");
+  ASSERT_TRUE(unknown);
+  const auto refused = build_program(*unknown);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("did you mean \"glow\"?"), std::string::npos) << refused.error().message;
+}
+
+TEST_F(ExtensionPoints, AreInTheSchemaAndTheDocument) {
+  const std::string schema = app::scene_json_schema();
+  EXPECT_NE(schema.find(R"("type": {"const": "shell"})"), std::string::npos);
+  EXPECT_NE(schema.find(R"("glow": {"description": "Of no effect. In candela. Default: 1.", "type": "number", "exclusiveMinimum": 0})"),
+            std::string::npos);
+  std::map<std::string, std::string> tables;
+  for (const schema::Section& component : app::scene_file_components())
+    for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
+  EXPECT_NE(tables["chain/shell"].find("| `glow` | number | candela | > 0 | `1` | Of no effect. |"), std::string::npos)
+      << tables["chain/shell"];
+}
+
+TEST_F(ExtensionPoints, AreInThePanelAndWritten) {
+  const std::vector<std::string> types = app::link_types();
+  EXPECT_NE(std::find(types.begin(), types.end(), "shell"), types.end());
+  auto scene = scene::parse_scene(scene_text(), folder / "s.json");
+  ASSERT_TRUE(scene);
+  const auto link = app::make_link_json(*scene, "shell", {0.7, 0, 0}, 4);
+  ASSERT_TRUE(link) << link.error().message;
+  auto document = scene::Document::create(scene_text(), folder / "s.json");
+  ASSERT_TRUE(document) << document.error().message;
+  EXPECT_TRUE(document->set("/chain/-", *link, "add shell"));
+  auto written = document->read();
+  ASSERT_TRUE(written) << written.error().message;
+  const auto program = build_program(*written);
+  EXPECT_TRUE(program) << program.error().message << *link;
+}
+
+TEST_F(ExtensionPoints, AreMeasuredAlong) {
+  auto scene = scene::parse_scene(scene_text(), folder / "s.json");
+  ASSERT_TRUE(scene);
+  const scene::Entity ruler = scene::find_widget(*scene, "u");
+  ASSERT_TRUE(scene::resolve_widget(*scene, ruler));
+  const auto measure = scene::resolve_ruler(*scene, ruler);
+  ASSERT_TRUE(measure) << measure.error().message;
+  EXPECT_NEAR(measure->length, 0.5 * 3.14159265, 0.01) << measure->note;
+}
+
+}  // namespace newcomer_test

@@ -1,0 +1,143 @@
+#include "haptics/build/build_program.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/scene/widgets.h"
+#include "haptics/chain/tick.h"
+#include "tests/support/support.h"
+
+namespace catena::haptics {
+namespace widgets_test {
+
+scene::Scene scene_of(const std::string& text) {
+  auto scene = scene::parse_scene(text, "scene.json");
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? std::move(*scene) : scene::Scene{};
+}
+
+std::shared_ptr<const HapticProgram> program_of(scene::Scene& scene) {
+  auto program = build_program(scene);
+  EXPECT_TRUE(program) << program.error().message;
+  return program ? *program : std::make_shared<const HapticProgram>();
+}
+
+void expect_error(const std::string& text, int line, std::initializer_list<const char*> parts) {
+  scene::Scene scene = scene_of(text);
+  const auto program = build_program(scene);
+  ASSERT_FALSE(program) << text;
+  const std::string& message = program.error().message;
+  EXPECT_TRUE(message.starts_with("scene.json:" + std::to_string(line) + ": ")) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
+}
+
+TEST(ExtractWidgets, TheirLinksStandBehindTheScenes) {
+  scene::Scene scene = scene_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}],
+    "widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, 2]},
+                {"name": "s", "type": "seed", "position": [4, 5, 6], "button": 3}], "coupling": {"stiffness": 123}})");
+  const auto program = program_of(scene);
+  ASSERT_EQ(program->links.size(), 5u);
+  EXPECT_EQ(program->first_widget_link, 1);
+  EXPECT_EQ(program->scene_link_count(), 1u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(program->links[1 + k].name, widget::kSharedLinkNames[k]);
+  field::Cursor cursor;
+  std::int32_t evaluations = 0;
+  EXPECT_EQ(program->links[4].stiffness_n_per_m.at(Vec3(0.0), cursor, evaluations), 123);
+  ASSERT_EQ(program->widgets.size(), 2u);
+  EXPECT_EQ(program->widget_names, (std::vector<std::string>{"cut", "s"}));
+  EXPECT_EQ(program->widgets[0].pose.points[0], Vec3(1, 2, 3));
+  EXPECT_DOUBLE_EQ(program->widgets[0].radius, 0.48);
+  EXPECT_DOUBLE_EQ(program->widgets[1].grab_distance, 0.12);
+  EXPECT_EQ(program->widgets[1].button, 3);
+}
+
+TEST(ExtractWidgets, WithoutWidgetsThereAreNoLinksOfTheirs) {
+  scene::Scene scene = scene_of(R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}]})");
+  const auto program = program_of(scene);
+  EXPECT_EQ(program->links.size(), 1u);
+  EXPECT_EQ(program->first_widget_link, -1);
+  EXPECT_EQ(program->scene_link_count(), 1u);
+}
+
+TEST(ExtractWidgets, EightLinksOfTheSceneAndFourOfTheWidgets) {
+  std::string links;
+  for (int i = 0; i < 8; ++i)
+    links += std::string(i > 0 ? ",\n" : "") + R"({"name": "l)" + std::to_string(i) + R"(", "type": "point", "position": [0, 0, 0]})";
+  scene::Scene scene = scene_of("{\"chain\": [" + links + R"(], "widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}]})");
+  EXPECT_EQ(program_of(scene)->links.size(), 12u);
+}
+
+TEST(ExtractWidgets, PosesAreThoseOfTheSceneNow) {
+  scene::Scene scene = scene_of(R"({"widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}]})");
+  const scene::Entity e = scene::find_widget(scene, "s");
+  EXPECT_EQ(program_of(scene)->widgets[0].revision, 0u);
+  scene.entities.get<scene::Widget>(e).report.pose.points[0] = {1, 1, 1};  // as the hand left it
+  EXPECT_EQ(program_of(scene)->widgets[0].pose.points[0], Vec3(1, 1, 1));
+  widget::Pose pose;
+  pose.points[0] = {2, 2, 2};
+  ASSERT_TRUE(scene::set_widget_pose(scene, e, pose));
+  EXPECT_EQ(program_of(scene)->widgets[0].pose.points[0], Vec3(2, 2, 2));
+  EXPECT_EQ(program_of(scene)->widgets[0].revision, 1u);
+}
+
+// A streamline through a seed, a surface at an isolevel: as if the numbers stood there.
+TEST(ExtractWidgets, LinksFollowASeedAndAnIsolevel) {
+  const std::string fields = R"("fields": {"v": {"analytic": "circle"}, "d": {"analytic": "sphere"}}, )";
+  const auto chain = [](const std::string& seed, const std::string& level) {
+    return R"("chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": )" + seed +
+           R"(}, {"name": "surface", "type": "isosurface", "field": "d", "level": )" + level + "}]";
+  };
+  scene::Scene with = scene_of("{" + fields + chain(R"({"widget": "s"})", R"({"widget": "l"})") +
+                               R"(, "widgets": [{"name": "s", "type": "seed", "position": [0.5, 0, 0.25]},
+                                    {"name": "l", "type": "isolevel", "field": "d", "position": [0, 0.75, 0]}]})");
+  scene::Scene without = scene_of("{" + fields + chain("[0.5, 0, 0.25]", "0.75") + "}");
+  const auto a = program_of(with), b = program_of(without);
+  ASSERT_EQ(a->links.size(), 6u);
+  const Vec3 probe(0.4, 0.3, 0.2);
+  HapticState outs[2];
+  for (const auto& [program, result] : {std::pair{a, &outs[0]}, {b, &outs[1]}}) {
+    auto state = std::make_unique<ChainState>();
+    auto scratch = std::make_unique<ChainScratch>();
+    tick(*program, {0, probe}, *state, *scratch, *result);
+  }
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(outs[0].links[i].proxy, outs[1].links[i].proxy);
+  // and with them the recipe changes, so that the link begins anew
+  with.entities.get<scene::Widget>(scene::find_widget(with, "s")).report.pose.points[0] = {0.6, 0, 0.25};
+  with.entities.get<scene::Widget>(scene::find_widget(with, "l")).report.value = 0.5;
+  const auto moved = program_of(with);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NE(moved->links[i].spec_hash, a->links[i].spec_hash);
+  HapticState out;
+  auto state = std::make_unique<ChainState>();
+  auto scratch = std::make_unique<ChainScratch>();
+  tick(*moved, {0, {0.6, 0.1, 0.2}}, *state, *scratch, out);
+  EXPECT_NEAR(norm(out.links[1].proxy), 0.5, 1e-9);
+}
+
+TEST(ExtractWidgets, ARulerGoesAlongLinksByName) {
+  const std::string text =
+      R"({"chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}, {"name": "b", "type": "point", "position": [1, 0, 0]}],
+"widgets": [{"name": "r", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0],
+"along": [)";
+  scene::Scene scene = scene_of(text + "\"b\", \"a\"]}]}");
+  EXPECT_EQ(program_of(scene)->widgets[0].along_links, (std::vector<int>{1, 0}));
+}
+
+TEST(ExtractWidgets, WhatCannotBeIsSaidInOneLine) {
+  for (const char* method : {"pipe", "balance", "closest", "linear"})
+    expect_error(std::string("{\"coupling\": {\"method\": \"") + method +
+                     "\"},\n\"widgets\": [{\"name\": \"s\", \"type\": \"seed\", \"position\": [0, 0, 0]}]}",
+                 2, {"widgets need the proxy chain", "\"method\": \"chain\""});
+  const std::string widgets = R"("widgets": [{"name": "s", "type": "seed", "position": [0, 0, 0]}])";
+  const std::string fields = R"({"fields": {"v": {"analytic": "circle"}, "d": {"analytic": "sphere"}},)";
+  expect_error(
+      fields + widgets + ",\n\"chain\": [{\"name\": \"c\", \"type\": \"streamline\", \"field\": \"v\", \"seed\": {\"widget\": \"x\"}}]}", 2,
+      {"unknown widget \"x\""});
+  expect_error(
+      fields + widgets + ",\n\"chain\": [{\"name\": \"c\", \"type\": \"isosurface\", \"field\": \"d\", \"level\": {\"widget\": \"s\"}}]}",
+      2, {"is of type \"seed\"; an isolevel was expected"});
+  expect_error(fields + widgets + ",\n\"chain\": [{\"name\": \"widget_x\", \"type\": \"point\", \"position\": [0, 0, 0]}]}", 1,
+               {"\"widget_x\"", "widgets' own"});
+}
+
+}  // namespace widgets_test
+}  // namespace catena::haptics

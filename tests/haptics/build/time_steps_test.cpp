@@ -1,0 +1,120 @@
+/// Steps in time, as the hand meets them: a series of files, of which the next one takes the place of the one that is felt.
+#include "engine/scene/time_steps.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/io/field_cache.h"
+#include "engine/io/volume/load_field.h"
+#include "haptics/build/build_program.h"
+#include "haptics/chain/tick.h"
+#include "tests/support/support.h"
+
+namespace catena::haptics {
+namespace steps_test {
+
+/// Three balls that grow: 1, 1.15, 1.3 in radius, 2 before 10 by name.
+class GrowingTimeSeries : public testing::Test {
+ protected:
+  GrowingTimeSeries() {
+    const char* names[] = {"ball_2.vdb", "ball_10.vdb", "ball_11.vdb"};
+    for (int s = 0; s < 3; ++s) {
+      constexpr int kNodes = 49;
+      std::vector<float> values;
+      for (int k = 0; k < kNodes; ++k)
+        for (int j = 0; j < kNodes; ++j)
+          for (int i = 0; i < kNodes; ++i) values.push_back(static_cast<float>(norm(Vec3(i, j, k) / 12.0 - 2.0) - 0.15 * s));
+      const auto mapping = field::Mapping::from_linear(Mat3(1.0 / 12), Vec3(-2.0));
+      field::AnyField field;
+      field.scalar = field::make_scalar_grid("r", mapping, {kNodes, kNodes, kNodes}, values);
+      EXPECT_TRUE(field::write_vdb(folder_ / names[s], {{field, "r"}}));
+    }
+  }
+  ~GrowingTimeSeries() override { field::clear_cache(); }
+  scene::Scene read(const std::string& more = {}) {
+    auto scene = scene::parse_scene(
+        R"({"fields": {"r": {"file": "ball_*.vdb"}},
+            "chain": [{"name": "skin", "type": "isosurface", "field": "r", "level": 1, "free": "above"}],
+            "coupling": {"stiffness": 300, "max_force": 8, "ramp_s": 0.02}, "workspace": {"metres_per_unit": 0.05})" +
+            more + "}",
+        folder_ / "s.json");
+    EXPECT_TRUE(scene) << scene.error().message;
+    return std::move(*scene);
+  }
+  static double radius_at(scene::Scene& scene) {
+    const auto field = scene::resolve_field(scene, scene::find_field(scene, "r"), {});
+    EXPECT_TRUE(field) << field.error().message;
+    field::Cursor cursor;
+    return 1 + 1 - field->scalar->sample({1, 0, 0}, cursor).value;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(GrowingTimeSeries, AFieldFollowsTheScenesStep) {
+  scene::Scene scene = read();
+  EXPECT_EQ(scene::step_count(scene), 3);
+  EXPECT_NEAR(radius_at(scene), 1, 1e-5);
+  EXPECT_TRUE(scene::set_step(scene, 1));
+  EXPECT_NEAR(radius_at(scene), 1.15, 1e-5);
+  EXPECT_TRUE(scene::set_step(scene, 7));  // beyond the last
+  EXPECT_NEAR(radius_at(scene), 1.3, 1e-5);
+  scene::Scene third = read(R"(, "time": {"step": 2})");
+  EXPECT_NEAR(radius_at(third), 1.3, 1e-5);
+}
+
+TEST_F(GrowingTimeSeries, WhatWasLoadedAheadIsNotLoadedAgain) {
+  scene::Scene scene = read();
+  radius_at(scene);
+  field::prefetch(scene::prefetch_requests(scene, 1));
+  for (int i = 0; i < 1000 && !field::is_cached(scene::prefetch_requests(scene, 1).front()); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const std::uint64_t before = field::load_counters().files;
+  scene::set_step(scene, 1);
+  EXPECT_NEAR(radius_at(scene), 1.15, 1e-5);
+  scene::set_step(scene, 0);
+  EXPECT_NEAR(radius_at(scene), 1, 1e-5);
+  EXPECT_EQ(field::load_counters().files, before);
+}
+
+TEST_F(GrowingTimeSeries, TheHandCrossesAStepWithoutAJump) {
+  scene::Scene scene = read();
+  auto first = build_program(scene);
+  ASSERT_TRUE(first) << first.error().message;
+  HapticProgram program = **first;
+  ChainState state;
+  ChainScratch scratch;
+  HapticState out;
+  double t = 0;
+  Vec3 force(0.0);
+  double largest_step = 0, before_n = 0;
+  const auto ticks = [&](int n, const auto& place) {
+    for (int k = 0; k < n; ++k) {
+      tick(program, {t += 1e-3, place(k), 0}, state, scratch, out);
+      if (t > 0.1) largest_step = std::max(largest_step, norm(out.force_n - force));
+      force = out.force_n;
+    }
+  };
+  ticks(300, [](int k) { return Vec3(1.2 - 0.3 * std::min(k, 200) / 200, 0, 0); });
+  before_n = norm(force);
+  EXPECT_NEAR(before_n, 300 * 0.05 * 0.1, 0.02);
+  for (int step = 1; step <= 2; ++step) {
+    scene::set_step(scene, step);
+    auto next = build_program(scene);
+    ASSERT_TRUE(next) << next.error().message;
+    rebind_program(program, **next, state, scratch);
+    program = **next;
+    ticks(200, [](int) { return Vec3(0.9, 0, 0); });
+    EXPECT_NEAR(norm(force), 300 * 0.05 * (0.1 + 0.15 * step), 0.02) << "the new surface is felt";
+  }
+  // a step adds 2.25 N; the ramp lets max_force in within 20 ticks, and the hand's own motion adds K |dx|
+  EXPECT_LE(largest_step, 8.0 / 20 + 300 * 0.05 * 0.3 / 200 + 1e-9);
+  EXPECT_GT(largest_step, 0.01);
+}
+
+TEST_F(GrowingTimeSeries, APatternWithoutFilesIsRefused) {
+  const auto scene = scene::parse_scene("{\"fields\": {\n\"r\": {\"file\": \"none_*.vdb\"}}}", folder_ / "s.json");
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message.find("s.json:2: field \"r\": no file is called like"), std::string::npos) << scene.error().message;
+}
+
+}  // namespace steps_test
+}  // namespace catena::haptics

@@ -1,0 +1,283 @@
+#include "haptics/chain/force_limiter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace guard_test {
+
+using namespace catena;
+using namespace catena::haptics;
+
+constexpr double kTick = 1e-3, kNan = std::numeric_limits<double>::quiet_NaN();
+const Vec3 kAsked(3, -4, 0);
+
+struct Guarded {
+  DeviceLimits limits;
+  ForceLimiterState state;
+  Vec3 asked = kAsked;
+  bool on = true;
+  double dt = kTick;
+  const ForceLimiterState& step(TickCondition condition = TickCondition::normal) {
+    limit_force(limits, {asked, asked * 0.01, condition, on, dt}, state);
+    return state;
+  }
+  void run(int ticks, TickCondition condition = TickCondition::normal) {
+    for (int i = 0; i < ticks; ++i) step(condition);
+  }
+};
+
+TEST(ForceLimiter, WithoutLimitsItIsTheIdentityToTheBit) {
+  Guarded g;
+  for (const Vec3& v : {Vec3(-0.0, 5e-324, 1e308), Vec3(3, -4, 0.1), Vec3(0.0)}) {
+    g.asked = v;
+    g.step();
+    EXPECT_EQ(std::memcmp(&g.state.force_n, &v, sizeof v), 0);
+    EXPECT_EQ(g.state.force_state, ForceState::on);
+  }
+}
+
+TEST(ForceLimiter, AFaultIsZeroInItsOwnTickWhateverTheLimits) {
+  for (const TickCondition fault : {TickCondition::no_device, TickCondition::watchdog}) {
+    Guarded g;
+    g.limits.slew_n_per_s = 1;
+    g.run(5000);
+    ASSERT_GT(norm(g.state.force_n), 4.9);
+    g.step(fault);
+    EXPECT_EQ(g.state.force_n, Vec3(0.0));
+    EXPECT_EQ(g.state.torque_nm, Vec3(0.0));
+    EXPECT_EQ(g.state.force_state, ForceState::stopped);
+  }
+}
+
+TEST(ForceLimiter, AForceThatIsNotFiniteIsAFault) {
+  for (const double bad : {kNan, std::numeric_limits<double>::infinity()}) {
+    Guarded g;
+    g.limits.ramp_in_s = 0.01;
+    g.run(50);
+    g.asked = Vec3(0, bad, 0);
+    g.step();
+    EXPECT_EQ(g.state.force_n, Vec3(0.0));
+    EXPECT_EQ(g.state.force_state, ForceState::stopped);
+    g.asked = kAsked;
+    g.step();
+    EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
+    EXPECT_NEAR(norm(g.state.force_n), 0.5, 1e-12) << "a tenth, from nothing";
+  }
+}
+
+TEST(ForceLimiter, LateTicksHoldThenRampOutLinearlyIn20ms) {
+  Guarded g;
+  g.run(3);
+  g.asked = Vec3(100, 100, 100);
+  for (int i = 0; i < 5; ++i) {
+    g.step(TickCondition::late);
+    EXPECT_EQ(g.state.force_n, kAsked) << i;
+    EXPECT_EQ(g.state.torque_nm, kAsked * 0.01);
+    EXPECT_EQ(g.state.force_state, ForceState::held);
+  }
+  g.dt = 2.5e-3;  // late ones are longer
+  for (int i = 1; i < 8; ++i) {
+    g.step(TickCondition::late);
+    EXPECT_NEAR(norm(g.state.force_n), 5 * (1 - i / 8.0), 1e-12) << i;
+    EXPECT_EQ(g.state.force_state, ForceState::ramping_out);
+  }
+  for (int i = 0; i < 3; ++i) {
+    g.step(TickCondition::late);
+    EXPECT_EQ(g.state.force_n, Vec3(0.0));
+    EXPECT_EQ(g.state.force_state, ForceState::stopped);
+  }
+}
+
+TEST(ForceLimiter, FiveLateTicksAreForgottenByOneInTime) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.1;
+  g.run(200);
+  for (int i = 0; i < 10; ++i) {
+    g.run(5, TickCondition::late);
+    EXPECT_EQ(g.state.force_state, ForceState::held);
+    g.step();
+    EXPECT_EQ(g.state.force_state, ForceState::on);
+    EXPECT_EQ(g.state.force_n, kAsked);
+  }
+}
+
+TEST(ForceLimiter, AfterARampOutTheForceRampsInFromWhereItWas) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.1;
+  g.run(200);
+  g.run(5 + 10, TickCondition::late);  // half of 20 ms
+  EXPECT_NEAR(norm(g.state.force_n), 2.5, 1e-9);
+  g.step();
+  EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
+  EXPECT_NEAR(norm(g.state.force_n), 5 * 0.51, 1e-9);
+}
+
+TEST(ForceLimiter, ARampOutEndsThoughTheClockStandsStill) {
+  Guarded g;
+  g.run(2);
+  g.dt = 0;
+  g.run(5 + 1000, TickCondition::late);
+  EXPECT_EQ(g.state.force_state, ForceState::stopped);
+}
+
+TEST(ForceLimiter, RampsInFromTheFirstTick) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.5;
+  g.dt = 0;
+  EXPECT_EQ(g.step().force_n, Vec3(0.0));
+  EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
+  g.dt = kTick;
+  for (int k = 1; k < 500; ++k) {
+    g.step();
+    ASSERT_NEAR(norm(g.state.force_n), 5 * k * kTick / 0.5, 1e-9) << k;
+    ASSERT_NEAR(norm(g.state.torque_nm), 0.05 * k * kTick / 0.5, 1e-9) << k;
+  }
+  g.run(2);
+  EXPECT_EQ(g.state.force_state, ForceState::on);
+  EXPECT_EQ(g.state.force_n, kAsked);
+}
+
+TEST(ForceLimiter, SwitchedOffItRampsOutAndBackIn) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.1;
+  g.run(200);
+  g.on = false;
+  for (int k = 1; k < 20; ++k) {
+    g.step();
+    EXPECT_NEAR(norm(g.state.force_n), 5 * (1 - k / 20.0), 1e-9);
+    EXPECT_EQ(g.state.force_state, ForceState::ramping_out);
+  }
+  g.run(2);
+  EXPECT_EQ(g.state.force_n, Vec3(0.0));
+  EXPECT_EQ(g.state.force_state, ForceState::off);
+  g.run(3, TickCondition::late);
+  EXPECT_EQ(g.state.force_state, ForceState::off);
+  g.on = true;
+  g.step();
+  EXPECT_NEAR(norm(g.state.force_n), 0.05, 1e-9);
+}
+
+TEST(ForceLimiter, SwitchingOffNeverRaisesTheForce) {
+  // while the slew limit holds a jump back
+  Guarded g;
+  g.limits.slew_n_per_s = 100;
+  g.run(3);
+  const double before = norm(g.state.force_n);
+  ASSERT_NEAR(before, 0.3, 1e-9);
+  g.on = false;
+  g.step();
+  EXPECT_LE(norm(g.state.force_n), before);
+  // while late ticks have taken half of it
+  Guarded late;
+  late.run(10);
+  late.run(5 + 10, TickCondition::late);
+  ASSERT_NEAR(norm(late.state.force_n), 2.5, 1e-9);
+  late.on = false;
+  for (double last = 2.5; norm(late.state.force_n) > 0; last = norm(late.state.force_n)) {
+    late.step(TickCondition::late);
+    ASSERT_LE(norm(late.state.force_n), last + 1e-12);
+  }
+  EXPECT_EQ(late.state.force_state, ForceState::off);
+  // while the hand pushes deeper, or the chain's force turns over
+  Guarded deeper;
+  deeper.limits.slew_n_per_s = 1000;
+  deeper.run(10);
+  deeper.on = false;
+  for (double k = 1; k < 25; ++k) {
+    const Vec3 last = deeper.state.force_n;
+    deeper.asked = kAsked * (static_cast<int>(k) % 2 == 0 ? 1 + k : -1 - k);
+    deeper.step();
+    ASSERT_LE(norm(deeper.state.force_n), norm(last) + 1e-12) << k;
+    ASSERT_LE(norm(deeper.state.force_n), 5 * std::fmax(0.0, 1 - k / 20) + 1e-9) << "never longer than the way to zero";
+  }
+  EXPECT_EQ(deeper.state.force_state, ForceState::off);
+}
+
+TEST(ForceLimiter, OffAndOnAgainGoesOnFromTheForceThatIsLeft) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.5;
+  g.asked = kAsked * 0.1;
+  g.run(600);
+  g.on = false;
+  g.run(4);
+  g.asked = kAsked;  // deeper meanwhile: not felt
+  g.step();
+  const double left = norm(g.state.force_n);
+  ASSERT_LE(left, 0.5);
+  g.on = true;
+  g.step();
+  EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
+  EXPECT_NEAR(norm(g.state.force_n), left + 5 * kTick / 0.5, 1e-9);
+}
+
+TEST(ForceLimiter, OffFromTheStartIsZeroFromTheStart) {
+  Guarded g;
+  g.on = false;
+  EXPECT_EQ(g.step().force_n, Vec3(0.0));
+  EXPECT_EQ(g.state.force_state, ForceState::off);
+}
+
+TEST(ForceLimiter, LimitsKeepTheDirection) {
+  Guarded g;
+  g.limits.max_force_n = 2;
+  g.limits.max_torque_nm = 0.01;
+  g.step();
+  EXPECT_NEAR(g.state.force_n.x, 1.2, 1e-15);
+  EXPECT_NEAR(g.state.force_n.y, -1.6, 1e-15);
+  EXPECT_NEAR(norm(g.state.torque_nm), 0.01, 1e-17);
+  g.limits.max_force_n = 0;
+  EXPECT_EQ(norm(g.step().force_n), 0);
+}
+
+TEST(ForceLimiter, TheSlewLimitIsASlopeAndReachesTheForce) {
+  Guarded g;
+  g.limits.slew_n_per_s = 100;
+  for (int k = 1; k <= 49; ++k) ASSERT_NEAR(norm(g.step().force_n), 0.1 * k, 1e-12);
+  g.run(2);
+  EXPECT_EQ(g.state.force_n, kAsked);
+  // from one force to its opposite: along the line between them
+  g.asked = -kAsked;
+  const Vec3 before = g.state.force_n;
+  g.step();
+  EXPECT_NEAR(norm(g.state.force_n - before), 0.1, 1e-12);
+  EXPECT_NEAR(norm(cross(g.state.force_n, kAsked)), 0, 1e-12);
+}
+
+TEST(ForceLimiter, NeverGrowsAForceInAnyOrderOfConditions) {
+  // whatever happens: finite, at most what was asked, at most the limit, and zero at once on a fault
+  Guarded g;
+  g.limits.max_force_n = 4;
+  g.limits.slew_n_per_s = 2000;
+  g.limits.ramp_in_s = 0.01;
+  std::uint32_t seed = 1;
+  const auto next = [&seed] { return (seed = seed * 1664525u + 1013904223u) >> 16; };
+  int faults = 0, held = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const std::uint32_t r = next() % 100;
+    const TickCondition c = r < 2    ? TickCondition::no_device
+                            : r < 4  ? TickCondition::watchdog
+                            : r < 40 ? TickCondition::late
+                                     : TickCondition::normal;
+    if (next() % 50 == 0) g.on = !g.on;
+    g.asked = kAsked * (static_cast<double>(next() % 1000) * 1e-3);
+    const Vec3 last = g.state.force_n;
+    g.step(c);
+    ASSERT_LE(norm(g.state.force_n), 4 + 1e-12);
+    if (r < 4) {
+      ASSERT_EQ(norm(g.state.force_n), 0);
+      ++faults;
+    } else if (g.state.force_state == ForceState::held) {
+      ASSERT_EQ(g.state.force_n, last);
+      ++held;
+    } else if (g.state.force_state == ForceState::on || g.state.force_state == ForceState::ramping_in) {
+      ASSERT_LE(norm(g.state.force_n - last), 2 + 1e-12);
+    }
+  }
+  EXPECT_GT(faults, 100);
+  EXPECT_GT(held, 1000);
+}
+
+}  // namespace guard_test

@@ -1,0 +1,121 @@
+#include "haptics/constraints/shapes/polyline_bvh.h"
+
+#include "tests/haptics/constraints/constraint_fixture.h"
+
+namespace catena::haptics::tests {
+namespace polyline_search_test {
+
+std::vector<LineSegment> pieces_of(const std::vector<Vec3>& points) {
+  std::vector<LineSegment> pieces;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) pieces.emplace_back(points[i], points[i + 1]);
+  return pieces;
+}
+
+std::vector<Vec3> walk(Random& random, int count, double step) {
+  std::vector<Vec3> points{random.box(1)};
+  for (int i = 1; i < count; ++i) points.push_back(points.back() * 0.999 + random.box(step));
+  return points;
+}
+
+double distance(const LineSegment& piece, const Vec3& x) { return norm(x - piece.at(piece.along(x))); }
+
+double brute(const std::vector<LineSegment>& pieces, const Vec3& x) {
+  double least = 1e308;
+  for (const LineSegment& piece : pieces) least = std::min(least, distance(piece, x));
+  return least;
+}
+
+TEST(PolylineSearch, FindsTheClosestPlace) {
+  Random random(4);
+  for (const int count : {2, 3, 9, 10, 17, 100, 1000, 5000}) {
+    const auto pieces = pieces_of(walk(random, count, 0.1));
+    const PolylineBvh tree(pieces);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 x = random.box(i % 2 ? 2 : 60);
+      SearchState state{};
+      tree.search(pieces, x, 1 << 20, state);
+      ASSERT_FALSE(state.in_progress);
+      ASSERT_LE(distance(pieces[state.best_item], x), brute(pieces, x) * (1 + 1e-14));
+    }
+  }
+}
+
+TEST(PolylineSearch, AFarProbeFindsThePointMostInItsDirection) {
+  Random random(5);
+  const auto points = walk(random, 3000, 0.1);
+  const auto pieces = pieces_of(points);
+  const PolylineBvh tree(pieces);
+  for (const double far : {1e9, 1e20, 1e160, 1e300}) {
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 way = random.unit();
+      SearchState state{};
+      tree.search(pieces, way * far, 1 << 20, state);
+      double most = -1e300;
+      for (const Vec3& p : points) most = std::max(most, dot(p, way));
+      const LineSegment& best = pieces[state.best_item];
+      EXPECT_LE(most - dot(best.at(best.along(way * far)), way), 10 / far + 1e-15) << far;
+    }
+  }
+}
+
+TEST(PolylineSearch, ALongCurveTakesFewVisits) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 100000; ++i) points.emplace_back(std::cos(i * 0.01), std::sin(i * 0.01), i * 2e-5);
+  const auto pieces = pieces_of(points);
+  const PolylineBvh tree(pieces);
+  Random random(6);
+  Quantiles visits;
+  for (int i = 0; i < 2000; ++i) {
+    SearchState state{};
+    const int k = static_cast<int>(random.uniform(0, 100000));
+    tree.search(pieces, points[static_cast<std::size_t>(k)] + random.box(0.05), 1 << 20, state);
+    visits.add(state.visits);
+  }
+  EXPECT_LE(visits.at_quantile(0.5), 256);
+  EXPECT_LE(visits.at_quantile(0.99), 2048);
+  RecordProperty("p50", visits.at_quantile(0.5));
+  RecordProperty("p99", visits.at_quantile(0.99));
+}
+
+TEST(PolylineSearch, GoesOnFromTickToTickWithinItsVisits) {
+  // a circle seen from its centre: all places are as near, but one dent
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 50000; ++i) {
+    const double r = i == 31234 ? 0.9 : 1 + 1e-9 * (i % 7);
+    points.emplace_back(r * std::cos(i * 1.2e-4), r * std::sin(i * 1.2e-4), 0);
+  }
+  const auto pieces = pieces_of(points);
+  const PolylineBvh tree(pieces);
+  SearchState state{};
+  int ticks = 0;
+  double last = 2;
+  do {
+    tree.search(pieces, Vec3(0.0), 256, state);
+    ASSERT_LE(state.visits, 256);
+    ASSERT_LE(distance(pieces[state.best_item], Vec3(0.0)), last);
+    last = distance(pieces[state.best_item], Vec3(0.0));
+    ++ticks;
+  } while (state.in_progress && ticks < 1000);
+  EXPECT_FALSE(state.in_progress);
+  EXPECT_GT(ticks, 1);
+  EXPECT_NEAR(last, 0.9, 1e-12);
+}
+
+TEST(PolylineSearch, TinyAndHugeCurves) {
+  Random random(7);
+  for (const double scale : {1e-290, 1e-200, 1e200, 1e290}) {
+    auto points = walk(random, 300, 0.1);
+    for (Vec3& p : points) p *= scale;
+    const auto pieces = pieces_of(points);
+    const PolylineBvh tree(pieces);
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 x = random.box(1.5) * scale;
+      SearchState state{};
+      tree.search(pieces, x, 1 << 20, state);
+      EXPECT_LE(distance(pieces[state.best_item], x), brute(pieces, x) * (1 + 1e-14)) << scale;
+    }
+  }
+}
+
+}  // namespace polyline_search_test
+}  // namespace catena::haptics::tests

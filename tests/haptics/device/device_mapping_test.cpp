@@ -1,0 +1,294 @@
+#include "haptics/device/device_mapping.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "haptics/device/registry.h"
+#include "tests/haptics/device/scripted_device.h"
+
+namespace hand_map_test {
+
+using namespace catena;
+using namespace catena::haptics;
+
+// hand x = device z, hand y = -device x, hand z = -device y
+Mat3 axes() {
+  Mat3 m(0.0);
+  m[2][0] = 1;
+  m[0][1] = -1;
+  m[1][2] = -1;
+  return m;
+}
+
+struct Mapped {
+  test::ScriptedDevice* device;
+  std::unique_ptr<MappedDevice> map;
+  explicit Mapped(const DeviceSettings& settings, bool oriented = true) {
+    auto made = std::make_unique<test::ScriptedDevice>();
+    device = made.get();
+    device->caps.has_orientation = oriented;
+    device->caps.mechanics = {0.2, 0.4, 0.1, 5e-5, 1e-3, 0};
+    device->caps.workspace_center_m = {0.01, 0.02, 0.03};
+    map = std::make_unique<MappedDevice>(std::move(made), settings);
+  }
+  DeviceInput at(const Vec3& p, std::uint32_t buttons = 0, const Quat& q = kIdentityRotation) {
+    device->input.position_m = p;
+    device->input.orientation = q;
+    device->input.buttons = buttons;
+    return map->read();
+  }
+  Vec3 force(const Vec3& f, const Vec3& torque = Vec3(0.0), bool live = true) {
+    map->write({f, torque, live});
+    return device->output.force_n;
+  }
+};
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-15) {
+  EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
+}
+
+TEST(MappedDevice, SettingsThatSayNothingNeedNoMap) {
+  auto made = std::make_unique<test::ScriptedDevice>();
+  EXPECT_TRUE(is_identity_mapping(made->caps, DeviceSettings{}));
+  const Device* plain = made.get();
+  EXPECT_EQ(with_device_mapping(std::move(made), DeviceSettings{}).get(), plain);
+  DeviceSettings s;
+  s.scale = 2;
+  EXPECT_FALSE(is_identity_mapping(DeviceCapabilities{}, s));
+  DeviceCapabilities encoded;
+  encoded.mechanics.encoder_step_m = 1e-5;
+  EXPECT_FALSE(is_identity_mapping(encoded, DeviceSettings{}));
+}
+
+TEST(MappedDevice, WhatIsNotAskedForPassesToTheBit) {
+  DeviceSettings s;
+  s.clutch_button = 1;
+  Mapped run(s);
+  const double tiny = std::numeric_limits<double>::denorm_min();
+  const Vec3 p(-0.0, tiny, 1e300), f(-0.0, -tiny, 7.1), torque(0.1, -0.0, 3);
+  const Quat q(0.3, -0.0, 0.7, 0.1);  // not even a unit quaternion
+  const DeviceInput in = run.at(p, 6, q);
+  EXPECT_EQ(std::memcmp(&in.position_m, &p, sizeof p), 0);
+  EXPECT_EQ(std::memcmp(&in.orientation, &q, sizeof q), 0);
+  EXPECT_EQ(in.buttons, 6u);
+  run.map->write({f, torque});
+  EXPECT_EQ(std::memcmp(&run.device->output.force_n, &f, sizeof f), 0);
+  EXPECT_EQ(std::memcmp(&run.device->output.torque_nm, &torque, sizeof torque), 0);
+}
+
+TEST(MappedDevice, AForceButtonThatIsHeldWhenTheDeviceComesBackIsNoPress) {
+  DeviceSettings settings;
+  settings.force_button = 1;
+  Mapped run(settings);
+  run.at(Vec3(0.0));
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+  run.at(Vec3(0.0));
+  run.device->input.status = DeviceStatus::lost;
+  EXPECT_FALSE(run.at(Vec3(0.0)).forces_on);
+  run.device->input.status = DeviceStatus::ready;
+  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on) << "pressed while nobody looked";
+  run.at(Vec3(0.0));
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+}
+
+TEST(MappedDevice, AxesTurnThePoseThereAndTheForceBack) {
+  DeviceSettings s;
+  s.workspace_from_device = axes();
+  Mapped run(s);
+  const Quat tool = rotation_from_vector({0.3, -0.2, 0.5});
+  const DeviceInput in = run.at({1, 2, 3}, 0, tool);
+  expect_near(in.position_m, {3, -1, -2});
+  for (const Vec3& v : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) expect_near(rotate(in.orientation, v), axes() * rotate(tool, v));
+  run.map->write({{1, 2, 3}, {4, 5, 6}});
+  expect_near(run.device->output.force_n, {-2, -3, 1});
+  expect_near(run.device->output.torque_nm, {-5, -6, 4});
+  expect_near(run.map->capabilities().workspace_center_m, {0.03, -0.01, -0.02});
+  // virtual work: F . dx is the same on both sides
+  EXPECT_NEAR(dot(Vec3(1, 2, 3), in.position_m), dot(run.device->output.force_n, Vec3(1, 2, 3)), 1e-15);
+}
+
+TEST(MappedDevice, ADeviceWithoutOrientationKeepsNone) {
+  DeviceSettings s;
+  s.workspace_from_device = axes();
+  s.clutch_button = 1;
+  Mapped run(s, false);
+  EXPECT_EQ(run.at({1, 2, 3}).orientation, kIdentityRotation);
+  run.at({1, 2, 4}, 1);
+  EXPECT_EQ(run.at({1, 2, 5}).orientation, kIdentityRotation);
+}
+
+TEST(MappedDevice, ScaleKeepsTheForceAndTellsTheReachInTheHandsMetres) {
+  DeviceSettings s;
+  s.scale = 4;
+  Mapped run(s);
+  expect_near(run.at({0.01, 0, 0}).position_m, {0.04, 0, 0});
+  expect_near(run.force({1, 0, 0}), {1, 0, 0});
+  EXPECT_EQ(run.map->capabilities().workspace_m, 4 * run.device->caps.workspace_m);
+}
+
+TEST(MappedDevice, TheClutchRestsTheProbeAndKeepsTheOffset) {
+  DeviceSettings s;
+  s.clutch_button = 2;
+  s.scale = 2;
+  Mapped run(s);
+  const Quat a = rotation_from_vector({0, 0, 0.5}), b = rotation_from_vector({0.3, 0, 0.2});
+  run.at({0.1, 0, 0}, 0, a);
+  for (const double x : {0.1, 0.05, -0.2}) {
+    const DeviceInput in = run.at({x, 0, 0.01}, 3, b);
+    expect_near(in.position_m, {0.2, 0, 0});
+    EXPECT_EQ(in.orientation, a);
+    EXPECT_FALSE(in.forces_on);
+    EXPECT_EQ(in.buttons, 1u);  // its button is masked, the others pass
+  }
+  // let go: no jump, then the probe goes on from there
+  DeviceInput in = run.at({-0.2, 0, 0.01}, 0, b);
+  expect_near(in.position_m, {0.2, 0, 0});
+  expect_near(rotation_vector(in.orientation * glm::conjugate(a)), Vec3(0.0));
+  EXPECT_TRUE(in.forces_on);
+  in = run.at({-0.1, 0, 0.01}, 0, b);
+  expect_near(in.position_m, {0.4, 0, 0}, 1e-15);
+
+  // the torque goes back through the turn that the clutch left: same work on both sides
+  const Vec3 torque(0.1, 0.2, 0.3), small(1e-6, -2e-6, 3e-6);
+  run.map->write({Vec3(0.0), torque});
+  const Quat before = run.at({-0.1, 0, 0.01}, 0, b).orientation,
+             after = run.at({-0.1, 0, 0.01}, 0, rotation_from_vector(small) * b).orientation;
+  EXPECT_NEAR(dot(torque, rotation_vector(after * glm::conjugate(before))), dot(run.device->output.torque_nm, small), 1e-15);
+}
+
+TEST(MappedDevice, AClutchThatIsHeldAtTheStartRestsWhereItBegan) {
+  DeviceSettings s;
+  s.clutch_button = 1;
+  Mapped run(s);
+  expect_near(run.at({0.3, 0, 0}, 1).position_m, {0.3, 0, 0});
+  expect_near(run.at({0.1, 0, 0}, 1).position_m, {0.3, 0, 0});
+  expect_near(run.at({0.1, 0, 0}, 0).position_m, {0.3, 0, 0});
+}
+
+TEST(MappedDevice, TheForceSwitchIsOffAtTheStartAndAfterALoss) {
+  DeviceSettings s;
+  s.force_button = 1;
+  Mapped run(s);
+  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on);  // held from the start is no press
+  EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);  // an edge, not a level
+  EXPECT_TRUE(run.at(Vec3(0.0), 0).forces_on);
+  EXPECT_EQ(run.at(Vec3(0.0), 2).buttons, 2u);
+  EXPECT_FALSE(run.at(Vec3(0.0), 3).forces_on);
+  EXPECT_EQ(run.at(Vec3(0.0), 3).buttons, 2u);
+  run.at(Vec3(0.0), 0);
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+  run.device->input.status = DeviceStatus::lost;
+  EXPECT_EQ(run.at(Vec3(0.0), 0).status, DeviceStatus::lost);
+  run.device->input.status = DeviceStatus::ready;
+  EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+  run.device->input.forces_on = false;  // the device's own switch counts, too
+  EXPECT_FALSE(run.at(Vec3(0.0), 0).forces_on);
+}
+
+TEST(MappedDevice, GravityRisesWithTheForcesAndIsGoneWithThem) {
+  DeviceSettings s;
+  s.gravity_n = {0, 0.5, 0};
+  s.workspace_from_device = axes();  // gravity stays in device axes
+  s.clutch_button = 1;
+  Mapped run(s);
+  double last = 0;
+  for (int k = 1; k <= 100; ++k) {
+    run.at(Vec3(0.0));
+    const double g = run.force(Vec3(0.0)).y;
+    EXPECT_NEAR(g, 0.005 * k, 1e-12);
+    EXPECT_GT(g, last);
+    last = g;
+  }
+  run.at(Vec3(0.0));
+  expect_near(run.force({1, 0, 0}), {0, 0.5, 1});
+  const auto carried = [&] {
+    for (int k = 0; k < 100; ++k) {
+      run.at(Vec3(0.0));
+      run.force(Vec3(0.0));
+    }
+    return run.device->output.force_n.y > 0.49;
+  };
+  // the last zero on the way out, without a read before it
+  EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));
+  ASSERT_TRUE(carried());
+  run.at(Vec3(0.0));
+  EXPECT_EQ(run.force(Vec3(0.0), Vec3(0.0), false), Vec3(0.0));  // off or stopped
+  ASSERT_TRUE(carried());
+  run.at(Vec3(0.0), 1);
+  EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));  // clutching
+  ASSERT_TRUE(carried());
+  run.device->input.status = DeviceStatus::lost;
+  run.at(Vec3(0.0));
+  EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));
+  run.device->input.status = DeviceStatus::ready;
+  ASSERT_TRUE(carried());
+  run.at(Vec3(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_EQ(run.force(Vec3(0.0)), Vec3(0.0));
+}
+
+TEST(MappedDevice, ARecordedPathKeepsItsPose) {
+  DeviceSettings s;
+  s.scale = 3;
+  s.workspace_from_device = axes();
+  Mapped run(s);
+  run.device->input.is_recorded = true;
+  EXPECT_EQ(run.at({1, 2, 3}).position_m, Vec3(1, 2, 3));
+}
+
+TEST(MappedDevice, StopReachesTheDevice) {
+  DeviceSettings s;
+  s.scale = 3;
+  Mapped run(s);
+  run.map->stop();
+  EXPECT_TRUE(run.device->stopped);
+}
+
+TEST(MappedDevice, AllocatesNothing) {
+  DeviceSettings s;
+  s.scale = 3;
+  s.workspace_from_device = axes();
+  s.clutch_button = 1;
+  s.gravity_n = Vec3(0.1);
+  Mapped run(s);
+  const AllocationCounter guard;
+  for (int k = 0; k < 100; ++k) {
+    run.at(Vec3(0.001 * k), static_cast<std::uint32_t>(k / 10) & 1u);
+    run.force(Vec3(1.0));
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(Registry, OpensThroughTheMapWhereSettingsAskForIt) {
+  DeviceSettings s;
+  s.scale = 2;
+  const auto mapped = open_device("null", s);
+  ASSERT_TRUE(mapped);
+  EXPECT_EQ((*mapped)->capabilities().workspace_m, 0.4);
+}
+
+TEST(Registry, NamesWhatThereIs) {
+  for (const char* type : {"null", "simulated", "simulated-6dof", "recorded", "mouse", "controller", "spacemouse"}) {
+    EXPECT_TRUE(is_device_type(type)) << type;
+    EXPECT_NE(device_type_names().find(type), std::string::npos);
+    EXPECT_FALSE(nominal_capabilities(type).name.empty());
+  }
+  const auto list = list_devices();
+  ASSERT_GE(list.size(), 6u);
+  bool absent = false;
+  for (const DeviceInfo& info : list) {
+    EXPECT_FALSE(info.detail.empty());
+    EXPECT_FALSE(absent && info.available) << "present ones come first: " << info.name;
+    absent = absent || !info.available;
+  }
+  EXPECT_NE(open_device("sextant", {}).error().message.find("simulated-6dof"), std::string::npos);
+  EXPECT_NE(open_device("mouse", {}).error().message.find("catena view"), std::string::npos);
+  EXPECT_NE(open_device("controller", {}).error().message.find("catena view SCENE --xr"), std::string::npos);
+}
+
+}  // namespace hand_map_test

@@ -1,0 +1,213 @@
+// Rows of the command line: numbers at the ends of doubles in scenes, tables and options, and a grid that is full.
+#include <algorithm>
+
+#include "tests/limits/limits_table.h"
+#include "tests/limits/render_fixture.h"
+#include "tests/support/run_program.h"
+
+namespace catena::extremes {
+namespace command_test {
+
+/// How the program ended, and what it said of bad input; without the folder's name. A file "out.csv" or "out.png" is its output.
+std::string ran(const test::TemporaryFolder& folder, const test::ProgramResult& run) {
+  const bool wrote = test::exists(folder / "out.csv") || test::exists(folder / "out.png");
+  if (run.exit_code == 0) return wrote ? "done" : "done, without an output";
+  std::string said = run.err;
+  for (auto at = said.find(folder.path()); at != std::string::npos; at = said.find(folder.path())) said.erase(at, folder.path().size() + 1);
+  if (said.ends_with('\n')) said.pop_back();
+  return fmt::format("exit code {}: {}{}", run.exit_code, said, wrote ? ", and an output" : "");
+}
+
+struct Files {
+  std::string scene = R"({"fields": {"v": {"analytic": "hill"}, "s": {"analytic": "sphere"}},
+    "chain": [{"name": "a", "type": "isosurface", "field": "s", "level": 1}]})";
+  std::string probe = "t,x,y,z\n0,0.5,0,0\n0.001,0.5,0.1,0\n";
+  std::string seeds = "x,y,z\n0.5,0,0\n";
+};
+
+/// Runs with "S", "P" and "Z" for the scene, the probe's path and the seeds, "O" for out.csv and "G" for out.png.
+std::string run(const Files& files, std::vector<std::string> arguments) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", files.scene);
+  test::write_file(folder / "p.csv", files.probe);
+  test::write_file(folder / "z.csv", files.seeds);
+  for (std::string& argument : arguments)
+    for (const auto& [word, name] : {std::pair{"S", "s.json"}, {"P", "p.csv"}, {"Z", "z.csv"}, {"O", "out.csv"}, {"G", "out.png"}})
+      if (argument == word) argument = folder / name;
+  return ran(folder, test::run_catena(arguments));
+}
+
+std::string replay(const std::string& scene, const std::string& rows = {}) {
+  Files files;
+  if (!scene.empty()) files.scene = scene;
+  if (!rows.empty()) files.probe = "t,x,y,z\n" + rows;
+  return run(files, {"replay", "S", "--probe", "P", "-o", "O"});
+}
+std::string trace(const std::string& seed, const std::vector<std::string>& more = {}) {
+  Files files;
+  files.seeds = "x,y,z\n" + seed + "\n";
+  std::vector<std::string> arguments{"trace", "S", "--field", "v", "--seeds", "Z", "-o", "O"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run(files, arguments);
+}
+std::string sphere_of(const std::string& radius) {
+  return R"({"chain": [{"name": "a", "type": "sphere", "center": [0, 0, 0],
+ "radius": )" +
+         radius + "}]}";
+}
+
+std::string twenty_kilohertz() { return run({}, {"feel", "S", "--device", "simulated", "--rate", "20000", "--seconds", "0.1"}); }
+std::string slow_and_fast_servos() {
+  Findings found;
+  for (const char* rate : {"100", "10000"})
+    found.add(std::string(rate) + " Hz: " +
+              run({}, {"feel", "S", "--device", "simulated", "--forces", "on", "--realtime", "off", "--rate", rate, "--seconds", "0.1"}));
+  return found;
+}
+std::string too_small() { return replay(sphere_of("9e-31")); }
+std::string too_large() { return replay(sphere_of("1.1e30")); }
+std::string beyond_doubles() { return replay(sphere_of("1e309")); }
+std::string smallest_and_largest() { return Findings().add(replay(sphere_of("1e-30"))).add(replay(sphere_of("1e30"))); }
+std::string nan_in_a_path() { return replay({}, "0,0.5,0,0\n0.001,nan,0,0\n"); }
+std::string infinity_in_a_path() { return replay({}, "0,0.5,0,0\n0.001,0,-inf,0\n"); }
+std::string path_beyond_doubles() { return replay({}, "0,0.5,0,1e309\n"); }
+std::string path_at_the_ends_of_doubles() { return replay({}, "0,1.7e308,0,0\n0.001,-1e308,1e-320,0\n0.002,5e-324,0,0\n0.003,0.5,0,0\n"); }
+
+std::string times_at_the_ends_of_doubles() {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", Files().scene);
+  test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n1e-320,0.5,0,0\n1e-310,0.6,0,0\n1,0.5,0,0\n1e300,0.5,0,0\n1.7e308,0.4,0,0\n");
+  const auto result = test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "out.csv"});
+  std::size_t longest = 0, at = 0;
+  const std::string text = result.out + result.err;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    longest = std::max(longest, end - at);
+    at = end + 1;
+  }
+  return Findings().add(ran(folder, result)).at_most("bytes of the longest line that is said", static_cast<double>(longest), 200);
+}
+
+std::string far_seed() { return trace("1e300,0,0"); }
+std::string denormal_seed() { return trace("1e-320,1e-310,0"); }
+std::string nan_seed() { return trace("nan,0,0"); }
+std::string no_length() { return trace("0.5,0,0", {"--length", "1e-300"}); }
+std::string no_tolerance() { return trace("0.5,0,0", {"--tolerance", "1e-300"}); }
+
+std::string nine_translucent_surfaces() {
+  std::string surfaces;
+  for (int i = 0; i < 9; ++i) surfaces += std::string(i > 0 ? ", " : "") + R"({"field": "s", "level": 1, "opacity": 0.5})";
+  Files files;
+  files.scene = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}}, "isosurfaces": [)" + surfaces + "]}";
+  return run(files, {"render", "S", "-o", "G", "--size", "16x12"});
+}
+
+/// What is said of numbers that 32-bit floats do not hold.
+std::string notes_of_data() {
+  const test::TemporaryFolder folder;
+  std::vector<double> values;
+  for (int i = 0; i < 512; ++i) values.push_back(i % 2 ? 1e300 : 0.1 * i);
+  test::write_file(folder / "d.raw", to_bytes(values));
+  test::write_file(folder / "p.csv", Files().probe);
+  test::write_file(folder / "s.json", R"({"fields": {"d": {"file": "d.raw", "type": "float64", "shape": [8, 8, 8]}},
+    "chain": [{"name": "a", "type": "isosurface", "field": "d", "level": 5}]})");
+  const auto result = test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "out.csv"});
+  return result.err.substr(0, result.err.find('\n')).replace(0, result.err.find("d.raw"), "");
+}
+
+std::string voxels_beyond_pictures() {
+  const test::TemporaryFolder folder;
+  std::string values;
+  for (int i = 0; i < 512; ++i) values.push_back(static_cast<char>(i % 7));
+  test::write_file(folder / "d.raw", values);
+  test::write_file(folder / "s.json",
+                   R"({"fields": {"d": {"file": "d.raw", "type": "uint8", "shape": [8, 8, 8], "spacing": [1e30, 1e30, 1e30]}},
+    "volumes": [{"field": "d"}]})");
+  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48"}));
+}
+
+// ---- 512^3 without a single block of one value ----
+
+const test::TemporaryFolder& dense() {
+  static const test::TemporaryFolder folder;
+  if (test::exists(folder / "s.json")) return folder;
+  std::string bytes(std::size_t(512) * 512 * 512, '\0');
+  std::uint32_t number = 1;
+  for (char& byte : bytes) byte = static_cast<char>((number = number * 1664525 + 1013904223) >> 24);
+  test::write_file(folder / "d.raw", bytes);
+  test::write_file(folder / "p.csv", "t,x,y,z\n0,200,200,200\n0.001,200.1,200,200\n0.002,200.2,200,200\n");
+  test::write_file(folder / "s.json", R"({"fields": {"d": {"file": "d.raw", "shape": [512, 512, 512], "type": "uint8"}},
+    "isosurfaces": [{"field": "d", "level": 127.5}], "camera": {"position": [900, -1200, 800], "target": [256, 256, 256]},
+    "chain": [{"name": "skin", "type": "isosurface", "field": "d", "level": 127.5}]})");
+  return folder;
+}
+
+std::string full_under_the_hand() {
+  const auto& folder = dense();
+#ifdef CATENA_SANITIZED  // its own addresses alone are more
+  const std::string limit = "exec \"$0\" \"$@\"";
+#else  // 1.25 times its 32-bit floats
+  const std::string limit = "ulimit -v 700000; exec \"$0\" \"$@\"";
+#endif
+  const auto result = test::run_program(
+      "/bin/sh", {"-c", limit, test::program_path(), "replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "out.csv"});
+  const std::string text = ran(folder, result);
+  if (test::exists(folder / "out.csv")) std::remove((folder / "out.csv").c_str());
+  return text;
+}
+std::string full_without_room() {
+  const auto& folder = dense();
+  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48", "--memory", "300"}));
+}
+std::string full_under_the_eye() {
+  const auto& folder = dense();
+  test::use_lavapipe();
+  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48", "--memory", "700"}));
+}
+
+}  // namespace command_test
+
+Group command_rows() {
+  using namespace command_test;
+  const std::string exit = "exit code 2: catena: ";
+  std::vector<Row> rows{
+      {"TwentyKilohertz", "A servo at 20 kHz",
+       exit + "--rate: \"20000\" is out of range; a finite number from 100 to 10000 was expected (see catena feel --help)",
+       twenty_kilohertz},
+      {"SlowAndFastServos", "Servos at 100 Hz and 10 kHz", "100 Hz: done, without an output; 10000 Hz: done, without an output",
+       slow_and_fast_servos},
+      {"TooSmall", "9e-31 in a scene", exit + "s.json:2: 9e-31 is too small; 0 or a number from 1e-30 to 1e30 in size was expected",
+       too_small},
+      {"TooLarge", "1.1e30", exit + "s.json:2: 1.1e+30 is too large; 0 or a number from 1e-30 to 1e30 in size was expected", too_large},
+      {"BeyondDoubles", "1e309", exit + "s.json:2: '1e309' is not a number; a finite number was expected", beyond_doubles},
+      {"SmallestAndLargest", "1e-30 and 1e30, the radii of spheres that a hand of size 1 feels", "done; done", smallest_and_largest},
+      {"NanInAPath", "A path with NaN", exit + "p.csv:3: \"nan\" in column \"x\"; a finite number was expected", nan_in_a_path},
+      {"InfinityInAPath", "A path with -inf", exit + "p.csv:3: \"-inf\" in column \"y\"; a finite number was expected", infinity_in_a_path},
+      {"PathBeyondDoubles", "A path with 1e309", exit + "p.csv:2: \"1e309\" in column \"z\"; a finite number was expected",
+       path_beyond_doubles},
+      {"PathAtTheEndsOfDoubles", "A path with 1.7e308 and 5e-324", "done", path_at_the_ends_of_doubles},
+      {"TimesAtTheEndsOfDoubles", "A path whose times rise from 1e-320 to 1.7e308 s",
+       "done; bytes of the longest line that is said at most 200", times_at_the_ends_of_doubles},
+      {"FarSeed", "A line from 1e300 units away", "done", far_seed},
+      {"DenormalSeed", "A line from 1e-320 beside a vortex ring's axis", "done", denormal_seed},
+      {"NanSeed", "A seed that is NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
+      {"NoLength", "A line of length 1e-300", exit + "z.csv:2: seed (0.5, 0, 0): the line ends on the spot in both directions", no_length},
+      {"NineTranslucentSurfaces", "A scene of nine translucent isosurfaces",
+       exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
+      {"NotesOfData", "A scene whose data hold 0.1 and 1e300, felt: its note", "d.raw: values of type float64 are rounded to 32-bit floats",
+       notes_of_data},
+      {"VoxelsBeyondPictures", "A picture of voxels of 1e30",
+       exit + "s.json:1: field \"d\": reaches 7e+30 from the origin, which no picture shows; at most 1e+30 was expected",
+       voxels_beyond_pictures},
+      {"NoTolerance", "A tolerance of 1e-300", "done", no_tolerance},
+  };
+  rows.push_back({"FullUnderTheHand", "512^3 voxels of noise under the hand, within 700000 KB of addresses", "done", full_under_the_hand});
+  rows.push_back({"FullWithoutRoom", "A picture of them with 300 MB allowed",
+                  exit + "s.json:1: field \"d\": d.raw: the grid of 512 x 512 x 512 voxels needs 576 MB of memory, expected at most 300 MB "
+                         "(--memory MB allows more)",
+                  full_without_room});
+  rows.push_back({"FullUnderTheEye", "The same with 700 MB", "done", full_under_the_eye});
+  return {"The command line", rows};
+}
+
+}  // namespace catena::extremes

@@ -1,0 +1,214 @@
+// Rows of the coupling: rates, irregular clocks, and springs from none to far beyond what is passive.
+#include "haptics/device/registry.h"
+#include "haptics/servo/device_limits.h"
+#include "tests/acceptance/chain_fixture.h"
+#include "tests/limits/limits_table.h"
+#include "tests/limits/probe_path.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/simple_links.h"
+
+namespace catena::extremes {
+namespace coupling_test {
+
+using acceptance::ChainRig;
+using acceptance::HapticProgram;
+using acceptance::make_program;
+using haptics::bitwise_equal;
+using test::ClosedLoop;
+
+constexpr double kMass = 0.159, kDamping = 0.5;  ///< of the mechanism, kg and N s/m
+constexpr double kRates[] = {100, 333, 1000, 5000, 10000, 20000};
+
+/// A line, a ball and a floor; the hand is held by all of them.
+std::string chain(const std::string& coupling) {
+  return R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+    "chain": [{"name": "line", "type": "streamline", "field": "v", "seed": [0.8, 0, 0]},
+              {"name": "ball", "type": "isosurface", "field": "s", "level": 0.7},
+              {"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 0, 1]}],
+    "coupling": {)" +
+         coupling + R"(}, "workspace": {"metres_per_unit": 0.05}})";
+}
+
+std::string the_same_place_at_any_rate() {
+  const auto program = make_program(chain(R"("stiffness": 500, "max_force": 100)"));
+  std::vector<Vec3> proxies, forces;
+  for (const double rate : kRates) {
+    ChainRig rig(program);
+    // two seconds of a hand at 0.1 m/s, and one of rest
+    const int ticks = static_cast<int>(3 * rate);
+    for (int i = 0; i < ticks; ++i) {
+      const double t = std::min(i / rate, 2.0), a = 2.5 * t;
+      rig.step_at(i / rate, {(0.8 + 0.1 * std::sin(5 * a)) * std::cos(a), 0.8 * std::sin(a), 0.1 * std::sin(7 * a)});
+    }
+    for (std::size_t k = 0; k < 3; ++k) proxies.push_back(rig.proxy(k));
+    forces.push_back(rig.out.force_n);
+  }
+  double off = 0, force = 0;
+  for (std::size_t i = 3; i < proxies.size(); ++i) off = std::max(off, norm(proxies[i] - proxies[i % 3]) / 4);
+  for (const Vec3& f : forces) force = std::max(force, norm(f - forces[0]));
+  return Findings()
+      .at_most("proxies apart by", off, 1e-9, "L")
+      .at_most("forces apart by", force, 1e-6, "N")
+      .add(norm(forces[0]) > 0.1 ? "held" : "free");
+}
+
+std::string an_irregular_clock() {
+  // a hand that slides along a plane's normal at an even speed: the damping's force is the speed's, whatever the steps
+  const auto program = make_program(R"({"chain": [{"name": "a", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0]}],
+    "coupling": {"stiffness": 500, "damping": 3, "max_force": 100}, "workspace": {"metres_per_unit": 0.05}})");
+  ChainRig rig(program);
+  haptics::tests::Random random(11);
+  double t = 0, off = 0;
+  const double speed = 0.2;  // units a second
+  for (int i = 0; i < 20000; ++i) {
+    rig.step_at(t, {speed * t, 0, 0});
+    if (i > 0) off = std::max(off, norm(rig.out.force_n + Vec3(3 * 0.05 * speed, 0, 0)));
+    t += std::exp(random.uniform(std::log(1e-5), std::log(0.1)));
+  }
+  return Findings().at_most("the damping's force off b v by", off, 1e-9, "N");
+}
+
+// ---- springs on a mechanism ----
+
+haptics::SimulatedDeviceParameters bare(double period_s) {
+  haptics::SimulatedDeviceParameters p;
+  p.mass_kg = kMass;
+  p.device_damping_ns_per_m = kDamping;
+  p.grip_stiffness_n_per_m = p.grip_damping_ns_per_m = 0;
+  p.period_s = period_s;
+  p.max_force_n = 1e9;
+  return p;
+}
+
+HapticProgram spring(double stiffness) {
+  HapticProgram p;
+  p.links = {test::hold_height("a", 0, stiffness)};
+  p.coupling.max_force_n = 1e9;
+  return p;
+}
+
+/// What the mechanism gets of a spring that is let go from rest, by what the spring had: above 1 the spring has made energy.
+double gain(const HapticProgram& p, double stiffness, double period_s, int ticks) {
+  ClosedLoop loop(p, bare(period_s), {{0, {0, 0, 0.01}}});
+  double most = 0;
+  for (int i = 0; i < ticks; ++i) {
+    loop.step();
+    most = std::max(most, -loop.min_passivity_j);
+  }
+  return most / (0.5 * stiffness * 1e-4);
+}
+
+std::string the_passive_limit_at_any_rate() {
+  double below = 0, above = 1e300;
+  for (const double rate : kRates) {
+    const double limit = 2 * kDamping * rate;
+    below = std::max(below, gain(spring(0.99 * limit), 0.99 * limit, 1 / rate, 6000));
+    above = std::min(above, gain(spring(1.01 * limit), 1.01 * limit, 1 / rate, 6000));
+  }
+  return Findings()
+      .at_most("at 0.99 of it a spring gives back, of what it had,", below, 1, {})
+      .add(above > 1 ? "at 1.01 of it more than it had at every rate" : "at 1.01 of it no more than it had at some rate");
+}
+
+std::string far_past(const std::vector<double>& rates, double bound_j) {
+  double most = 0, end = 0;
+  bool finite = true;
+  for (const double rate : rates)
+    for (const double times : {10.0, 100.0, 1000.0}) {
+      const double stiffness = times * 2 * kDamping * rate;
+      haptics::DeviceSettings settings;
+      settings.stiffness_cap = haptics::DeviceSettings::StiffnessCap::value;
+      settings.stiffness_cap_n_per_m = stiffness;
+      settings.ramp_in_s = 0;
+      haptics::SimulatedDeviceParameters hand = haptics::desktop_device_parameters();
+      hand.period_s = 1 / rate;
+      hand.grip_stiffness_n_per_m = 300;
+      hand.grip_damping_ns_per_m = 3;
+      ClosedLoop probe(spring(1), hand, {{0, {0, 0, 0.01}}});
+      HapticProgram p = spring(stiffness);
+      p.limits = compute_device_limits(probe.device.capabilities(), settings);
+      ClosedLoop loop(p, hand, {{0, {0, 0, 0.01}}});
+      loop.run(static_cast<int>(2 * rate));
+      double kinetic = 0;
+      for (int i = 0; i < static_cast<int>(rate); ++i) {
+        finite = finite && is_finite(loop.step().force_n) && std::isfinite(loop.out.energy_j) && loop.out.dissipated_j >= 0;
+        most = std::max(most, norm(loop.out.force_n));
+        kinetic = std::max(kinetic, loop.kinetic_j());
+      }
+      end = std::max(end, kinetic);
+    }
+  return Findings()
+      .add(finite ? "forces and energies are finite" : "a force or an energy is not finite")
+      .at_most("force above 10 N by", most - 10, 1e-10, "N")
+      .at_most("a second later the grip's kinetic energy is", end, bound_j, "J");
+}
+
+// 0.015 J: what the grip's own spring of 300 N/m has at 10 mm
+std::string far_past_the_limit() { return far_past({1000, 10000}, 0.015); }
+std::string far_past_the_limit_at_100_hz() { return far_past({100}, 0.1); }
+
+std::string no_spring() {
+  ChainRig none(make_program(chain(R"("stiffness": 0, "max_force": 8)"))), some(make_program(chain(R"("stiffness": 500, "max_force": 8)")));
+  long long same = 0, zero = 0;
+  constexpr int kTicks = 1000;
+  for (int i = 0; i < kTicks; ++i) {
+    zero += max_abs(none.step_to(probe_at(i)).force_n) == 0;
+    some.step_to(probe_at(i));
+    same += norm(none.proxy(2) - some.proxy(2)) <= 1e-9 * 4;
+  }
+  return Findings().all("no force", zero, kTicks).all("the proxies of a spring of 500 N/m", same, kTicks);
+}
+
+std::string springs_beyond_everything() {
+  long long right = 0, asked = 0;
+  for (const char* stiffness : {"1e6", "1e12", "1e30"}) {
+    ChainRig rig(make_program(chain(std::string(R"("max_force": 8, "damping": 1, "stiffness": )") + stiffness)));
+    for (int i = 0; i < 1000; ++i, ++asked) {
+      const auto& out = rig.step_to(probe_at(i));
+      bool ok = is_finite(out.force_n) && norm(out.force_n) <= 8 * (1 + 1e-12) && std::isfinite(out.energy_j);
+      for (std::size_t k = 0; k < 3; ++k) ok = ok && is_finite(out.links[k].proxy) && std::isfinite(out.links[k].accounted_j);
+      right += ok;
+    }
+  }
+  return Findings().all("proxies, force and energies are finite, and the force is at most 8 N", right, asked);
+}
+
+}  // namespace coupling_test
+
+Group coupling_rows() {
+  using namespace coupling_test;
+  return {
+      "Clocks and springs",
+      {
+          {"TheSamePlaceAtAnyRate", "Two seconds of a hand at 100 Hz to 20 kHz on a line, a ball and a plane, then a second of rest",
+           "proxies apart by at most 1e-09 L; forces apart by at most 1e-06 N; held", the_same_place_at_any_rate},
+          {"AnIrregularClock", "Steps from 10 us to 0.1 s in any order, and a hand at an even speed",
+           "the damping's force off b v by at most 1e-09 N", an_irregular_clock},
+          proved_elsewhere("A clock that stands still or runs back", "the time of that tick counts as none",
+                           "Tick.TimeThatRunsBackCountsAsNone"),
+          proved_elsewhere("Ticks that come late, or not at all", "the force is held for five, then ramped out",
+                           "ForceLimiter.LateTicksHoldThenRampOutLinearlyIn20ms"),
+          {"ThePassiveLimitAtAnyRate", "Springs on either side of 2 b / T at 100 Hz to 20 kHz, let go from rest",
+           "at 0.99 of it a spring gives back, of what it had, at most 1; at 1.01 of it more than it had at every rate",
+           the_passive_limit_at_any_rate},
+          proved_elsewhere("The largest stable spring at 1 kHz, without and with a sample of delay", "that of the linear theory to 0.1 %",
+                           "ClosedLoopTest.TheLargestStableStiffnessIsTheOneOfTheTable"),
+          proved_elsewhere("Springs of 1.1 to 10 times the limit, with the passivity controller",
+                           "no more than they had, and they die away", "ClosedLoopTest.AboveTheLimitTheControllerKeepsThePeace"),
+          {"FarPastTheLimit",
+           "Springs of 10, 100 and 1000 times the limit at 1 and 10 kHz in a hand, with the device's limits and the controller",
+           "forces and energies are finite; force above 10 N by at most 1e-10 N; a second later the grip's kinetic energy is at most 0.015 "
+           "J",
+           far_past_the_limit},
+          {"FarPastTheLimitAt100Hz", "The same at 100 Hz",
+           "forces and energies are finite; force above 10 N by at most 1e-10 N; a second later the grip's kinetic energy is at most 0.1 J",
+           far_past_the_limit_at_100_hz,
+           "At most 0.015 J, as at higher rates. The controller adds no more damping than m / (4 T), which is too little there. Only who "
+           "states a stiffness_cap of his own meets it: the default is the safe stiffness"},
+          {"NoSpring", "A stiffness of 0", "no force in every one; the proxies of a spring of 500 N/m in every one", no_spring},
+          {"SpringsBeyondEverything", "Stiffnesses of 1e6, 1e12 and 1e30 N/m without a device's limit",
+           "proxies, force and energies are finite, and the force is at most 8 N in every one", springs_beyond_everything},
+      }};
+}
+
+}  // namespace catena::extremes

@@ -1,0 +1,22 @@
+/// What the rows of the flow share: a line that is integrated in every tick, and how a traced one ends.
+#pragma once
+#include "engine/geometry/flow/curve.h"
+#include "haptics/constraints/streamline/online_streamline.h"
+#include "tests/haptics/constraints/constraint_fixture.h"
+
+namespace catena::extremes {
+
+using Velocity = Vec3 (*)(const Vec3&);
+
+inline haptics::tests::Rig make_online_rig(field::VectorFieldPtr field, const Vec3& seed) {
+  haptics::OnlineStreamlineSpec spec;
+  spec.field = std::move(field);
+  spec.seed = seed;
+  return haptics::tests::Rig(haptics::make_online_streamline(spec));
+}
+
+inline std::string stop_names(const flow::Curve& curve) {
+  return std::string("from ") + flow::to_string(curve.first_end().termination) + " to " + flow::to_string(curve.last_end().termination);
+}
+
+}  // namespace catena::extremes

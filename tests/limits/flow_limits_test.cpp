@@ -1,0 +1,169 @@
+// Rows of the flow: limit cycles, discontinuities, ways out of the domain; traced, and under the hand.
+#include "haptics/constraints/streamline/selected_streamline.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/limits/flow_fixture.h"
+#include "tests/limits/limits_table.h"
+
+namespace catena::extremes {
+namespace flow_test {
+
+using catena::LinkStatus;
+using catena::test::lambda_field;
+using haptics::tests::Rig;
+
+// ---- limit cycles ----
+
+Vec3 cycle(const Vec3& p) {
+  const double r2 = p.x * p.x + p.y * p.y;
+  return {p.x * (1 - r2) - p.y, p.y * (1 - r2) + p.x, -p.z};
+}
+Vec3 repelling_cycle(const Vec3& p) { return -cycle(p); }
+
+double off_the_cycle(const Vec3& p) { return std::hypot(std::hypot(p.x, p.y) - 1, p.z); }
+
+std::string onto_a_limit_cycle() {
+  const auto field = lambda_field(cycle);
+  Findings found;
+  double off = 0;
+  for (const Vec3& seed : {Vec3(0.2, 0, 0), Vec3(0, 1.7, 0.5)}) {
+    const auto curve = flow::trace({field.get()}, seed);
+    if (!curve) return curve.error().message;
+    found.add(stop_names(**curve));
+    off = std::max(off, off_the_cycle((*curve)->knots().back().p));
+  }
+  return found.at_most("the last place off the cycle", off / 4, 1e-9, "L");
+}
+
+std::string along_a_limit_cycle(Velocity velocity, double felt_bound) {
+  const auto curve = flow::trace({lambda_field(velocity).get()}, {1, 0, 0});
+  if (!curve) return curve.error().message;
+  double off = 0;
+  for (const flow::Knot& knot : (*curve)->knots()) off = std::max(off, off_the_cycle(knot.p));
+  Rig rig(haptics::make_selected_streamline(*curve));
+  double felt = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double a = 0.01 * i;
+    rig.tick(Vec3(1.3 * std::cos(a), 1.3 * std::sin(a), 0.1));
+    felt = std::max(felt, norm(rig.state.proxy - Vec3(std::cos(a), std::sin(a), 0)));
+  }
+  return Findings()
+      .add(stop_names(**curve))
+      .at_most("off the cycle", off / 4, 1e-7, "L")
+      .at_most("a hand that goes round it three times, off the closest place", felt / 4, felt_bound, "L");
+}
+std::string along_an_attracting_cycle() { return along_a_limit_cycle(cycle, 1e-7); }
+std::string along_a_repelling_cycle() { return along_a_limit_cycle(repelling_cycle, 1e-6); }
+
+// ---- discontinuities ----
+
+/// A line from (-0.7, 0, 0) into the plane x = 0 where the velocity changes; `beyond`: its direction there.
+std::string across_a_jump(double degrees) {
+  const Vec3 beyond(std::cos(degrees * M_PI / 180), std::sin(degrees * M_PI / 180), 0);
+  const auto field = lambda_field([beyond](const Vec3& p) { return p.x < 0 ? Vec3(1, 0, 0) : beyond; });
+  const Vec3 seed(-0.7, 0, 0);
+  const auto curve = flow::trace({field.get()}, seed);
+  if (!curve) return curve.error().message;
+  Findings found;
+  found.add(stop_names(**curve));
+  const bool passes = (*curve)->last_end() == flow::Termination::length;
+  const auto on = [&](double s) { return s < 0.7 ? Vec3(s - 0.7, 0, 0) : (passes ? s - 0.7 : 0.0) * beyond; };
+  double off = 0, felt = 0;
+  for (double s = 0; s <= std::min(1.5, (*curve)->knots().back().s); s += 0.01) off = std::max(off, norm((*curve)->position(s) - on(s)));
+  Rig rig = make_online_rig(field, seed);
+  for (int i = 0; i <= 300; ++i) rig.tick(passes ? on(0.005 * i) : Vec3(0.005 * i - 0.7, 0, 0));
+  felt = norm(rig.state.proxy - on(1.5));
+  return found.at_most("off the closed form", off / 4, 1e-6, "L")
+      .at_most("under a hand that goes along it", felt / 4, 1e-6, "L")
+      .add(to_string(rig.state.status));
+}
+std::string a_kink() { return across_a_jump(45); }
+std::string a_sharp_turn() { return across_a_jump(120); }
+std::string head_on() { return across_a_jump(180); }
+
+std::string steep_walls_of_a_grid() {
+  // towards y = 0 from both sides, over one voxel
+  const auto grid = test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3& p) {
+    return Vec3(1, p.y > 0 ? -1 : p.y < 0 ? 1 : 0, 0);
+  });
+  const auto curve = flow::trace({grid.get()}, {-1.5, 0.53, 0.1});
+  if (!curve) return curve.error().message;
+  return Findings().add(stop_names(**curve)).at_most("its end off the sheet", std::fabs((*curve)->knots().back().p.y) / 4, 1e-9, "L");
+}
+
+// ---- ways out ----
+
+std::string out_through_a_corner() {
+  const auto grid =
+      test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3&) { return Vec3(1.0); });
+  const auto curve = flow::trace({grid.get()}, {0.3, 0.3, 0.3});
+  if (!curve) return curve.error().message;
+  const double off = std::max(norm((*curve)->knots().back().p - Vec3(2.0)), norm((*curve)->knots().front().p - Vec3(-2.0)));
+  return Findings().add(stop_names(**curve)).at_most("off the corners", off / 4, 1e-12, "L");
+}
+
+std::string out_and_back_at_ten_metres_a_second() {
+  const auto grid = test::sample_vector_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33},
+                                             [](const Vec3&) { return Vec3(1, 0.2, 0); });
+  const Vec3 seed(0.1, 0, 0), way = direction(Vec3(1, 0.2, 0)), wall(2, 1.9 * 0.2, 0);
+  const auto curve = flow::trace({grid.get()}, seed);
+  if (!curve) return curve.error().message;
+  Rig rigs[] = {make_online_rig(grid, seed), Rig(haptics::make_selected_streamline(*curve))};
+  double off = 0, back = 0;
+  long long right = 0, asked = 0;
+  for (Rig& rig : rigs) {
+    for (int i = 0; i <= 30; ++i) rig.tick(seed + 0.2 * i * way);  // 0.2 units a tick, 4 units beyond the wall
+    right += rig.state.status == LinkStatus::boundary && rig.state.reason == SampleStatus::outside_box;
+    off = std::max(off, norm(rig.state.proxy - wall));
+    for (int i = 30; i >= 0; --i) rig.tick(seed + 0.2 * i * way);
+    for (int i = 0; i < 5; ++i) rig.tick(seed);
+    right += rig.state.status == LinkStatus::ok;
+    back = std::max(back, norm(rig.state.proxy - seed));
+    asked += 2;
+  }
+  return Findings()
+      .all("BOUNDARY with BOX outside, OK again inside,", right, asked)
+      .at_most("off the wall", off / 4, 1e-8, "L")
+      .at_most("off its place when it is back", back / 4, 1e-8, "L");
+}
+
+}  // namespace flow_test
+
+Group flow_rows() {
+  using namespace flow_test;
+  return {
+      "The flow",
+      {
+          {"OntoALimitCycle", "Lines onto an attracting limit cycle, from within and from beside it",
+           "from CRITICAL to LENGTH; from LENGTH to LENGTH; the last place off the cycle at most 1e-09 L", onto_a_limit_cycle},
+          {"AlongAnAttractingCycle", "A line on that cycle",
+           "from LAP to LAP; off the cycle at most 1e-07 L; a hand that goes round it three times, off the closest place at most 1e-07 L",
+           along_an_attracting_cycle},
+          {"AlongARepellingCycle", "A line on a repelling one, where errors grow 2.9e5 times in a lap",
+           "from LAP to LAP; off the cycle at most 1e-07 L; a hand that goes round it three times, off the closest place at most 1e-06 L",
+           along_a_repelling_cycle,
+           "The hand at most 1e-07 L off too. A lap closes over a gap of at most 1e-7 L, which lies in its last piece and turns it"},
+          {"AKink", "A velocity that jumps by 45 degrees across a plane",
+           "from LENGTH to LENGTH; off the closed form at most 1e-06 L; under a hand that goes along it at most 1e-06 L; OK", a_kink},
+          {"ASharpTurn", "One that jumps by 120 degrees: the flow there comes back to the plane",
+           "from LENGTH to CRITICAL; off the closed form at most 1e-06 L; under a hand that goes along it at most 1e-06 L; CRITICAL",
+           a_sharp_turn},
+          {"HeadOn", "One that turns round",
+           "from LENGTH to CRITICAL; off the closed form at most 1e-06 L; under a hand that goes along it at most 1e-06 L; CRITICAL",
+           head_on},
+          {"SteepWallsOfAGrid", "A grid whose flow turns towards a sheet within one voxel on both sides",
+           "from BOUNDARY to BOUNDARY; its end off the sheet at most 1e-09 L", steep_walls_of_a_grid},
+          {"OutThroughACorner", "A line through two corners of its grid", "from BOUNDARY to BOUNDARY; off the corners at most 1e-12 L",
+           out_through_a_corner},
+          {"OutAndBackAtTenMetresASecond", "A hand along a line out of the grid, in mid-step, at 0.2 units a tick, and back",
+           "BOUNDARY with BOX outside, OK again inside, in every one; off the wall at most 1e-08 L; off its place when it is back at most "
+           "1e-08 L",
+           out_and_back_at_ten_metres_a_second},
+          proved_elsewhere("A Runge-Kutta stage that lies beyond the wall while the line does not", "the line is that of the grid",
+                           "GridBoundary.AStageBeyondTheWallIsNotTheLineBeyondIt"),
+          proved_elsewhere("A NaN on the way of a line", "the line ends before it, BOUNDARY, and the hand comes back",
+                           "NanRegion.AStreamlineEndsBeforeItAndComesBack"),
+          proved_elsewhere("The same on a surface", "it is a wall", "NanRegion.AnIsosurfaceHasAWallThere"),
+      }};
+}
+
+}  // namespace catena::extremes

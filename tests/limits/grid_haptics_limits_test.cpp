@@ -1,0 +1,248 @@
+// Rows of the world: grids of any size, shape and place, and values of any size, under the hand.
+#include "tests/acceptance/chain_fixture.h"
+#include "tests/engine/geometry/flow/lambda_field.h"
+#include "tests/limits/flow_fixture.h"
+#include "tests/limits/limits_table.h"
+#include "tests/limits/probe_path.h"
+
+namespace catena::extremes {
+namespace world_test {
+
+using acceptance::ChainRig;
+using acceptance::HapticProgram;
+using acceptance::make_program;
+using catena::LinkStatus;
+
+constexpr const char* kLine = R"("type": "streamline", "field": "v", "follow": "selected")";
+constexpr const char* kOnline = R"("type": "streamline", "field": "v", "follow": "online")";
+constexpr const char* kSurface = R"("type": "isosurface", "field": "s", "level": 0.9)";
+
+/// A link on grids whose voxels have the edge `h` and whose middle is at `origin` (in voxels). Values go by the node's number: the same
+/// floats in every world.
+std::shared_ptr<const HapticProgram> on_grids(const std::string& link, double h, const Vec3& origin) {
+  constexpr int n = 33;
+  const Vec3 middle(0.5 * (n - 1));
+  const auto mapping = field::Mapping::from_linear(Mat3(h), h * (origin - middle));
+  haptics::tests::Fields fields;
+  std::vector<float> scalars, vectors;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const Vec3 p = 0.125 * (Vec3(x, y, z) - middle);
+        scalars.push_back(static_cast<float>(norm(p)));
+        for (const double v : {-p.y, p.x, 0.2}) vectors.push_back(static_cast<float>(v));
+      }
+  fields.named["s"].scalar = field::make_scalar_grid("s", mapping, {n, n, n}, scalars);
+  fields.named["v"].vector = field::make_vector_grid("v", mapping, {n, n, n}, vectors);
+  const Vec3 seed = h * (origin + 8.0 * Vec3(0.8, 0.1, -0.5));
+  const std::string with_seed = link == kSurface ? "" : fmt::format(R"(, "seed": [{}, {}, {}])", seed.x, seed.y, seed.z);
+  const auto constraint = haptics::tests::build(R"({"name": "a", )" + link + with_seed + "}", fields);
+  auto program = std::make_shared<HapticProgram>(*make_program(std::vector{constraint}));
+  program->meters_per_unit = 0.05 / (8 * h);
+  return program;
+}
+
+struct World {
+  double h;
+  Vec3 origin;
+};
+
+/// How far the proxies of these worlds are from those of voxels of 0.125 at the origin, under the same hand.
+std::string same_proxies(const std::vector<std::string>& links, const std::vector<World>& worlds, double bound) {
+  constexpr int kTicks = 1500;
+  const auto probe = [](int i) { return probe_at(i) - Vec3(0, 0, 0.5 - 1e-3 * i); };
+  double off = 0;
+  long long same = 0, asked = 0;
+  for (const std::string& link : links) {
+    ChainRig plain(on_grids(link, 0.125, Vec3(0.0)));
+    std::vector<std::pair<Vec3, LinkStatus>> right;
+    for (int i = 0; i < kTicks; ++i) {
+      plain.step_to(probe(i));
+      right.push_back({plain.proxy(), plain.status()});
+    }
+    for (const World& world : worlds) {
+      ChainRig rig(on_grids(link, world.h, world.origin));
+      for (int i = 0; i < kTicks; ++i, ++asked) {
+        rig.step_to(world.h * (world.origin + 8.0 * probe(i)));
+        const auto& [place, status] = right[static_cast<std::size_t>(i)];
+        const double d = norm(0.125 * ((1 / world.h) * rig.proxy() - world.origin) - place) / 4;
+        off = d <= off ? off : d;
+        same += rig.status() == status;
+      }
+    }
+  }
+  return Findings().at_most("proxies off those at the origin by", off, bound, "L").all("the same status", same, asked);
+}
+
+std::string voxels_of_any_size() {
+  std::vector<World> worlds;
+  for (const double h : {1e-100, 1e-30, 1e-9, 1e-3, 1e3, 1e9, 1e30, 1e100}) worlds.push_back({h, Vec3(0.0)});
+  return same_proxies({kLine, kOnline, kSurface}, worlds, 1e-9);
+}
+
+const std::vector<World> kFar{
+    {0.125, {1e7, 0, 0}}, {0.125, {1e7, -1e7, 1e7}}, {0.1, {1e7, 1e7, -1e7}}, {1e-9, {0, 0, 1e7}}, {1e9, {-1e7, 3e6, 0}}};
+
+std::string surface_far_from_the_origin() { return same_proxies({kSurface}, kFar, 1e-9); }
+std::string online_line_far_from_the_origin() { return same_proxies({kOnline}, kFar, 1e-8); }
+std::string selected_line_far_from_the_origin() { return same_proxies({kLine}, kFar, 1e-9); }
+
+std::string voxels_a_thousand_times_as_long() {
+  // s = x + z / 1000 at voxels of 1/1024, 1/1024 and 1 (ratio 1:1024), exact at every node: a plane in closed form
+  const Vec3 edges(0x1p-10, 0x1p-10, 1);
+  Mat3 linear(0.0);
+  for (int a = 0; a < 3; ++a) linear[a][a] = edges[a];
+  const auto grid = haptics::tests::sample_scalar_grid(field::Mapping::from_linear(linear, Vec3(0.0)), {33, 33, 33},
+                                                       [](const Vec3& p) { return p.x * 1024 + p.z; });
+  haptics::tests::Rig rig(haptics::tests::isosurface(grid, 32));
+  const Vec3 normal = direction(Vec3(1024, 0, 1));
+  double off = 0;
+  long long ok = 0;
+  constexpr int kTicks = 2000;
+  for (int i = 0; i < kTicks; ++i) {
+    const double u = i / double(kTicks);
+    const Vec3 on(0x1p-10 * (26 - 20 * u), 0x1p-10 * (16 + 8 * std::sin(9 * u)), 6 + 20 * u),
+        probe = on + (0.004 * std::sin(20 * u)) * normal;
+    rig.tick(probe);
+    off = std::max(off, norm(rig.state.proxy - on));
+    ok += rig.state.status == LinkStatus::ok;
+  }
+  return Findings()
+      .all("OK", ok, kTicks)
+      .at_most("proxies off the closest place by", off, 1e-9, "of the shortest edge of the domain's 0.03");
+}
+
+/// Sampled spheres whose values are s times as large, exactly.
+std::string values_of_any_size() {
+  constexpr int n = 33;
+  const auto mapping = field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0));
+  const auto proxies = [&](double s) {
+    const auto grid = haptics::tests::sample_scalar_grid(mapping, {n, n, n}, [&](const Vec3& p) { return s * std::floor(64 * norm(p)); });
+    haptics::tests::Rig rig(haptics::tests::isosurface(grid, s * 51.5));
+    std::vector<Vec3> out;
+    for (int i = 0; i < 1000; ++i) out.push_back(rig.tick(probe_at(i)).proxy);
+    return out;
+  };
+  const auto plain = proxies(1);
+  double off = 0;
+  // 2^-149 is the least float: all values are denormal
+  for (const double s : {0x1p-149, 0x1p-140, 0x1p-100, 0x1p100, 0x1p119}) {
+    const auto scaled = proxies(s);
+    for (std::size_t i = 0; i < plain.size(); ++i) off = std::max(off, norm(scaled[i] - plain[i]) / 4);
+  }
+  return Findings().at_most("proxies off those of values about 1 by", off, 1e-9, "L");
+}
+
+// ---- grids with little or nothing in them ----
+
+const double kNan = std::nan("");
+const auto kVoxels = field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0));
+constexpr field::Index3 kSize{17, 17, 17};
+
+bool even(const Vec3& p) { return static_cast<int>(4 * (p.x + p.y + p.z + 6) + 0.5) % 2 == 0; }
+
+/// A hand walks, jumps and rests on the surface of a grid.
+std::string on_surface(const std::function<double(const Vec3&)>& value, double level) {
+  haptics::tests::Rig rig(haptics::tests::isosurface(haptics::tests::sample_scalar_grid(kVoxels, kSize, value), level));
+  haptics::tests::Random random(3);
+  long long bounded = 0, nothing = 0, still = 0, rests = 0, ticks = 0;
+  Vec3 probe(0.1, 0.2, 0.3);
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 before = rig.state.proxy;
+    const LinkStatus status = rig.state.status;
+    const bool rest = i % 30 > 20;
+    if (!rest) probe = i % 30 == 0 ? random.box(1.8) : probe + random.box(0.01);
+    rig.tick(probe);
+    ++ticks;
+    bounded += is_finite(rig.state.proxy) && rig.state.evaluations <= haptics::kMaxEvaluations && rig.state.work() <= haptics::kMaxWork;
+    nothing += (rig.state.status == LinkStatus::no_surface || (rig.state.status == LinkStatus::budget && i > 0)) &&
+               haptics::bitwise_equal(rig.state.proxy, probe);
+    if (i % 30 < 28 || status == LinkStatus::budget) continue;
+    ++rests;
+    still += haptics::bitwise_equal(before, rig.state.proxy);
+  }
+  Findings found;
+  found.all("finite and within the work of a tick", bounded, ticks).all("still under a still probe", still, rests);
+  return found.add(nothing == ticks ? "the hand passes to the bit, NO_SURFACE, or BUDGET while it looks for one"
+                   : nothing == 0   ? "held always"
+                                    : "held at times");
+}
+
+std::string on_a_checkerboard() {
+  return on_surface([](const Vec3& p) { return even(p) ? 1.0 : -1.0; }, 0.25);
+}
+std::string on_a_constant() {
+  return on_surface([](const Vec3&) { return 2.5; }, 2.5);
+}
+std::string without_a_whole_cell() {
+  return on_surface([](const Vec3& p) { return even(p) ? kNan : p.x; }, 0.25);
+}
+
+std::string lines_of(const std::function<Vec3(const Vec3&)>& value) {
+  const auto grid = test::sample_vector_grid(kVoxels, kSize, value);
+  const auto traced = flow::trace({grid.get()}, {0.1, 0.2, 0.3});
+  haptics::tests::Rig rig = make_online_rig(grid, {0.1, 0.2, 0.3});
+  rig.tick({0.3, 0.2, 0.1});
+  return Findings()
+      .add("traced: " + (traced ? stop_names(**traced) : traced.error().message))
+      .add(fmt::format("online: {}, {}", to_string(rig.state.status), to_string(rig.state.reason)));
+}
+std::string lines_of_nothing() {
+  return lines_of([](const Vec3&) { return Vec3(0.0); });
+}
+std::string lines_without_a_whole_cell() {
+  return lines_of([](const Vec3& p) { return even(p) ? Vec3(kNan) : Vec3(1.0); });
+}
+
+}  // namespace world_test
+
+Group world_rows() {
+  using namespace world_test;
+  return {
+      "The world under the hand",
+      {
+          {"VoxelsOfAnySize", "Lines, traced and online, and a surface of grids with voxels of 1e-100 to 1e100, beside those of 0.125",
+           "proxies off those at the origin by at most 1e-09 L; the same status in every one", voxels_of_any_size},
+          {"SurfaceFarFromTheOrigin", "A surface of a grid 1e7 voxels away from the origin, along one axis and all",
+           "proxies off those at the origin by at most 1e-09 L; the same status in every one", surface_far_from_the_origin},
+          {"OnlineLineFarFromTheOrigin", "A line of such a grid, integrated in every tick",
+           "proxies off those at the origin by at most 1e-08 L; the same status in every one", online_line_far_from_the_origin,
+           "At most 1e-09 L. The proxy is rounded to its world coordinates in every step, which adds up along the line"},
+          {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
+           "proxies off those at the origin by at most 1e-09 L; the same status in every one", selected_line_far_from_the_origin},
+          {"VoxelsAThousandTimesAsLong", "A surface across voxels with edges of 1:1:1024",
+           "OK in every one; proxies off the closest place by at most 1e-09 of the shortest edge of the domain's 0.03",
+           voxels_a_thousand_times_as_long},
+          {"ValuesOfAnySize", "A surface of a grid whose values are denormal floats, down to 2^-149, and up to 2^127",
+           "proxies off those of values about 1 by at most 1e-09 L", values_of_any_size},
+          {"OnACheckerboard", "A hand that walks, jumps and rests on a checkerboard of 1 and -1, at the level 1/4",
+           "finite and within the work of a tick in every one; still under a still probe in every one; held always", on_a_checkerboard},
+          {"OnAConstant", "On a grid of one value, at that value",
+           "finite and within the work of a tick in every one; still under a still probe in every one; the hand passes to the bit, "
+           "NO_SURFACE, or BUDGET while it looks for one",
+           on_a_constant},
+          {"WithoutAWholeCell", "On a grid whose every second voxel is NaN",
+           "finite and within the work of a tick in every one; still under a still probe in every one; the hand passes to the bit, "
+           "NO_SURFACE, or BUDGET while it looks for one",
+           without_a_whole_cell},
+          proved_elsewhere("Voxels that are NaN or infinite, at random, under a surface", "nothing of them comes out",
+                           "IsosurfaceSemantics.BrokenVoxelsNeverComeOut"),
+          proved_elsewhere("A grid of one layer", "its surface is a curve", "IsosurfaceSemantics.ASliceHasACurve"),
+          {"LinesOfNothing", "Lines of a grid of zeros",
+           "traced: seed (0.1, 0.2, 0.3): field 'test' is zero there, so no line passes through it; online: CRITICAL, ZERO",
+           lines_of_nothing},
+          {"LinesWithoutAWholeCell", "Lines of a grid whose every second voxel is NaN",
+           "traced: seed (0.1, 0.2, 0.3) lies outside the domain of field 'test' (its box goes from (-2, -2, -2) to (2, 2, 2); masked and "
+           "non-finite cells do not count); online: BOUNDARY, NOT_FINITE",
+           lines_without_a_whole_cell},
+          proved_elsewhere("A formula's line whose velocities are 1e-300 to 1e300", "the same proxies to 1e-9",
+                           "FieldScaleAndBadValues.TheSameStreamlineProxiesAtAnyScaleOfTheField"),
+          proved_elsewhere("A formula's surface whose values are 1e-300 to 1e300", "the same proxies to 1e-9",
+                           "FieldScaleAndBadValues.TheSameSurfaceProxiesAtAnyScaleOfTheField"),
+          proved_elsewhere("Spheres of 1e-300 to 1e300, and probes as far away", "the closest place to round-off",
+                           "Sphere.FarAndTinyProbesAndRadii"),
+          proved_elsewhere("Meshes of any size", "the same as of size 1", "Mesh.HugeAndTinyMeshesBehaveTheSame"),
+      }};
+}
+
+}  // namespace catena::extremes

@@ -1,0 +1,219 @@
+// Rows of the world under the eye: grids of any size, shape and place, values of any size, and grids with nothing to show.
+#include "tests/limits/limits_table.h"
+#include "tests/limits/render_fixture.h"
+
+namespace catena::extremes {
+namespace eye_test {
+
+using render::Image8;
+
+constexpr std::uint32_t kWidth = 96, kHeight = 72;
+
+struct World {
+  double h = 0.0625;    ///< edge of a voxel
+  Vec3 origin{0.0};     ///< of the middle, voxels
+  double values = 1;    ///< times all values
+  bool turned = false;  ///< other voxels, 1:1:1024, of the same linear field
+};
+
+/// A ball's distance as a volume, a surface and a slice, lines and arrows of a flow, and a box: all that has a place.
+Image8 scene_in(const World& world) {
+  const test::TemporaryFolder folder;
+  constexpr int n = 33;
+  write_raw(folder / "s.raw", {n, n, n},
+            [&](int x, int y, int z) { return world.values * norm((1.0 / 16) * (Vec3(x, y, z) - Vec3(16.0))); });
+  std::vector<float> vectors;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        for (const double v : {-(y - 16) / 16.0, (x - 16) / 16.0, 0.4}) vectors.push_back(static_cast<float>(v));
+  test::write_file(folder / "v.raw", to_bytes(vectors));
+  const auto at = [&](const Vec3& p) { return triple(world.h * (16.0 * p + world.origin)); };
+  const std::string layout = fmt::format(R"("shape": [33, 33, 33], "spacing": {}, "origin": {})", triple(Vec3(world.h)), at(Vec3(-1.0)));
+  const double s = world.values, unit = 16 * world.h;
+  return TestRenderer::instance().draw(R"({"fields": {"s": {"file": "s.raw", )" + layout +
+                                           R"(}, "v": {"file": "v.raw", "type": "float32x3", )" + layout + R"(}},
+    "volumes": [{"field": "s", "color": [[0, 0.9, 0.2, 0.1], [)" +
+                                           fmt::format("{}", 1.7 * s) + R"(, 0.1, 0.3, 0.9]], "extinction": [[0, 0], [)" +
+                                           fmt::format("{}, 0], [{}, {}", 0.7 * s, 1.7 * s, 0.8 / unit) + R"(]]}],
+    "isosurfaces": [{"field": "s", "level": )" +
+                                           fmt::format("{}", 0.5 * s) + R"(}],
+    "slices": [{"field": "s", "axis": "z", "at": )" +
+                                           fmt::format("{}", world.h * (world.origin.z - 6)) + R"(, "color": "viridis"}],
+    "streamlines": [{"field": "v", "seeds": [)" +
+                                           at({0.8, 0, -0.9}) + R"(], "radius": )" + fmt::format("{}", 0.03 * unit) + R"(}],
+    "bounding_box": true, "background": "transparent",
+    "camera": {"position": )" + at({2, -3.2, 1.5}) +
+                                           R"(, "target": )" + at(Vec3(0.0)) + R"(, "fovy_deg": 36}})",
+                                       folder, kWidth, kHeight);
+}
+
+/// Beside the same scene of voxels of 1/16 at the origin.
+std::string same_pictures(const std::vector<World>& worlds, int more, double bound) {
+  const Image8 plain = scene_in({});
+  if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+  double most = 0;
+  for (const World& world : worlds) {
+    most = std::max(most, count_differing(scene_in(world), plain, more));
+    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+  }
+  return Findings()
+      .add(count_covered(plain) > 500 ? "something is seen" : "nothing is seen")
+      .at_most(fmt::format("pixels that differ by more than {}/255", more), most, bound);
+}
+
+std::string voxels_of_any_size() { return same_pictures({{1e-9}, {1e-3}, {1e3}, {1e9}}, 2, 0.002); }
+// half of a pixel of a silhouette changes its colour by half: 24 is a tenth of a pixel
+std::string far_from_the_origin() {
+  return same_pictures({{0.0625, {1e7, 0, 0}}, {0.0625, {-1e7, 1e7, 1e7}}, {0.1, {1e7, -1e7, 1e7}}, {1e-9, {0, 0, 1e7}}}, 24, 0.002);
+}
+std::string values_of_any_size() { return same_pictures({{0.0625, Vec3(0.0), 1e-29}, {0.0625, Vec3(0.0), 1e29}}, 2, 0.002); }
+
+/// s = x + y / 2 + z / 4, which is itself between any nodes, on 1025 x 33 x 2 voxels (edges of 1:32:1024) and on 33^3.
+std::string voxels_a_thousand_times_as_long() {
+  const auto draw = [](const std::array<int, 3>& n) {
+    const test::TemporaryFolder folder;
+    const Vec3 spacing(2.0 / (n[0] - 1), 2.0 / (n[1] - 1), 2.0 / (n[2] - 1));
+    write_raw(folder / "s.raw", n,
+              [&](int x, int y, int z) { return x * spacing.x - 1 + (y * spacing.y - 1) / 2 + (z * spacing.z - 1) / 4; });
+    return TestRenderer::instance().draw(R"({"fields": {"s": {"file": "s.raw", "shape": )" + fmt::format("[{}, {}, {}]", n[0], n[1], n[2]) +
+                                             R"(, "spacing": )" + triple(spacing) +
+                                             R"(, "origin": [-1, -1, -1]}},
+      "volumes": [{"field": "s", "color": [[-1.75, 0.9, 0.2, 0.1], [1.75, 0.1, 0.3, 0.9]], "extinction": [[-1.75, 0], [1.75, 1]]}],
+      "isosurfaces": [{"field": "s", "level": -0.4}], "slices": [{"field": "s", "axis": "z", "at": -0.7, "color": "viridis"}],
+      "background": "transparent", "camera": {"position": [2, -3.2, 1.5], "target": [0, 0, 0], "fovy_deg": 36}})",
+                                         folder, kWidth, kHeight);
+  };
+  const Image8 cubes = draw({33, 33, 33});
+  if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+  const Image8 sticks = draw({1025, 33, 2});
+  if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+  return Findings()
+      .add(count_covered(cubes) > 500 ? "something is seen" : "nothing is seen")
+      .at_most("pixels that differ by more than 4/255", count_differing(cubes, sticks, 4), 0.01);
+}
+
+// ---- grids with little or nothing in them ----
+
+Image8 grid_of(const std::array<int, 3>& n, const std::function<double(int, int, int)>& value, const std::string& drawn) {
+  const test::TemporaryFolder folder;
+  write_raw(folder / "s.raw", n, value);
+  return TestRenderer::instance().draw(R"({"fields": {"s": {"file": "s.raw", "shape": )" + fmt::format("[{}, {}, {}]", n[0], n[1], n[2]) +
+                                           "}}, " + drawn +
+                                           R"(, "background": "transparent", "camera": {"position": [20, -30, 20], "target": [4, 4, 4]}})",
+                                       folder, kWidth, kHeight);
+}
+
+std::string seen(const Image8& picture) {
+  if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+  return count_covered(picture) > 0 ? "something is seen" : "nothing is seen";
+}
+
+constexpr const char* kAll =
+    R"("volumes": [{"field": "s"}], "isosurfaces": [{"field": "s", "level": LEVEL}], "slices": [{"field": "s", "axis": "z", "at": 4}])";
+std::string all_at(const std::string& level) {
+  std::string text = kAll;
+  return text.replace(text.find("LEVEL"), 5, level);
+}
+
+const double kNan = std::nan("");
+bool even(int x, int y, int z) { return (x + y + z) % 2 == 0; }
+
+std::string all_nan() {
+  return seen(grid_of(
+      {8, 8, 8}, [](int, int, int) { return kNan; }, all_at("1")));
+}
+std::string every_second_nan() {
+  return seen(grid_of(
+      {8, 8, 8}, [](int x, int y, int z) { return even(x, y, z) ? kNan : 1.0 * x; }, all_at("1")));
+}
+std::string checkerboard() {
+  return seen(grid_of(
+      {8, 8, 8}, [](int x, int y, int z) { return even(x, y, z) ? -1.0 : 1.0; }, all_at("0")));
+}
+std::string constant() {
+  return Findings()
+      .add("its surface: " + seen(grid_of(
+                                 {8, 8, 8}, [](int, int, int) { return 2.5; }, R"("isosurfaces": [{"field": "s", "level": 2.5}])")))
+      .add("its slice: " + seen(grid_of(
+                               {8, 8, 8}, [](int, int, int) { return 2.5; }, R"("slices": [{"field": "s", "axis": "z", "at": 4}])")))
+      .add("its volume: " + seen(grid_of(
+                                {8, 8, 8}, [](int, int, int) { return 2.5; }, R"("volumes": [{"field": "s"}])")));
+}
+std::string one_voxel() {
+  return seen(grid_of(
+      {1, 1, 1}, [](int, int, int) { return 2.5; }, R"("volumes": [{"field": "s"}])"));
+}
+std::string two_voxels_each_way() {
+  return seen(grid_of(
+      {2, 2, 2}, [](int x, int, int) { return 1.0 * x; }, R"("volumes": [{"field": "s"}], "isosurfaces": [{"field": "s", "level": 0.5}])"));
+}
+/// An array of ones as NumPy writes it, drawn from all sides; its indices go z, y, x.
+std::string flat_arrays() {
+  Findings found;
+  for (const std::array<int, 3>& n : {std::array{1, 1, 1}, {1, 1, 5}, {1, 5, 1}, {5, 1, 1}, {1, 5, 5}, {5, 5, 1}}) {
+    const test::TemporaryFolder folder;
+    std::string head = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}), }}", n[0], n[1], n[2]);
+    head += std::string(118 - 1 - head.size(), ' ') + "\n";
+    test::write_file(folder / "a.npy", std::string("\x93NUMPY\x01\x00\x76\x00", 10) + head +
+                                           to_bytes(std::vector<float>(static_cast<std::size_t>(n[0] * n[1] * n[2]), 1.0f)));
+    const Image8 picture =
+        TestRenderer::instance().draw(R"({"fields": {"s": {"file": "a.npy"}}, "volumes": [{"field": "s", "extinction": [[0, 0], [1, 5]]}],
+        "background": "transparent"})",
+                                      folder, 32, 24);
+    found.add(fmt::format("{}x{}x{}: ", n[0], n[1], n[2]) + seen(picture));
+  }
+  return found;
+}
+
+std::string beyond_floats() {
+  const test::TemporaryFolder folder;
+  std::vector<double> values;
+  for (int i = 0; i < 512; ++i) values.push_back(i % 2 ? 1e300 : 0.1 * i);
+  test::write_file(folder / "s.raw", to_bytes(values));
+  auto scene = scene::parse_scene(R"({"fields": {"s": {"file": "s.raw", "type": "float64", "shape": [8, 8, 8]}},
+      "slices": [{"field": "s", "axis": "z", "at": 4}]})",
+                                  folder / "s.json");
+  if (!scene) return scene.error().message;
+  const auto drawn = render::make_frame(*scene, 8, 8);
+  if (!drawn) return drawn.error().message;
+  Findings found;
+  for (const std::string& note : scene->notes) found.add(note.substr(note.rfind('/') + 1));
+  return found;
+}
+
+}  // namespace eye_test
+
+Group grid_rendering_rows() {
+  using namespace eye_test;
+  return {"The world under the eye",
+          {
+              {"PicturesOfVoxelsOfAnySize",
+               "A volume, a surface, a slice, a line and a box of grids with voxels of 1e-9 to 1e9, beside those of 1/16",
+               "something is seen; pixels that differ by more than 2/255 at most 0.002", voxels_of_any_size},
+              {"PicturesFarFromTheOrigin", "The same 1e7 voxels away from the origin, along one axis and all: 24/255 is a tenth of a pixel",
+               "something is seen; pixels that differ by more than 24/255 at most 0.002", far_from_the_origin},
+              {"PicturesOfVoxelsAThousandTimesAsLong", "A linear field on voxels of 1:32:1024, beside cubes",
+               "something is seen; pixels that differ by more than 4/255 at most 0.01", voxels_a_thousand_times_as_long},
+              {"PicturesOfValuesOfAnySize", "The same scene with values of 1e-29 and 1e29",
+               "something is seen; pixels that differ by more than 2/255 at most 0.002", values_of_any_size},
+              {"AllNan", "A grid of NaN", "s.json:1: field \"s\": s.raw: the data has no finite value in any active voxel", all_nan},
+              {"EverySecondNan", "A grid whose every second voxel is NaN: no cell is whole", "nothing is seen", every_second_nan},
+              proved_elsewhere("Holes of NaN in a volume", "cells that touch one are transparent", "Volume.NotANumberIsTransparent"),
+              {"Checkerboard", "A checkerboard of 1 and -1, and its level 0", "something is seen", checkerboard},
+              {"Constant", "A grid of one value, its surface at that value, its slice and its volume",
+               "its surface: nothing is seen; its slice: something is seen; its volume: something is seen", constant},
+              {"OneVoxel", "A .raw file of one voxel", "s.json:1: \"shape\" holds 1; three whole numbers from 2 to 65536 were expected",
+               one_voxel},
+              {"TwoVoxelsEachWay", "One cell", "something is seen", two_voxels_each_way},
+              {"FlatArrays", "Arrays of NumPy's of one voxel, and flat along one axis or two",
+               "1x1x1: something is seen; 1x1x5: something is seen; 1x5x1: something is seen; 5x1x1: something is seen; 1x5x5: something "
+               "is seen; 5x5x1: something is seen",
+               flat_arrays},
+              {"BeyondFloats", "Numbers of 64 bits that 32-bit floats do not hold",
+               "s.raw: values of type float64 are rounded to 32-bit floats; s.raw: 256 values are beyond 32-bit floats: they are holes",
+               beyond_floats},
+          }};
+}
+
+}  // namespace catena::extremes

@@ -1,0 +1,155 @@
+// Rows of pictures: their sizes, fields of view, eyes in odd places, and how many lines are in them.
+#include "tests/limits/limits_table.h"
+#include "tests/limits/render_fixture.h"
+
+namespace catena::extremes {
+namespace pictures_test {
+
+using render::Image8;
+
+/// A ball of radius 1 (of a formula, on 33^3 nodes) before nothing.
+Image8 ball(const std::string& camera, std::uint32_t width, std::uint32_t height,
+            const std::string& drawn = R"("isosurfaces": [{"field": "s", "level": 1}])") {
+  const test::TemporaryFolder folder;
+  return TestRenderer::instance().draw(R"({"fields": {"s": {"analytic": "sphere", "resolution": 65}}, )" + drawn +
+                                           R"(, "background": "transparent", "camera": {)" + camera + "}}",
+                                       folder, width, height);
+}
+
+std::string from(const Vec3& position, double fovy_deg) {
+  return fmt::format(R"("position": {}, "target": [0, 0, 0], "fovy_deg": {})", triple(position), fovy_deg);
+}
+
+/// Of the pixels whose middles lie on a disk of this radius about the middle, how many more or fewer the ball covers.
+double off_the_disk(const Image8& picture, double radius) {
+  double right = 0;
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+      right += std::hypot(x + 0.5 - 0.5 * picture.width, y + 0.5 - 0.5 * picture.height) < radius;
+  return std::fabs(count_covered(picture) - right) / std::max(1.0, right);
+}
+
+std::string any_field_of_view() {
+  constexpr std::uint32_t kSide = 64;
+  double off = 0;
+  for (const double fov : {1e-3, 1e-2, 0.1, 1.0, 30.0, 90.0, 150.0, 170.0, 179.0}) {
+    // so far that the ball is half as wide as the picture, but never within the data's box
+    const double half = std::tan(fov * M_PI / 360), distance = std::max(std::sqrt(1 + 1 / (0.25 * half * half)), 3.6);
+    const Image8 picture = ball(from({distance * 0.6, -distance * 0.64, distance * 0.48}, fov), kSide, kSide);
+    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+    off = std::max(off, off_the_disk(picture, 0.5 * kSide * std::tan(std::asin(1 / distance)) / half));
+  }
+  return Findings().at_most("pixels of the ball off those of the disk, of them,", off, 0.01);
+}
+
+std::string any_size() {
+  struct Size {
+    std::uint32_t width, height;
+  };
+  Findings found;
+  double off = 0;
+  for (const Size& size : {Size{1, 1}, Size{1, 8192}, Size{8192, 1}, Size{3, 1000}}) {
+    const Image8 picture =
+        ball(R"("position": [0, -6, 0], "target": [0, 0, 0], "projection": "orthographic", "height": 4)", size.width, size.height);
+    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+    if (picture.width != size.width || picture.height != size.height) found.add("a picture of another size");
+    off = std::max(off, off_the_disk(picture, 0.25 * size.height));
+  }
+  return found.at_most("pixels of the ball off those of the disk, of them,", off, 0.01);
+}
+
+std::string any_height_of_an_orthographic_picture() {
+  Findings found;
+  for (const char* height : {"1e-15", "1e-9", "1e15"}) {
+    const Image8 picture =
+        ball(std::string(R"("position": [0, -6, 0], "target": [0, 0, 0], "projection": "orthographic", "height": )") + height, 32, 24);
+    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+    const double part = count_covered(picture) / (32 * 24);
+    found.add(std::string(height) + ": " +
+              (part == 1   ? "the ball everywhere"
+               : part == 0 ? "the ball is smaller than a pixel"
+                           : "a part of the ball"));
+  }
+  return found;
+}
+
+std::string as_far_away_as_can_be() {
+  const Image8 picture = ball(R"("position": [0, -1e15, 0], "target": [0, 0, 0], "fovy_deg": 0.001)", 32, 24);
+  if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+  return count_covered(picture) == 0 ? "nothing is seen" : "something is seen";
+}
+
+std::string on_the_target() {
+  ball(R"("position": [1, 2, 3], "target": [1, 2, 3])", 32, 24);
+  return TestRenderer::instance().error_message;
+}
+
+std::string in_the_plane_of_a_slice() {
+  const std::string slice = R"("slices": [{"field": "s", "axis": "z", "at": 0, "color": "viridis"}])";
+  Findings found;
+  double most = 0;
+  for (const Vec3& eye : {Vec3(0, -6, 0), Vec3(0, -1, 0), Vec3(0.3, 0.2, 0), Vec3(1e-3, 0, 0)}) {
+    const Image8 picture = ball(from(eye, 60), 64, 48, slice);
+    if (!TestRenderer::instance().error_message.empty()) return TestRenderer::instance().error_message;
+    most = std::max(most, count_covered(picture));
+  }
+  found.at_most("pixels of it that are seen", most, 0);
+  const Image8 above = ball(from({0, -1, 1e-3}, 60), 64, 48, slice);
+  return found.add(count_covered(above) > 300 ? "from 0.001 above it is seen" : "from 0.001 above it is not seen");
+}
+
+// ---- lines ----
+
+std::string lines(const std::string& seeds, const std::string& more = {}) {
+  const test::TemporaryFolder folder;
+  const std::string text = R"({"fields": {"v": {"analytic": "helix", "resolution": 9}}, "background": "transparent",
+    "streamlines": [{"field": "v", "radius": 0.01, "seeds": )" +
+                           seeds + more + R"(}],
+    "camera": {"position": [4, -5, 3], "target": [0, 0, 0]}})";
+  auto scene = scene::parse_scene(text, folder / "s.json");
+  if (!scene) return scene.error().message.substr(scene.error().message.rfind("s.json"));
+  auto packet = render::make_frame(*scene, 64, 48);
+  if (!packet) return packet.error().message.substr(packet.error().message.rfind("s.json"));
+  const Outcome drawn = TestRenderer::instance().renderer->draw(*packet);
+  if (!drawn) return drawn.error().message;
+  const auto picture = TestRenderer::instance().renderer->read_back();
+  return fmt::format("{} lines, {}", packet->tubes.size(), picture && count_covered(*picture) > 100 ? "seen" : "not seen");
+}
+
+std::string no_lines() { return lines("[]"); }
+std::string no_lines_of_a_pattern() { return lines(R"({"line": {"from": [0, 0, 0], "to": [1, 0, 0], "count": 0}})"); }
+std::string too_many_lines() { return lines(R"({"line": {"from": [0, 0, 0], "to": [1, 0, 0], "count": 100001}})"); }
+std::string hundred_thousand_lines() {
+  return lines(R"({"sphere": {"center": [0, 0, 0], "radius": 1.5, "count": 100000, "inside": true}})",
+               R"(, "length": 0.01, "tolerance": 1e-4)");
+}
+
+}  // namespace pictures_test
+
+Group image_rows() {
+  using namespace pictures_test;
+  return {
+      "Pictures",
+      {
+          {"AnyFieldOfView", "A ball under fields of view from 0.001 to 179 degrees, from as far as it needs",
+           "pixels of the ball off those of the disk, of them, at most 0.01", any_field_of_view},
+          {"AnySize", "Pictures of 1x1, 1x8192, 8192x1 and 3x1000 pixels",
+           "pixels of the ball off those of the disk, of them, at most 0.01", any_size},
+          {"AnyHeightOfAnOrthographicPicture", "Orthographic pictures of 1e-15, 1e-9 and 1e15 units",
+           "1e-15: the ball everywhere; 1e-9: the ball everywhere; 1e15: the ball is smaller than a pixel",
+           any_height_of_an_orthographic_picture},
+          {"AsFarAwayAsCanBe", "An eye 1e15 units away", "nothing is seen", as_far_away_as_can_be},
+          {"OnTheTarget", "An eye on its target",
+           "s.json:1: \"target\": the target is at the position, or too near to it; two different points were expected", on_the_target},
+          {"InThePlaneOfASlice", "An eye in the very plane of a slice, beside its field and within it",
+           "pixels of it that are seen at most 0; from 0.001 above it is seen", in_the_plane_of_a_slice},
+          {"NoLines", "No seeds", "s.json:2: \"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected",
+           no_lines},
+          {"NoLinesOfAPattern", "A pattern of 0 seeds", "s.json:2: \"count\" is 0; a whole number from 1 to 100000 was expected",
+           no_lines_of_a_pattern},
+          {"TooManyLines", "One of 100001", "s.json:2: \"count\" is 100001; a whole number from 1 to 100000 was expected", too_many_lines},
+          {"HundredThousandLines", "One of 100000", "100000 lines, seen", hundred_thousand_lines},
+      }};
+}
+
+}  // namespace catena::extremes

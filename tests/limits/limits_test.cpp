@@ -1,0 +1,109 @@
+// Runs the table's rows, a test case each, and compares docs/extremes.md with the table. CATENA_WRITE_DOCUMENTS=1 in the environment writes
+// the document from what the rows say (./run docs).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "engine/base/numbers.h"
+#include "tests/limits/limits_table.h"
+#include "tests/support/support.h"
+
+namespace catena::extremes {
+
+Findings& Findings::at_most(const std::string& what, double value, double bound, const std::string& unit) {
+  const std::string end = to_text(bound) + (unit.empty() ? "" : " " + unit);
+  return add(value <= bound ? what + " at most " + end : what + " " + to_text(value) + ", more than " + end);
+}
+
+Findings& Findings::all(const std::string& what, long long count, long long of) {
+  return add(what + (count == of ? " in every one" : " in " + std::to_string(count) + " of " + std::to_string(of)));
+}
+
+namespace extremes_test {
+
+const std::vector<Group>& table() {
+  static const std::vector<Group> all{probe_rows(), world_rows(),          index_rows(), coupling_rows(), critical_rows(),
+                                      flow_rows(),  grid_rendering_rows(), image_rows(), command_rows()};
+  return all;
+}
+
+std::vector<Row> rows_to_run() {
+  std::vector<Row> rows;
+  for (const Group& group : table())
+    for (const Row& row : group.rows)
+      if (row.run != nullptr) rows.push_back(row);
+  return rows;
+}
+
+bool writes_documents() { return std::getenv("CATENA_WRITE_DOCUMENTS") != nullptr; }
+
+std::map<std::string, std::string>& said() {
+  static std::map<std::string, std::string> by_name;
+  return by_name;
+}
+
+class LimitTable : public testing::TestWithParam<Row> {};
+
+TEST_P(LimitTable, Row) { EXPECT_EQ(said()[GetParam().name] = GetParam().run(), GetParam().expected) << GetParam().input; }
+
+INSTANTIATE_TEST_SUITE_P(Table, LimitTable, testing::ValuesIn(rows_to_run()), [](const auto& test) { return test.param.name; });
+
+constexpr const char* kBegin = R"(# LimitTable
+
+What happens at the ends of what can be asked. What a row expects is written before the row is run, and holds word for word in every run of
+the tests; numbers in it are bounds. Where something else happens, that stands here as a known defect, and the last table says what would
+be right. `tests/limits` has the rows as data, beside the functions that run them, and `./run docs` writes this page from what they say.
+The name in the last column is that of the case, `build/release/test_extremes --gtest_filter='*NAME*'`, or of a test elsewhere that proves it.
+L is the domain length.
+)";
+
+/// The page, with what the rows said; where they have not run, what they are expected to say.
+std::string document() {
+  std::string text = kBegin, defects;
+  for (const Group& group : table()) {
+    text += "\n## " + group.title + "\n\n| what is asked | what happens | case |\n|---|---|---|\n";
+    for (const Row& row : group.rows) {
+      const auto found = said().find(row.name);
+      const std::string happens = row.run != nullptr && found != said().end() ? found->second : row.expected;
+      text += "| " + row.input + " | " + (row.should.empty() ? "" : "**Known defect:** ") + happens + " | `" +
+              (row.run != nullptr ? row.name : row.proved_by) + "` |\n";
+      if (!row.should.empty()) defects += "| `" + row.name + "` | " + row.should + " |\n";
+    }
+  }
+  text += "\n## Known defects\n\n";
+  return text + (defects.empty() ? "None is known.\n" : "| case | what would be right |\n|---|---|\n" + defects);
+}
+
+const std::string& path() {
+  static const std::string at = test::source_dir() + "/docs/extremes.md";
+  return at;
+}
+
+class Writer : public testing::Environment {
+  void TearDown() override {
+    if (writes_documents() && !testing::UnitTest::GetInstance()->Failed()) test::write_file(path(), document());
+  }
+};
+const testing::Environment* const kWriter = testing::AddGlobalTestEnvironment(new Writer);
+
+TEST(LimitsDocument, SaysWhatTheRowsSay) {
+  if (writes_documents()) return;
+  EXPECT_TRUE(test::read_file(path()) == document()) << "docs/extremes.md is not current; ./run docs writes it";
+}
+
+TEST(LimitsDocument, EveryRowHasANameOfItsOwnAndIsOneLine) {
+  std::map<std::string, int> names;
+  for (const Group& group : table())
+    for (const Row& row : group.rows) {
+      EXPECT_EQ(row.run == nullptr, row.name.empty()) << row.input;
+      EXPECT_EQ(row.run == nullptr, !row.proved_by.empty()) << row.input;
+      EXPECT_FALSE(row.expected.empty() || row.input.empty()) << row.name;
+      for (const std::string& text : {row.input, row.expected, row.should}) EXPECT_EQ(text.find_first_of("|\n"), std::string::npos) << text;
+      if (row.run == nullptr) continue;
+      EXPECT_EQ(++names[row.name], 1) << row.name;
+    }
+}
+
+}  // namespace extremes_test
+}  // namespace catena::extremes

@@ -1,0 +1,55 @@
+// A scene loaded a hundred times over, each time its own grids: the device and this process hold no more at the end.
+#include <gtest/gtest.h>
+
+#include "render/extract/extract.h"
+#include "render/passes/renderer.h"
+#include "tests/support/resident.h"
+#include "tests/support/support.h"
+#include "tests/support/vulkan.h"
+
+namespace catena::render {
+namespace scene_loads_test {
+
+const std::string kScene = R"({
+  "fields": {"s": {"analytic": "sphere", "resolution": 17}, "v": {"analytic": "circle"}},
+  "volumes": [{"field": "s", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}],
+  "isosurfaces": [{"field": "s", "level": 1.0, "color": [0.8, 0.8, 0.9]}],
+  "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.05}],
+  "camera": {"position": [6, -6, 4], "target": [0, 0, 0]}
+})";
+
+TEST(RepeatedLoad, AHundredHoldNoMore) {
+  test::use_lavapipe();
+  vk::DeviceOptions options;
+  options.device_filter = test::test_device();
+  auto renderer = Renderer::create(options);
+  ASSERT_TRUE(renderer) << renderer.error().message;
+  std::uint64_t device = 0, host = 0;
+  constexpr int kWarm = 20;
+  for (int k = 0; k < kWarm + 100; ++k) {
+    auto scene = scene::parse_scene(kScene, "test.json");
+    ASSERT_TRUE(scene) << scene.error().message;
+    auto packet = make_frame(*scene, 48, 36);
+    ASSERT_TRUE(packet) << packet.error().message;
+    const std::uint64_t uploads = (*renderer)->stats().uploads;
+    const Outcome drawn = (*renderer)->draw(*packet);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    // it is another grid each time
+    EXPECT_GT((*renderer)->stats().uploads, uploads);
+    EXPECT_EQ((*renderer)->device().retired_count(), 0u);
+    if (k == kWarm) {
+      device = (*renderer)->device().counters().allocated_bytes;
+      host = test::resident_bytes();
+    }
+    if (k > kWarm) {
+      ASSERT_EQ((*renderer)->device().counters().allocated_bytes, device) << "load " << k;
+    }
+  }
+  std::printf("host growth %.2f MB\n", 1e-6 * (double(test::resident_bytes()) - double(host)));
+  if (test::kResidentIsReliable) {
+    EXPECT_LT(test::resident_bytes(), host + 4'000'000);
+  }
+}
+
+}  // namespace scene_loads_test
+}  // namespace catena::render

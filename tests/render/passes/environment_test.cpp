@@ -1,0 +1,136 @@
+/// Lights, fog and aids, against the formulas of shaders/lib/lighting.glsl and closed forms.
+#include <cmath>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/image_fixture.h"
+
+namespace catena::test {
+namespace aids_test {
+
+using namespace catena::render;
+
+/// A square across y at `y`, seen along +y in orthographic projection: 0.1 units a pixel.
+MeshItem square(double y, double half, const Color& color) {
+  auto geometry = std::make_shared<MeshGeometry>();
+  geometry->vertices = {{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}};
+  geometry->triangles = {0, 1, 2, 0, 2, 3};
+  return {std::move(geometry), color};
+}
+
+FramePacket square_packet(double y, const Color& color) {
+  FramePacket packet;
+  packet.width = packet.height = 60;
+  packet.view.position = {0, -10, 0};
+  packet.view.target = {0, 0, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 6;
+  packet.meshes.push_back(square(y, 2, color));
+  return packet;
+}
+
+class EnvironmentPass : public ImageTest {
+ protected:
+  std::array<int, 3> middle(const FramePacket& packet, const std::string& name) {
+    const Image8 picture = draw(packet, {}, name);
+    const std::uint8_t* p = picture.pixel(packet.width / 2, packet.height / 2);
+    return {p[0], p[1], p[2]};
+  }
+};
+
+void expect_color(const std::array<int, 3>& found, const Vec3& expected) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[std::size_t(c)], 255 * std::min(1.0, expected[c]), 1.01) << c;
+}
+
+TEST_F(EnvironmentPass, ALightOfTheSceneLightsByItsAngle) {
+  FramePacket packet = square_packet(0, {0.5f, 0.6f, 0.7f});
+  const Vec3 color(0.5, 0.6, 0.7), to_eye(0, -1, 0);
+  expect_color(middle(packet, "headlight"), 0.9 * color + Vec3(0.2));
+  const Vec3 l = direction(Vec3(1, -1, 1)), white(1.0);
+  packet.lights = {{{1, -1, 1}, {1.0f, 0.5f, 0.25f}, false}};
+  const double d = dot(l, to_eye), m = std::max(0.0, dot(2 * d * to_eye - l, to_eye));
+  const Vec3 shine = 0.7 * d * color + 0.2 * std::pow(m, 20) * white;
+  expect_color(middle(packet, "side"), 0.2 * color + Vec3(1.0, 0.5, 0.25) * shine);
+  // behind the surface: only the ambient share
+  packet.lights[0].direction = {1, 1, 1};
+  expect_color(middle(packet, "behind"), 0.2 * color);
+  // two lights add
+  packet.lights = {{{1, -1, 1}, {1, 0, 0}, false}, {{-1, -1, -1}, {0, 0, 1}, false}};
+  expect_color(middle(packet, "two"), 0.2 * color + Vec3(1, 0, 1) * shine);
+}
+
+TEST_F(EnvironmentPass, ALightOfTheCameraTurnsWithIt) {
+  // right, up, towards the eye: the same as (1, -1, 1) above, whichever way the camera looks
+  for (const bool turned : {false, true}) {
+    FramePacket packet = square_packet(0, {0.5f, 0.5f, 0.5f});
+    packet.lights = {{{1, 1, 1}, {1, 1, 1}, true}};
+    if (turned) packet.view.position = {0, 10, 0};
+    const double d = 1 / std::sqrt(3.0), mirrored = std::max(0.0, 2 * d - d);
+    expect_color(middle(packet, turned ? "turned" : "straight"), Vec3(0.1 + 0.35 * d + 0.2 * std::pow(mirrored, 20)));
+  }
+}
+
+TEST_F(EnvironmentPass, FogTakesItsShareByDepth) {
+  const Vec3 fog(0.1, 0.3, 0.8);
+  for (const double y : {-7.0, -2.0, 1.0, 9.0}) {
+    FramePacket packet = square_packet(y, {0.5f, 0.25f, 0.1f});
+    packet.fog = FogItem{{0.1f, 0.3f, 0.8f}, 5, 15, 0.6};
+    const double share = 0.6 * std::clamp((y + 10 - 5) / 10, 0.0, 1.0);
+    expect_color(middle(packet, ""), (1 - share) * (0.9 * Vec3(0.5, 0.25, 0.1) + Vec3(0.2)) + share * fog);
+  }
+}
+
+TEST_F(EnvironmentPass, FogTakesItsShareOfAnIsosurfaceAndOfAThinVolume) {
+  // z of the grid along the view; the surface at index 10
+  const auto grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y; });
+  FramePacket packet;
+  packet.width = packet.height = 60;
+  packet.view.position = {10, -20, 10};
+  packet.view.target = {10, 0, 10};
+  packet.view.orthographic = true;
+  packet.view.height = 12;
+  packet.isosurfaces.push_back({grid, 10.0, {0.5f, 0.25f, 0.1f}, 1.0f});
+  packet.fog = FogItem{{0.1f, 0.3f, 0.8f}, 25, 35, 1};
+  expect_color(middle(packet, "surface"), 0.5 * (0.9 * Vec3(0.5, 0.25, 0.1) + Vec3(0.2)) + 0.5 * Vec3(0.1, 0.3, 0.8));
+  // dense beyond the end of the fog: all of its light comes from there
+  packet.isosurfaces.clear();
+  packet.volumes.push_back(volume_item(grid, {{0, 0}, {15.8, 0}, {16, 400}, {16.2, 0}, {20, 0}}, {0.5f, 0.25f, 0.1f}));
+  RenderSettings settings;
+  settings.step_voxels = 0.02;
+  const Image8 picture = draw(packet, settings, "volume");
+  const std::uint8_t* p = picture.pixel(30, 30);
+  expect_color({p[0], p[1], p[2]}, Vec3(0.1, 0.3, 0.8));
+}
+
+TEST_F(EnvironmentPass, BoundingBoxAndGroundAreWhereTheyAreSaid) {
+  FramePacket packet = square_packet(0, {0.2f, 0.2f, 0.2f});
+  TubeItem edge;
+  edge.points = {{-2.5, 0, 2.5}, {2.5, 0, 2.5}};
+  edge.radius = 0.1;
+  edge.color = {1, 0, 0};
+  edge.id = 4;
+  packet.environment.tubes.push_back(edge);
+  packet.clip_planes = {{{0, 0, 0}, {0, 0, -1}}};  // cuts the square, not the aid
+  draw(packet, {}, "clipped");
+  const auto ids = renderer_->read_ids();
+  ASSERT_TRUE(ids);
+  EXPECT_EQ(ids->ids[5 * 60 + 30], 4u);
+  EXPECT_EQ(renderer_->stats().passes, (std::vector<std::string>{"aids", "meshes", "compose"}));
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  EXPECT_TRUE(std::isinf(depth->depth[20 * 60 + 30]));
+  EXPECT_NEAR(depth->depth[40 * 60 + 30], 10, 1e-4);
+}
+
+TEST_F(EnvironmentPass, TheFastRaycastLeavesFogAndLightsToTheExactOne) {
+  FramePacket packet = make_packet({10, -40, 10}, {10, 10, 10});
+  packet.volumes.push_back(volume_item(make_grid({21, 21, 21}, [](const Vec3& p) { return p.x; }), {{0, 0.1}, {20, 0.1}}));
+  EXPECT_TRUE(renderer_->can_draw_fast(packet));
+  packet.lights = {{{1, 0, 0}, {1, 1, 1}, false}};
+  EXPECT_FALSE(renderer_->can_draw_fast(packet));
+  packet.lights.clear();
+  packet.fog = FogItem{};
+  EXPECT_FALSE(renderer_->can_draw_fast(packet));
+}
+
+}  // namespace aids_test
+}  // namespace catena::test

@@ -1,0 +1,92 @@
+/// Off-axis frusta and tiles: a window of the frustum shows the very pixels that the whole picture has there.
+#include "render/frame/camera.h"
+#include "tests/render/support/image_fixture.h"
+
+namespace catena::test {
+namespace window_test {
+
+using namespace catena::render;
+
+FramePacket scene_packet(bool orthographic) {
+  FramePacket packet;
+  packet.width = 120;
+  packet.height = 80;
+  packet.view.position = {-14, -32, 22};
+  packet.view.target = {10, 10, 9};
+  packet.view.orthographic = orthographic;
+  packet.view.height = 34;
+  packet.view.fovy_deg = 34;
+  const auto sphere = make_grid({21, 21, 21}, [](const Vec3& p) { return norm(p - Vec3(10.0)); });
+  packet.isosurfaces.push_back({sphere, 5.0, {0.9f, 0.7f, 0.3f}, 1.0f, 1});
+  packet.volumes.push_back(volume_item(sphere, {{0, 0.0}, {12, 0.06}, {18, 0.0}}, {0.3f, 0.5f, 1.0f}));
+  TubeItem tube;
+  tube.points = {{-2, 3, 2}, {8, 1, 12}, {22, 8, 16}};
+  tube.radius = 0.6;
+  tube.color = {1, 0, 0};
+  packet.tubes.push_back(tube);
+  packet.clip_planes = {{{10, 10, 14}, {0.1, 0.2, -1}}};
+  return packet;
+}
+
+class Windows : public ImageTest {};
+
+void expect_tiles_equal(Windows& test, const FramePacket& whole_packet,
+                        const std::function<Image8(const FramePacket&, const char*)>& draw) {
+  (void)test;
+  const Image8 whole = draw(whole_packet, "whole");
+  int drawn = 0;
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 3; ++column) {
+      FramePacket packet = whole_packet;
+      packet.width = packet.height = 40;
+      packet.view.window = {-1 + 2 * column / 3.0, -1 + 2 * (column + 1) / 3.0, 1 - (row + 1.0), 1.0 - row};
+      const Image8 tile = draw(packet, "");
+      for (std::uint32_t y = 0; y < 40; ++y)
+        for (std::uint32_t x = 0; x < 40; ++x)
+          for (int c = 0; c < 4; ++c) {
+            const int a = tile.pixel(x, y)[c], b = whole.pixel(std::uint32_t(40 * column) + x, std::uint32_t(40 * row) + y)[c];
+            ASSERT_NEAR(a, b, 2) << column << " " << row << ": " << x << " " << y;
+            drawn += b > 60;
+          }
+    }
+  EXPECT_GT(drawn, 2000);
+}
+
+TEST_F(Windows, TilesMakeThePictureInPerspective) {
+  expect_tiles_equal(*this, scene_packet(false), [&](const FramePacket& p, const char* name) { return draw(p, {}, name); });
+}
+
+TEST_F(Windows, TilesMakeThePictureInOrthographicProjection) {
+  expect_tiles_equal(*this, scene_packet(true), [&](const FramePacket& p, const char* name) { return draw(p, {}, name); });
+}
+
+TEST(Window, CameraFunctionsAgreeOffTheAxis) {
+  for (const bool orthographic : {false, true}) {
+    View view;
+    view.position = {1, -8, 3};
+    view.target = {0.5, 0, 0.2};
+    view.orthographic = orthographic;
+    view.height = 5;
+    view.window = {-0.4, 1.3, 0.1, 0.9};
+    Bounds bounds;
+    bounds.extend(Vec3(-1.0));
+    bounds.extend(Vec3(1.0));
+    const Camera camera = make_camera(view, 170, 80, bounds);
+    for (const Vec3& p : {Vec3(0.3, 0.1, -0.2), Vec3(-0.7, 0.9, 0.6)}) {
+      const auto pixel = project(camera, p);
+      ASSERT_TRUE(pixel);
+      EXPECT_LT(norm(unproject(camera, pixel->x, pixel->y, pixel->z) - p), 1e-12);
+      const Ray ray = pixel_ray(camera, pixel->x, pixel->y);
+      EXPECT_LT(norm(cross(p - ray.origin, ray.direction)), 1e-12);
+      // clip space: the same pixel
+      const glm::dvec4 clip = clip_from_world(camera) * glm::dvec4(p.x, p.y, p.z, 1.0);
+      EXPECT_NEAR((clip.x / clip.w + 1) / 2 * 170, pixel->x, 1e-9);
+      EXPECT_NEAR((clip.y / clip.w + 1) / 2 * 80, pixel->y, 1e-9);
+      const glm::dvec4 back = world_from_clip(camera) * (clip / clip.w);
+      EXPECT_LT(norm(Vec3(back.x, back.y, back.z) / back.w - p), 1e-9);
+    }
+  }
+}
+
+}  // namespace window_test
+}  // namespace catena::test

@@ -1,0 +1,196 @@
+/// Frames of a headset on a scripted machine and a scripted display: in time where that can be, at half rate where it cannot.
+#include "render/quality/xr_frame_pacing.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <string>
+
+namespace catena::test {
+namespace frame_pace_test {
+
+using namespace catena::render;
+
+/// A display of that period that shows a frame at the first moment after it is there, and a machine whose every picture takes what the
+/// ladder's costs say times `unit_ms`, give or take a tenth, and something beside.
+struct Headset {
+  explicit Headset(const QualityLevelOptions& kind = {}) : pace(kind), kind_(kind) {}
+
+  void run(int frames) {
+    for (int k = 0; k < frames; ++k) {
+      const auto shown_ns = static_cast<std::int64_t>(1e6 * period_ms * static_cast<double>(slot));
+      plan = pace.next(period_ms, shown_ns);
+      std::uniform_real_distribution<double> noise(0.9, 1.1);
+      const double ms = unit_ms * relative_cost(plan.settings, kind_.is_shaded) * noise(random) / (plan.pixel_scale * plan.pixel_scale);
+      pace.record_render_ms(ms);
+      news += pace.take_message();
+      slot += std::max<std::int64_t>(plan.display_periods, static_cast<std::int64_t>(std::ceil((ms + beside_ms) / period_ms)));
+    }
+  }
+  XrFramePacing pace;
+  QualityLevelOptions kind_;
+  FramePlan plan;
+  std::string news;
+  std::mt19937 random{2};
+  std::int64_t slot = 1;
+  double period_ms = 11.1, unit_ms = 20, beside_ms = 1;
+};
+
+double cost_of(const Headset& h) { return relative_cost(h.plan.settings, false); }
+
+/// Of the rung after the one that is drawn.
+double next_cost(const Headset& h) {
+  double next = 1e9;
+  for (const RenderSettings& s : quality_levels({})) {
+    const double cost = relative_cost(s, false);
+    if (cost > cost_of(h)) next = std::min(next, cost);
+  }
+  return next;
+}
+
+double coarsest_cost() { return relative_cost(quality_levels({}).front(), false); }
+
+TEST(XrFramePacing, HoldsThePeriodWhereItCan) {
+  for (const double unit : {1.0, 20.0, 60.0}) {
+    Headset h;
+    h.unit_ms = unit;
+    h.run(2000);
+    EXPECT_LE(h.pace.late_after_warmup(), 20) << unit << ": more than 1 % late";
+    EXPECT_EQ(h.pace.frame_count(), 2000);
+    EXPECT_EQ(h.pace.half_rate_frames(), 0);
+    EXPECT_TRUE(h.news.empty()) << h.news;
+    EXPECT_EQ(h.plan.display_periods, 1);
+    // and does not waste it: the next rung would not have fitted, with the room that it needs to be taken
+    if (unit < 2) continue;  // the last one
+    EXPECT_GT(unit * next_cost(h), 0.75 * h.pace.budget_ms()) << unit;
+  }
+}
+
+TEST(XrFramePacing, WhereItCannotTheCoarsestComesAtHalfRateAndThatIsSaidOnce) {
+  Headset h;
+  h.unit_ms = 1.4 * h.period_ms / coarsest_cost();
+  h.run(1000);
+  EXPECT_EQ(h.plan.settings.fast, quality_levels({}).front().fast);
+  EXPECT_EQ(h.plan.display_periods, 2);
+  EXPECT_GT(h.pace.half_rate_frames(), 950);
+  EXPECT_LE(h.pace.late_after_warmup(), 10);
+  EXPECT_NE(h.news.find("every 2nd frame"), std::string::npos);
+  EXPECT_EQ(h.news.find("every 2nd frame"), h.news.rfind("every 2nd frame"));
+  // the machine is free again, and then not
+  h.unit_ms = 5;
+  h.run(200);
+  EXPECT_EQ(h.plan.display_periods, 1);
+  h.unit_ms = 1.4 * h.period_ms / coarsest_cost();
+  h.run(200);
+  EXPECT_EQ(h.plan.display_periods, 2);
+  EXPECT_EQ(h.news.find("every 2nd frame"), h.news.rfind("every 2nd frame"));
+}
+
+TEST(XrFramePacing, GivesWayToWhatElseTheMachineDoesAndComesBack) {
+  Headset h;
+  h.run(300);
+  const double before = h.pace.budget_ms();
+  h.beside_ms = 8;  // a compositor that needs more than the usual room
+  h.run(300);
+  EXPECT_LT(h.pace.budget_ms(), before);
+  const int late = h.pace.late_after_warmup();
+  h.run(1000);
+  EXPECT_LE(h.pace.late_after_warmup() - late, 15);
+  h.beside_ms = 0;
+  h.run(1000);
+  EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9);
+}
+
+/// What the machine had before a stall it has again 90 frames after it, and is not late for that. A rung that fitted only just may be the
+/// one below it then: a better one is taken with room only.
+TEST(XrFramePacing, AfterAStallOfAnyLengthAllIsBackInASecond) {
+  for (const int frames : {1, 3, 30, 300})
+    for (const double stall_ms : {15.0, 60.0, 3000.0}) {
+      const std::string what = std::to_string(frames) + " of " + std::to_string(stall_ms) + " ms";
+      Headset h;
+      h.run(400);
+      const double budget = h.pace.budget_ms(), cost = cost_of(h);
+      for (int again = 0; again < 3; ++again) {
+        h.beside_ms = stall_ms;
+        h.run(frames);
+        h.beside_ms = 1;
+        h.run(2);  // the first one still shows what the stall made late
+        const int late = h.pace.late_frames();
+        h.run(90);
+        EXPECT_NEAR(h.pace.budget_ms(), budget, 1e-9) << what;
+        EXPECT_TRUE(cost_of(h) == cost || (cost_of(h) < cost && h.unit_ms * next_cost(h) > 0.8 * budget)) << what;
+        EXPECT_EQ(h.plan.display_periods, 1) << what;
+        h.run(300);
+        EXPECT_LE(h.pace.late_frames() - late, 3) << what;
+      }
+    }
+}
+
+/// A compositor that always needs more than the usual room: the rise does not try again and again. When it needs it no more, it is back.
+TEST(XrFramePacing, SteadyLoadDoesNotMakeItLate) {
+  for (const double unit : {5.0, 10.0, 20.0, 30.0, 40.0})
+    for (const double beside : {3.0, 4.0, 5.0, 6.0, 7.0, 8.0})
+      for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+        const std::string what = fmt::format("{} ms beside, a unit of {} ms, seed {}", beside, unit, seed);
+        Headset h;
+        h.random.seed(seed);
+        h.unit_ms = unit;
+        h.beside_ms = beside;
+        h.run(500);
+        const int late = h.pace.late_frames();
+        h.run(5000);
+        EXPECT_LE(h.pace.late_frames() - late, 50) << what << ": more than 1 % late";
+        h.beside_ms = 0;
+        h.run(800);
+        EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9) << what;
+      }
+}
+
+TEST(XrFramePacing, CountsWhatIsLateAndNotAPause) {
+  XrFramePacing pace;
+  std::int64_t shown = 10'000'000;
+  const auto frame = [&](std::int64_t periods) {
+    shown += periods * 10'000'000;
+    pace.next(10, shown);
+    pace.record_render_ms(1);
+  };
+  for (int k = 0; k < 40; ++k) frame(1);
+  EXPECT_EQ(pace.late_frames(), 0);
+  frame(2);
+  frame(1);
+  frame(5);
+  EXPECT_EQ(pace.late_frames(), 2);
+  EXPECT_EQ(pace.late_after_warmup(), 2);
+  pace.pause();
+  frame(500);
+  EXPECT_EQ(pace.late_frames(), 2);
+  shown += 3'000'000;  // the runtime's prediction wavers
+  frame(1);
+  EXPECT_EQ(pace.late_frames(), 2);
+}
+
+TEST(XrFramePacing, AClockThatLeapsIsAtMostLate) {
+  XrFramePacing pace;
+  constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t shown : {std::int64_t(-5), -kFar, kFar, -kFar, std::int64_t(0), kFar}) {
+    EXPECT_GT(pace.next(10, shown).display_periods, 0);
+    pace.record_render_ms(1);
+    EXPECT_GE(pace.budget_ms(), 2.5 - 1e-9);
+    EXPECT_LE(pace.budget_ms(), 8 + 1e-9);
+  }
+  EXPECT_EQ(pace.late_frames(), 2) << "what goes back, or comes after nothing, is not late";
+}
+
+TEST(XrFramePacing, ExactRaysSavePixels) {
+  Headset h({false, false});
+  h.unit_ms = 100;
+  h.run(400);
+  EXPECT_GT(h.plan.pixel_scale, 1u);
+  EXPECT_EQ(h.plan.display_periods, 1);
+  EXPECT_LE(h.pace.late_after_warmup(), 4);
+}
+
+}  // namespace frame_pace_test
+}  // namespace catena::test

@@ -1,0 +1,151 @@
+/// What the hands do and feel: poses and buttons by the profile of the controller, vibration, and what is lost and found.
+#include <gtest/gtest.h>
+
+#include "tests/render/xr/xr_fixture.h"
+
+namespace catena::test {
+namespace hands_test {
+
+using namespace xr_rig;
+
+class HeadsetControllers : public HeadsetFixture {
+ protected:
+  void SetUp() override {
+    HeadsetFixture::SetUp();
+    if (!runtime_.found()) return;
+    runtime_.script().width = runtime_.script().height = 16;
+    auto& right = runtime_.script().hands[1];
+    right.grip = {{0.0f, 0.0f, 0.70710678f, 0.70710678f}, {0.2f, -0.1f, -0.4f}};
+    right.aim = {{0, 0, 0, 1}, {0.2f, -0.1f, -0.45f}};
+    right.select = 0.25f;
+    right.squeeze = 1;
+    right.stick = {-0.5f, 0.75f};
+    right.menu = true;
+  }
+  xr::ControllerState hand(std::size_t which) {
+    EXPECT_TRUE(headset_->actions().sync());
+    auto state = headset_->actions().controller(which, *xr::to_xr_time(headset_->instance(), 5'000'000'000));
+    EXPECT_TRUE(state) << state.error().message;
+    return state ? *state : xr::ControllerState{};
+  }
+  FramePacket packet_ = ball_packet({0.0, 0.0, -1.0}, 0.3);
+};
+
+TEST_F(HeadsetControllers, EveryKnownControllerHasItsControls) {
+  struct Expected {
+    const char* profile;
+    double select, grab, stick_x;
+  };
+  // the simple controller has a click alone
+  for (const Expected& due : {Expected{"/interaction_profiles/khr/simple_controller", 0.25, 0, 0},
+                              Expected{"/interaction_profiles/oculus/touch_controller", 0.25, 1, -0.5},
+                              Expected{"/interaction_profiles/valve/index_controller", 0.25, 1, -0.5},
+                              Expected{"/interaction_profiles/htc/vive_controller", 0.25, 1, -0.5},
+                              Expected{"/interaction_profiles/microsoft/motion_controller", 0.25, 1, -0.5}}) {
+    SCOPED_TRACE(due.profile);
+    runtime_.script().profile = due.profile;
+    ASSERT_TRUE(open());
+    ASSERT_TRUE(run_frames(packet_, {}, 3));
+    const xr::ControllerState state = hand(1);
+    EXPECT_TRUE(state.is_tracked && state.has_aim && state.is_focused);
+    EXPECT_NEAR(norm(state.grip.position - Vec3(0.2, -0.1, -0.4)), 0, 1e-7);
+    EXPECT_NEAR(norm(rotate(state.grip.orientation, Vec3(1.0, 0.0, 0.0)) - Vec3(0.0, 1.0, 0.0)), 0, 1e-6);
+    EXPECT_NEAR(state.aim.position.z, -0.45, 1e-7);
+    EXPECT_EQ(state.select, due.select);
+    EXPECT_EQ(state.grab, due.grab);
+    EXPECT_EQ(state.stick_x, due.stick_x);
+    EXPECT_TRUE(state.menu);
+    const auto profile = headset_->actions().interaction_profile(1);
+    ASSERT_TRUE(profile);
+    EXPECT_EQ(*profile, due.profile);
+    headset_->stop();
+    renderer_.reset();
+    headset_.reset();
+  }
+}
+
+TEST_F(HeadsetControllers, AHandThatIsLostIsNotThere) {
+  ASSERT_TRUE(open());
+  ASSERT_TRUE(run_frames(packet_, {}, 3));
+  EXPECT_TRUE(hand(1).is_tracked);
+  runtime_.script().hands[1].active = false;
+  EXPECT_FALSE(hand(1).is_tracked);
+  EXPECT_TRUE(hand(0).is_tracked);
+  runtime_.script().hands[1].active = true;
+  runtime_.script().tracked = false;
+  EXPECT_FALSE(hand(1).is_tracked);
+  runtime_.script().tracked = true;
+  EXPECT_TRUE(hand(1).is_tracked);
+  // without the focus there are no hands
+  runtime_.script().states.emplace(runtime_.record().calls.at("xrWaitFrame"), XR_SESSION_STATE_VISIBLE);
+  ASSERT_TRUE(run_frames(packet_, {}, 2));
+  EXPECT_FALSE(hand(1).is_tracked);
+}
+
+TEST_F(HeadsetControllers, VibrationsArriveAsTheyAreAndNoneWithoutFocus) {
+  ASSERT_TRUE(open());
+  ASSERT_TRUE(run_frames(packet_, {}, 3));
+  xr::Actions& actions = headset_->actions();
+  ASSERT_TRUE(actions.vibrate(0, 0.25, 160, 30'000'000));
+  ASSERT_TRUE(actions.vibrate(1, 7, -3, 0));  // clamped; the runtime's own frequency, its shortest pulse
+  ASSERT_TRUE(actions.stop_vibration(0));
+  const auto& felt = runtime_.record().vibrations;
+  ASSERT_EQ(felt.size(), 3u);
+  EXPECT_EQ(felt[0].hand, 0);
+  EXPECT_EQ(felt[0].amplitude, 0.25f);
+  EXPECT_EQ(felt[0].frequency, 160.0f);
+  EXPECT_EQ(felt[0].duration, 30'000'000);
+  EXPECT_EQ(felt[1].hand, 1);
+  EXPECT_EQ(felt[1].amplitude, 1.0f);
+  EXPECT_EQ(felt[1].frequency, 0.0f);
+  EXPECT_EQ(felt[1].duration, std::int64_t(XR_MIN_HAPTIC_DURATION));
+  EXPECT_TRUE(felt[2].stop);
+  runtime_.script().states.emplace(runtime_.record().calls.at("xrWaitFrame"), XR_SESSION_STATE_VISIBLE);
+  ASSERT_TRUE(run_frames(packet_, {}, 2));
+  ASSERT_TRUE(actions.vibrate(0, 1, 0, 1'000'000));
+  EXPECT_EQ(felt.size(), 3u);
+}
+
+/// Where the eyes look is a pose; what a headset without eyes, or without the extension, does is nothing.
+TEST_F(HeadsetControllers, TheGazeIsWhereTheEyesLook) {
+  const float s = std::sin(0.1f), c = std::cos(0.1f);
+  for (const int lack : {0, 1, 2}) {
+    SCOPED_TRACE(lack);
+    runtime_.reset();
+    runtime_.script().width = runtime_.script().height = 16;
+    runtime_.script().gaze = XrPosef{{0, s, 0, c}, {0.01f, 0.02f, 0.03f}};
+    if (lack == 1) runtime_.script().unsupported.insert(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+    if (lack == 2) runtime_.script().supports_gaze = false;
+    ASSERT_TRUE(open());
+    ASSERT_TRUE(run_frames(packet_, {}, 3));
+    ASSERT_TRUE(headset_->actions().sync());
+    const auto gaze = headset_->actions().gaze(5'000'000'000);
+    ASSERT_TRUE(gaze) << gaze.error().message;
+    EXPECT_EQ(gaze->has_value(), lack == 0);
+    if (*gaze) {
+      EXPECT_NEAR((*gaze)->position.y, 0.02, 1e-7);
+      EXPECT_NEAR(norm(rotate((*gaze)->orientation, Vec3(0.0, 0.0, -1.0)) - Vec3(-std::sin(0.2), 0.0, -std::cos(0.2))), 0, 1e-6);
+      runtime_.script().gaze.reset();  // the eyes are shut
+      const auto shut = headset_->actions().gaze(5'000'000'000);
+      ASSERT_TRUE(shut);
+      EXPECT_FALSE(shut->has_value());
+    }
+    headset_->stop();
+    renderer_.reset();
+    headset_.reset();
+  }
+}
+
+TEST_F(HeadsetControllers, TheClockIsOurs) {
+  ASSERT_TRUE(open());
+  EXPECT_EQ(xr::to_xr_time(headset_->instance(), 12'345'678'901), std::optional<XrTime>(12'345'678'901));
+  headset_->stop();
+  renderer_.reset();
+  headset_.reset();
+  runtime_.script().unsupported.insert(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
+  ASSERT_TRUE(open());
+  EXPECT_FALSE(xr::to_xr_time(headset_->instance(), 12'345'678'901));
+}
+
+}  // namespace hands_test
+}  // namespace catena::test

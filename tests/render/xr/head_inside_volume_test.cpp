@@ -1,0 +1,141 @@
+/// The head goes into a volume: from before its face to behind it in small steps, and onto the face itself. Every picture is what rays from
+/// that very eye see, so that there is neither a flash nor a hole on the way.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/render/support/image_fixture.h"
+#include "tests/render/xr/xr_fixture.h"
+
+namespace catena::test {
+namespace inside_test {
+
+using namespace xr_rig;
+using xr_runtime::CapturedImage;
+
+constexpr double kScale = 0.05;  // metres a unit
+constexpr int kNodes = 17;       // of the box, each way, a unit apart
+
+Vec3 turned_by(const XrQuaternionf& q, const Vec3& v) {
+  const Vec3 u(q.x, q.y, q.z);
+  return v + 2 * double(q.w) * cross(u, v) + 2.0 * cross(u, cross(u, v));
+}
+
+/// From the eye through the middle of a pixel, in the room: as OpenXR describes it.
+Vec3 ray_of(const XrView& view, int i, int j, int width, int height) {
+  const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
+               b = std::tan(view.fov.angleDown);
+  return direction(turned_by(view.pose.orientation, Vec3(l + (r - l) * (i + 0.5) / width, t + (b - t) * (j + 0.5) / height, -1.0)));
+}
+
+class HeadInsideVolume : public HeadsetFixture {
+ protected:
+  void SetUp() override {
+    HeadsetFixture::SetUp();
+    if (!runtime_.found()) return;
+    runtime_.script().capture_images = true;
+    runtime_.script().width = 48;
+    runtime_.script().height = 40;
+    views_ = runtime_.script().views;
+    // the near face of the box is the room's plane z = 0 about the line that the head goes along
+    placement_.meters_per_unit = kScale;
+    placement_.world_origin = {0.45 * (kNodes - 1), 0.55 * (kNodes - 1), kNodes - 1.0};
+  }
+  /// Where the eyes are: before the face, or behind it.
+  void stand_at(double z) {
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      runtime_.script().views[k] = views_[k];
+      runtime_.script().views[k].pose.position.z = float(z);
+    }
+  }
+  /// The pictures of both eyes from there.
+  const std::vector<CapturedImage>& seen(FramePacket& packet, const RenderSettings& settings) {
+    for (bool shown = false; !shown;) {
+      EXPECT_TRUE(headset_->poll());
+      const auto frame = headset_->begin();
+      EXPECT_TRUE(frame);
+      if (!frame) break;
+      const Outcome drawn = headset_->show(*frame, *renderer_, packet, settings, placement_);
+      EXPECT_TRUE(drawn) << drawn.error().message;
+      shown = frame->should_render || !drawn;
+    }
+    return runtime_.record().last_images;
+  }
+
+  std::vector<XrView> views_;
+  Placement placement_;
+};
+
+std::vector<double> steps_through() {
+  std::vector<double> steps{1e-6, 0, -1e-6};
+  for (double z = 0.03; z > -0.031; z -= 0.005) steps.push_back(z);
+  std::ranges::sort(steps, std::greater<>());
+  return steps;
+}
+
+RenderSettings fast_settings(std::uint32_t spacing) {
+  RenderSettings settings;
+  settings.fast = FastSettings{.step_voxels = 1, .spacing = spacing, .refine_half_255 = 1, .refine_full_255 = 1};
+  return settings;
+}
+
+/// Of one sigma the picture is known: what comes through is exp(-sigma times the way through the box from the eye on).
+TEST_F(HeadInsideVolume, AnEvenVolumeIsTheWayThroughIt) {
+  constexpr double kSigma = 0.12;  // a unit
+  ASSERT_TRUE(open());
+  FramePacket packet;
+  packet.background = {0, 0, 0, 1};
+  const GridPtr grid = make_grid({kNodes, kNodes, kNodes}, [](const Vec3&) { return 1.0; });
+  packet.volumes.push_back(volume_item(grid, {{0, 0}, {1, kSigma}}, {1.0f, 1.0f, 1.0f}));
+  for (const RenderSettings& settings : {RenderSettings{}, fast_settings(1)})
+    for (const double z : steps_through()) {
+      stand_at(z);
+      const auto& pictures = seen(packet, settings);
+      ASSERT_EQ(pictures.size(), 2u);
+      int worst = 0;
+      for (std::size_t k = 0; k < pictures.size(); ++k) {
+        const XrView& view = runtime_.script().views[k];
+        const Vec3 eye(view.pose.position.x, view.pose.position.y, view.pose.position.z);
+        for (int j = 0; j < 40; ++j)
+          for (int i = 0; i < 48; ++i) {
+            const double through = std::exp(-kSigma * chord_length(*grid, placement_.to_world(eye), ray_of(view, i, j, 48, 40)));
+            const int due = int(std::lround(255 * (1 - through))), is = pictures[k].rgba[4 * std::size_t(j * 48 + i)];
+            worst = std::max(worst, std::abs(is - due));
+          }
+      }
+      EXPECT_LE(worst, 2) << (settings.fast ? "fast rays, " : "exact rays, ") << z << " m before the face";
+    }
+}
+
+double rms_between(const CapturedImage& a, const CapturedImage& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double(a.rgba[i]) - b.rgba[i], 2);
+  return std::sqrt(sum / double(a.rgba.size()));
+}
+
+/// Of a volume with something in it, shaded: the rungs that a headset is drawn with against rays of a tenth of a voxel, and no picture
+/// differs more from the one before it than theirs do.
+TEST_F(HeadInsideVolume, NothingFlashesOnTheWayIn) {
+  ASSERT_TRUE(open());
+  FramePacket packet;
+  packet.background = {0.1f, 0.2f, 0.3f, 1};
+  const GridPtr grid = make_grid({kNodes, kNodes, kNodes}, [](const Vec3& at) {
+    return 0.5 + 0.25 * std::sin(0.7 * at.x) + 0.25 * std::cos(0.6 * at.y) * std::sin(0.5 * at.z);
+  });
+  packet.volumes.push_back(volume_item(grid, {{0.3, 0}, {1, 0.8}}, {1.0f, 0.8f, 0.5f}));
+  packet.volumes.back().is_shaded = true;
+  std::optional<std::array<CapturedImage, 2>> before;
+  for (const double z : steps_through()) {
+    stand_at(z);
+    const CapturedImage reference = seen(packet, reference_settings())[0];
+    const CapturedImage drawn = seen(packet, fast_settings(4))[0];
+    EXPECT_LT(rms_between(drawn, reference), 4) << z;
+    if (before) {
+      EXPECT_LT(rms_between(drawn, (*before)[1]), rms_between(reference, (*before)[0]) + 2) << z;
+    }
+    before = {reference, drawn};
+  }
+}
+
+}  // namespace inside_test
+}  // namespace catena::test

@@ -1,0 +1,185 @@
+/// What the headset gets to show: a ball where it stands, for canted and asymmetric eyes at every depth, in the bytes that a window gets.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "render/image/image.h"
+#include "tests/render/xr/xr_fixture.h"
+
+namespace catena::test {
+namespace picture_test {
+
+using namespace xr_rig;
+using xr_runtime::CapturedImage;
+
+/// x, y in pixels.
+using Place = std::array<double, 2>;
+
+Place centroid(const CapturedImage& picture) {
+  double x = 0, y = 0, count = 0;
+  for (std::uint32_t j = 0; j < picture.height; ++j)
+    for (std::uint32_t i = 0; i < picture.width; ++i) {
+      const std::uint8_t* p = &picture.rgba[4 * (std::size_t(j) * picture.width + i)];
+      if (std::abs(p[0] - 26) <= 1 && std::abs(p[1] - 51) <= 1 && std::abs(p[2] - 77) <= 1) continue;  // the background
+      x += i + 0.5;
+      y += j + 0.5;
+      ++count;
+    }
+  return {x / count, y / count};
+}
+
+Vec3 turned(const XrQuaternionf& q, const Vec3& v) {
+  const Vec3 u(q.x, q.y, q.z);
+  return v + 2 * double(q.w) * cross(u, v) + 2.0 * cross(u, cross(u, v));
+}
+
+/// The same of a ball in the room, by rays from the eye as OpenXR describes it: nothing of Catena's cameras.
+Place expected_centroid(const XrView& view, const Vec3& centre, double radius, double width, double height) {
+  constexpr int kFine = 4;
+  const double l = std::tan(view.fov.angleLeft), r = std::tan(view.fov.angleRight), t = std::tan(view.fov.angleUp),
+               b = std::tan(view.fov.angleDown);
+  const Vec3 eye(view.pose.position.x, view.pose.position.y, view.pose.position.z), to = centre - eye;
+  double x = 0, y = 0, count = 0;
+  for (int j = 0; j < kFine * int(height); ++j)
+    for (int i = 0; i < kFine * int(width); ++i) {
+      const double px = (i + 0.5) / kFine, py = (j + 0.5) / kFine;
+      const Vec3 ray = direction(turned(view.pose.orientation, Vec3(l + (r - l) * px / width, t + (b - t) * py / height, -1.0)));
+      const double along = dot(ray, to);
+      if (along <= 0 || dot(to, to) - along * along > radius * radius) continue;
+      x += px;
+      y += py;
+      ++count;
+    }
+  return {x / count, y / count};
+}
+
+class HeadsetImages : public HeadsetFixture {};
+
+TEST_F(HeadsetImages, ABallIsSeenWhereItStandsByBothEyes) {
+  runtime_.script().capture_images = true;
+  runtime_.script().width = 200;
+  runtime_.script().height = 180;
+  // the eyes canted about two axes, the head turned
+  runtime_.script().views[1].pose.orientation = {0.05f, -0.09f, 0.02f, 0.994f};
+  const Outcome opened = open();
+  ASSERT_TRUE(opened) << opened.error().message;
+  Placement placement;
+  placement.world_origin = {3.0, -2.0, 1.0};
+  placement.world_from_room = Mat3(Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0), Vec3(1.0, 0.0, 0.0));
+  placement.meters_per_unit = 0.02;
+  for (const double depth : {0.2, 0.5, 1.0, 3.0, 20.0}) {
+    const Vec3 room(0.1 * depth, -0.06 * depth, -depth);
+    const double radius = 0.16 * depth;
+    FramePacket packet = ball_packet(placement.to_world(room), radius / placement.meters_per_unit);
+    const Outcome turned = run_frames(packet, placement, 4);
+    ASSERT_TRUE(turned) << turned.error().message;
+    ASSERT_EQ(runtime_.record().last_images.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const CapturedImage& picture = runtime_.record().last_images[k];
+      const Place seen = centroid(picture), due = expected_centroid(runtime_.script().views[k], room, radius, 200, 180);
+      EXPECT_NEAR(seen[0], due[0], 0.1) << "eye " << k << " at " << depth << " m";
+      EXPECT_NEAR(seen[1], due[1], 0.1) << "eye " << k << " at " << depth << " m";
+      if (const char* folder = std::getenv("CATENA_XR_PICTURES")) {
+        const std::string path = std::string(folder) + "/eye" + std::to_string(k) + "-" + std::to_string(depth) + ".png";
+        EXPECT_TRUE(write_png(path, {picture.width, picture.height, picture.rgba}, false));
+      }
+    }
+  }
+  EXPECT_EQ(runtime_.record().moved_poses, 0u);
+}
+
+/// A ball where the hand is, while the head moves: drawn for the frame's own poses, it covers the hand in both eyes.
+TEST_F(HeadsetImages, TheHandIsSeenWhereItIsWhileTheHeadMoves) {
+  runtime_.script().capture_images = true;
+  runtime_.script().width = runtime_.script().height = 160;
+  const std::vector<XrView> still = runtime_.script().views;
+  runtime_.script().on_frame = [still](std::uint64_t frame, xr_runtime::Script& script) {
+    const float t = float(frame);
+    for (std::size_t k = 0; k < still.size(); ++k) {
+      script.views[k].pose.position.x = still[k].pose.position.x + 0.01f * t;
+      script.views[k].pose.position.z = still[k].pose.position.z - 0.005f * t;
+      script.views[k].pose.orientation = {0.01f * t, still[k].pose.orientation.y + 0.004f * t, 0, still[k].pose.orientation.w};
+      // a unit quaternion, as a runtime gives
+      XrQuaternionf& q = script.views[k].pose.orientation;
+      const float length = std::sqrt(q.x * q.x + q.y * q.y + q.w * q.w);
+      q = {q.x / length, q.y / length, 0, q.w / length};
+    }
+    script.hands[1].grip.position = {0.05f, -0.1f + 0.003f * t, -0.5f};
+  };
+  ASSERT_TRUE(open());
+  Placement placement;
+  placement.meters_per_unit = 0.3;
+  placement.world_origin = {1.0, 2.0, 3.0};
+  double most = 0;
+  for (int i = 0; i < 12; ++i) {
+    ASSERT_TRUE(headset_->poll());
+    const auto frame = headset_->begin();
+    ASSERT_TRUE(frame);
+    ASSERT_TRUE(headset_->actions().sync());
+    const auto hand = headset_->actions().controller(1, frame->display_time);
+    ASSERT_TRUE(hand);
+    const Vec3 room = hand->grip.position;
+    FramePacket packet = ball_packet(placement.to_world(room), 0.05 / placement.meters_per_unit);
+    ASSERT_TRUE(headset_->show(*frame, *renderer_, packet, {}, placement));
+    if (!frame->should_render || !hand->is_tracked) continue;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Place seen = centroid(runtime_.record().last_images[k]),
+                  due = expected_centroid(runtime_.script().views[k], room, 0.05, 160, 160);
+      most = std::max({most, std::abs(seen[0] - due[0]), std::abs(seen[1] - due[1])});
+    }
+  }
+  EXPECT_GT(most, 0);  // it was looked at
+  EXPECT_LT(most, 0.25);
+  EXPECT_EQ(runtime_.record().moved_poses, 0u);
+}
+
+/// In an sRGB image as in a plain one the bytes are those of a picture to a file.
+TEST_F(HeadsetImages, WhatIsSubmittedIsWhatAFileWouldHold) {
+  for (const std::int64_t format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM}) {
+    runtime_.script().capture_images = true;
+    runtime_.script().formats = {VK_FORMAT_B8G8R8A8_SRGB, format};
+    const Outcome opened = open();
+    ASSERT_TRUE(opened) << opened.error().message;
+    const Placement placement;
+    FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
+    ASSERT_TRUE(run_frames(packet, placement, 3));
+    // the window's mirror is the first eye, drawn last
+    const auto mirrored = renderer_->read_back();
+    ASSERT_TRUE(mirrored);
+    EXPECT_EQ(mirrored->rgba, runtime_.record().last_images[0].rgba);
+    // and each eye is what a renderer without a headset makes of its view
+    auto plain = Renderer::create({true, test_device(), {}});
+    ASSERT_TRUE(plain);
+    for (std::size_t k = 0; k < 2; ++k) {
+      packet.view = *make_xr_eye_view(placement, xr::make_xr_eye(runtime_.script().views[k]));
+      ASSERT_TRUE((*plain)->draw(packet, {}));
+      const auto picture = (*plain)->read_back();
+      const auto& shown = runtime_.record().last_images[k].rgba;
+      ASSERT_EQ(picture->rgba.size(), shown.size());
+      int most = 0;
+      for (std::size_t i = 0; i < shown.size(); ++i) most = std::max(most, std::abs(int(shown[i]) - int(picture->rgba[i])));
+      EXPECT_LE(most, 2);
+    }
+    headset_->stop();
+    renderer_.reset();
+    headset_.reset();
+  }
+}
+
+/// A coarser rung takes a part of the same images.
+TEST_F(HeadsetImages, FewerPixelsAreAPartOfTheImage) {
+  runtime_.script().capture_images = true;
+  ASSERT_TRUE(open());
+  FramePacket packet = ball_packet({0.0, 0.0, -1.0}, 0.3);
+  ASSERT_TRUE(run_frames(packet, {}, 3, 0.5));
+  EXPECT_EQ(runtime_.record().last_images[0].width, 48u);
+  EXPECT_EQ(runtime_.record().last_images[0].height, 40u);
+  const Place seen = centroid(runtime_.record().last_images[0]),
+              due = expected_centroid(runtime_.script().views[0], {0.0, 0.0, -1.0}, 0.3, 48, 40);
+  EXPECT_NEAR(seen[0], due[0], 0.1);
+  EXPECT_NEAR(seen[1], due[1], 0.1);
+}
+
+}  // namespace picture_test
+}  // namespace catena::test

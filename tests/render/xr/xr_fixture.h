@@ -1,0 +1,109 @@
+/// A headset of the scripted runtime (tests/xr_runtime) behind the real loader, and a renderer on the device that it made: lavapipe, with
+/// the validation layer on.
+#pragma once
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <memory>
+
+#include "render/xr/headset.h"
+#include "tests/support/support.h"
+#include "tests/support/vulkan.h"
+#include "tests/xr_runtime/script.h"
+
+namespace catena::test::xr_rig {
+
+using namespace catena::render;
+
+/// What the environment named before the scripted runtime took its place; empty: nothing.
+inline const std::string& original_runtime() {
+  static const std::string path = std::getenv("XR_RUNTIME_JSON") ? std::getenv("XR_RUNTIME_JSON") : "";
+  return path;
+}
+
+/// The library, opened once more than the loader does: its stage outlives instances.
+class Runtime {
+ public:
+  Runtime() {
+    use_lavapipe();
+    (void)original_runtime();
+    const std::string library = binary_dir() + "/libcatena_xr_runtime.so";
+    ::setenv("XR_RUNTIME_JSON", (binary_dir() + "/xr_runtime.json").c_str(), 1);
+    handle_ = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle_) return;
+    stage_ = reinterpret_cast<xr_runtime::SharedState* (*)()>(::dlsym(handle_, "catena_xr_stage"))();
+    reset();
+  }
+  ~Runtime() {
+    // what the process's other tests would find
+    if (handle_) reset();
+  }
+  void reset() { reinterpret_cast<void (*)()>(::dlsym(handle_, "catena_xr_reset"))(); }
+  bool found() const { return handle_ != nullptr; }
+  xr_runtime::Script& script() { return stage_->script; }
+  const xr_runtime::Record& record() const { return stage_->record; }
+
+ private:
+  void* handle_ = nullptr;
+  xr_runtime::SharedState* stage_ = nullptr;
+};
+
+/// One ball of a plain colour, lit by the headlight.
+inline FramePacket ball_packet(const Vec3& centre, double radius) {
+  FramePacket packet;
+  auto balls = std::make_shared<SphereSet>();
+  balls->origin = centre;
+  balls->offsets = {glm::vec3(0.0f)};
+  balls->radii = {float(radius)};
+  balls->colors = {Color{1.0f, 0.6f, 0.2f}};
+  packet.background = {0.1f, 0.2f, 0.3f, 1.0f};
+  packet.spheres.push_back({balls, packet.add_object("ball", "ball")});
+  return packet;
+}
+
+class HeadsetFixture : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!runtime_.found()) GTEST_SKIP() << "the scripted runtime was not built";
+  }
+  void TearDown() override {
+    headset_ ? headset_->stop() : void();
+    if (renderer_) {
+      EXPECT_EQ(renderer_->stats().validation_messages, 0u);
+      for (const std::string& text : renderer_->validation_texts()) ADD_FAILURE() << text;
+    }
+    renderer_.reset();
+    headset_.reset();
+    for (const std::string& line : runtime_.record().illegal) ADD_FAILURE() << line;
+    EXPECT_EQ(runtime_.record().objects, 0u);
+  }
+  /// Everything up to a session; the first error.
+  Outcome open() {
+    CATENA_TRY(headset_, xr::Headset::open());
+    vk::DeviceOptions options;
+    options.validation = validation_;
+    options.provider = headset_->vulkan_provider(queue_lock_);
+    CATENA_TRY(renderer_, Renderer::create(options));
+    return headset_->start(renderer_->device());
+  }
+  /// Turns of the loop: events, and a frame where the session runs.
+  Outcome run_frames(FramePacket& packet, const Placement& placement, int turns = 1, double share = 1) {
+    for (int i = 0; i < turns; ++i) {
+      CATENA_CHECK(headset_->poll());
+      if (!headset_->is_running()) continue;
+      CATENA_TRY(const xr::Frame frame, headset_->begin());
+      CATENA_CHECK(headset_->show(frame, *renderer_, packet, {}, placement, share));
+    }
+    return Done{};
+  }
+
+  Runtime runtime_;
+  bool validation_ = true;
+  std::mutex queue_lock_;
+  std::unique_ptr<xr::Headset> headset_;
+  std::unique_ptr<Renderer> renderer_;
+};
+
+}  // namespace catena::test::xr_rig

@@ -1,0 +1,34 @@
+/// Runs the program `catena` as a user would.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace catena::test {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< 128 + signal if it was killed
+  std::string out, err;
+};
+
+/// No shell in between; standard input is empty.
+ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments);
+/// The `catena` of this build.
+ProgramResult run_catena(const std::vector<std::string>& arguments);
+
+/// A CSV by columns: numbers where they parse, words elsewhere.
+class Table {
+ public:
+  static Table read(const std::string& path);
+  std::size_t rows() const { return cells_.size(); }
+  bool has(const std::string& column) const;
+  double number(std::size_t row, const std::string& column) const;
+  std::string text(std::size_t row, const std::string& column) const;
+  const std::vector<std::string>& header() const { return header_; }
+
+ private:
+  std::size_t index(const std::string& column) const;
+  std::vector<std::string> header_;
+  std::vector<std::vector<std::string>> cells_;
+};
+
+}  // namespace catena::test
