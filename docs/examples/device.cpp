@@ -55,7 +55,7 @@ Outcome run() {
   while (servo.running()) std::this_thread::yield();
   servo.stop();
   HapticState state;
-  servo.take(state);
+  servo.receive(state);
   std::printf("after %llu ticks the hand is at %.5f m, the floor pushes with %.3f N\n", static_cast<unsigned long long>(state.tick),
               state.probe.z, state.force_n.z);
   return Done{};

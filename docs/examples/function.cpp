@@ -19,7 +19,7 @@ double floor_value(const Vec3& p, Vec3& gradient) {
 Outcome run() {
   scene::FieldOverride given;
   given.name = "floor";
-  given.given.scalar = field::make_callable_field("floor", {Vec3(-1.0), Vec3(1.0)}, floor_value);
+  given.in_memory_field.scalar = field::make_callable_field("floor", {Vec3(-1.0), Vec3(1.0)}, floor_value);
   CATENA_TRY(scene::Scene scene,
              scene::parse_scene(R"({"chain": [{"name": "skin", "type": "isosurface", "field": "floor", "level": 0, "free": "above"}]})",
                                 "function", {given}));

@@ -1,4 +1,4 @@
-// The plug-in shell.so. Its initialiser leaves a mark, so that a test sees whether any of its code has run.
+// The plug-in level_ball.so. Its initialiser leaves a mark, so that a test sees whether any of its code has run.
 #include <cstdio>
 #include <cstdlib>
 

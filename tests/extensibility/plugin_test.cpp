@@ -56,7 +56,7 @@ struct Plugin : testing::Test {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     EXPECT_NE(result.err.find(said), std::string::npos) << "expected " << said << " in " << result.err;
   }
-  /// A copy of shell.so in the folder with some of its bytes changed; as long, so that its parts stay where they are.
+  /// A copy of level_ball.so in the folder with some of its bytes changed; as long, so that its parts stay where they are.
   std::string changed(const std::string& name, const std::string& from, const std::string& to) const {
     std::string bytes = test::read_file(shell);
     const std::size_t at = bytes.find(from);
@@ -67,18 +67,18 @@ struct Plugin : testing::Test {
   }
 
   test::TemporaryFolder folder;
-  const std::string scene = folder / "s.json", mark = folder / "out/mark", shell = test::binary_dir() + "/shell.so",
-                    strange = test::binary_dir() + "/strange.so";
+  const std::string scene = folder / "s.json", mark = folder / "out/mark", shell = test::binary_dir() + "/level_ball.so",
+                    strange = test::binary_dir() + "/misbehaving.so";
 };
 
 TEST_F(Plugin, OptionVariableAndFolderMakeItKnown) {
-  const std::string said = "Holds the proxy on a ball that is as large as a level. Paper: of no paper. Of the plug-in shell.so.";
+  const std::string said = "Holds the proxy on a ball that is as large as a level. Paper: of no paper. Of the plug-in level_ball.so.";
   const std::string known = keys({}, {"--plugin", shell}).out;
   EXPECT_NE(known.find("shell"), std::string::npos) << known;
   EXPECT_EQ(keys({"CATENA_PLUGINS=:" + shell + ":" + shell}).out, known);
   EXPECT_NE(run({"info", "--schema", "--plugin", shell}).out.find(said), std::string::npos);
   EXPECT_EQ(keys({}).out.find("shell"), std::string::npos);
-  fs::copy_file(shell, folder / "data/catena/plugins/shell.so");
+  fs::copy_file(shell, folder / "data/catena/plugins/level_ball.so");
   EXPECT_EQ(keys({}).out, known);
   EXPECT_EQ(keys({}, {"--plugin", shell}).err, "") << "the same file twice";
   for (const char* command : {"info", "view", "render", "feel", "replay", "serve", "tradeoff", "export"})
@@ -99,12 +99,12 @@ TEST_F(Plugin, IsFeltAndReplayedToTheBitByItselfAlone) {
   const std::string record = folder / "out/r.catlog";
   const auto felt = run({"feel", scene, "--device", "emulated-falcon", "--seconds", "0.2", "--record", record, "--plugin", shell});
   ASSERT_EQ(felt.exit_code, 0) << felt.err;
-  EXPECT_NE(run({"info", record}).out.find("  plug-in      shell.so ("), std::string::npos);
-  EXPECT_NE(run({"info", record, "--json"}).out.find("\"plugins\":[\"shell.so ("), std::string::npos);
+  EXPECT_NE(run({"info", record}).out.find("  plug-in      level_ball.so ("), std::string::npos);
+  EXPECT_NE(run({"info", record, "--json"}).out.find("\"plugins\":[\"level_ball.so ("), std::string::npos);
   const auto again = run({"replay", "--log", record, "--plugin", shell});
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_NE(again.out.find("all equal to the bit"), std::string::npos) << again.out;
-  expect_refused(run({"replay", "--log", record}), "link \"skin\" ran in the plug-in shell.so (");
+  expect_refused(run({"replay", "--log", record}), "link \"skin\" ran in the plug-in level_ball.so (");
   test::write_file(folder / "other.so", test::read_file(shell) + "another build");
   expect_refused(run({"replay", "--log", record, "--plugin", folder / "other.so"}), "that file was expected, and other.so (");
 }
@@ -117,7 +117,7 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
   fs::permissions(folder / "open.so", fs::perms(0666));
   fs::create_directory(folder / "all");
   fs::permissions(folder / "all", fs::perms(0777));
-  test::write_file(folder / "all/shell.so", bytes);
+  test::write_file(folder / "all/level_ball.so", bytes);
   ASSERT_EQ(::mkfifo((folder / "pipe.so").c_str(), 0644), 0);
   const std::size_t statement = bytes.find("Catena plug-in");
   ASSERT_NE(statement, std::string::npos);
@@ -134,7 +134,7 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
                          {folder / "pipe.so", "is a pipe"},
                          {folder / "none.so", "No such file"},
                          {folder / "open.so", "may be written by others"},
-                         {folder / "all/shell.so", "may be written by others"},
+                         {folder / "all/level_ball.so", "may be written by others"},
                          {"", "a plug-in was expected"}};
   if (::geteuid() == 0) {
     test::write_file(folder / "foreign.so", bytes);
@@ -147,7 +147,7 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
     EXPECT_FALSE(test::exists(mark)) << wrong.file;
   }
   expect_refused(run({"info", scene}, {"CATENA_PLUGINS=" + folder.path() + "/text.so"}), "CATENA_PLUGINS: ");
-  expect_refused(run({"info", scene}, {"CATENA_PLUGINS=shell.so"}), "absolute paths");
+  expect_refused(run({"info", scene}, {"CATENA_PLUGINS=level_ball.so"}), "absolute paths");
   fs::copy_file(folder / "compiler.so", folder / "data/catena/plugins/old.so");
   const auto noted = keys({});
   EXPECT_EQ(noted.exit_code, 0);
@@ -158,22 +158,22 @@ TEST_F(Plugin, WhatDoesNotFitIsOneSentenceAndRunsNothing) {
 }
 
 TEST_F(Plugin, WhatItGivesIsChecked) {
-  const std::pair<const char*, const char*> all[] = {{"throws early", "strange.so: throws an exception as it is loaded"},
-                                                     {"crashes early", "strange.so: crashes (signal 6) as it is loaded"},
+  const std::pair<const char*, const char*> all[] = {{"throws early", "misbehaving.so: throws an exception as it is loaded"},
+                                                     {"crashes early", "misbehaving.so: crashes (signal 6) as it is loaded"},
                                                      {"throws", "threw an exception (no such luck)"},
                                                      {"throws a number", "threw an exception"},
                                                      {"no word", "gives a type the name \"\""},
                                                      {"no name", "gives a type the name \"Two Words\""},
                                                      {"catena's", "\"plane\", which Catena has already"},
                                                      {"a mode's", "\"anisotropic_friction\", which Catena has already"},
-                                                     {"shell's", "\"shell\", which the plug-in shell.so has given already"},
+                                                     {"shell's", "\"shell\", which the plug-in level_ball.so has given already"},
                                                      {"no build", "without a function that builds it"},
                                                      {"a key of every link", "the key \"snap\""},
                                                      {"twice", "\"strange\" twice"}};
   for (const auto& [wrong, said] : all)
     expect_refused(keys({std::string("CATENA_TEST_WRONG=") + wrong}, {"--plugin", shell, "--plugin", strange}), said);
   test::write_file(scene, R"({"chain": [{"name": "a", "type": "strange"}]})");
-  expect_refused(run({"info", scene, "--plugin", strange}), "s.json:1: the plug-in strange.so built nothing");
+  expect_refused(run({"info", scene, "--plugin", strange}), "s.json:1: the plug-in misbehaving.so built nothing");
   expect_refused(run({"info", scene, "--plugin", strange}, {"CATENA_TEST_WRONG=build throws"}), "threw an exception (no such luck)");
 }
 
@@ -188,7 +188,7 @@ TEST_F(Plugin, NoSceneNamesOne) {
 
 TEST_F(Plugin, NothingIsLoadedWithRightsOfOthers) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root has rights to give";
-  fs::copy_file(shell, folder / "data/catena/plugins/shell.so");
+  fs::copy_file(shell, folder / "data/catena/plugins/level_ball.so");
   const std::string own = folder / "catena";
   const std::vector<std::string> as_root{"CATENA_TEST_MARK=" + mark, "XDG_DATA_HOME=" + (folder / "data")};
   const auto root = [&](std::vector<std::string> more) {

@@ -13,7 +13,7 @@ namespace plugin_fuzz_test {
 namespace plugin = haptics::plugin;
 
 const std::string& seed() {
-  static const std::string bytes = test::read_file(test::binary_dir() + "/shell.so");
+  static const std::string bytes = test::read_file(test::binary_dir() + "/level_ball.so");
   return bytes;
 }
 

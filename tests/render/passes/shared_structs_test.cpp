@@ -144,12 +144,12 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_EQ(found.size(), compared);
 }
 
-TEST(SharedStructs, PackAndAnaglyphData) {
+TEST(SharedStructs, StereoComposeAndAnaglyphData) {
   auto pack = struct_offsets(shader_words("stereo_compose.frag"));
   auto anaglyph = struct_offsets(shader_words("anaglyph.frag"));
   std::size_t compared = 0;
   {
-    const auto& found = pack["PackData"];
+    const auto& found = pack["StereoComposeData"];
     EXPECT_OFFSET(StereoComposeData, first);
     EXPECT_OFFSET(StereoComposeData, block_x);
     EXPECT_OFFSET(StereoComposeData, block_y);
