@@ -34,7 +34,7 @@ struct Host {
     VkPhysicalDevice all[16];
     vkEnumeratePhysicalDevices(instance, &count, all);
     for (std::uint32_t i = 0; i < count && physical == VK_NULL_HANDLE; ++i)
-      if (vk::lacks(all[i]).empty()) physical = all[i];
+      if (vk::missing_requirement(all[i]).empty()) physical = all[i];
     if (physical == VK_NULL_HANDLE) return Error{"no device has what Catena needs"};
 
     // a queue family that draws and computes
@@ -45,7 +45,7 @@ struct Host {
     while (family + 1 < count && (families[family].queueFlags & kBoth) != kBoth) ++family;
 
     vk::DeviceFeatures features;
-    vk::require(features);  // and what this program itself needs
+    vk::enable_required(features);  // and what this program itself needs
     const std::vector<const char*> extensions = vk::required_extensions();
     const float priority = 1;
     VkDeviceQueueCreateInfo one{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
@@ -68,14 +68,14 @@ struct Host {
 
   // What Catena asks for is there already.
   vk::VulkanProvider lend() {
-    vk::VulkanProvider maker;
-    maker.instance = [this](const VkInstanceCreateInfo&, VkInstance* out) { return *out = instance, VK_SUCCESS; };
-    maker.physical = [this](VkInstance, VkPhysicalDevice* out) { return *out = physical, VK_SUCCESS; };
-    maker.device = [this](VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice* out) { return *out = device, VK_SUCCESS; };
-    maker.queue_family = family;
-    maker.queue_lock = &queue;
-    maker.keeps_ownership = true;
-    return maker;
+    vk::VulkanProvider provider;
+    provider.instance = [this](const VkInstanceCreateInfo&, VkInstance* out) { return *out = instance, VK_SUCCESS; };
+    provider.physical_device = [this](VkInstance, VkPhysicalDevice* out) { return *out = physical, VK_SUCCESS; };
+    provider.device = [this](VkPhysicalDevice, const VkDeviceCreateInfo&, VkDevice* out) { return *out = device, VK_SUCCESS; };
+    provider.queue_family = family;
+    provider.queue_lock = &queue;
+    provider.keeps_ownership = true;
+    return provider;
   }
 };
 
@@ -87,17 +87,17 @@ Outcome run() {
                                                     "embedding"));
   CATENA_TRY(const render::FramePacket packet, render::make_frame(scene, 160, 120));
   vk::DeviceOptions options;
-  options.maker = host.lend();
+  options.provider = host.lend();
   CATENA_TRY(const auto renderer, render::Renderer::create(options));
   CATENA_CHECK(renderer->draw(packet));
 
   // the picture, ready for a blit or a copy by the program's own commands; they wait for `value` of the timeline semaphore
-  const render::RenderedImage image = renderer->image();
+  const render::RenderedImage image = renderer->rendered_image();
   std::uint64_t reached = 0;
   CATENA_VK(vkGetSemaphoreCounterValue(host.device, image.timeline, &reached), "look at the timeline");
   std::printf("an image of %u x %u, %s, timeline %s\n", image.extent.width, image.extent.height,
               image.layout == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL ? "TRANSFER_SRC_OPTIMAL" : "in another layout",
-              reached >= image.value ? "reached" : "not reached yet");
+              reached >= image.timeline_value ? "reached" : "not reached yet");
   return Done{};
 }
 
