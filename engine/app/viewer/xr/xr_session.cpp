@@ -342,24 +342,24 @@ std::string HeadsetSession::status_text() const {
 
 #else
 
-struct HeadsetHost::Parts {};
-HeadsetHost::HeadsetHost(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-HeadsetHost::~HeadsetHost() = default;
-Result<std::unique_ptr<HeadsetHost>> HeadsetHost::open() {
+struct HeadsetSession::Impl {};
+HeadsetSession::HeadsetSession(std::unique_ptr<Impl> parts) : impl_(std::move(parts)) {}
+HeadsetSession::~HeadsetSession() = default;
+Result<std::unique_ptr<HeadsetSession>> HeadsetSession::open() {
   return Error{"no headset: this program was built without OpenXR, expected the package libopenxr-dev when it is built"};
 }
-void HeadsetHost::join(Screen::Options&) {}
-Outcome HeadsetHost::follow(Screen&, std::int64_t, const std::function<void(const std::string&)>&) { return Done{}; }
-bool HeadsetHost::running() const { return false; }
-Result<bool> HeadsetHost::draw(Screen&, HandHost&, const Content&) { return false; }
-void HeadsetHost::leave() {}
-std::string HeadsetHost::words() const { return "no headset"; }
-std::string HeadsetHost::figures() const { return words(); }
-bool HeadsetHost::holds_world() const { return false; }
-DeskDevice* HeadsetHost::desk() { return nullptr; }
-std::optional<scene::Workspace> HeadsetHost::hand_workspace(const HandHost&) const { return std::nullopt; }
-void HeadsetHost::show_panel(Screen&) {}
-std::optional<xr_interaction::PanelPointer::Mouse> HeadsetHost::panel_mouse() { return std::nullopt; }
+void HeadsetSession::configure(Presenter::Options&) {}
+Outcome HeadsetSession::poll(Presenter&, std::int64_t, const std::function<void(const std::string&)>&) { return Done{}; }
+bool HeadsetSession::is_running() const { return false; }
+Result<bool> HeadsetSession::draw(Presenter&, HapticSession&, const FrameCallbacks&) { return false; }
+void HeadsetSession::request_exit() {}
+std::string HeadsetSession::status_text() const { return "no headset"; }
+std::string HeadsetSession::summary_text() const { return status_text(); }
+bool HeadsetSession::is_grabbing_world() const { return false; }
+DeviceRegistration* HeadsetSession::device_registration() { return nullptr; }
+std::optional<scene::Workspace> HeadsetSession::probe_workspace(const HapticSession&) const { return std::nullopt; }
+void HeadsetSession::update_panel(Presenter&) {}
+std::optional<xr_interaction::PanelPointer::Mouse> HeadsetSession::take_panel_mouse() { return std::nullopt; }
 
 #endif
 
