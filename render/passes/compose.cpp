@@ -9,7 +9,7 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kComposeVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kComposeFragmentShader[] = {
 #include "spirv/compose.frag.inc"

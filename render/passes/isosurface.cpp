@@ -11,7 +11,7 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kIsosurfaceVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kIsosurfaceFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"

@@ -11,13 +11,13 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kLayersScreenShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kLayersMeshShader[] = {
 #include "spirv/layer_mesh.frag.inc"
 };
 constexpr std::uint32_t kLayersRestShader[] = {
-#include "spirv/layer_rest.frag.inc"
+#include "spirv/layer_tail.frag.inc"
 };
 
 /// Of a pixel: colour and depth of every layer, two ids, the depth buffer, the rest; four to spare.

@@ -10,7 +10,7 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kGhostFragmentShader[] = {
-#include "spirv/ghost.frag.inc"
+#include "spirv/occluded_overlay.frag.inc"
 };
 
 class GhostPass final : public Pass {

@@ -11,10 +11,10 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kBallVertexShader[] = {
-#include "spirv/ball.vert.inc"
+#include "spirv/sphere.vert.inc"
 };
 constexpr std::uint32_t kBallFragmentShader[] = {
-#include "spirv/ball.frag.inc"
+#include "spirv/sphere.frag.inc"
 };
 
 constexpr std::uint32_t kCorners = 6;

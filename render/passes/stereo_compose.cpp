@@ -8,10 +8,10 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kPackVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kPackPackShader[] = {
-#include "spirv/pack.frag.inc"
+#include "spirv/stereo_compose.frag.inc"
 };
 constexpr std::uint32_t kPackAnaglyphShader[] = {
 #include "spirv/anaglyph.frag.inc"

@@ -8,10 +8,10 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kStillSurfacesVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kStillSurfacesFragmentShader[] = {
-#include "spirv/still_surfaces.frag.inc"
+#include "spirv/surface_cache.frag.inc"
 };
 
 }  // namespace

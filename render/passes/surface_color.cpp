@@ -9,7 +9,7 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kSurfaceColorVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kSurfaceColorFragmentShader[] = {
 #include "spirv/surface_color.frag.inc"

@@ -7,13 +7,13 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kStillTilesVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kStillTilesOpaqueShader[] = {
 #include "spirv/opaque_tiles.frag.inc"
 };
 constexpr std::uint32_t kStillTilesChangedShader[] = {
-#include "spirv/changed_tiles.frag.inc"
+#include "spirv/dirty_tiles.frag.inc"
 };
 
 constexpr std::uint32_t kStillBlock = 4, kStillTile = 16;

@@ -78,13 +78,13 @@ Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::I
 namespace {
 
 constexpr std::uint32_t kFastVolumeVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kFastVolumeFragmentShader[] = {
 #include "spirv/volume_fast.frag.inc"
 };
 constexpr std::uint32_t kFastVolumeTilesShader[] = {
-#include "spirv/lattice_tiles.vert.inc"
+#include "spirv/ray_grid_tiles.vert.inc"
 };
 constexpr std::uint32_t kFastVolumeInterpolateShader[] = {
 #include "spirv/interpolate.comp.inc"

@@ -9,7 +9,7 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kProjectionVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kProjectionFragmentShader[] = {
 #include "spirv/projection.frag.inc"

@@ -9,7 +9,7 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kVolumeVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kVolumeFragmentShader[] = {
 #include "spirv/volume.frag.inc"
@@ -30,7 +30,7 @@ constexpr std::uint32_t kVolumeLayersShader[] = {
 #include "spirv/layers.frag.inc"
 };
 constexpr std::uint32_t kVolumeTilesShader[] = {
-#include "spirv/still_tiles.vert.inc"
+#include "spirv/dirty_tile_quads.vert.inc"
 };
 constexpr std::uint32_t kLayers = 27;                         // bindings of their colours; those of their depths follow
 constexpr std::uint32_t kChanged = kLayers + 2 * MAX_LAYERS;  // as in dirty_tile_quads.vert

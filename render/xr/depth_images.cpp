@@ -7,7 +7,7 @@ namespace catena::render::xr {
 namespace {
 
 constexpr std::uint32_t kHeadsetVertexShader[] = {
-#include "spirv/screen.vert.inc"
+#include "spirv/fullscreen.vert.inc"
 };
 constexpr std::uint32_t kHeadsetDepthShader[] = {
 #include "spirv/headset_depth.frag.inc"

@@ -260,7 +260,7 @@ TEST_F(ForeignFormats, AnNrrdsSpaceDoesNotDependOnWhatItkMakesOfIt) {
   for (const auto& [space, sign] :
        {std::pair{"left-anterior-superior", Vec3(-1, 1, 1)}, {"LPS", Vec3(-1, -1, 1)}, {"RAS", Vec3(1)}, {"3D-right-handed", Vec3(1)}}) {
     const auto installed = look(space);
-    reader_settings().program = helper_path("test_other_itk");
+    reader_settings().program = helper_path("test_conflicting_itk");
     const auto other = look(space);
     reader_settings() = {};
     EXPECT_EQ(std::get<3>(other), "km") << "the other ITK was not asked";
