@@ -1,4 +1,4 @@
-/// An axis-aligned box in the world, grown point by point. Any thread.
+/// Axis-aligned bounding box in world space, grown point by point. A value type: any thread.
 #pragma once
 #include <limits>
 
@@ -6,24 +6,26 @@
 
 namespace catena {
 
-/// Empty at first: lo = infinity, hi = -infinity.
+/// Axis-aligned box. A default-constructed box is empty: lo = infinity, hi = -infinity.
 struct Bounds {
-  Vec3 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};  ///< corners, world units
+  /// lowest and highest corner, world units
+  Vec3 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
 
-  /// Whether it holds no point.
+  /// Returns true when the box contains no point.
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
-  /// The middle; not a number of an empty one.
+  /// Returns the center of the box; NaN for an empty box.
   Vec3 center() const { return 0.5 * lo + 0.5 * hi; }
-  /// Length of the space diagonal; 0 of an empty one.
+  /// Returns the length of the space diagonal, world units; 0 for an empty box.
   double diagonal() const { return empty() ? 0 : norm(hi - lo); }
-  /// Length of the longest edge; 0 of an empty one.
+  /// Returns the length of the longest edge, world units; 0 for an empty box.
   double longest_edge() const { return empty() ? 0 : max_abs(hi - lo); }
-  /// Corner i + 2 j + 4 k.
+  /// Returns corner number i + 2 j + 4 k, where each of i, j, k is 0 for `lo` and 1 for `hi` along x, y, z.
   Vec3 corner(int i) const { return {(i & 1) ? hi.x : lo.x, (i & 2) ? hi.y : lo.y, (i & 4) ? hi.z : lo.z}; }
-  /// Whether p lies within it, faces included.
+  /// Returns true when p lies inside the box; its faces belong to it.
   bool contains(const Vec3& p) const { return p.x >= lo.x && p.y >= lo.y && p.z >= lo.z && p.x <= hi.x && p.y <= hi.y && p.z <= hi.z; }
-  void extend(const Vec3& p, double radius = 0);  ///< what is not finite is left out
-  /// Grows to hold `other`; an empty one adds nothing.
+  /// Grows the box to contain the ball of `radius` world units around p. A point that is not finite is ignored.
+  void extend(const Vec3& p, double radius = 0);
+  /// Grows the box to contain `other`; an empty box changes nothing.
   void extend(const Bounds& other);
 };
 

@@ -1,5 +1,5 @@
-/// Where an eye may be: what the picture's numbers (doubles on the way to floats, whose squares are taken) still resolve; and how many
-/// lights it may have. Any thread.
+/// Limits of camera parameters that rendering can still resolve (doubles are converted to floats and squared on the way), and the limits on
+/// the number of lights. Any thread.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -8,18 +8,20 @@
 
 namespace catena {
 
-/// World units; degrees; the height of an orthographic picture in world units.
+/// Largest absolute coordinate of a camera position or target (world units), range of the vertical field of view (degrees), and range of
+/// the height of an orthographic view (world units).
 inline constexpr double kMaxCameraCoordinate = 1e15, kMinFovyDeg = 1e-3, kMaxFovyDeg = 179.9, kMaxOrthoHeight = 1e15,
                         kMinOrthoHeight = 1e-15;
 
-/// Lights of one picture.
+/// Maximum number of lights of one image.
 inline constexpr std::size_t kMaxLights = 4;
 
-/// What is wrong with an eye's place, and what was expected, as a sentence; empty: nothing. A target counts as the eye's own place
-/// where the difference of the two is rounding.
+/// Checks a camera position and target, world units. Returns an empty string when they are usable, else one sentence that states the
+/// problem and what was expected. A target that differs from the position only by rounding counts as equal to it.
 std::string validate_view(const Vec3& position, const Vec3& target);
 
-/// The same of an angle of view, without its subject: "is 0; degrees ... were expected".
+/// Checks a vertical field of view in degrees. Returns an empty string when it is usable, else a sentence without its subject: "is 0;
+/// degrees ... were expected".
 std::string validate_fovy(double fovy_deg);
 
 }  // namespace catena

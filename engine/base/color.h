@@ -1,9 +1,9 @@
-/// A display (sRGB) colour, components from 0 to 1, as scenes write it and as it stands in the picture.
+/// Color in the display (sRGB) encoding, components from 0 to 1: the form used in scene files and in image files.
 #pragma once
 
 namespace catena {
 
-/// Red, green and blue as they stand in a picture file, 0 to 1.
+/// Red, green and blue of an sRGB color, as stored in an image file.
 struct Color {
   float r = 0, g = 0, b = 0;  ///< 0 to 1
   bool operator==(const Color&) const = default;

@@ -1,25 +1,27 @@
-/// What a person at the terminal is told beside the work. Nothing here throws or holds anybody up: a terminal that a person has stopped
-/// (Ctrl-S), a frozen remote session or a pipe that nobody reads makes a print wait for as long as it likes, and whoever holds a device,
-/// or looks for signals, must not wait. What is not taken in time, or by nobody (a closed descriptor, a full disk), is dropped: it changes
-/// neither the work nor its exit code. Any thread.
+/// Messages to the user at the terminal. No function here throws or blocks the caller for long: a terminal paused by the user (Ctrl-S), a
+/// frozen remote session or a pipe without a reader can block a write indefinitely, and a thread that drives a device or handles signals
+/// must not wait. Output that is not accepted in time, or not at all (a closed descriptor, a full disk), is dropped; it changes neither the
+/// work nor its exit code. Any thread.
 #pragma once
 #include <string_view>
 
 namespace catena {
 
-/// One line on standard error, filtered for a terminal.
+/// Prints one line to standard error. Control characters are replaced and the line is cut at kMaxLineBytes (text.h). Waits at most 500 ms
+/// at a time for the terminal or pipe to accept it.
 void print_line(std::string_view line) noexcept;
-/// The same after "catena: ".
+/// Prints one line to standard error as print_line() does, after the prefix "catena: ".
 void print_message(std::string_view line) noexcept;
 
-/// Writes the text, as it is, to standard output (1) or standard error (2), as far as it is taken within `wait_ms`. Files take all of it.
-/// An error of a write to standard output (a full disk, no waiting) is kept for stdout_errno().
+/// Writes `text` unchanged to standard output (`descriptor` 1) or standard error (2), as far as it is accepted; whenever the descriptor is
+/// not ready, waits at most `wait_ms` milliseconds. Files accept all of it. An error of a write to standard output (for example a full
+/// disk; not a write that would block) is retained for stdout_errno().
 void print_nonblocking(int descriptor, std::string_view text, int wait_ms = 0) noexcept;
 
-/// Whether a failed CATENA_ASSERT has said why the program aborts.
+/// Returns true when a failed CATENA_ASSERT has printed why the program aborts.
 bool assertion_was_reported() noexcept;
 
-/// The first error (errno) of print_nonblocking() on standard output; 0: none.
+/// Returns the errno of the first failed write of print_nonblocking() to standard output; 0: no write has failed.
 int stdout_errno() noexcept;
 
 }  // namespace catena

@@ -1,16 +1,16 @@
-/// The range of values that a picture shows where nobody states one: all values, unless a few outliers or a fill value lie far beyond the
-/// others. One value of 1e20 among 0 .. 1 gives 0 .. 1.
+/// Automatic display range: the range of values that colors span when the user gives none. It contains all values, unless a few outliers or
+/// a fill value (missing data) lie far outside of the others. One value of 1e20 among values from 0 to 1 gives the range 0 to 1.
 ///
-/// The distinct values of a sample are sorted. The core is the shortest interval that holds half of them, known fill values (is_fill_value)
-/// left out. It grows to the neighbouring value, the nearer first, until the gap g to all values D beyond one end is large by the length s
-/// of the interval so far:
-///   g >= 2 s    D holds known fill values only
-///   g > 10 s    D holds, besides those, at most max(4, n / 10000) of n values (n / 64 where that is less than 4)
-///   g > 50 s    D holds, besides those, a single value other than 0, and more than 8 different values are inside
-///   g > 1e6 s   D holds at most a tenth of all values, each larger than 1e9 and 1e9 times larger than the values inside
-/// Where all other values are equal (s = 0), D is beyond if it holds fill values only, or few values of 1e15 and more, 1e6 times larger.
-/// Ordinary data, heavy tails included, have no such gap: their range is exactly the least and the greatest value.
-/// Deterministic; any thread.
+/// The distinct values of a sample are sorted. The inlier interval starts as the shortest interval that contains half of them, known fill
+/// values (is_fill_value) excluded. It grows to the nearer of its two neighboring values, one value at a time, until all values D outside
+/// of one end are outliers. With g the gap to the nearest value of D and s the current length of the interval, D are outliers when
+///   g >= 2 s    D contains known fill values only
+///   g > 10 s    D contains, besides fill values, at most max(4, n / 10000) of n values (n / 64 instead of 4 where that is less)
+///   g > 50 s    D contains, besides those, a single value other than 0, and more than 8 distinct values are in the interval
+///   g > 1e6 s   D contains at most a tenth of all values, each > 1e9 in size and 1e9 times larger than the interval's values
+/// When all other values are equal (s = 0), D are outliers if they are fill values only (not limits of integer types), or few values of
+/// 1e15 and more that are 1e6 times larger. Ordinary data, heavy tails included, have no such gap: their range is exactly their minimum and
+/// maximum. Deterministic; any thread.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -21,60 +21,63 @@
 
 namespace catena {
 
-/// The range of values that a picture shows, and what lies beyond it.
+/// Display range of a set of values and its outliers.
 struct DisplayRange {
-  /// The values beyond one end.
+  /// Outliers below or above the range.
   struct Outliers {
-    std::uint64_t count = 0;           ///< 0: no value lies beyond this end
-    double nearest = 0, farthest = 0;  ///< of them; equal: they all have this value
+    std::uint64_t count = 0;  ///< number of outliers; 0: none at this end
+    /// Outlier nearest to the range and outlier farthest from it; equal when all outliers have the same value.
+    double nearest = 0, farthest = 0;
   };
-  double lo = 0, hi = 0;              ///< what is shown
-  double data_min = 0, data_max = 0;  ///< of all finite values
-  std::uint64_t count = 0;            ///< finite values
-  Outliers below{};                   ///< lo
-  Outliers above{};                   ///< hi
+  double lo = 0, hi = 0;              ///< displayed range
+  double data_min = 0, data_max = 0;  ///< minimum and maximum of all finite values, outliers included
+  std::uint64_t count = 0;            ///< number of finite values, outliers included
+  Outliers below{};                   ///< outliers below lo
+  Outliers above{};                   ///< outliers above hi
 
-  /// Whether values lie beyond either end.
+  /// Returns true when there are outliers below or above the range.
   bool has_outliers() const { return below.count > 0 || above.count > 0; }
-  /// Whether a value belongs to those shown.
+  /// Returns true when a value is finite and not an outlier.
   bool contains(double value) const {
     return std::isfinite(value) && (below.count == 0 || value > below.nearest) && (above.count == 0 || value < above.nearest);
   }
 };
 
-/// Whether files use the value for missing data: -999, -9999, -32768, 1e20, 9.96921e36 (NetCDF), the greatest float, ...
+/// Returns true for values that files commonly use for missing data: -999, -9999, -32768, 1e20, 9.96921e36 (NetCDF), the largest float, ...
 bool is_fill_value(float value);
 
-/// Of a sample, by value (it is sorted); `least` and `most` are those of all values, of which the sample may have missed some. Values that
-/// are not finite or outside least..most do not count. Counts are of the sample. Without a value: 0 .. 0.
+/// Returns the display range estimated from a sample, passed by value because it is sorted. `least` and `most` are the minimum and maximum
+/// of all values; the sample may have missed them. Sample values that are not finite or outside of least..most are ignored. Counts refer to
+/// the sample. Returns least..most without outliers when least < most does not hold.
 DisplayRange display_range(std::vector<float> sample, double least, double most);
-/// Makes the range of a sample that of all values: exact ends and counts. A value that the sample missed counts as beyond where it is
-/// nearer to those than to the values shown, or 10 lengths of the range away from it.
+/// Refines the display range of a sample to the exact range and counts of all values. A value that the sample missed counts as an outlier
+/// when it is nearer to the outliers than to the displayed values, or more than 10 lengths of the range away from it.
 class RangeCounter {
  public:
-  /// Counts nothing yet.
+  /// Starts with no values counted. `of_sample` is the display range of the sample.
   explicit RangeCounter(const DisplayRange& of_sample);
-  /// A finite value; others do not count.
+  /// Counts `count` occurrences of a value; a value that is not finite is ignored.
   void add(double value, std::uint64_t count = 1);
-  /// Adds what another counter of the same sample has counted.
+  /// Adds the counts of `part`, a counter that was made from the same sample.
   void merge(const RangeCounter& part);
-  /// Of all values that were added.
+  /// Returns the display range of all values that were added.
   DisplayRange range() const;
 
  private:
   DisplayRange counted_;
-  double lower_fence_, upper_fence_;  ///< fences
+  /// Values below the first or above the second count as outliers; -infinity and infinity: no outliers at that end.
+  double lower_fence_, upper_fence_;
 };
 
-/// Of all values.
+/// Returns the exact display range of all finite values; 0 to 0 when there is none.
 DisplayRange display_range(std::span<const double> values);
-/// The same of single precision.
+/// The same for single precision.
 DisplayRange display_range(std::span<const float> values);
 
-/// "0 .. 1 (1 value of 1e20 beyond)"
+/// Returns the range as text, for example "0 .. 1 (1 value of 1e20 beyond)".
 std::string format_range(const DisplayRange& range);
-/// A sentence without an end on what lies beyond, for notes; empty where nothing does. Of a value that many have: that it may mean missing
-/// data.
+/// Returns a note on the outliers, a sentence without a final period; empty when there are none. When many outliers share one value, the
+/// note states that it may stand for missing data.
 std::string outlier_note(const DisplayRange& range);
 
 }  // namespace catena

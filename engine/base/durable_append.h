@@ -1,4 +1,4 @@
-/// A table that grows by rows and is kept while it does: what is in it survives the program and the machine.
+/// Append to a table (a text file of rows) such that completed rows survive a crash of the program or of the system.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,9 +7,9 @@
 
 namespace catena {
 
-/// Appends `text`, after `header` where the file is new or empty, with one write, and waits until it is on the disk: it is there whole, or
-/// torn by the end of the program or the machine, which who reads the file repairs. Where it cannot be written whole, the file is as long
-/// as before. Error: "PATH: cannot write: why".
+/// Appends `text` to the file with a single write and waits until the data is on the disk (fdatasync); writes `header` first when the file
+/// is new or empty. After a crash the text may be cut off in the middle; the reader of the file must repair that. When the write fails, the
+/// file is truncated to its previous length. Error: "PATH: cannot write: why", or the file is an input of this process (input_files.h).
 Outcome append_durably(const std::string& path, std::string_view header, std::string_view text);
 
 }  // namespace catena

@@ -1,4 +1,4 @@
-/// A folder that one program at a time writes to.
+/// Exclusive lock on a folder: only one process at a time writes to it.
 #pragma once
 #include <string>
 
@@ -6,14 +6,15 @@
 
 namespace catena {
 
-/// A lock on a folder, by flock(2) on the folder itself: it goes with its process, however that ends, and leaves nothing. Where a file
-/// system knows no such locks (some of networks) everybody has it.
+/// Exclusive lock on a folder, implemented by flock(2) on the folder itself. The lock ends with its process, however that ends, and leaves
+/// no file behind. On file systems without such locks (some network file systems) acquiring always succeeds.
 class FolderLock {
  public:
-  /// An error where another process has it, or this one already: "FOLDER: another session writes to it; ...".
+  /// Acquires the lock without waiting. Error: another process or this one already has it ("FOLDER: another session writes to it; ..."), or
+  /// the folder cannot be opened.
   static Result<FolderLock> acquire(const std::string& folder);
   ~FolderLock();
-  /// Takes the lock over; `other` holds none then.
+  /// Transfers the lock; `other` has none afterwards.
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&&) = delete;
 

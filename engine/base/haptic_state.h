@@ -1,4 +1,4 @@
-/// What the tick tells the frame: of the force, the links and the widgets. Plain, trivially copyable.
+/// State that the haptic tick reports to the frame thread: force, links and widgets. Plain, trivially copyable data.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,107 +10,155 @@
 
 namespace catena {
 
-inline constexpr int kMaxWidgets = 8;  ///< Widgets of a scene.
+inline constexpr int kMaxWidgets = 8;  ///< maximum number of widgets of a scene
 
-/// One word a widget and tick.
-///   cutting plane: away, explore (the probe is held on the plane), translate, rotate (on the sphere), turn (on the sphere, turning it)
-///   the others:    away, hover (the probe is drawn to a handle), drag
-enum class WidgetMode : std::uint8_t { idle, explore, translate, rotate, turn, hover, drag };
-/// "away", "explore" and so on.
+/// Mode of a widget in a tick. A cutting plane uses idle to turn; the other widgets use idle, hover and drag.
+enum class WidgetMode : std::uint8_t {
+  idle,       ///< the probe is away from the widget
+  explore,    ///< the probe is constrained to the cutting plane
+  translate,  ///< the probe moves the plane
+  rotate,     ///< the probe is on the sphere of the cutting plane
+  turn,       ///< the probe is on the sphere and turns it
+  hover,      ///< the probe is attracted to a handle
+  drag        ///< the probe moves the widget by a handle
+};
+/// Returns the name of a mode: "away" (idle), "explore", "translate" and so on.
 const char* to_string(WidgetMode mode);
 
-/// Where a widget is. World units.
+/// Pose of a widget, world units.
 struct WidgetPose {
-  std::array<Vec3, 2> points{Vec3(0.0), Vec3(0.0)};  ///< what they are depends on the kind: engine/widget/widget.h
-  Quat orientation{kIdentityRotation};               ///< world from widget, unit
+  /// control points; their meaning depends on the kind of widget: engine/widget/widget.h
+  std::array<Vec3, 2> points{Vec3(0.0), Vec3(0.0)};
+  Quat orientation{kIdentityRotation};  ///< rotation from widget axes to world axes, unit
   bool operator==(const WidgetPose&) const = default;
 };
 
-/// What a tick says of a widget.
+/// State of one widget after a tick.
 struct WidgetReport {
-  WidgetPose pose;                     ///< where it is
-  double value = 0;                    ///< isolevel: of the field at the handle
-  std::uint32_t revision = 0;          ///< of the pose that the hand began with; Spec::revision
-  WidgetMode mode = WidgetMode::idle;  ///< what it does
-  std::int8_t handle = -1;         ///< rake, ruler: 0, 1 its ends, 2 the whole; box: 0..5 faces -x +x -y +y -z +z, 6 the whole; -1: none
-  std::uint8_t active_planes = 0;  ///< bit i: the plane across the widget's axis i is active
+  WidgetPose pose;                     ///< current pose
+  double value = 0;                    ///< isolevel widget: value of the field at the handle
+  std::uint32_t revision = 0;          ///< revision (Spec::revision) of the pose from which the interaction with the probe started
+  WidgetMode mode = WidgetMode::idle;  ///< current mode
+  /// Active handle. Rake and ruler: 0, 1 an end, 2 the whole widget; box: 0..5 the faces -x +x -y +y -z +z, 6 the whole box; -1: none.
+  std::int8_t handle = -1;
+  std::uint8_t active_planes = 0;  ///< bit i: the plane across axis i of the widget is active
 };
 
-/// How the links make one force: the proxy chain, or one of the baselines that the paper compares it with (haptics/chain/baseline.h).
-enum class CouplingMethod { chain, pipe, balance, closest, linear };
-/// How the links' pulls make one force: the paper's sum, or by virtual work.
-enum class CouplingForce { paper, conservative };
+/// How the links are combined into one force: the proxy chain, or one of the baselines of the paper (haptics/chain/baseline.h).
+enum class CouplingMethod {
+  chain,    ///< proxy chain, one proxy per link
+  pipe,     ///< one proxy: the constraints are applied in turn until all are satisfied
+  balance,  ///< one proxy that balances the springs to the probe and to the links' linear primitives
+  closest,  ///< one proxy: the nearest of the constraints' own projections of the probe
+  linear    ///< one proxy that moves with the probe as far as the linear primitives leave it free
+};
+/// How the contributions of the links are combined into one force.
+enum class CouplingForce {
+  paper,        ///< sum as in the paper
+  conservative  ///< negative gradient of the chain's energy, by virtual work (haptics/chain/virtual_work.h)
+};
 
-inline constexpr int kMaxSceneLinks = 8;              ///< Links of a scene.
-inline constexpr int kMaxLinks = kMaxSceneLinks + 4;  ///< And those that the widgets share.
+inline constexpr int kMaxSceneLinks = 8;  ///< maximum number of links of a scene
+/// maximum number of links of a program: those of the scene and four that the widgets share
+inline constexpr int kMaxLinks = kMaxSceneLinks + 4;
 
-/// One word a link and tick; the words of `NAME_status` in the tick CSV.
-enum class LinkStatus : std::uint8_t { ok, free, released, budget, critical, boundary, no_surface, bad_probe };
-const char* to_string(LinkStatus status);  ///< OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE
+/// State of a link in a tick, written to the column `NAME_status` of the tick CSV.
+enum class LinkStatus : std::uint8_t {
+  ok,          ///< the constraint holds
+  free,        ///< not in contact: the probe is on the free side or out of reach
+  released,    ///< the probe has left the feature
+  budget,      ///< the evaluations of this tick are used up; the search continues in the next tick
+  critical,    ///< at a critical point, or the constraint is undefined there (LinkReport::sample_status)
+  boundary,    ///< at the boundary of the domain
+  no_surface,  ///< no surface was found
+  bad_probe    ///< the position of the probe is not finite
+};
+/// Returns OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE.
+const char* to_string(LinkStatus status);
 
-/// How a tick came about: what the servo tells it of the device and the clock.
-enum class TickCondition : std::uint8_t { normal, late, no_device, watchdog };
-const char* to_string(TickCondition condition);  ///< NORMAL LATE NO_DEVICE WATCHDOG
+/// Condition under which a tick ran, set by the servo from the clock and the device.
+enum class TickCondition : std::uint8_t {
+  normal,     ///< on time, with the device
+  late,       ///< after its deadline
+  no_device,  ///< the device does not deliver positions
+  watchdog    ///< the watchdog has stopped the device
+};
+/// Returns NORMAL LATE NO_DEVICE WATCHDOG.
+const char* to_string(TickCondition condition);
 
-/// What became of the force on its way to the hand.
-enum class ForceState : std::uint8_t { on, off, ramping_in, held, ramping_out, stopped };
-const char* to_string(ForceState state);  ///< ON OFF RAMPING_IN HELD RAMPING_OUT STOPPED
+/// State of the force limiter (haptics/chain/force_limiter.h).
+enum class ForceState : std::uint8_t {
+  on,           ///< commanded force, within the limits
+  off,          ///< switched off: no force
+  ramping_in,   ///< rising to the commanded force
+  held,         ///< late tick: the preceding force is repeated
+  ramping_out,  ///< falling to zero
+  stopped       ///< zero because of a fault
+};
+/// Returns ON OFF RAMPING_IN HELD RAMPING_OUT STOPPED.
+const char* to_string(ForceState state);
 
-inline constexpr std::int32_t kUnknownCurve = -2;  ///< LinkReport::curve, where it was not kept
+inline constexpr std::int32_t kUnknownCurve = -2;  ///< value of LinkReport::curve when it was not recorded
 
-/// What a tick says of a link.
+/// State of one link after a tick.
 struct LinkReport {
-  Vec3 proxy{0.0};                      ///< world units
-  Vec3 force_n{0.0};                    ///< this link's own share, before the limit
-  double residual = 0;                  ///< distance from the constraint, world units
-  double weight = 0;                    ///< w_i of the force law, 0..1
-  double stiffness_n_per_m = 0;         ///< k_i of this tick
-  double gap = 0;                       ///< |p_i - p_(i-1)|, world units
-  Quat orientation{kIdentityRotation};  ///< the link's rotational proxy
-  Vec3 torque_nm{0.0};                  ///< its share of the torque
-  double accounted_j = 0;               ///< given to the hand and stored for it beyond what it put in; a switch or snap shows as a jump
-  double release_ratio = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
-  std::int32_t evaluations = 0;         ///< field fetches of this tick
-  std::int32_t curve = -1;              ///< the line that it holds to; -1: none; kUnknownCurve as it comes from a recording
-  LinkStatus status = LinkStatus::ok;   ///< how the link is
-  bool active = false;                  ///< enabled and not released
-  bool released = false;                ///< the hand has left the feature: leaving >= 1, or let go
-  SampleStatus sample_status = SampleStatus::ok;  ///< why: of CRITICAL, BOUNDARY and BAD_PROBE
+  Vec3 proxy{0.0};                      ///< position of the link's proxy, world units
+  Vec3 force_n{0.0};                    ///< contribution of this link before the force limits, newtons
+  double residual = 0;                  ///< distance of the proxy from the constraint, world units
+  double weight = 0;                    ///< weight w_i of the force law, 0..1
+  double stiffness_n_per_m = 0;         ///< stiffness k_i in this tick
+  double gap = 0;                       ///< distance |p_i - p_(i-1)| to the preceding proxy, world units
+  Quat orientation{kIdentityRotation};  ///< rotational proxy of the link
+  Vec3 torque_nm{0.0};                  ///< contribution of this link to the torque
+  /// Accounted energy: joules that the link has given to the user and has stored, minus what the user put in. It jumps at a switch or a
+  /// snap.
+  double accounted_j = 0;
+  double release_ratio = 0;      ///< gap divided by the distance at which the probe leaves the feature; 1 when the link is released
+  std::int32_t evaluations = 0;  ///< field evaluations in this tick
+  std::int32_t curve = -1;  ///< index of the curve to which the link is constrained; -1: none; kUnknownCurve when read from a recording
+  LinkStatus status = LinkStatus::ok;             ///< state of the link
+  bool active = false;                            ///< enabled and not released
+  bool released = false;                          ///< the probe has left the feature: release_ratio >= 1, or the link is released
+  SampleStatus sample_status = SampleStatus::ok;  ///< cause of CRITICAL, BOUNDARY or BAD_PROBE
 
-  /// Stored in the link's spring, joules; the largest double for what is larger.
+  /// Returns the energy stored in the link's spring, joules; values that overflow become the largest double.
   double energy_j(double metres_per_unit) const {
     const double stretch_m = metres_per_unit * gap, share = 0.5 * weight * stiffness_n_per_m;
     return share > 0 ? std::min(share * stretch_m * stretch_m, std::numeric_limits<double>::max()) : 0;
   }
 };
 
-/// All that one tick says, grouped by who writes it. ImageWriteResult by the haptic thread, crosses to the frame by a TripleBuffer.
+/// Complete result of one tick, grouped by the component that writes it. Written by the haptic thread; passed to the frame thread in a
+/// TripleBuffer.
 struct HapticState {
   // written by the tick
-  std::uint64_t tick = 0;                           ///< counts from 1
-  double t_s = 0;                                   ///< the probe's time, seconds
-  Vec3 probe{0.0};                                  ///< world units
-  Vec3 force_n{0.0};                                ///< on the hand, after all limits, world axes
-  std::uint32_t buttons = 0;                        ///< bit n - 1: button n is held
-  std::int32_t link_count = 0;                      ///< links of the program, the widgets' with them
-  std::int32_t mode = -1;                           ///< the mode of operation; -1: none, all links as listed
-  std::array<LinkReport, kMaxLinks> links{};        ///< the first link_count of them
-  std::int32_t widget_count = 0;                    ///< widgets of the program
-  std::array<WidgetReport, kMaxWidgets> widgets{};  ///< the first widget_count of them
-  Quat orientation{kIdentityRotation};              ///< of the probe
-  Vec3 torque_nm{0.0};                              ///< on the hand, world axes
-  Vec3 coupling_force_n{0.0};  ///< what the chain asks for, before what the device allows: equal to force_n without a device
-  double energy_j = 0;         ///< of the passivity observer: what the hand may still get back
-  double dissipated_j = 0;     ///< what the passivity controller has taken
-  double omitted_work_j = 0;   ///< of a conservative force: work that the bound of the derivatives leaves out, since the start
-  TickCondition condition = TickCondition::normal;  ///< how the tick came about
-  ForceState force_state = ForceState::on;          ///< what became of the force
+  std::uint64_t tick = 0;                           ///< tick number, counted from 1
+  double t_s = 0;                                   ///< time of the probe sample, seconds
+  Vec3 probe{0.0};                                  ///< position of the probe, world units
+  Vec3 force_n{0.0};                                ///< force on the user after all limits, world axes
+  std::uint32_t buttons = 0;                        ///< bit n - 1: button n is pressed
+  std::int32_t link_count = 0;                      ///< number of links of the program, those of the widgets included
+  std::int32_t mode = -1;                           ///< index of the mode of operation; -1: none, all links in their order
+  std::array<LinkReport, kMaxLinks> links{};        ///< the first link_count entries are used
+  std::int32_t widget_count = 0;                    ///< number of widgets of the program
+  std::array<WidgetReport, kMaxWidgets> widgets{};  ///< the first widget_count entries are used
+  Quat orientation{kIdentityRotation};              ///< orientation of the probe
+  Vec3 torque_nm{0.0};                              ///< torque on the user, world axes
+  /// Force commanded by the chain before the limits of the device; equal to force_n without a device.
+  Vec3 coupling_force_n{0.0};
+  double energy_j = 0;      ///< energy of the passivity observer that the user may still get back, joules
+  double dissipated_j = 0;  ///< energy dissipated by the passivity controller since the start, joules
+  /// Conservative force: energy since the start that the force does not account for, because derivatives are bounded or a proxy jumps,
+  /// joules.
+  double omitted_work_j = 0;
+  TickCondition condition = TickCondition::normal;  ///< condition under which the tick ran
+  ForceState force_state = ForceState::on;          ///< state of the force limiter
   // written by the servo
-  std::uint64_t program_epoch = 0;     ///< the newest program that the tick has run
-  std::uint64_t missed_deadlines = 0;  ///< since the servo began
-  double period_us = 0;                ///< since the last tick began
-  double compute_us = 0;               ///< the tick alone
-  double device_us = 0;                ///< reading and writing the device
+  std::uint64_t program_epoch = 0;     ///< epoch of the newest program that the tick has run
+  std::uint64_t missed_deadlines = 0;  ///< number of deadlines missed since the servo started
+  double period_us = 0;                ///< time since the start of the preceding tick
+  double compute_us = 0;               ///< duration of the tick alone
+  double device_us = 0;                ///< duration of reading and writing the device
 };
 
 }  // namespace catena

@@ -1,4 +1,4 @@
-/// FNV-1a, 64 bit: the hash of `state_hash`.
+/// FNV-1a hash, 64 bit, used for `state_hash`.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -6,16 +6,16 @@
 
 namespace catena {
 
-/// A running hash: feed it, then read `value`. Any thread, each its own.
+/// Incremental hash: add data, then read `value`. Use one object per thread.
 struct Fnv1a {
-  std::uint64_t value = 0xcbf29ce484222325ull;  ///< the hash of what was fed so far
+  std::uint64_t value = 0xcbf29ce484222325ull;  ///< hash of the data added
 
-  /// Feeds `size` bytes.
+  /// Adds `size` bytes.
   void add_bytes(const void* data, std::size_t size) {
     const auto* p = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i) value = (value ^ p[i]) * 0x100000001b3ull;
   }
-  /// Feeds the bytes of a number, as this machine orders them.
+  /// Adds the bytes of a number in the byte order of this system. T must have no padding.
   template <class T>
   void add(const T& item) {
     static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>, "no padding, please");
@@ -23,7 +23,7 @@ struct Fnv1a {
   }
 };
 
-/// The hash of `size` bytes at once.
+/// Returns the hash of `size` bytes.
 inline std::uint64_t hash_bytes(const void* data, std::size_t size) {
   Fnv1a hash;
   hash.add_bytes(data, size);

@@ -1,5 +1,5 @@
-/// JSON with comments and positions: what the scene file and its parts are read from.
-/// The library behind it (jsoncpp) stays inside json.cpp. Every reader names the file, the line, the key and what was expected.
+/// Reader for JSON with comments that retains positions in the text; the scene file and its sections are read with it. The library behind
+/// it (jsoncpp) is private to json.cpp. Every error names the file, the line, the key and what was expected.
 #pragma once
 #include <initializer_list>
 #include <memory>
@@ -14,82 +14,91 @@
 
 namespace catena::json {
 
-/// What a JSON value is.
+/// Kind of a JSON value.
 enum class Kind { null, boolean, number, string, array, object };
 
-/// A value of a document with its place in the text. Plain data: copies are deep; reading is safe from any thread.
+/// A value of a document with its location in the text. Plain data: a copy is deep; reading is safe from any thread.
 struct Node {
-  Kind kind = Kind::null;                   ///< which of the members below mean something
-  int line = 0;                             ///< 1-based line of the value; -1: it lies in no file, and `file` holds its place
-  std::size_t begin = 0, end = 0;           ///< its bytes in the text, a byte order mark counted; its key and comments are outside
-  std::shared_ptr<const std::string> file;  ///< the file's name as the user gave it
-  std::string label;                        ///< its key, or "chain[2]" for an item; empty at the top level
-  bool boolean = false;                     ///< the value of a boolean
-  double number = 0;                        ///< the value of a number
-  std::string string;                       ///< the value of a string
-  std::vector<Node> items;                  ///< array
-  std::vector<std::pair<std::string, Node>> members;  ///< object, in file order; keys are unique
+  Kind kind = Kind::null;  ///< selects which of the members below are meaningful
+  int line = 0;            ///< 1-based line of the value; -1: the value comes from no file, and `file` is its location as text
+  /// Range of bytes in the text, a byte order mark included in the count; the value's key and comments are outside of it.
+  std::size_t begin = 0, end = 0;
+  std::shared_ptr<const std::string> file;            ///< file name as given by the user
+  std::string label;                                  ///< key of the value, or "chain[2]" for an item of an array; empty at the top level
+  bool boolean = false;                               ///< value of a boolean
+  double number = 0;                                  ///< value of a number
+  std::string string;                                 ///< value of a string
+  std::vector<Node> items;                            ///< items of an array
+  std::vector<std::pair<std::string, Node>> members;  ///< members of an object, in file order; keys are unique
 
-  const Node* find(std::string_view key) const;  ///< nullptr if absent (or not an object)
-  /// Whether the value is `null`.
+  /// Returns the member with a key; nullptr when it is absent or this is not an object.
+  const Node* find(std::string_view key) const;
+  /// Returns true when the value is `null`.
   bool is_null() const { return kind == Kind::null; }
 };
 
-/// Parses a whole document. Comments are allowed; duplicate keys, trailing text and depth beyond 64 are errors.
+/// Parses a whole document; `file` is the name for messages. Comments are allowed. Errors: invalid JSON, duplicate keys, trailing text,
+/// nesting deeper than 64 levels, a number that is not finite, a text larger than the memory budget.
 Result<Node> parse(std::string_view text, const std::string& file);
-/// Reads and parses a file. An error names the file, and the line where there is one.
+/// Reads and parses a file. An Error names the file, and the line where there is one. The file may have at most kMaxJsonBytes.
 Result<Node> read(const std::string& path);
 
-/// The member, or the object that lacks it: where a message points.
+/// Returns the member with a key, or `object` itself when it has no such member: the location at which a message points.
 const Node& member_or_parent(const Node& object, std::string_view key);
 
-/// The same kinds, values, items and members in the same order, wherever they stand.
+/// Returns true when two nodes have the same kind and value, and the same items and members in the same order; locations are ignored.
 bool is_equal_value(const Node& a, const Node& b);
 
-/// "scene.json:12: WHAT" at the node's place; without the line where it is 0, without the file where there is none.
+/// Makes an Error with the location of the node: "scene.json:12: WHAT"; without the line when it is 0 or -1, without the file when there is
+/// none.
 Error error_at(const Node& node, const std::string& what);
 
-/// An error for the first member whose key is not in `keys`, naming the nearest allowed ones.
+/// Error for the first member whose key is not in `keys`; the message lists the known keys and suggests a similar one.
 Outcome check_known_keys(const Node& object, std::initializer_list<std::string_view> keys);
-/// The same for keys that are known at run time only.
+/// The same for keys that are known only at run time.
 Outcome check_known_keys(const Node& object, const std::vector<std::string_view>& keys);
-/// An error unless the node is an object; `what` stands for it in the message.
+/// Error unless the node is an object; `what` names it in the message.
 Outcome expect_object(const Node& node, std::string_view what);
 
-/// TypedSlot readers of one member. `require_*` need the key; `get_*` give the fallback when it is absent.
-/// All numbers must be finite. `what` in the messages is the key.
+/// Range of allowed numbers: any finite number, > 0, or >= 0.
 enum class NumberRange { any, positive, non_negative };
-/// The number under `key`, which must be there.
+
+/// Typed readers of one member of an object. `require_*` return an Error when the key is absent; `get_*` return the fallback, or nullopt,
+/// then. All of them return an Error when the value has another type or is out of range. All numbers must be finite. The messages name the
+/// key.
+
+/// Returns the number at `key`; an Error when it is absent.
 Result<double> require_number(const Node& object, std::string_view key, NumberRange range = NumberRange::any);
-/// The number under `key`, or `fallback` where there is none.
+/// Returns the number at `key`, or `fallback` when it is absent.
 Result<double> get_number(const Node& object, std::string_view key, double fallback, NumberRange range = NumberRange::any);
-/// The number under `key`, or nothing where there is none.
+/// Returns the number at `key`, or nullopt when it is absent.
 Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, NumberRange range = NumberRange::any);
-/// The whole number under `key`, from `least` to `most`, or `fallback`.
+/// Returns the integer at `key`, which must be in `least`..`most`, or `fallback` when it is absent.
 Result<int> get_integer(const Node& object, std::string_view key, int fallback, int least, int most);
-/// The boolean under `key`, or `fallback`.
+/// Returns the boolean at `key`, or `fallback` when it is absent.
 Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback);
-/// The string under `key`, which must be there.
+/// Returns the string at `key`; an Error when it is absent.
 Result<std::string> require_string(const Node& object, std::string_view key);
-/// The string under `key`, or `fallback`.
+/// Returns the string at `key`, or `fallback` when it is absent.
 Result<std::string> get_string(const Node& object, std::string_view key, std::string fallback);
-/// One word out of `words`; the index into it.
+/// Returns the index in `words` of the string at `key`, or `fallback` when it is absent. Error: the string is none of `words`.
 Result<int> get_choice(const Node& object, std::string_view key, int fallback, const std::vector<std::string_view>& words);
-/// The three numbers under `key`, which must be there.
+/// Returns the three numbers at `key`; an Error when they are absent.
 Result<Vec3> require_vec3(const Node& object, std::string_view key);
-/// The three numbers under `key`, or `fallback`.
+/// Returns the three numbers at `key`, or `fallback` when they are absent.
 Result<Vec3> get_vec3(const Node& object, std::string_view key, const Vec3& fallback);
-/// The three numbers under `key`, or nothing where there are none.
+/// Returns the three numbers at `key`, or nullopt when they are absent.
 Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_view key);
-/// A node itself as a number, a vector of three numbers, or rows of `width` numbers.
+/// Converts the node itself to a finite number in `range`; `what` names it in the message.
 Result<double> as_number(const Node& node, std::string_view what, NumberRange range = NumberRange::any);
-/// The node as three finite numbers.
+/// Converts the node to three finite numbers.
 Result<Vec3> as_vec3(const Node& node, std::string_view what);
-/// The node as a string.
+/// Converts the node to a string without zero bytes.
 Result<std::string> as_string(const Node& node, std::string_view what);
-/// A rotation: three rows of three numbers, nine numbers (row by row), or {"axis": [x, y, z], "angle_deg": a}; orthonormal to 1e-6.
+/// Converts the node to a rotation matrix. Accepted forms: three rows of three numbers, nine numbers (row by row), or {"axis": [x, y, z],
+/// "angle_deg": a}. The rows must be orthonormal to 1e-6 and right-handed, the axis must not be zero.
 Result<Mat3> as_rotation(const Node& node, std::string_view what);
-/// The node as a list of lists of `width` finite numbers each.
+/// Converts the node to a list of rows of `width` finite numbers each.
 Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_view what, std::size_t width);
 
 }  // namespace catena::json

@@ -1,8 +1,9 @@
-/// How much memory data may take: the one place that decides. Whoever reads something whose size a file, a scene or a person states
-/// asks here before the memory is allocated. Any thread.
-///   with a limit (--memory MB)   allowed = limit - held         held: what the data in memory counts by MemoryReservation
-///   without                      allowed = 3/4 of what is free  MemAvailable of the system, less where a control group allows less; and
-///                                                               no more than ulimit -v leaves of this process's addresses
+/// Memory budget for data: the single place that decides how much may be allocated. Code that reads data whose size comes from a file, a
+/// scene or the user checks the budget here before it allocates. Any thread.
+///   with a limit (--memory MB)   available = limit - reserved       reserved: bytes counted by MemoryReservation
+///   without a limit              available = 3/4 of free memory     free: MemAvailable of the system, or what the control group leaves
+///                                                                   when that is less; at most what ulimit -v leaves of this process's
+///                                                                   address space
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,42 +14,42 @@
 
 namespace catena {
 
-/// In bytes; nullopt: three quarters of what is free. `limit_is_address_space`: the limit is what ulimit -v leaves of a process that asks
-/// this one.
+/// Sets the limit in bytes; nullopt: three quarters of the free memory. `of_addresses`: the limit is what ulimit -v leaves of the process
+/// that started this one; the error messages then name it.
 void set_memory_limit(std::optional<std::uint64_t> bytes, bool of_addresses = false);
-/// What was set; nullopt: nothing. Any thread.
+/// Returns the limit that was set; nullopt: none. Any thread.
 std::optional<std::uint64_t> memory_limit();
-/// Whether it is the limit on addresses that decides what is allowed.
+/// Returns true when the address-space limit (ulimit -v) determines the available memory.
 bool memory_limit_is_address_space();
-/// How often memory was refused by the functions below.
+/// Returns how often the functions below have refused memory.
 std::uint64_t memory_refusal_count();
-/// Bytes that data may still take now. Any thread.
+/// Returns the number of bytes that data may still allocate. Any thread.
 std::uint64_t available_memory();
 
-/// Fine, or one line: "WHAT needs 274878 MB of memory, expected at most 15123 MB (--memory MB allows more)"; where the limit on addresses
-/// decides, an error of the machine that names it. `bytes` may be of any size.
+/// Checks that `bytes` are available; nothing is allocated or reserved. Error: "WHAT needs 274878 MB of memory, expected at most 15123 MB
+/// (--memory MB allows more)"; a system failure that names the limit when the address-space limit determines it. `bytes` may have any size.
 Outcome check_memory_available(const std::string& what, double bytes);
-/// The same against a limit that was asked for earlier.
+/// The same against `allowed`, an earlier result of available_memory().
 Outcome check_memory_available(const std::string& what, double bytes, std::uint64_t allowed);
 
-/// The same for texts and what is read from them: less than 1 MB is never refused, so that a scene can be read and edited beside data that
-/// fill the limit.
+/// The same for texts and what is read from them. Less than 1 MB is never refused, so that a scene can be read and edited while data fill
+/// the limit.
 Outcome check_text_memory_available(const std::string& what, double bytes);
 
-/// Lets the allocator keep up to 64 MB of freed memory instead of giving it back to the system at once: a software driver takes and frees
-/// as much several times a picture. At the start of a program.
+/// Lets the allocator retain up to 64 MB of freed memory instead of returning it to the system at once: a software renderer allocates and
+/// frees that much several times per image. To be called at the start of a program.
 void retain_freed_memory();
 
-/// Counts memory as held by data, for as long as it lives.
+/// Counts memory as reserved by data during the lifetime of the object.
 class MemoryReservation {
  public:
   MemoryReservation() = default;
-  /// Counts `bytes` as held.
+  /// Reserves `bytes`.
   explicit MemoryReservation(std::uint64_t bytes);
   ~MemoryReservation();
-  /// Takes the count over; `other` counts nothing then.
+  /// Transfers the reservation; `other` reserves nothing afterwards.
   MemoryReservation(MemoryReservation&& other) noexcept : bytes_(std::exchange(other.bytes_, 0)) {}
-  /// Exchanges the counts.
+  /// Exchanges the reservations.
   MemoryReservation& operator=(MemoryReservation&& other) noexcept {
     std::swap(bytes_, other.bytes_);
     return *this;
@@ -58,18 +59,17 @@ class MemoryReservation {
   std::uint64_t bytes_ = 0;
 };
 
-/// Counts heap allocations of the calling thread, so that a test can show that a tick makes none.
-/// The counting operators new and delete are linked into the tests only (tests/support); without them it stays 0
-/// (there is nothing to count with).
+/// Counter of heap allocations of the calling thread, for tests that show that a tick allocates nothing. The counting operators new and
+/// delete are linked into the tests only (tests/support); without them the count stays 0.
 
-/// Allocations made by this thread so far, as far as they are counted.
+/// Number of allocations of this thread, where they are counted.
 inline thread_local std::uint64_t thread_allocations = 0;
 
-/// Counts from where it is made.
+/// Counts the allocations of the calling thread since its construction.
 class AllocationCounter {
  public:
   AllocationCounter() : start_(thread_allocations) {}
-  /// Allocations of this thread since then.
+  /// Returns the number of allocations of this thread since construction.
   std::uint64_t count() const { return thread_allocations - start_; }
 
  private:

@@ -1,4 +1,4 @@
-/// NumberArray as text: printed so that they read back exactly, read strictly (the whole word, decimal point, no locale).
+/// Numbers as text: printed such that they read back exactly, and parsed strictly (the whole text, decimal point, no locale). Any thread.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -9,24 +9,27 @@
 
 namespace catena {
 
-/// The shortest text that reads back to the same double; "nan", "inf", "-inf" for those.
+/// Returns the shortest text that reads back to the same double; "nan", "inf", "-inf" for values that are not finite.
 std::string to_text(double value);
+/// Appends the text of to_text(value) to `out`.
 void append_number(std::string& out, double value);
 
-/// As people read it, not exactly: about so many digits, "1e20", "-9999", "0.1" for a 32-bit 0.1, never "-0". Whole numbers of up to ten
-/// digits are written out.
+/// Returns a number rounded for people, to `digits` significant digits: "1e20", "-9999", "0.1" for a 32-bit 0.1, never "-0". Integers of up
+/// to ten digits are printed in full.
 std::string format_readable(double value, int digits = 6);
 
-/// A finite or non-finite double; nothing if `text` (blanks at its ends allowed) is not wholly a number.
+/// Parses a double, finite or not; nullopt unless all of `text` is one number (blanks at its ends are allowed).
 std::optional<double> parse_double(std::string_view text);
+/// Parses a decimal integer; nullopt unless all of `text` is one (blanks at its ends are allowed).
 std::optional<long long> parse_integer(std::string_view text);
 
-/// The double nearest to the value with so many decimal digits.
+/// Rounds a value to `digits` significant decimal digits.
 double round_to_digits(double value, int digits);
 
+/// Removes blanks, tabs and carriage returns from both ends.
 std::string_view trim(std::string_view text);
 
-/// The q-quantile of a sample: the element number floor(q n) of the sorted values, the largest for q = 1; 0 of none.
+/// Returns the q-quantile of a sample: element number floor(q n) of the sorted values, the largest for q = 1; 0 for an empty sample.
 /// Reorders `values`.
 template <class T>
 T quantile(std::vector<T>& values, double q) {
@@ -36,17 +39,17 @@ T quantile(std::vector<T>& values, double q) {
   return values[k];
 }
 
-/// Ticks at nice numbers, for legends and axes: steps of 1, 2 or 5 times a power of ten.
-/// P. S. Heckbert, "Nice numbers for graph labels", Graphics Gems (1990), 61-63; here only the ticks within [lo, hi].
-/// Pure functions, any thread.
+/// Tick of a legend or axis, at a round number: steps are 1, 2 or 5 times a power of ten. Method: P. S. Heckbert, "Nice numbers for graph
+/// labels", Graphics Gems (1990), 61-63; here only ticks in [lo, hi].
 struct AxisTick {
-  double value = 0;   ///< the double nearest to what the label says
-  std::string label;  ///< as few digits as tell it exactly: as many decimals on every tick, or each with its exponent
+  double value = 0;  ///< double nearest to the number in the label
+  /// Fewest digits that show the value exactly: the same number of decimals on all ticks, or an exponent on each.
+  std::string label;
 };
 
-/// About `about` (at least 2) ticks from lo to hi, rising: 0.6 (about - 1) at least, 1.5 (about - 1) + 1 at most. Labels are fixed ("0.25",
-/// "1500") up to 6 digits, beyond that what is shorter of fixed and "2.5e-7". lo > hi is taken the other way round; one tick with its
-/// shortest label where they are equal or differ by less than 1e-12 of their size; none where one is not finite.
+/// Returns about `about` (>= 2) ticks from lo to hi in ascending order: at least 0.6 (about - 1) and at most 1.5 (about - 1) + 1. Labels
+/// are in fixed notation ("0.25", "1500") up to 6 digits, beyond that in the shorter of fixed and exponent notation ("2.5e-7"). lo > hi is
+/// swapped. Returns one tick when lo and hi are equal or differ by less than 1e-12 of their size, and none when one is not finite.
 std::vector<AxisTick> nice_ticks(double lo, double hi, int about = 5);
 
 }  // namespace catena

@@ -1,9 +1,9 @@
-/// Outputs: the check before anything is written, the unfinished file (TemporaryFile), and the output that is whole or not there
-/// (OutputFile).
+/// Output files: checks before anything is written, temporary files (TemporaryFile), and atomic output (OutputFile).
 ///
-/// The rule that no output of a run is one of its inputs, and no two outputs are one file: said before anything is opened for writing.
-/// Two names are one file where they lead to one thing on the disk (device and inode: links of both kinds, ./x, x/../x), or, where nothing
-/// is there yet, to one place once links on the way are followed. Letters keep their case. Devices and pipes are nobody's own.
+/// The checks make sure, before any file is opened for writing, that no output of a run is also an input and that no two outputs are the
+/// same file. Two names are the same file when they lead to the same object on the disk (device and inode: symbolic and hard links, ./x,
+/// x/../x) or, when nothing exists there, to the same path after links are resolved. Upper and lower case differ. Devices and pipes are
+/// never considered the same.
 #pragma once
 #include <cstdint>
 #include <cstdio>
@@ -16,92 +16,104 @@
 
 namespace catena {
 
-/// A file that a run will write; an empty path: it will not.
+/// File that a run will write.
 struct PlannedOutput {
-  std::string option;  ///< that names it: "--stats"
+  std::string option;  ///< command-line option that names the file: "--stats"
+  /// Empty: the file is not written.
   std::string path;
 };
 
-/// One line: a missing folder, a folder as the file, an output that is one of the inputs, or two outputs that are one file.
+/// Checks the outputs of a run. Error (one line): the folder does not exist, the path is a folder, an output is one of the inputs, or two
+/// outputs are the same file.
 Outcome check_outputs(const std::vector<PlannedOutput>& outputs, const std::vector<std::string>& inputs);
-/// The same for one output.
+/// The same for one output; an empty path is an Error.
 Outcome check_output(const std::string& path, const std::vector<std::string>& inputs);
 
-/// Two names of one place, whether or not it exists yet. Devices and pipes are nobody's own.
+/// Returns true when two names lead to the same file, existing or not. False for devices and pipes.
 bool is_same_file(const std::string& a, const std::string& b);
 
-/// Whether a place, there or not, lies anywhere below a folder.
+/// Returns true when a path, existing or not, is anywhere below a folder.
 bool is_path_within(const std::string& place, const std::string& folder);
 
-/// The unfinished file that an output is written to before it is renamed to its place, so that the place holds the old content or the new
-/// one, whole. It lies beside its place under a name of its own, NAME.part<pid>-<random>; it is made by this program alone (O_EXCL: never
-/// what somebody put there, never through a link) and locked (flock) while it is written. What programs that have ended left of the same
-/// output is removed when it is written again.
+/// Temporary file to which an output is written before it is renamed to its final path, so that the final path always has the complete old
+/// or the complete new content. It is in the same folder and is called NAME.part<pid>-<random>. It is created exclusively (O_EXCL: never an
+/// existing file, never through a link) and locked (flock) while it is written. Creating one removes stale temporary files that ended
+/// programs have left of the same output.
 class TemporaryFile {
  public:
-  /// `owner_only`: nobody else may read it. A place that exists keeps its permissions. Error: "PATH: cannot write: why".
+  /// Creates the temporary file for the output `path`. `owner_only`: only the owner may read it; otherwise an existing output keeps its
+  /// permissions. Error: "PATH: cannot write: why", or the output is an input of this process.
   static Result<TemporaryFile> create(const std::string& path, bool owner_only = false);
-  ~TemporaryFile();  ///< removes it, unless it was committed
+  /// Removes the file unless it was committed.
+  ~TemporaryFile();
   TemporaryFile(TemporaryFile&& other) noexcept;
   TemporaryFile& operator=(TemporaryFile&&) = delete;
 
   const std::string& path() const { return path_; }
   const std::string& name() const { return name_; }
+  /// Returns the descriptor; -1 after release().
   int descriptor() const { return descriptor_; }
-  /// Renames it to its place. An error leaves what was there.
+  /// Renames the file to its final path, replacing what is there. On an Error the old content stays.
   Outcome commit();
-  /// As commit(), but for a place where nothing may be: false where something is.
+  /// Like commit(), but never replaces a file: returns false when something exists at the final path.
   Result<bool> commit_new();
-  /// The file's descriptor, and with it the lock, are the caller's from now on. After a commit.
+  /// Transfers the descriptor, and with it the lock, to the caller. To be called after a commit.
   int release();
 
  private:
   TemporaryFile(std::string path, std::string name, int descriptor)
       : path_(std::move(path)), name_(std::move(name)), descriptor_(descriptor) {}
 
-  std::string path_, name_;  ///< name_ empty: nothing to remove
+  std::string path_, name_;  ///< name_ empty: there is nothing to remove
   int descriptor_ = -1;
 };
 
-/// Whether an output of that name is written directly: the place is a pipe, a socket or a device.
+/// Returns true when an output of that name is written directly: the path is a pipe, a socket or a device.
 bool is_written_directly(const std::string& path);
 
-/// The name of an unfinished file or folder for `path`; another one at every call.
+/// Returns a name for a temporary file or folder of the output `path`; a different one at every call.
 std::string temporary_name(const std::string& path);
 
-/// Removes unfinished files and folders for `path` whose programs have ended. Who makes such a folder locks it (folder_lock.h).
+/// Removes temporary files and folders of `path` whose programs have ended. A program that creates such a folder must lock it
+/// (folder_lock.h).
 void remove_stale_temporaries(const std::string& path);
 
-/// An output that is either complete or not there: written to an unfinished file beside its place, renamed by commit().
-/// Places that are no regular files (/dev/stdout, /dev/full, pipes) are written directly. Errors name the path and why.
+/// Atomic output file: written to a temporary file in the same folder and renamed by commit(). Paths that are no regular files
+/// (/dev/stdout, /dev/full, pipes) are written directly. Errors name the path and the cause. Not thread-safe.
 class OutputFile {
  public:
+  /// Opens the output `path`; a symbolic link is followed to the file that it names. Error: as for TemporaryFile::create(), or nothing
+  /// reads from the pipe or socket.
   static Result<OutputFile> open(const std::string& path);
-  ~OutputFile();  ///< without a commit nothing stays behind
+  /// Without a commit the temporary file is removed.
+  ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
 
-  void write(std::string_view text);  ///< failures are kept for finish()
+  void write(std::string_view text);  ///< errors are reported by finish()
+  /// Returns true when an operation has failed.
   bool failed() const { return error_ != 0; }
-  void seek(std::uint64_t position);  ///< regular files; failures are kept for finish()
-  /// Everything is on its way to the disk, or one line why not.
+  /// Sets the position of the next write, bytes from the start. Regular files only; errors are reported by finish().
+  void seek(std::uint64_t position);
+  /// Flushes and closes the file. Error: the first failed operation.
   Outcome finish();
-  /// Before finish(): waits until all of it is on the disk, so that it survives the machine, too. Failures are kept for finish().
+  /// Waits until the data is on the disk, so that it survives a crash of the system. To be called before finish(), which reports errors.
   void sync();
-  /// finish(), then the rename to the final name.
+  /// Calls finish(), then renames the file to its final path.
   Outcome commit();
+  /// Returns the stream for direct writing; null after finish().
   std::FILE* stream() { return file_; }
 
  private:
   OutputFile(std::string path, std::optional<TemporaryFile> part, std::FILE* file);
 
   std::string path_;
-  std::optional<TemporaryFile> temporary_;  ///< none: written directly
+  std::optional<TemporaryFile> temporary_;  ///< empty: written directly
   std::FILE* file_ = nullptr;
   int error_ = 0;
 };
 
-/// Finishes all, and only then renames all.
+/// Calls finish() on all files, and renames them only when all of them succeeded.
 Outcome commit_all(const std::vector<OutputFile*>& files);
 
 }  // namespace catena

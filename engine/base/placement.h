@@ -1,17 +1,19 @@
-/// Where the world stands in the room of a person: a similarity, so that right angles stay right.
+/// Position, orientation and scale of the physical space of the user in the world: a similarity transform, so right angles are preserved.
 ///   world = world_origin + world_from_room * room / meters_per_unit
-/// Room: metres, x right, y up, z towards the person, as a headset's tracker has it. A haptic program has the same three as its workspace
-/// (haptics/servo/servo_tick.h). Any thread.
+/// Room coordinates: meters, x right, y up, z towards the user, as a headset's tracker reports them. A haptic program has the same three
+/// members as its workspace (haptics/servo/servo_tick.h). Any thread.
 #pragma once
 #include "engine/base/vec.h"
 
 namespace catena {
 
+/// Similarity transform between room coordinates (meters) and world coordinates.
 struct Placement {
-  Vec3 world_origin{0.0};      ///< of the room, in the world
-  Mat3 world_from_room{1.0};   ///< a rotation
-  double meters_per_unit = 1;  ///< > 0
+  Vec3 world_origin{0.0};      ///< world position of the room's origin
+  Mat3 world_from_room{1.0};   ///< rotation from room axes to world axes
+  double meters_per_unit = 1;  ///< meters per world unit, > 0
 
+  /// Converts a point from room to world coordinates, and back.
   Vec3 to_world(const Vec3& room) const { return world_origin + world_from_room * room / meters_per_unit; }
   Vec3 to_room(const Vec3& world) const { return meters_per_unit * ((world - world_origin) * world_from_room); }  // v * R = R^T v
   bool operator==(const Placement&) const = default;

@@ -1,4 +1,4 @@
-/// A plane, and the half space to which its normal points.
+/// A plane, and the half space on the side to which its normal points.
 #pragma once
 #include <cstddef>
 
@@ -6,13 +6,14 @@
 
 namespace catena {
 
-/// `normal` need not be unit.
+/// Plane in world space. `normal` need not have unit length.
 struct Plane {
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< a place on the plane and an arrow across it, world units
+  /// A point on the plane and a vector normal to it, world units.
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
   bool operator==(const Plane&) const = default;
 };
 
-/// Clip planes of one picture.
+/// Maximum number of clip planes of one image.
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
 }  // namespace catena

@@ -1,6 +1,4 @@
-/// What went wrong, in two kinds: a bug, which ends the program (CATENA_ASSERT), and an error of the outside world (Result).
-///
-/// A bug in Catena itself: checked in every build type, prints the place and aborts.
+/// Two kinds of failure: a bug in Catena, which aborts the program (CATENA_ASSERT), and an error caused by input or by the system (Result).
 #pragma once
 #include <cerrno>
 #include <string>
@@ -8,54 +6,54 @@
 #include <variant>
 
 namespace catena {
-/// Prints the expression and its place to stderr and aborts. Called by CATENA_ASSERT.
+/// Prints the failed expression with its file and line to stderr and aborts. Called by CATENA_ASSERT.
 [[noreturn]] void assertion_failed(const char* expression, const char* file, int line);
 }  // namespace catena
 
-/// Prints the place and aborts unless the expression holds, in every build type. For bugs in Catena, never for what comes from outside.
+/// Aborts with a message unless the expression holds, in every build type. For bugs in Catena only, never for invalid input.
 #define CATENA_ASSERT(expression) ((expression) ? static_cast<void>(0) : ::catena::assertion_failed(#expression, __FILE__, __LINE__))
 
 namespace catena {
 
-/// Why something could not be done.
+/// Description of an error.
 struct Error {
-  std::string message;          ///< one line: file, line, what, and what was expected
-  bool system_failure = false;  ///< this machine does not give what is needed (a thread, memory): no fault of the input
+  std::string message;          ///< one line: file, line, what is wrong, and what was expected
+  bool system_failure = false;  ///< true: the system does not provide a resource (a thread, memory, disk space); the input is not at fault
 };
 
-/// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick. Asking for the one
-/// that is not there is a bug and aborts.
+/// Result of an operation that can fail because of input or the system: a value, or an Error that the user can act on. Never thrown; not
+/// used in a haptic tick. Access to the alternative that is not present is a bug and aborts.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  /// Success.
+  /// Success with a value.
   Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
   /// Failure.
   Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
 
-  /// Whether there is a value.
+  /// Returns true when there is a value.
   explicit operator bool() const { return state_.index() == 0; }
-  /// The value.
+  /// Returns the value; aborts when there is an error.
   T& operator*() & { return value(); }
-  /// The value.
+  /// Returns the value; aborts when there is an error.
   const T& operator*() const& { return value(); }
-  /// The value, moved out.
+  /// Returns the value to be moved from; aborts when there is an error.
   T&& operator*() && { return std::move(value()); }
-  /// A member of the value.
+  /// Accesses a member of the value; aborts when there is an error.
   T* operator->() { return &value(); }
-  /// A member of the value.
+  /// Accesses a member of the value; aborts when there is an error.
   const T* operator->() const { return &value(); }
-  /// The value; aborts where there is an error.
+  /// Returns the value; aborts when there is an error.
   T& value() {
     CATENA_ASSERT(state_.index() == 0);
     return std::get<0>(state_);
   }
-  /// The value; aborts where there is an error.
+  /// Returns the value; aborts when there is an error.
   const T& value() const {
     CATENA_ASSERT(state_.index() == 0);
     return std::get<0>(state_);
   }
-  /// The error; aborts where there is a value.
+  /// Returns the error; aborts when there is a value.
   const Error& error() const {
     CATENA_ASSERT(state_.index() == 1);
     return std::get<1>(state_);
@@ -65,30 +63,31 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
-/// An operation without a value: empty on success.
+/// Value of an operation that returns nothing.
 struct Done {};
-/// Success without a value (`return Done{};`), or an Error.
+/// Result of an operation that returns nothing: success (`return Done{};`) or an Error.
 using Outcome = Result<Done>;
 
 }  // namespace catena
 
-// how CATENA_TRY is made
+// implementation of CATENA_TRY
 #define CATENA_CONCAT_(a, b) a##b
 #define CATENA_CONCAT(a, b) CATENA_CONCAT_(a, b)
 #define CATENA_TRY_(temporary, declaration, expression) \
   auto temporary = (expression);                        \
   if (!temporary) return temporary.error();             \
   declaration = std::move(*temporary)
-/// CATENA_TRY(const double x, read_number(text)): takes the value out of a Result, or returns its error from the function around it.
+/// CATENA_TRY(const double x, read_number(text)): declares x with the value of a Result, or returns the Result's error from the enclosing
+/// function.
 #define CATENA_TRY(declaration, expression) CATENA_TRY_(CATENA_CONCAT(try_result_, __LINE__), declaration, expression)
-/// Goes on where an Outcome or Result is a success, or returns its error from the function around it.
+/// Returns the error of an Outcome or Result from the enclosing function; continues on success.
 #define CATENA_CHECK(expression) \
   if (auto check_result = (expression); !check_result) return check_result.error()
 
 namespace catena {
 
-/// Whether a file cannot be opened because this process, or the machine, may have no more open (EMFILE, ENFILE of errno): an error of the
-/// machine, not of the file.
+/// Returns true when errno `code` means that this process or the system has too many open files (EMFILE, ENFILE): a system failure, not an
+/// error of the file.
 inline bool is_too_many_open_files(int code) { return code == EMFILE || code == ENFILE; }
 
 }  // namespace catena

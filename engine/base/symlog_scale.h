@@ -1,8 +1,9 @@
-/// The scale on which values lie between the points of a colour map and along a colour bar. With c = linear_below > 0
+/// Symmetric logarithmic scale, used for the values of a color map's control points and for positions along a color bar. With c =
+/// linear_below > 0
 ///   s(v) = v / c                         |v| <= c
-///   s(v) = sign(v) (1 + ln(|v| / c))     beyond
-/// which is continuous together with its slope. Of values >= c it is a logarithm but for a constant, so that a logarithmic scale is this
-/// one with c = its least value. linear_below = 0 stands for the linear scale, s(v) = v. Pure functions, any thread.
+///   s(v) = sign(v) (1 + ln(|v| / c))     |v| > c
+/// The scale and its slope are continuous. For values >= c it is a logarithm plus a constant, so a logarithmic scale is this scale with c =
+/// the smallest value. linear_below = 0 stands for the linear scale, s(v) = v. Pure functions, any thread.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,19 +12,21 @@
 
 namespace catena {
 
+/// Returns s(value).
 inline double symlog(double value, double linear_below) {
   if (!(linear_below > 0)) return value;
   const double ratio = std::fabs(value) / linear_below;
   return ratio <= 1 ? value / linear_below : std::copysign(1 + std::log(ratio), value);
 }
 
+/// Returns the value v with s(v) = `place`.
 inline double symlog_inverse(double place, double linear_below) {
   if (!(linear_below > 0)) return place;
   const double size = std::fabs(place);
   return size <= 1 ? place * linear_below : std::copysign(linear_below * std::exp(size - 1), place);
 }
 
-/// The value that lies at the share t, 0 to 1, of the way from lo to hi; lo and hi themselves at the ends.
+/// Returns the value at the fraction t, 0 to 1, of the distance from lo to hi on the scale; exactly lo and hi at the ends.
 inline double symlog_interpolate(double lo, double hi, double t, double linear_below) {
   if (t <= 0) return lo;
   if (t >= 1) return hi;
@@ -31,8 +34,9 @@ inline double symlog_interpolate(double lo, double hi, double t, double linear_b
   return symlog_inverse((1 - t) * a + t * b, linear_below);
 }
 
-/// Rows (value, ...) that are linear between each other on the scale, with more of them, so that they are linear in the value: to `share`
-/// of the greatest number of each column. A straight line over a piece of length h of s is off by h^2 / 8 of the slope there.
+/// Resamples rows (value, ...) that are linear between each other on the scale such that they are linear in the value, by adding rows. The
+/// error of each column is at most `share` times the largest absolute number of that column; at most 1024 segments replace one. A straight
+/// segment over an interval of length h of s deviates by h^2 / 8 of the slope there.
 template <std::size_t N>
 std::vector<std::array<double, N>> refine_for_symlog(const std::vector<std::array<double, N>>& rows, double linear_below, double share) {
   constexpr double kMost = 1024;

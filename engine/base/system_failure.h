@@ -1,6 +1,6 @@
-/// Failures of the machine, told apart from bad input in one table: a full disk, a limit of the process, a device that does not answer.
-/// They end a command with exit code 1 and their cause; what a file or a person got wrong ends it with 2. The same table is in
-/// docs/command-line.md. Any thread.
+/// System failures, distinguished from bad input by one table of errno codes: a full disk, a resource limit of the process, a device or
+/// server that does not respond. They end a command with exit code 1 and their cause; errors of a file or of the user end it with 2.
+/// docs/command-line.md contains the same table. Any thread.
 #pragma once
 #include <optional>
 #include <span>
@@ -10,39 +10,40 @@
 
 namespace catena {
 
-/// A code of errno that is the machine's failure, and the limit that may be behind it.
+/// An errno code that is a system failure, and the resource limit that may cause it.
 struct SystemFailure {
-  int code;                  ///< ENOSPC
-  int limit;                 ///< RLIMIT_*; -1: none
-  const char* limit_format;  ///< of the limit, with one place for its value: "files may have at most {} bytes: ulimit -f"
+  int code;   ///< errno code, for example ENOSPC
+  int limit;  ///< RLIMIT_*; -1: no limit causes it
+  /// Format of a message on the limit, with one placeholder for its value: "files may have at most {} bytes: ulimit -f".
+  const char* limit_format;
 };
-/// The whole table.
+/// Returns the whole table.
 std::span<const SystemFailure> system_failures();
 
-/// Whether a code of errno is in the table.
+/// Returns true when an errno code is in the table.
 bool is_system_failure(int code);
-/// What the C library calls the code, and the limit that is behind it where one is set: "File too large (files may have at most 8192
-/// bytes: ulimit -f)".
+/// Returns the C library's text for an errno code, and the limit that may cause it when one is set: "File too large (files may have at most
+/// 8192 bytes: ulimit -f)".
 std::string describe_errno(int code);
-/// "WHAT: CAUSE", an error of the machine if the table has the code.
+/// Makes an Error "WHAT: CAUSE" from an errno code; a system failure when the table contains the code.
 Error system_error(const std::string& what, int code);
 
-/// The value of a limit of this process (RLIMIT_*), where one is set. That on processes does not count for root.
+/// Returns a resource limit (RLIMIT_*) of this process; nullopt when it is unlimited. The limit on processes does not apply to root.
 std::optional<unsigned long long> resource_limit(int limit);
-/// The limits of this process on addresses and sizes of files that are set, for a failure of which nothing else is known; empty: none.
+/// Returns a description of the address-space and file-size limits that are set, for a failure without a known cause; empty: none is set.
 std::string describe_resource_limits();
 
-/// "out of memory: this process may have at most N KiB of addresses: ulimit -v; expected more, or less to load or to draw". Allocates
-/// nothing; valid until the next call of this thread.
+/// Returns "out of memory: this process may have at most N KiB of addresses: ulimit -v; expected more, or less to load or to draw".
+/// Allocates nothing; valid until the next call on this thread.
 const char* out_of_memory_message() noexcept;
 
-/// `error`, which tells of `cause` in other words: an error of the machine if that is one.
+/// Returns `error`, whose message describes `cause` in other words, marked as a system failure when `cause` is one.
 inline Error with_cause(Error error, const Error& cause) {
   error.system_failure = cause.system_failure;
   return error;
 }
 
-/// Exit code of a command that ended with this error: 1 where the machine failed, else 2.
+/// Returns the exit code of a command that ended with this error: 1 for a system failure, else 2.
 inline int to_exit_code(const Error& error) { return error.system_failure ? 1 : 2; }
 
 }  // namespace catena

@@ -1,5 +1,5 @@
-/// One writer, one reader, neither ever waits: the writer fills a spare slot and swaps it in, the reader takes the newest.
-/// Both directions between the frame and the tick use it. T is trivially copyable plain data.
+/// Lock-free triple buffer between one writer thread and one reader thread; neither ever waits. The writer fills a spare slot and publishes
+/// it, the reader acquires the newest one. Used in both directions between the frame thread and the haptic tick. T is trivially copyable.
 #pragma once
 #include <array>
 #include <atomic>
@@ -7,30 +7,30 @@
 
 namespace catena {
 
-/// Three slots of T, swapped without a lock.
+/// Three slots of T, exchanged without a lock.
 template <class T>
 class TripleBuffer {
   static_assert(std::is_trivially_copyable_v<T>, "only plain data crosses threads");
   static_assert(std::atomic<unsigned>::is_always_lock_free);
 
  public:
-  /// Writer's thread only.
+  /// Returns the slot that the writer fills. Writer thread only.
   T& back() { return slots_[back_]; }
-  /// Hands the back slot over; back() is another one then.
+  /// Publishes the back slot; back() is a different slot afterwards. Writer thread only.
   void publish() { back_ = middle_.exchange(back_ | kFreshBit, std::memory_order_acq_rel) & kIndexMask; }
-  /// Writes and hands over.
+  /// Copies the value to the back slot and publishes it. Writer thread only.
   void publish(const T& value) {
     back() = value;
     publish();
   }
 
-  /// Reader's thread only. True if something new arrived since the last call.
+  /// Makes the newest published value the front slot. Returns true when one was published since the last call. Reader thread only.
   bool acquire() {
     if ((middle_.load(std::memory_order_relaxed) & kFreshBit) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndexMask;
     return true;
   }
-  /// What take() took last. Reader's thread only.
+  /// Returns the value that acquire() obtained last. Reader thread only.
   const T& front() const { return slots_[front_]; }
 
  private:

@@ -1,4 +1,4 @@
-/// Vectors and matrices of the whole house: GLM in double precision (floats begin at the GPU).
+/// Vectors, matrices and quaternions used throughout Catena: GLM in double precision (single precision is used on the GPU only).
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,20 +9,20 @@
 
 namespace catena {
 
-/// Three doubles: a place or an arrow. World units unless a name says otherwise (`_m` metres, `_n` newtons).
+/// Three doubles: a position or a direction. World units unless a name states otherwise (`_m` meters, `_n` newtons).
 using Vec3 = glm::dvec3;
-using Mat3 = glm::dmat3;  ///< columns first, as GLM keeps them
+using Mat3 = glm::dmat3;  ///< stored column by column, as in GLM
 
-/// The scalar product.
+/// Returns the scalar product.
 inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-/// The vector product, right-handed.
+/// Returns the vector product, right-handed.
 inline Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-/// The largest of |x|, |y|, |z|.
+/// Returns the largest of |x|, |y|, |z|.
 inline double max_abs(const Vec3& v) { return std::max(std::max(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z)); }
-/// Whether all components are finite.
+/// Returns true when all components are finite.
 inline bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// |v| without overflow or underflow: divides by max|v_i| before squaring (correct from 1e-323 to 1e308). Not finite where v is not.
+/// Returns |v| without overflow or underflow: divides by max|v_i| before squaring (correct from 1e-323 to 1e308). Not finite when v is not.
 inline double norm(const Vec3& v) {
   const double m = max_abs(v);
   if (!(m > 0) || !std::isfinite(m)) return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
@@ -31,36 +31,36 @@ inline double norm(const Vec3& v) {
   return m * std::sqrt(dot(w, w));
 }
 
-/// v / |v|, or zero where v is zero or not finite. Bitwise odd: direction(-v) == -direction(v).
+/// Returns v / |v|, or zero when v is zero or not finite. Odd to the bit: direction(-v) == -direction(v).
 inline Vec3 direction(const Vec3& v) {
   const double m = max_abs(v);
   if (!(m > 0) || !std::isfinite(m)) return Vec3(0.0);
   const Vec3 w{v.x / m, v.y / m, v.z / m};
   const double r = std::sqrt(dot(w, w));
-  if (!(r > 0)) return Vec3(0.0);  // a component is not a number
+  if (!(r > 0)) return Vec3(0.0);  // a component is NaN
   return {w.x / r, w.y / r, w.z / r};
 }
 
-/// Rotations of the whole house: unit quaternions (GLM, double) and rotation vectors (axis times angle, radians).
-/// q turns tool axes into world axes: rotate(q, v);  rotate(a * b, v) = rotate(a, rotate(b, v)).
+/// Rotations: unit quaternions (GLM, double) and rotation vectors (axis times angle, radians).
+/// A quaternion q rotates tool axes to world axes: rotate(q, v);  rotate(a * b, v) = rotate(a, rotate(b, v)).
 
 using Quat = glm::dquat;  ///< Quat(w, x, y, z); the identity is Quat(1, 0, 0, 0)
 
-inline const Quat kIdentityRotation{1.0, 0.0, 0.0, 0.0};  ///< The rotation that turns nothing.
+inline const Quat kIdentityRotation{1.0, 0.0, 0.0, 0.0};  ///< identity rotation
 
-/// Whether all components are finite.
+/// Returns true when all components are finite.
 inline bool is_finite(const Quat& q) { return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z); }
 
-/// Unit length; what is zero or not finite is no rotation.
+/// Returns q scaled to unit length; the identity when q is zero or not finite.
 Quat normalized(const Quat& q) noexcept;
-/// v turned by the unit quaternion q: v + 2 w (u x v) + 2 u x (u x v), u its vector part.
+/// Returns v rotated by the unit quaternion q: v + 2 w (u x v) + 2 u x (u x v), where u is the vector part of q.
 Vec3 rotate(const Quat& q, const Vec3& v) noexcept;
-/// log: the rotation vector of a unit quaternion, the shorter way round: |.| <= pi. q and -q are the same rotation.
+/// Logarithm: returns the rotation vector of a unit quaternion with the smaller angle, |result| <= pi. q and -q are the same rotation.
 Vec3 rotation_vector(const Quat& q) noexcept;
-/// exp: the rotation about v by |v| radians.
+/// Exponential: returns the rotation about v by |v| radians.
 Quat rotation_from_vector(const Vec3& v) noexcept;
-/// The smallest rotation that turns the unit vector a onto the unit vector b. Opposite ones: half a turn about an axis square to a,
-/// the same for the same a.
+/// Returns the smallest rotation that takes the unit vector a to the unit vector b. For opposite vectors: half a turn about an axis
+/// perpendicular to a that depends on a only.
 Quat shortest_arc(const Vec3& a, const Vec3& b) noexcept;
 
 }  // namespace catena

@@ -1,4 +1,4 @@
-/// The version of Catena, semantic: before 1.0 a change of what headers promise raises the middle number. CMake reads it from here.
+/// Semantic version of Catena. Before 1.0 an incompatible change of the public headers raises the middle number. CMake reads it from here.
 #pragma once
 
 namespace catena {

@@ -1,8 +1,10 @@
-/// A field that is a function of a program's own: sampled exactly, at every place, by the hand; drawn from samples.
-///   value = f(x), gradient = df/dx in world units, within a box of the world. OutwardSide the box, and where a number is not finite, a
-///   sample is not inside; the function is asked there all the same, because searches for a surface look a little beyond.
-/// The function is called on the haptic thread and by several threads at once: it allocates nothing, takes no lock, throws nothing, and the
-/// same place gives the same bits.
+/// Field defined by a C++ function of the application. The haptic tick evaluates the function exactly, at every position; rendering uses
+/// samples of it.
+///   value = f(x), gradient = df/dx in world units, in a box of the world
+/// A sample is not inside when it is outside of the box or when a number is not finite. The function is also called outside of the box,
+/// because searches for a surface look slightly beyond it.
+/// The function is called on the haptic thread and by several threads at once. It must not allocate, lock or throw, and must return the
+/// same bits for the same position.
 #pragma once
 #include <functional>
 #include <limits>
@@ -13,17 +15,17 @@
 
 namespace catena::field {
 
-/// Gives the value and sets the gradient.
+/// Returns the value at a world position and sets the gradient.
 using ScalarFunction = std::function<double(const Vec3& world, Vec3& gradient)>;
-/// Gives the vector in world axes; not finite: there is none at this place.
+/// Returns the vector at a position, in world axes; a result that is not finite means that there is no vector.
 using VectorFunction = std::function<Vec3(const Vec3& world)>;
 
-/// `domain` holds a point and is finite; anything else is a bug, which asserts. `least` and `most`: the values that it attains over all
-/// space. An isosurface beyond them is refused.
+/// Makes a scalar field. `domain` must be non-empty and finite; anything else is a bug and asserts. `least` and `most`: range of the values
+/// over all space; an isosurface outside of it is refused.
 ScalarFieldPtr make_callable_field(std::string name, const Bounds& domain, ScalarFunction function,
                                    double least = -std::numeric_limits<double>::infinity(),
                                    double most = std::numeric_limits<double>::infinity());
-/// The same of vectors.
+/// Makes a vector field; `domain` as above.
 VectorFieldPtr make_callable_field(std::string name, const Bounds& domain, VectorFunction function);
 
 }  // namespace catena::field

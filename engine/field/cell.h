@@ -1,6 +1,6 @@
-/// The trilinear cell: eight corners are the whole polynomial, so one fetch gives value, gradient and Hessian, exactly.
+/// Trilinear cell: its eight corners determine the whole polynomial, so one fetch gives value, gradient and Hessian exactly.
 ///   s(f) = sum over corners of c_ijk * (x-weight)(y-weight)(z-weight),  f = index - base in [0, 1]^3
-/// Corner order: corner[i + 2 j + 4 k] at base + (i, j, k). Gradients are by index; Mapping turns them to world.
+/// Corner order: corner[i + 2 j + 4 k] at base + (i, j, k). Gradients are in index space; Mapping converts them to world space.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,40 +9,41 @@
 
 namespace catena::field {
 
-/// The index of a voxel.
+/// Index of a voxel.
 struct Index3 {
   std::int32_t x = 0, y = 0, z = 0;  ///< along the grid's axes
   bool operator==(const Index3&) const = default;
 };
 
-/// Eight corners of a scalar grid.
+/// Cell of a scalar grid.
 struct ScalarCell {
-  Index3 base;                     ///< index of corner 0
-  bool valid = false;              ///< inside the domain, and all eight corners valid where the grid has a `valid` mask
+  Index3 base;                     ///< base voxel: index of corner 0
+  bool valid = false;              ///< inside the domain, and all eight corners valid where the grid has a mask
   std::array<double, 8> corner{};  ///< values, corner[i + 2 j + 4 k]
 
-  /// The trilinear value at f in [0, 1]^3; beyond, the same polynomial.
+  /// Returns the trilinear value at f in [0, 1]^3; outside of it the same polynomial.
   double value(const Vec3& f) const;
-  Vec3 gradient(const Vec3& f) const;  ///< by index
-  /// Mixed second derivatives by index; the diagonal of a trilinear function is zero. Returns (d2/dydz, d2/dxdz, d2/dxdy).
+  Vec3 gradient(const Vec3& f) const;  ///< gradient in index space
+  /// Returns the mixed second derivatives (d2/dydz, d2/dxdz, d2/dxdy) in index space; the other second derivatives of a trilinear function
+  /// are zero.
   Vec3 mixed_second_derivatives(const Vec3& f) const;
-  /// Both in one pass; `gradient` is by index.
+  /// Computes value and gradient (index space) in one pass.
   void value_and_gradient(const Vec3& f, double& value, Vec3& gradient) const;
 };
 
-/// Eight corners of a vector grid.
+/// Cell of a vector grid.
 struct VectorCell {
-  Index3 base;                   ///< index of corner 0
+  Index3 base;                   ///< base voxel: index of corner 0
   bool valid = false;            ///< as in ScalarCell
-  std::array<Vec3, 8> corner{};  ///< vectors, corner[i + 2 j + 4 k], world axes
+  std::array<Vec3, 8> corner{};  ///< vectors in world axes, corner[i + 2 j + 4 k]
 
-  /// The trilinear vector at f.
+  /// Returns the trilinear vector at f.
   Vec3 value(const Vec3& f) const;
 };
 
-// The hot path is in the header: one fetch costs a few nanoseconds, and so would the call.
+// Performance-critical functions are inline: a fetch takes a few nanoseconds, and a call would take as long.
 
-/// The trilinear polynomial of eight numbers at f, with its gradient by index.
+/// Evaluates the trilinear polynomial of eight numbers at f, with its gradient in index space.
 inline void trilinear(const std::array<double, 8>& c, const Vec3& f, double& value, Vec3& gradient) {
   // along x, then y, then z
   const double d00 = c[1] - c[0], d10 = c[3] - c[2], d01 = c[5] - c[4], d11 = c[7] - c[6];
@@ -54,7 +55,7 @@ inline void trilinear(const std::array<double, 8>& c, const Vec3& f, double& val
   gradient = Vec3(x0 + (x1 - x0) * f.z, e0 + (e1 - e0) * f.z, w1 - w0);
 }
 
-/// The trilinear mix of eight vectors at f.
+/// Returns the trilinear interpolation of eight vectors at f.
 inline Vec3 trilinear(const std::array<Vec3, 8>& c, const Vec3& f) {
   const auto mix = [](const Vec3& a, const Vec3& b, double t) {
     return Vec3(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);

@@ -1,13 +1,15 @@
-/// A vector formula within a box: a sample outside of the box is outside of the domain. So lines of a field that has no end of its own,
-/// such as a closed form, end where the picture does. Threads: as the field within it.
+/// Vector field restricted to a box: a sample outside of the box is outside of the domain. Lines of an unbounded field, such as a closed
+/// form, then end at the box. Thread-safety as for the underlying field.
 #pragma once
 #include "engine/field/field.h"
 
 namespace catena::field {
 
+/// View of a vector field that reports samples outside of a box as not inside.
 class ClippedVectorField final : public VectorField {
  public:
-  /// `whole` outlives this; `box` in world coordinates. L (Field::length) is the longest edge of the box.
+  /// `whole` must outlive this object; `box` is in world coordinates. The domain length L (Field::domain_length) is the longest edge of the
+  /// box.
   ClippedVectorField(const VectorField& whole, const Box& box) : source_(whole), box_(box) { set_domain(whole.name(), {}, box); }
 
   VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept override {

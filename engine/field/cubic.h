@@ -1,8 +1,8 @@
-/// The cubic cell: 4 x 4 x 4 samples about a cell give a value and its gradient, both continuous from cell to cell (C1).
+/// Cubic cell: the 4 x 4 x 4 samples around a cell give a value and its gradient, both continuous from cell to cell (C1).
 ///   s(f) = sum over i, j, k in -1..2 of c_ijk w_i(f.x) w_j(f.y) w_k(f.z),   f = index - base in [0, 1]^3      (Catmull and Rom, 1974)
 ///   w(t) = (-t + 2 t^2 - t^3, 2 - 5 t^2 + 3 t^3, t + 4 t^2 - 3 t^3, -t^2 + t^3) / 2
-/// It passes through the samples, repeats polynomials of second degree, and may go beyond the samples' range: kCubicOvershoot.
-/// Summed by differences from the sample at -1 + 1, so that samples that are all equal give just that value, and a gradient of 0.
+/// It interpolates the samples, reproduces polynomials of second degree, and may leave the range of the samples: kCubicOvershoot. Sums are
+/// formed from differences to the base sample of each axis, so equal samples give exactly that value and a gradient of 0.
 /// Any thread; no allocation, lock or throw.
 #pragma once
 #include <algorithm>
@@ -12,32 +12,32 @@
 
 namespace catena::field {
 
-/// Samples of C components: c + C (x + 4 y + 16 z), x, y, z in 0..3 from base - 1 on.
+/// Samples with C components: index c + C (x + 4 y + 16 z), x, y, z in 0..3, starting at base - 1 along each axis.
 template <int C>
 using CubicSamples = std::array<float, 64 * C>;
 
-/// A cubic cell's value and slopes, of C components.
+/// Value and slopes of a cubic cell with C components.
 template <int C>
 struct CubicValue {
   std::array<double, C> value;                 ///< by component
-  std::array<std::array<double, C>, 3> slope;  ///< by index, along x, y, z
+  std::array<std::array<double, C>, 3> slope;  ///< derivatives in index space along x, y, z, by component
 };
 
-/// How far a value may lie beyond the samples' range [a, b]: kCubicOvershoot (b - a) at both ends. The negative weights add up to
-/// -1/8 at most along one axis, so the three axes together weigh samples by up to (5/4)^3 in absolute value: ((5/4)^3 - 1) / 2.
+/// How far a value may leave the range [a, b] of the samples: by kCubicOvershoot (b - a) at both ends. The negative weights add up to at
+/// most -1/8 along one axis, so the absolute weights of three axes add up to at most (5/4)^3: ((5/4)^3 - 1) / 2.
 inline constexpr double kCubicOvershoot = 61.0 / 128;
 
-/// The weights of one axis at the place t in [0, 1].
+/// Weights along one axis at the position t in [0, 1].
 struct CubicWeights {
-  double value[3], slope[3];  ///< of the samples 0, 2 and 3, less the sample 1
+  double value[3], slope[3];  ///< for the differences of samples 0, 2 and 3 to sample 1
 
-  /// Both sets of weights at t.
+  /// Computes the weights for value and slope at t.
   explicit CubicWeights(double t)
       : value{0.5 * t * (t * (2 - t) - 1), 0.5 * t * (1 + t * (4 - 3 * t)), 0.5 * t * t * (t - 1)},
         slope{0.5 * (t * (4 - 3 * t) - 1), 0.5 * (1 + t * (8 - 9 * t)), 0.5 * t * (3 * t - 2)} {}
 };
 
-/// One axis of four rows of N numbers.
+/// Interpolates four rows of N numbers along one axis.
 template <int N, class T>
 inline void cubic_values(const T* rows, const CubicWeights& w, double* value) {
   for (int n = 0; n < N; ++n) {
@@ -45,7 +45,7 @@ inline void cubic_values(const T* rows, const CubicWeights& w, double* value) {
     value[n] = c + (w.value[0] * a + w.value[1] * b + w.value[2] * d);
   }
 }
-/// The same with the slope along that axis, by index.
+/// The same with the slope along that axis, in index space.
 template <int N, class T>
 inline void cubic_values(const T* rows, const CubicWeights& w, double* value, double* slope) {
   for (int n = 0; n < N; ++n) {
@@ -55,7 +55,7 @@ inline void cubic_values(const T* rows, const CubicWeights& w, double* value, do
   }
 }
 
-/// CellFinder the cell.
+/// Returns value and slopes at f inside the cell.
 template <int C>
 CubicValue<C> cubic_within(const CubicSamples<C>& samples, const Vec3& f) {
   const CubicWeights x(f.x), y(f.y), z(f.z);
@@ -70,7 +70,8 @@ CubicValue<C> cubic_within(const CubicSamples<C>& samples, const Vec3& f) {
   return out;
 }
 
-/// Anywhere: beyond the cell it goes on linearly, with value and gradient of the nearest place in the cell.
+/// Returns value and slopes at any f. Outside of the cell it continues linearly with value and gradient of the nearest position in the
+/// cell.
 template <int C>
 CubicValue<C> cubic(const CubicSamples<C>& samples, const Vec3& f) {
   const Vec3 near = glm::clamp(f, Vec3(0.0), Vec3(1.0)), beyond = f - near;
@@ -79,7 +80,7 @@ CubicValue<C> cubic(const CubicSamples<C>& samples, const Vec3& f) {
   return out;
 }
 
-/// The same without the gradient: of the cell's own polynomial, which goes on beyond the cell.
+/// Returns the vector at f without slopes; outside of the cell the polynomial of the cell itself.
 inline Vec3 cubic_vector_within(const CubicSamples<3>& samples, const Vec3& f) {
   double plane[48], row[12], value[3];
   cubic_values<48>(samples.data(), CubicWeights(f.z), plane);
@@ -88,7 +89,7 @@ inline Vec3 cubic_vector_within(const CubicSamples<3>& samples, const Vec3& f) {
   return {value[0], value[1], value[2]};
 }
 
-/// And anywhere.
+/// Returns the vector at any f; outside of the cell it continues linearly.
 inline Vec3 cubic_vector(const CubicSamples<3>& samples, const Vec3& f) {
   if (f.x >= 0 && f.x <= 1 && f.y >= 0 && f.y <= 1 && f.z >= 0 && f.z <= 1) return cubic_vector_within(samples, f);
   const auto out = cubic<3>(samples, f);

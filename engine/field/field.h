@@ -1,7 +1,7 @@
-/// Fields: immutable, versioned, in world coordinates and double precision. Grids and analytic fields serve one interface, so
-/// that every algorithm can be tested against closed forms. One fetch (= one evaluation) gives the value and, for scalars,
-/// the analytic gradient: of the trilinear or cubic cell on grids, of the formula on analytic fields.
-/// Threads: any number at once, each with its own Cursor. No allocation, lock or throw in any const noexcept function.
+/// Fields: immutable, versioned, in world coordinates and double precision. Grids and analytic fields have the same interface, so every
+/// algorithm can be tested against closed forms. One fetch (= one evaluation) gives the value and, for scalar fields, the analytic
+/// gradient: that of the trilinear or cubic cell on grids, that of the formula on analytic fields.
+/// Threads: any number concurrently, each with its own Cursor. The const noexcept functions do not allocate, lock or throw.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,40 +17,42 @@
 
 namespace catena::field {
 
-/// Where a walk remembers the nodes it last touched. Plain bytes, one per walk and thread; never changes a result.
-/// Zero-initialised it belongs to no grid; a fetch from another grid than the last starts it anew.
+/// Cell cache of a sequence of fetches: the grid nodes and the cell that were accessed last. Plain bytes, one per thread; it never changes
+/// a result. Zero-initialized it belongs to no grid; a fetch from a different grid resets it.
 struct Cursor {
-  const void* owner = nullptr;  ///< the grid that the bytes are about; null: none yet
-  /// The grid's own, meaningless to anybody else.
+  const void* owner = nullptr;  ///< the grid to which the bytes belong; null: none yet
+  /// Private data of that grid.
   alignas(16) std::byte memory[1280]{};
 };
 
-/// What one fetch of a scalar field gives.
+/// Sample of a scalar field.
 struct ScalarSample {
-  double value = 0;     ///< the field's own unit
-  Vec3 gradient{0.0};   ///< world units
-  bool inside = false;  ///< within the domain (and the valid mask); outside, value and gradient extend the nearest cell or formula
+  double value = 0;    ///< in the field's own unit
+  Vec3 gradient{0.0};  ///< per world unit
+  /// The position is inside the domain (and the mask of valid voxels). Outside, value and gradient extrapolate the nearest cell or the
+  /// formula.
+  bool inside = false;
 };
 
-/// What one fetch of a vector field gives.
+/// Sample of a vector field.
 struct VectorSample {
   Vec3 value{0.0};      ///< components in world axes
   bool inside = false;  ///< as in ScalarSample
 };
 
-/// A vector field read as a line field, where v and -v mean the same (line_axis.h).
+/// Sample of a vector field interpreted as a line field, in which v and -v mean the same (line_field.h).
 struct LineSample : LineAxis {
   bool inside = false;  ///< as in ScalarSample
 };
 
-/// How a grid says what lies between its voxel centres.
-///   linear    trilinear in the cell of eight centres
-///   nearest   the value of the nearest centre (of two as near, the one of the greater index), never a mix; its gradient is 0
-///   cubic     of 4 x 4 x 4 centres: smooth (C1) from cell to cell (cubic.h)
-/// The domain is the box of voxel centres, less cells with a missing corner, every time.
+/// Interpolation of a grid between its voxel centers. The domain is always the box of voxel centers without the cells that have an invalid
+/// corner.
+///   linear    trilinear in the cell of eight voxel centers
+///   nearest   value of the nearest voxel center (of two equally near ones that with the larger index), never a mixture; gradient 0
+///   cubic     from 4 x 4 x 4 voxel centers: smooth (C1) from cell to cell (cubic.h)
 enum class Interpolation { linear, nearest, cubic };
 
-/// What scalar and vector fields share: a name, a version, and where in the world they lie.
+/// Base of scalar and vector fields: name, version, and domain in the world.
 class Field {
  public:
   virtual ~Field() = default;
@@ -58,24 +60,30 @@ class Field {
   Field(const Field&) = delete;
   Field& operator=(const Field&) = delete;
 
-  const std::string& name() const { return name_; }   ///< the grid's or the formula's name
-  std::uint64_t version() const { return version_; }  ///< unique in the process; the key of mirrors
-  /// World from index; the identity of a formula.
+  const std::string& name() const { return name_; }   ///< name of the grid or formula
+  std::uint64_t version() const { return version_; }  ///< unique in the process; key for GPU-resident copies
+  /// Returns the map from index space to the world; the identity for a formula.
   const Mapping& mapping() const { return mapping_; }
-  const Box& index_box() const { return index_box_; }                                ///< of voxel centres; no grid: of the domain, world
-  Vec3 corner(int i) const { return world_corner(mapping_, index_box_, i); }         ///< of the domain, world: i + 2 j + 4 k by index
-  Bounds world_bounds() const { return field::world_bounds(mapping_, index_box_); }  ///< of all eight
-  double domain_length() const { return domain_length_; }    ///< L: the longest edge of the domain box, world units; 4 for make_analytic()
-  double max_voxel_edge() const { return max_voxel_edge_; }  ///< of a voxel, world units; no grid: 1
-  /// Whether it is sampled on a grid (then grid() gives it) rather than a formula or a function.
+  /// Returns the box of voxel centers, in index space; without a grid the domain, in world coordinates.
+  const Box& index_box() const { return index_box_; }
+  /// Returns the world position of domain corner number i + 2 j + 4 k (i, j, k along the index axes).
+  Vec3 corner(int i) const { return world_corner(mapping_, index_box_, i); }
+  /// Returns the world-axis-aligned box that encloses the eight corners.
+  Bounds world_bounds() const { return field::world_bounds(mapping_, index_box_); }
+  /// Returns L, the longest edge of the domain box, world units; 4 for make_analytic().
+  double domain_length() const { return domain_length_; }
+  /// Returns the longest edge of a voxel, world units; 1 without a grid.
+  double max_voxel_edge() const { return max_voxel_edge_; }
+  /// Returns true when the field is sampled on a grid (then grid() returns it), false for a formula or a function.
   virtual bool is_grid() const noexcept { return false; }
-  /// Memory that it holds, bytes; 0 of a formula.
+  /// Returns the memory of the field in bytes; 0 for a formula.
   virtual std::size_t bytes() const noexcept { return 0; }
-  /// Why a sample at this place is not inside: box, mask or not_finite; none where it is. Here: a formula, which has no box.
+  /// Returns why a sample at this position is not inside (outside_box, masked or not_finite), or ok when it is. The implementation here is
+  /// for formulas, which have no box.
   virtual SampleStatus status_outside(const Vec3& world, Cursor& cursor) const noexcept;
 
  protected:
-  /// For classes that derive from it: their constructor calls it once.
+  /// Sets name, domain and a new version. To be called once by the constructor of a derived class.
   void set_domain(std::string name, const Mapping& mapping, const Box& index_box);
 
  private:
@@ -89,49 +97,51 @@ class Field {
 class ScalarGrid;
 class VectorGrid;
 
-/// A number at every place. Values have the unit of the data; places are world units.
+/// Scalar field. Values have the unit of the data; positions are in world units.
 class ScalarField : public Field {
  public:
-  /// Value and gradient at a place: one evaluation. Any thread, each with a Cursor of its own; no allocation, lock or throw.
+  /// Returns value and gradient at a position: one evaluation. Any thread, each with its own Cursor; no allocation, lock or throw.
   virtual ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
-  /// The values that the field attains: of the active (and valid) voxels; of the formula, over all space (may be infinite).
+  /// Returns the minimum of the field: over the active (and valid) voxels of a grid; over all space for a formula (may be -infinity).
   virtual double min_value() const noexcept = 0;
-  /// The greatest value, as min_value() the least.
+  /// Returns the maximum of the field, over the same set as min_value().
   virtual double max_value() const noexcept = 0;
-  /// The grid, where it is one; else null.
+  /// Returns the grid, or null when the field is not a grid.
   virtual const ScalarGrid* grid() const noexcept { return nullptr; }
-  /// How it reads between voxel centres; a formula is exact and says linear.
+  /// Returns the interpolation between voxel centers; a formula is exact and returns linear.
   virtual Interpolation interpolation() const noexcept { return Interpolation::linear; }
 };
 
-/// An arrow at every place, in world axes.
+/// Vector field, in world axes.
 class VectorField : public Field {
  public:
-  /// The vector at a place: one evaluation. Any thread, each with a Cursor of its own; no allocation, lock or throw.
+  /// Returns the vector at a position: one evaluation. Any thread, each with its own Cursor; no allocation, lock or throw.
   virtual VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
-  /// The same place read as a line field. Formulas: the value's axis, coherent wherever it is not zero.
+  /// Samples the field as a line field at a position. For formulas: the axis of the vector, with coherence 1 wherever it is not zero.
   virtual LineSample sample_line(const Vec3& world, Cursor& cursor) const noexcept;
-  /// The grid, where it is one; else null.
+  /// Returns the grid, or null when the field is not a grid.
   virtual const VectorGrid* grid() const noexcept { return nullptr; }
 };
 
-/// What to do where a field that is read by its nearest voxels cannot have a surface: empty for other fields.
+/// Returns what the user can do when a surface is requested of a field with nearest interpolation, which has none; empty for other fields.
 std::string no_surface_hint(const ScalarField& field, const std::string& name);
 
-/// Fields are shared and never change.
+/// Shared ownership of an immutable field.
 using ScalarFieldPtr = std::shared_ptr<const ScalarField>;
-/// Fields are shared and never change.
+/// Shared ownership of an immutable field.
 using VectorFieldPtr = std::shared_ptr<const VectorField>;
 
-/// Either kind; exactly one is set.
+/// A scalar or a vector field; exactly one of the two pointers is set.
 struct AnyField {
-  ScalarFieldPtr scalar;             ///< set: it is a scalar field
-  VectorFieldPtr vector;             ///< set: it is a vector field
-  std::vector<double> times{};       ///< of the file's steps in time; one, or empty: it has one step
-  std::string time_unit{};           ///< of `times`: "s", "hours since 2001-01-01"; empty: not stated
-  std::int64_t newest_mtime_ns = 0;  ///< when the youngest file that was read was last changed, since 1970; 0: not known
-  std::vector<std::string> notes{};  ///< what is not as it was in the file: sentences without an end
-  /// What both kinds share; null where neither is set.
+  ScalarFieldPtr scalar;        ///< set for a scalar field
+  VectorFieldPtr vector;        ///< set for a vector field
+  std::vector<double> times{};  ///< times of the file's time steps; one entry or none: a single step
+  std::string time_unit{};      ///< unit of `times`: "s", "hours since 2001-01-01"; empty: unknown
+  /// Latest modification time of the files that were read, nanoseconds since 1970; 0: unknown.
+  std::int64_t newest_mtime_ns = 0;
+  /// Differences between the field and its file: sentences without a final period.
+  std::vector<std::string> notes{};
+  /// Returns the common base of both kinds; null when neither is set.
   const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }
 };
 

@@ -1,4 +1,4 @@
-/// Plain numbers in files, by their word: float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64.
+/// Number types in files, by name: float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64. Any thread.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -11,13 +11,15 @@
 
 namespace catena::field {
 
-/// What becomes of numbers that a 32-bit float does not hold.
+/// Loss in the conversion of numbers to 32-bit floats.
 struct RoundingLoss {
-  bool has_rounded = false;          ///< a number is rounded (one that is scaled does not count)
-  std::uint64_t overflow_count = 0;  ///< finite numbers that are too large: they become infinite, which is a hole
+  /// A number was rounded (not set when a slope or intercept is applied).
+  bool has_rounded = false;
+  /// Finite numbers too large for a float: they become infinite, which makes the voxel invalid.
+  std::uint64_t overflow_count = 0;
 };
 
-/// What a note says of it, sentences without an end; `type`: the word of the file's numbers.
+/// Returns notes on the loss, sentences without a final period; `type`: name of the number type in the file.
 inline std::vector<std::string> rounding_notes(const RoundingLoss& rounding, std::string_view type) {
   std::vector<std::string> notes;
   if (rounding.has_rounded) notes.push_back("values of type " + std::string(type) + " are rounded to 32-bit floats");
@@ -27,13 +29,15 @@ inline std::vector<std::string> rounding_notes(const RoundingLoss& rounding, std
   return notes;
 }
 
+/// Number type with its conversion function.
 struct NumberType {
   std::string_view name;
   std::size_t bytes;
-  /// out[i] = slope * in[i] + inter, computed in double; `in` in the machine's byte order, of any alignment.
+  /// Converts `count` numbers: out[i] = slope * in[i] + inter, computed in double precision. `in` has native byte order and any alignment.
   void (*decode)(const std::byte* in, std::size_t count, double slope, double inter, float* out, RoundingLoss& rounding);
 };
 
+/// Implementation of NumberType::decode for T.
 template <class T>
 void decode_numbers(const std::byte* in, std::size_t count, double slope, double inter, float* out, RoundingLoss& rounding) {
   const bool plain = slope == 1 && inter == 0;
@@ -48,6 +52,7 @@ void decode_numbers(const std::byte* in, std::size_t count, double slope, double
   }
 }
 
+/// Returns the number type with a name; nullopt when there is none.
 inline std::optional<NumberType> find_number_type(std::string_view word) {
   static constexpr NumberType types[] = {
       {"float32", 4, decode_numbers<float>},        {"float64", 8, decode_numbers<double>},

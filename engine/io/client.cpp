@@ -63,7 +63,8 @@ bool is_vdb(const std::string& path) { return has_extension(path, ".vdb"); }
 
 const char* wanted(const std::string& path) { return is_vdb(path) ? "expected a sound .vdb file" : "expected a sound file"; }
 
-/// What becomes of time and size where a file names others, or is a folder: all regular files of the folder count, to a bound.
+/// Size on which the limits of a file that names others, or of a folder, are based: all regular files of the folder, up to a maximum number
+/// of entries.
 std::uint64_t bytes_about(const std::string& path) {
   namespace fs = std::filesystem;
   constexpr int kMostEntries = 100'000;
@@ -82,7 +83,7 @@ std::uint64_t bytes_about(const std::string& path) {
   return bytes;
 }
 
-/// The processor time that a reader may take. What is resampled costs more than it is long.
+/// CPU time limit of a reader, in seconds. Resampling can cost more than the size of the file suggests.
 std::uint64_t time_for(const std::string& path, std::uint64_t bytes) {
   constexpr std::uint64_t kLeast = 120, kBytesPerSecond = 1'000'000, kMost = 7200;
   if (is_vdb(path)) return read_cpu_limit_s(bytes);
@@ -111,8 +112,8 @@ ReaderState state_of(const FileDescriptor& file) {
   return read ? head.state : ReaderState::not_started;
 }
 
-/// Why it is this machine that kept a reader from its answer; empty: it is not. A limit that a shell has set is to blame for what was
-/// refused to the reader; where there is none, what it asked for came from the file.
+/// Message if the system is the reason why a reader did not respond; empty if it is not. If a resource limit is set in the shell, a refused
+/// allocation is attributed to it; without one, the request came from the file.
 std::string machines_part(ReaderState state, const ProcessExit& end) {
   const std::string limits = describe_resource_limits();
   switch (state) {
@@ -134,14 +135,14 @@ std::string machines_part(ReaderState state, const ProcessExit& end) {
     case ReaderState::reading:
       break;
   }
-  // an allocation of a C library, of which nothing is noted
+  // a failed allocation in a C library leaves no reader state
   const bool broke = end.cause == ProcessExit::Cause::killed && (end.code == SIGABRT || end.code == SIGSEGV || end.code == SIGBUS);
   return broke && resource_limit(RLIMIT_AS)
              ? fmt::format("its reader broke down ({}): it had too little memory, or the file is damaged; {}", how_it_ended(end), limits)
              : "";
 }
 
-/// What became of a reader that did not answer.
+/// The error for a reader that did not respond.
 Error end_of(const ReadRequest& request, const ProcessExit& end, ReaderState state) {
   const std::string& path = request.load_request.path;
   const auto own_time = resource_limit(RLIMIT_CPU);
@@ -164,7 +165,7 @@ Error end_of(const ReadRequest& request, const ProcessExit& end, ReaderState sta
   return Error{fmt::format("{}: the file is damaged (its reader gave up with code {}), {}", path, end.code, wanted(path))};
 }
 
-/// Where a mapping that could be written to is still being taken down, the system is busy: a second is waited for that at most.
+/// Seals the shared memory file. While a writable mapping is still being torn down the system reports "busy": retries for at most a second.
 bool seal(const FileDescriptor& file) {
   constexpr int kTries = 100;
   for (int tries = 0; tries < kTries; ++tries) {
@@ -175,7 +176,7 @@ bool seal(const FileDescriptor& file) {
   return false;
 }
 
-/// The reader has ended: nobody can change the file any more once it is sealed.
+/// Seals and maps the response. The reader has ended, and a sealed file can no longer be changed.
 Result<MappedResponse> take_answer(const std::string& path, const FileDescriptor& file) {
   struct stat status {};
   if (!seal(file) || ::fstat(file.get(), &status) != 0) return damaged_response_error(path, "the memory cannot be sealed");
@@ -196,7 +197,7 @@ Result<MappedResponse> take_answer(const std::string& path, const FileDescriptor
   return answer;
 }
 
-// ---- what every answer has, kept for as long as the file stays as it is ----
+// ---- cached metadata of files, valid while the file is unchanged ----
 
 struct Known {
   std::filesystem::file_time_type at;
@@ -206,7 +207,7 @@ struct Known {
 std::mutex known_mutex;
 std::map<std::string, Known> known_words;
 
-/// A case changes with its folders of times.
+/// Reads time and size of the file. For an OpenFOAM case they change with its time folders.
 bool look_at(const std::string& path, Known& file) {
   std::error_code code;
   file.at = std::filesystem::last_write_time(path, code);
@@ -235,7 +236,7 @@ void keep_words(const std::string& path, const Known& before, const ReadResponse
   known_words[path] = std::move(entry);
 }
 
-// ---- the files that readers opened, by the path that was asked for ----
+// ---- files that the readers opened, by requested path ----
 
 std::map<std::string, std::set<FileId>> opened_for;
 
@@ -266,7 +267,7 @@ void set_read_progress(ReadProgress called) { while_reading = std::move(called);
 
 Result<MappedResponse> run_reader(ReadMode mode, const LoadRequest& what) {
   std::uint64_t size = 0;
-  // OpenFOAM's case is the folder: the file in it is only its name, and empty as a rule
+  // an OpenFOAM case is the folder: the .foam file in it is only a marker, usually empty
   const bool names_folder = has_extension(what.path, ".foam") && std::filesystem::is_regular_file(what.path);
   if (!is_folder(what.path) && !names_folder) {
     CATENA_TRY(size, readable_file_size(what.path));
@@ -277,12 +278,12 @@ Result<MappedResponse> run_reader(ReadMode mode, const LoadRequest& what) {
                       settings.cpu_s > 0 ? settings.cpu_s : time_for(what.path, size)};
   Known before;
   const bool can_keep = look_at(what.path, before);
-  // the reader does its work
+  // run the reader
   CATENA_TRY(FileDescriptor file, file_with_request(request));
   const int given[] = {file.get()};
   auto reader = HelperProcess::start(program, given);
   if (!reader) return Error{what.path + ": cannot be read: " + reader.error().message, reader.error().system_failure};
-  // a reader that sleeps uses no processor time: disks may be slow, but not without end
+  // a sleeping reader uses no CPU time: disks may be slow, but the wait is limited
   constexpr double kLeastWait = 60, kWaits = 10;
   const double wall_s = settings.wall_s > 0 ? settings.wall_s : std::max(kLeastWait, kWaits * static_cast<double>(request.cpu_s));
   const ProcessExit end = reader->wait(wall_s, [&](double seconds) {
@@ -290,7 +291,7 @@ Result<MappedResponse> run_reader(ReadMode mode, const LoadRequest& what) {
   });
   if (while_reading) while_reading(what.path, 0, true);
   if (end.cause != ProcessExit::Cause::exited || end.code != 0) return end_of(request, end, state_of(file));
-  // what it wrote
+  // take the response
   CATENA_TRY(MappedResponse answer, take_answer(what.path, file));
   keep_opened(what.path, answer.response.opened_files);
   constexpr std::size_t kLongestError = 2000;

@@ -1,7 +1,7 @@
-/// Private to this room and to engine/geometry/mesh: another program is asked for what is in a file, catena-read for a .vdb,
-/// catena-read-vtk for what VTK and ITK read. It reads in a process of its own, shut in, with limits on its time and memory, and writes
-/// what it found into a file in memory that is sealed and mapped here, read-only, without a copy. What it says is bounded, nothing more: it
-/// may have been taken over by the file.
+/// Private to this module and to engine/geometry/mesh: runs the reader processes, catena-read for .vdb and .npy files and
+/// catena-read-vtk for the formats of VTK and ITK. A reader is sandboxed, with limits on time and memory, and writes its response into a
+/// shared memory file, which is then sealed and mapped here, read-only and without a copy. Only the bounds of a response are checked on
+/// decoding; the contents are untrusted, because the file may have compromised the reader.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,11 +14,12 @@
 
 namespace catena::field {
 
+/// A reader's response and the memory to which its buffer ranges refer.
 struct MappedResponse {
-  ReadResponse response;  ///< without an error
-  NanoMemory memory;      ///< all that the reader wrote
+  ReadResponse response;  ///< The decoded response; `error` is empty.
+  NanoMemory memory;      ///< Everything the reader wrote.
 
-  /// The numbers in a buffer; empty where it is not one, or not a multiple of their size.
+  /// Returns the values in a buffer range; empty when the range is out of bounds, misaligned or not a multiple of sizeof(T).
   template <class T>
   std::span<const T> numbers(const BufferRange& piece) const {
     if (piece.offset % kBufferAlignment != 0 || piece.offset > memory.size() || piece.bytes > memory.size() - piece.offset ||
@@ -28,32 +29,33 @@ struct MappedResponse {
   }
 };
 
-/// Errors are whole sentences: those of the reader, or what became of it. Blocks until the reader has ended.
+/// Runs a reader and blocks until it has ended. Returns an Error with a complete message: the reader's own, or how it ended. Any thread.
 Result<MappedResponse> run_reader(ReadMode mode, const LoadRequest& request);
 
-/// What the reader says of each grid, checked.
+/// Runs a reader and returns its validated description of each grid at a time step.
 Result<std::vector<GridInfo>> describe_with_reader(const std::string& path, int step);
 
-/// The sentence on an answer that cannot be: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
+/// Error for an invalid response: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
 Error damaged_response_error(const std::string& path, std::string_view what);
 
-/// For tests: another program in its place, and other limits. Zero and empty: what users have.
+/// For tests: replaces the reader program and its limits. Zero and empty: the defaults.
 struct ReaderSettings {
   std::string program;
   std::uint64_t cpu_s = 0;
   double wall_s = 0;
-  std::uint64_t memory_bytes = 0;  ///< that the machine has free; not stated by anybody
+  std::uint64_t memory_bytes = 0;  ///< Memory limit of the reader; replaces the available memory, as if no limit was given by the user.
 };
+/// The settings in use, one object per process.
 ReaderSettings& reader_settings();
 
-/// The processor time that reading a .vdb file of so many bytes may take.
+/// CPU time limit for reading a .vdb file of this size, seconds.
 std::uint64_t read_cpu_limit_s(std::uint64_t file_bytes);
 
-/// The data files that readers have opened so far where this path was asked for.
+/// Data files that readers have opened so far for requests with this path. Any thread.
 std::set<FileId> files_opened_by_readers(const std::string& path);
 
-/// What every answer about a file has, its words on units and what of it is drawn, from the last one or from a new one; nothing where it
-/// cannot be read.
+/// Returns the metadata part of a response (units, primitive kinds, times): cached while the file is unchanged, otherwise read anew;
+/// nullopt when the file cannot be read. Any thread.
 std::optional<ReadResponse> read_file_metadata(const std::string& path);
 
 }  // namespace catena::field

@@ -66,7 +66,7 @@ class Keeper {
     std::uint64_t bytes;
   };
 
-  /// The one asked for is the newest.
+  /// Finds a cached field and makes it the most recently used one.
   const AnyField* find(const LoadRequest& request) {
     const auto it = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.request == request; });
     if (it == kept_.end()) return nullptr;
@@ -111,8 +111,8 @@ class Keeper {
   std::condition_variable done_;
   std::list<Kept> kept_;  ///< oldest first
   std::deque<LoadRequest> waiting_;
-  std::optional<LoadRequest> loading_;  ///< ahead, now
-  bool runs_ = false;                   ///< the thread has not said that it ends
+  std::optional<LoadRequest> loading_;  ///< being loaded ahead now
+  bool runs_ = false;                   ///< whether the thread has not yet announced its end
   std::thread thread_;
 };
 

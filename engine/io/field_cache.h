@@ -1,5 +1,5 @@
-/// Fields of a series in time, kept while there is room, and loaded before they are asked for. Room: a quarter of the memory that is
-/// allowed (engine/base/memory_limit.h), counted when a field is added; the one that was not asked for longest goes first. Any thread.
+/// Cache of the fields of a time series, with prefetching. Its capacity is a quarter of the available memory (engine/base/memory_limit.h),
+/// checked when a field is added; the least recently used field is evicted first. Any thread.
 #pragma once
 #include <vector>
 
@@ -7,14 +7,16 @@
 
 namespace catena::field {
 
-/// As load(), from what is kept where it is there. A field that is being loaded ahead is waited for.
+/// Like load(), but returns the cached field if there is one. Waits for a field that is being prefetched.
 Result<AnyField> load_cached(const LoadRequest& request);
-/// Loads these, in order, on a thread of its own; what was to be loaded before and has not begun is forgotten. Errors are left to who asks.
+/// Loads these fields in order on a background thread; replaces the pending requests that have not started. Errors are not reported here:
+/// load_cached() tries again and returns them.
 void prefetch(std::vector<LoadRequest> requests);
+/// Whether the field of this request is cached.
 bool is_cached(const LoadRequest& request);
-/// Keeps what was loaded elsewhere.
+/// Adds a field that was loaded elsewhere.
 void add_to_cache(const LoadRequest& request, const AnyField& field);
-/// Nothing is kept any more; waits for what is being loaded. For tests, and at the end of the program.
+/// Empties the cache and waits for a load in progress. For tests and program exit.
 void clear_cache();
 
 }  // namespace catena::field

@@ -35,7 +35,7 @@ class Encoder {
   std::string text_;
 };
 
-/// Remembers the first read beyond the end, and gives zeros from then on.
+/// Decodes a message. Records the first read beyond the end, and returns zeros from then on.
 class Decoder {
  public:
   explicit Decoder(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -78,7 +78,7 @@ class Decoder {
     p.bytes = number<std::uint64_t>();
     return p;
   }
-  /// A count of items of at least so many bytes each.
+  /// The number of items of at least `least_bytes` bytes each; 0 and a failure if they do not fit into the rest of the message.
   std::uint64_t count(std::size_t least_bytes) {
     const auto n = number<std::uint64_t>();
     if (n > left_.size() / least_bytes) ok_ = false;

@@ -1,9 +1,9 @@
-/// What catena and the programs that read files for it, catena-read (.vdb) and catena-read-vtk (what VTK and ITK read), tell each other.
-/// Private to this room, to engine/io/sandbox, engine/io/vdb and engine/io/vtk, and to who asks for shapes (engine/geometry/mesh). Both
-/// sides see one file in memory:
-///   catena writes       the head (where the request is), the request
-///   the reader writes   buffers (each at a multiple of kBufferAlignment), the reply, and last the head (where the reply is)
-/// What is decoded is held to its bounds, but nothing in it is believed: see validate_nano and load_vdb.cpp.
+/// Protocol between catena and its reader processes, catena-read (.vdb, .npy) and catena-read-vtk (formats of VTK and ITK).
+/// Private to this module, to engine/io/sandbox, engine/io/vdb and engine/io/vtk, and to the users of geometry (engine/geometry/mesh). Both
+/// sides map one shared memory file:
+///   catena writes       the header (with the offset of the request), then the request
+///   the reader writes   buffers (each at a multiple of kBufferAlignment), the response, and last the header (with its offset)
+/// Decoding checks bounds only; the contents are untrusted: see validate_nano and load_vdb.cpp.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -19,84 +19,93 @@ namespace catena::field {
 
 inline constexpr std::uint64_t kProtocolMagic = 0x31615644'6e746143;  // "CatnDVa1"
 inline constexpr std::uint32_t kProtocolVersion = 5;
-/// Of the grid of a .vdb that masks cells, beside "valid": true at the base of each that is valid.
+/// Name of the .vdb grid that masks cells, in addition to "valid": true at the base voxel of each valid cell.
 inline constexpr std::string_view kCellMaskName = "valid_cells";
+/// Alignment of the buffers in the shared memory file, bytes.
 inline constexpr std::uint64_t kBufferAlignment = 4096;
 
-/// How far a reader has come, and what the machine did not give it. It is written as it happens, so that it is known of a reader that
-/// dies, too.
+/// Progress of a reader, or the system resource that it could not get. Written immediately, so that it is known even when the reader
+/// crashes.
 enum class ReaderState : std::uint32_t {
-  not_started,  ///< it has not read the request: the program could not be loaded
+  not_started,  ///< The request has not been read: the program could not be loaded.
+  /// The request has been read; no failure so far.
   reading,
-  no_memory,       ///< an allocation has failed
-  no_thread,       ///< a thread could not be started
-  no_stack,        ///< nor could this one, for want of memory for its stack
-  no_room,         ///< the file in memory could not grow
-  refused_memory,  ///< the file needs more memory than it may take
+  no_memory,       ///< An allocation failed.
+  no_thread,       ///< A thread could not be started.
+  no_stack,        ///< A thread could not be started for lack of memory for its stack.
+  no_room,         ///< The shared memory file could not grow.
+  refused_memory,  ///< The file needs more memory than the limit allows.
 };
 
+/// Header at the start of the shared memory file.
 struct MessageHeader {
   std::uint64_t magic = kProtocolMagic;
   std::uint32_t version = kProtocolVersion;
-  std::uint32_t from_reader = 0;  ///< 0: a request follows; 1: a reply
+  std::uint32_t from_reader = 0;  ///< 0: a request follows; 1: a response.
+  /// Position and size of the message in the shared memory file.
   std::uint64_t offset = 0, bytes = 0;
   ReaderState state = ReaderState::not_started;
-  std::uint32_t limit_is_address_space = 0;  ///< of a request: 1: its limit on memory is what ulimit -v leaves
+  std::uint32_t limit_is_address_space = 0;  ///< Request only; 1: its memory limit is the address-space limit (ulimit -v).
 };
 
-/// load: one grid. describe: what there is. words: what every reply has, nothing else. shape: what is drawn as it lies, triangles, lines
-/// and points.
+/// What is requested. load: one grid. describe: the list of grids. metadata: only the part that every response has. geometry: triangles,
+/// lines and points in the file.
 enum class ReadMode : std::uint8_t { load, describe, metadata, geometry };
 
+/// Request to a reader.
 struct ReadRequest {
   ReadMode mode = ReadMode::load;
-  LoadRequest load_request;  ///< without the layout of raw files
+  LoadRequest load_request;  ///< Without the layout of raw files.
+  /// Memory limit of the reader, bytes.
   std::uint64_t memory_bytes = 0;
-  std::uint64_t user_memory_limit = 0;  ///< what the user allows (--memory), in bytes; 0: nothing is stated
+  std::uint64_t user_memory_limit = 0;  ///< Limit given by the user (--memory), bytes; 0: none.
+  /// CPU time limit, seconds.
   std::uint64_t cpu_s = 0;
 };
 
+/// A byte range in the shared memory file.
 struct BufferRange {
   std::uint64_t offset = 0, bytes = 0;
 };
 
-/// What the reader could shut itself into.
+/// Sandbox features in effect in the reader.
 struct SandboxStatus {
-  std::uint32_t landlock_version = 0;  ///< 0: this kernel has none
+  std::uint32_t landlock_version = 0;  ///< 0: not supported by this kernel.
   bool seccomp = false;
 };
 
-/// NumberArray that lie in a buffer as they are, x fastest.
+/// A dense array of voxels, x fastest.
 struct DenseResponse {
-  Size3 size;                   ///< voxels an axis; x = 0: there are none
-  std::int32_t components = 1;  ///< 1 or 3, one after the other
-  std::string type;             ///< as the file says: "float64", "int16"
-  BufferRange values;           ///< 32-bit floats
-  BufferRange valid;            ///< a byte a voxel, 0 or 1; empty: all are valid
-  BufferRange cells{};          ///< beside `valid`: a byte a voxel, 0 where the cell based at it is not valid; empty: no mask of cells
-  bool has_range = false;       ///< the values were resampled: `range` is that of the data
-  DisplayRange range;           ///< of vectors: of their lengths
+  Size3 size;                   ///< Voxels per axis; x = 0: no array.
+  std::int32_t components = 1;  ///< 1 or 3, interleaved per voxel.
+  std::string type;             ///< Number type in the file: "float64", "int16".
+  BufferRange values;           ///< 32-bit floats.
+  BufferRange valid;            ///< One byte per voxel, 0 or 1; empty: all voxels are valid.
+  BufferRange cells{};          ///< In addition to `valid`: one byte per voxel, 0: the cell based there is not valid; empty: no cell mask.
+  bool has_range = false;       ///< The values were resampled: `range` is that of the original data.
+  DisplayRange range;           ///< Display range of the data; of vectors: of their lengths.
 };
 
-/// What is drawn as it lies. NumberArray of points are 32-bit.
+/// Triangles, lines and points in the file. Point indices are 32-bit.
 struct GeometryResponse {
-  BufferRange points;        ///< three doubles a point
-  BufferRange triangles;     ///< three numbers a triangle
-  BufferRange lines;         ///< numbers of points, line after line
-  BufferRange line_ends;     ///< of each line, one past its last place in `lines`, 64-bit
-  BufferRange loose_points;  ///< points that are on no triangle and no line
-  std::string value_name;    ///< of what the points carry; empty: nothing
-  BufferRange values;        ///< a 32-bit float a point
+  BufferRange points;        ///< Three doubles per point.
+  BufferRange triangles;     ///< Three point indices per triangle.
+  BufferRange lines;         ///< Point indices, line after line.
+  BufferRange line_ends;     ///< 64-bit; for each line one past its last position in `lines`.
+  BufferRange loose_points;  ///< Indices of points that are on no triangle and no line.
+  std::string value_name;    ///< Name of the point array in `values`; empty: none.
+  BufferRange values;        ///< One 32-bit float per point.
 };
 
-/// Text metadata of a grid that may name units, and whether it says that it is a level set.
+/// Text metadata of a grid that may name units, and whether the grid is declared a level set.
 struct GridMetadata {
   std::string name, unit, unit_length;
   bool is_level_set = false;
 };
 
+/// Response of a reader.
 struct ReadResponse {
-  std::string error;  ///< not empty: a sentence, and nothing else
+  std::string error;  ///< Complete message; not empty: the other fields are meaningless.
   // load
   std::string name;
   bool is_vector = false, has_mask = false, has_cell_mask = false;
@@ -104,25 +113,26 @@ struct ReadResponse {
   BufferRange values, valid_voxels, valid_cells;
   // describe
   std::vector<GridInfo> grids;
-  // of catena-read-vtk
+  // from catena-read-vtk
   DenseResponse dense;
   GeometryResponse geometry;
-  std::vector<std::string> notes;  ///< what of the file is not as it was: sentences without an end
-  std::vector<double> times;       ///< of the file's steps; empty: it has none
-  std::string time_unit;           ///< of `times`; empty: not stated
+  std::vector<std::string> notes;  ///< How the data differ from the file: messages without a final period.
+  std::vector<double> times;       ///< Times of the file's steps; empty: none.
+  std::string time_unit;           ///< Unit of `times`; empty: not specified.
   // always
-  std::string units, unit_length;  ///< of the file
-  bool is_patient_space = false;   ///< the world is a patient's (engine/io/volume/units.h)
+  std::string units, unit_length;  ///< Units of the file.
+  bool is_patient_space = false;   ///< World coordinates are in patient space (engine/io/volume/units.h).
   std::vector<GridMetadata> grid_metadata;
-  PrimitiveKinds primitives;  ///< that it has, handed over or not
+  PrimitiveKinds primitives;  ///< Kinds of primitives in the file, whether returned or not.
   SandboxStatus sandbox;
-  std::vector<FileId> opened_files;  ///< the data files that were opened, with an error, too
-  std::int64_t newest_mtime_ns = 0;  ///< when the youngest of them was last changed, since 1970; 0: not known
+  std::vector<FileId> opened_files;  ///< Data files that were opened, also in case of an error.
+  std::int64_t newest_mtime_ns = 0;  ///< Latest modification time of `opened_files`, ns since 1970; 0: unknown.
 };
 
+/// Encodes a message; the result is written at MessageHeader::offset.
 std::string encode(const ReadRequest& request);
 std::string encode(const ReadResponse& reply);
-/// An error is a phrase.
+/// Decodes a message and checks its bounds. Returns an Error with a message fragment.
 Result<ReadRequest> decode_request(std::span<const std::byte> bytes);
 Result<ReadResponse> decode_response(std::span<const std::byte> bytes);
 

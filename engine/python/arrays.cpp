@@ -1,4 +1,4 @@
-/// catena.field: NumPy arrays as grids, read where they lie, whatever their type and their strides.
+/// catena.field: NumPy arrays of any type and strides as grids, read in place.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -11,16 +11,16 @@
 namespace catena::python {
 namespace {
 
-/// An array seen as voxels: index i, j, k and component c lie at base + i sx + j sy + k sz + c sc bytes.
+/// An array as voxels: component c of voxel i, j, k is at byte base + i sx + j sy + k sz + c sc.
 struct Voxels {
   const char* base = nullptr;
   field::Index3 size{0, 0, 0};
   py::ssize_t sx = 0, sy = 0, sz = 0, sc = 0;
-  int components = 1;    ///< 1, or 2 or 3 of vectors
-  bool swapped = false;  ///< of the other byte order
+  int components = 1;    ///< 1, or 2 or 3 for vectors
+  bool swapped = false;  ///< whether the array has the other byte order
 };
 
-/// A number of 16 bits (IEEE 754).
+/// A 16-bit floating-point number (IEEE 754).
 struct Half {
   std::uint16_t bits = 0;
   explicit operator float() const { return glm::unpackHalf1x16(bits); }
@@ -79,7 +79,7 @@ Reader reader_of(const py::dtype& type) {
   }
 }
 
-/// A missing dimension, and one of a single voxel, has that voxel twice: a stride of 0.
+/// Maps the array's axes to voxels. A missing dimension, or one with a single voxel, gets a stride of 0: its voxel appears twice.
 Voxels voxels_of(const py::array& array, const std::string& axes, const std::string& name, bool vectors) {
   if (axes != "zyx" && axes != "xyz") throw Failure(Error{name + ": axes is \"" + axes + "\"; \"zyx\" or \"xyz\" was expected"});
   Voxels v;

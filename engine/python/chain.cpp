@@ -1,4 +1,4 @@
-/// catena.Chain: what a hand feels along positions of its probe, tick by tick, exactly as `catena replay` computes it.
+/// catena.Chain: the haptic force along positions of the probe, tick by tick, exactly as `catena replay` computes it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,14 +16,14 @@
 namespace catena::python {
 namespace {
 
-/// As `replay`: a scene that names its device is felt as that device would give it.
+/// Limits of the device that the scene names, as in `replay`; without a device there are no limits.
 haptics::DeviceLimits limits_of(const scene::Scene& scene) {
   if (!scene.device) return {};
   const haptics::DeviceSettings settings = unwrap(haptics::read_device_settings(*scene.device, scene.path));
   return haptics::compute_device_limits(haptics::nominal_capabilities(settings.type), settings);
 }
 
-/// N ticks as arrays.
+/// Results of N ticks as arrays.
 struct Ticks {
   py::array_t<double> t, proxies, forces, link_forces, gaps;
   py::array_t<std::uint8_t> statuses;
@@ -37,7 +37,7 @@ struct Ticks {
         statuses({n, links}) {}
 };
 
-/// Where the next tick's numbers go.
+/// Output pointers for the next tick.
 struct Rows {
   double *t, *proxies, *forces, *link_forces, *gaps;
   std::uint8_t* statuses;
@@ -73,7 +73,7 @@ class Chain {
     reset();
   }
 
-  /// Waits for a run of another thread.
+  /// Resets the state; waits until a run on another thread has finished.
   void reset() {
     const std::lock_guard turn(turn_);
     state_ = std::make_unique<haptics::ChainState>();
@@ -84,9 +84,9 @@ class Chain {
   }
 
   Ticks run(const Points& positions, const py::object& times, const py::object& buttons) {
-    const NumberArray places = to_rows(positions, "positions");  // read where they lie
+    const NumberArray places = to_rows(positions, "positions");  // read in place
     const auto count = static_cast<std::size_t>(places.size() / 3);
-    // none: evenly, and nothing is pressed
+    // without times the ticks are evenly spaced; without buttons none is pressed
     const NumberArray column_t = times.is_none() ? NumberArray() : column(times, count, "t");
     const std::span<const double> t(column_t.data(), times.is_none() ? 0 : count);
     const std::vector<std::uint32_t> pressed =
@@ -130,7 +130,7 @@ class Chain {
  private:
   double next_t_s() const { return from_s_ + static_cast<double>(since_) / rate_hz_; }
 
-  /// As `replay` asks for: finite, and each after the one before, of earlier runs too.
+  /// Throws unless the times are finite and rising, also across calls, as `replay` requires.
   void check_times(std::span<const double> t) const {
     double last = ticks_ == 0 ? -std::numeric_limits<double>::infinity() : last_.t_s;
     for (const double s : t) {
@@ -157,14 +157,14 @@ class Chain {
     return all;
   }
 
-  mutable std::mutex turn_;  ///< of the threads that tick
+  mutable std::mutex turn_;  ///< serializes the threads that run ticks
   double rate_hz_;
   std::shared_ptr<const haptics::HapticProgram> program_;
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;
   haptics::StateHash hash_;
   HapticState last_;
-  std::uint64_t ticks_ = 0, since_ = 0;  ///< since_: since from_s_, where no times are given
+  std::uint64_t ticks_ = 0, since_ = 0;  ///< since_: ticks since from_s_, where no times are given
   double from_s_ = 0;
 };
 

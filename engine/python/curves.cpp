@@ -1,4 +1,4 @@
-/// catena.trace: streamlines through seeds, as the hand feels them and the picture shows them.
+/// catena.trace: streamlines through seeds, the same curves that the haptic links use and the image shows.
 #include <cmath>
 
 #include "engine/geometry/flow/curve.h"

@@ -1,4 +1,4 @@
-/// catena.Field and catena.analytic: samples and gradients at many places at once.
+/// catena.Field and catena.analytic: values and gradients at many points at a time.
 #include <limits>
 #include <optional>
 

@@ -1,4 +1,4 @@
-/// catena.render: pictures, with the depth and the object of every pixel. One renderer serves all calls, from whatever thread, in turn.
+/// catena.render: images with the depth and the object of every pixel. One renderer serves the calls of all threads, one at a time.
 #include <algorithm>
 #include <memory>
 #include <mutex>
@@ -15,7 +15,8 @@ struct Shared {
   std::unique_ptr<render::Renderer> renderer;
 };
 Shared& shared() {
-  static Shared* const one = new Shared;  // given back before the interpreter goes; the driver may be gone after it
+  // never destroyed; the renderer in it is freed before the interpreter ends, because the driver may be gone later
+  static Shared* const one = new Shared;
   return *one;
 }
 

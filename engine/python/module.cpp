@@ -94,7 +94,7 @@ PYBIND11_MODULE(_catena, m) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Failure& failure) {
-      // one line, whatever was named in it; what the program's flag does is a function here
+      // make it one line, whatever text it contains; replace the command-line flag by the Python function
       std::string line = failure.message;
       constexpr std::string_view kFlag = "--memory ";
       if (const auto at = line.find(kFlag); at != std::string::npos) {

@@ -1,4 +1,4 @@
-/// catena.recording and catena.study_table: what was recorded, as arrays.
+/// catena.recording and catena.study_table: recorded data as arrays.
 #include <map>
 #include <string>
 
@@ -12,7 +12,7 @@ namespace {
 using haptics::log::LogEvent;
 using haptics::log::LogReader;
 
-/// The ticks of a recording; all have the first program's links.
+/// The ticks of a recording; all of them have the links of the first program.
 struct Recorded {
   std::vector<double> t, period_us, compute_us;
   std::vector<std::uint64_t> tick;

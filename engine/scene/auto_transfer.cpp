@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxSamples = 1u << 21;
 constexpr int kBins = 256;
-constexpr double kLowEnd = 0.15, kLowShare = 0.1, kDominantShare = 0.3;  // where the background lies, see transfer.h
+constexpr double kLowEnd = 0.15, kLowShare = 0.1, kDominantShare = 0.3;  // location of the background, see transfer.h
 constexpr double kMargin = 0.06, kOpticalDepth = 2.5;
 constexpr int kRampPoints = 17;
 
@@ -32,7 +32,7 @@ Range range_of(std::span<const float> values, bool masked, const Given& given) {
   range.background = range.lo;
   if (!(range.lo < range.hi)) return range;
 
-  // the fullest bin: of the low end if that end is well filled, else of all if it dominates
+  // the fullest bin: of the low end if the low end is well filled, otherwise of the whole range if that bin dominates
   std::array<std::size_t, kBins> bins{};
   const double scale = kBins / (range.hi - range.lo);
   for (float v : values) ++bins[static_cast<std::size_t>(std::clamp((v - range.lo) * scale, 0.0, kBins - 1.0))];
@@ -85,7 +85,7 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
   }
   if (!opaque) return;
 
-  // on the scale of the mapping
+  // positions on the scale of the value mapping
   const double below = linear_below(transfer.named.mapping, range.lo, range.hi);
   std::vector<float> places(values.begin(), values.end());
   if (below > 0 && !flat) {

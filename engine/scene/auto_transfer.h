@@ -1,9 +1,10 @@
-/// A transfer function from the values themselves, for volumes that state none. Off the tick, any thread.
-///   background b, in a range from the 0.5 to the 99.8 percentile of the values in the display range (engine/field/field_display_range.h),
-///   cut into 256 bins: the fullest bin of the lowest 15 % where those hold over 10 % of the samples; else the fullest of all where it
-///   holds over 30 % and no mask cuts the background away; else the lowest value. w(s) = smoothstep of |s - b| from a 6 % margin to the far
-///   end of the range; sigma(s) = k w(s), k such that a ray across the domain meets an optical depth of 2.5 on average.
-/// Where values lie on a scale that is not linear (ValueMapping), s, b and the bins do, too.
+/// Automatic transfer function from the histogram of a field, for volumes that specify none. Off the tick, any thread.
+///   range       0.5 to 99.8 percentile of the values within the display range (engine/field/field_display_range.h), cut into 256 bins
+///   background  b: center of the fullest bin of the lowest 15 % of the bins if these hold over 10 % of the samples; else center of the
+///               fullest bin of all if it holds over 30 % of the samples and the grid has no mask; else the lowest value of the range
+///   weight      w(s) = smoothstep of |s - b| from a 6 % margin to the far end of the range
+///   extinction  sigma(s) = k w(s), with k such that the mean optical depth of a ray across the domain is 2.5
+/// If the mapping (ValueMapping) is not linear, s, b and the bins are on its scale.
 #pragma once
 #include <memory>
 #include <vector>
@@ -13,20 +14,21 @@
 
 namespace catena::scene {
 
-/// field::sample_values in rising order, as many as complete_transfer looks at.
+/// Returns field::sample_values of the grid in rising order: the samples that complete_transfer evaluates.
 std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid);
 
-/// Beside a FieldSource once a transfer function has asked: the sorted_values of its drawn grid.
+/// Cached component beside a FieldSource: the sorted_values of its rendered grid.
 struct ValueSample {
-  const void* grid = nullptr;
-  std::shared_ptr<const std::vector<float>> sorted;
+  const void* grid = nullptr;                        ///< Grid from which `sorted` was taken, to detect a changed grid
+  std::shared_ptr<const std::vector<float>> sorted;  ///< Values in rising order
 };
 
-/// Fills what is missing: colours if there are none, extinctions if there are neither extinctions nor opacities. A stated range
-/// replaces that of the percentiles; a map named without one reaches over the display range (engine/field/field_display_range.h).
+/// Returns whether the function has colors and either extinctions or opacities.
 bool is_complete(const TransferFunction& transfer);
+/// Adds what is missing: colors if there are none, extinctions if there are neither extinctions nor opacities. A stated range replaces the
+/// percentile range; a named map without a range covers the whole display range (engine/field/field_display_range.h).
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid);
-/// With the sorted_values of the grid that were made before.
+/// Same as complete_transfer(transfer, grid), with the sorted_values of the grid computed beforehand.
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid, const std::vector<float>& sorted);
 
 }  // namespace catena::scene

@@ -17,39 +17,40 @@ namespace {
 constexpr std::size_t kMostVoxels = 1u << 20;
 constexpr int kKindBins = 256, kEdge = 8;
 constexpr int kMostLabels = 2048;
-constexpr double kAsGood = 0.995;  // of the best threshold
-// the background, see data_kind.h
+constexpr double kAsGood = 0.995;  // fraction of the best between-class variance
+// background, see data_kind.h
 constexpr double kBackgroundFull = 0.05, kBackgroundEnd = 0.2, kBackgroundWidth = 0.02;
 // level sets
 constexpr double kUnitSlope = 0.05, kUnitSlopes = 0.9;
 // Hounsfield units
 constexpr double kAirLo = -1100, kAirHi = -850, kSoftLo = -150, kSoftHi = 200, kTissueShare = 0.05, kLeastHounsfield = -5000;
 constexpr double kEqualNeighbours = 0.6;
-constexpr double kRegions = 0.4;  // of neighbours, in regions of a voxel's thickness half, of random labels a third
-// solids: two plateaus
+constexpr double kRegions = 0.4;  // fraction of equal neighbors: half in regions one voxel thick, a third in random labels
+// solids: values on two plateaus
 constexpr double kPlateau = 0.1, kPlateaus = 0.9, kLeastPlateau = 0.02;
 // scans
 constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.6;
 constexpr double kEmpty = 0.6;
 
-/// What is summed over the neighbours in blocks.
+/// Sums over pairs of neighboring voxels in the sampled blocks.
 struct Neighbours {
   double first = 0, second = 0;
-  std::array<std::size_t, 3> pairs{}, equal{};  // along each axis, both in the foreground
-  std::size_t touching = 0;                     // pairs of which one at least is in it
+  std::array<std::size_t, 3> pairs{}, equal{};  // by axis: pairs with both voxels in the foreground
+  std::size_t touching = 0;                     // pairs with at least one voxel in the foreground
   std::size_t slopes = 0, unit_slopes = 0;
 };
 
 double share(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
 
-/// The bins of the values over lo..hi.
+/// Histogram of the values over [lo, hi].
 using Bins = std::array<std::size_t, kKindBins>;
 
 int bin_of(double value, double lo, double hi) {
   return static_cast<int>(std::clamp((value - lo) / (hi - lo) * kKindBins, 0.0, kKindBins - 1.0));
 }
 
-/// The bin behind which the two classes differ most: the middle of all that differ as much, as where nothing lies between them.
+/// Otsu's threshold: the last bin of the lower class where the between-class variance is largest. The middle of all bins within
+/// kAsGood of that maximum, as in a gap between the classes.
 int otsu_bin(const Bins& bins) {
   double all = 0, sum = 0;
   for (int i = 0; i < kKindBins; ++i) all += double(bins[i]), sum += double(i) * double(bins[i]);
@@ -114,7 +115,7 @@ void measure_values(std::vector<float>& values, ScalarStats& facts) {
   if (share(low, n) >= kLeastPlateau && share(high, n) >= kLeastPlateau) facts.plateau_share = share(low + high, n);
 }
 
-/// Of one block of 8^3; values that are not valid are NaN.
+/// Adds the neighbor pairs of one block of 8^3 voxels to `sums`; invalid values are NaN.
 void measure_neighbours(const std::vector<float>& block, const field::Mapping& mapping, const ScalarStats& facts, Neighbours& sums) {
   const double width = kBackgroundWidth * (facts.hi - facts.lo);
   const auto at = [&](int x, int y, int z) { return double(block[static_cast<std::size_t>((z * kEdge + y) * kEdge + x)]); };
@@ -162,7 +163,7 @@ ScalarStats compute_scalar_stats(const field::ScalarGrid& grid, const field::Uni
   facts.is_label_map = units.is_label_map;
   facts.has_mask = grid.has_mask();
 
-  // blocks spread over the box, each whole: an edge that the box cuts off is left out
+  // complete blocks spread over the box; blocks cut off by the box's edge are left out
   std::vector<float> blocks, block(kEdge * kEdge * kEdge), values;
   std::vector<std::uint8_t> valid(block.size());
   const DisplayRange& range = display_range(grid);

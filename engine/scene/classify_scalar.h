@@ -1,22 +1,24 @@
-/// What kind of data a scalar grid holds, from what its file says and what its values look like, so that a file without a scene is shown as
-/// a specialist would show it. Off the tick, any thread; the same grid always gives the same answer.
+/// Kind of data in a scalar grid, from its file's metadata and its values, so that a data file without a scene is shown as a specialist
+/// would show it. Off the tick, any thread; deterministic.
 ///
-/// TrialResult on at most about a million voxels in blocks of 8^3 that are spread over the box, those of invalid cells and those beyond
-/// the display range (engine/field/field_display_range.h) left out. The background b is the fullest of 256 bins over the values if it holds
-/// over 5 % of them and lies in the lowest fifth of the range, else the lowest value; the foreground is what is 2 % of the range or more
-/// away from it. What the file says is a label map and holds whole numbers is one. Else the order is that of the rules, and the first that
-/// holds is the kind:
-///   level set    the file says so; or values of both signs, and in 90 % of the places the gradient is 0.95 to 1.05 long (world units)
-///   CT           the unit is HU; or no value is below -5000, and 5 % of the values lie from -1100 to -850 (air) and 5 % from -150 to 200
+/// Evaluated on at most about a million voxels, in blocks of 8^3 spread over the box, without invalid cells and without values beyond the
+/// display range (engine/field/field_display_range.h). The background b is the center of the fullest of 256 bins over lo..hi if that bin
+/// holds over 5 % of the values and lies in the lowest fifth of the range, else lo; the foreground is everything at least 2 % of the range
+/// away from b. The rules are tested in this order, and the first that holds determines the kind:
+///   label map    the file is marked as a label map, and the values are whole numbers, at least 2 different ones
+///   level set    the file is marked as one; or values of both signs, and a gradient magnitude of 0.95 to 1.05 (world units) at 90 % of the
+///                points that have a gradient
+///   CT           the unit is HU; or no value is below -5000, 5 % of the values lie from -1100 to -850 (air) and 5 % from -150 to 200
 ///                (soft tissue), in Hounsfield units
-///   label map    whole numbers, 2 to 2048 different ones, and 60 % of all neighbours in the foreground are equal, along every axis
-///   solid        90 % of the values are in the lowest or the highest tenth of the range, 2 % at least in either; or 60 % of all
-///                neighbours in the foreground are equal
-///   cloud        of no patient (engine/io/volume/units.h), without a mask and without values below 0; 60 % are exactly the lowest value
+///   label map    whole numbers, 2 to 2048 different ones; 60 % of the neighbor pairs in the foreground are equal along every axis, and
+///                40 % of the pairs with at least one voxel in the foreground
+///   solid        90 % of the values are in the lowest or the highest tenth of the range, at least 2 % in each; or not whole numbers and
+///                60 % of the neighbor pairs in the foreground are equal along every axis
+///   cloud        not in patient space (engine/io/volume/units.h), no mask, no values below 0; 60 % of the values are the lowest value
 ///   angiogram    0.02 to 4 % of the values are bright (in the upper seven tenths of the way from b to the 99.99 percentile), and the
-///                foreground is rough: second differences of neighbours are 0.6 times the first ones or more, on average
-///   MR           of a patient, and as rough
-///   simulation   what is left: smooth, dense values that mean a quantity everywhere
+///                foreground is rough: the mean second difference of neighbors is at least 0.6 times the mean first difference
+///   MR           in patient space, and as rough
+///   simulation   everything else: smooth, dense values of a quantity
 #pragma once
 #include <string>
 #include <string_view>
@@ -26,37 +28,41 @@
 
 namespace catena::scene {
 
+/// Kind of data in a scalar grid; the rules are at the top of this file.
 enum class DataKind { level_set, ct, label_map, solid, angiogram, mr, cloud, simulation };
 
+/// Metadata and statistics from which the kind is derived.
 struct ScalarStats {
-  // what the file says
+  // From the file.
   bool is_level_set = false, is_hounsfield = false, is_patient_space = false, has_mask = false, is_label_map = false;
-  // the values
-  double lo = 0, hi = 0;                 ///< the 0.1 and the 99.9 percentile
-  double mean = 0;                       ///< of the values, those outside lo..hi taken for its ends
-  double background = 0;                 ///< b
-  double threshold = 0;                  ///< between background and foreground, by N. Otsu, IEEE Trans. SMC 9(1), 1979
-  bool is_integral = false;              ///< all
-  int distinct_values = 0;               ///< different values, counted up to 2049
-  double background_share = 0;           ///< of the values: within 2 % of the range from b
-  double empty_share = 0;                ///< of the values: exactly the lowest value
-  double air_share = 0, soft_share = 0;  ///< of the values: between -1100 and -850, between -150 and 200
-  double plateau_share = 0;              ///< of the values: in the lowest or the highest tenth; 0 where either holds less than 2 %
-  double bright_share = 0;               ///< of the values: in the upper seven tenths
-  double min_value = 0;                  ///< the lowest value of all samples
-  // neighbours
-  double equal_share = 0;     ///< of neighbours in the foreground, along the axis where it is least
-  double region_share = 0;    ///< of neighbours of which one at least is in the foreground: as large as regions hang together
-  double roughness = 0;       ///< of the foreground: mean |second difference| by mean |first difference|; white noise: 1.7
-  double distance_share = 0;  ///< of the places that are not flat: those whose gradient is about 1 long
+  // Statistics of the values. Shares are fractions from 0 to 1.
+  double lo = 0, hi = 0;                 ///< 0.1 and 99.9 percentile
+  double mean = 0;                       ///< Mean of the values, each clamped to lo..hi
+  double background = 0;                 ///< Background b, see the top of this file
+  double threshold = 0;                  ///< Threshold between background and foreground by N. Otsu, IEEE Trans. SMC 9(1), 1979
+  bool is_integral = false;              ///< All values are whole numbers
+  int distinct_values = 0;               ///< Number of different values, counted up to 2049
+  double background_share = 0;           ///< Share of the values within 2 % of the range of b
+  double empty_share = 0;                ///< Share of the values equal to the lowest one
+  double air_share = 0, soft_share = 0;  ///< Share of the values from -1100 to -850; from -150 to 200
+  double plateau_share = 0;              ///< Share of the values in the lowest or highest tenth; 0 if either holds less than 2 %
+  double bright_share = 0;               ///< Share of the values in the upper seven tenths from b to the 99.99 percentile
+  double min_value = 0;                  ///< Lowest of all samples
+  // Statistics of neighboring voxels.
+  double equal_share = 0;     ///< Share of equal pairs among the pairs in the foreground, along the axis with the least
+  double region_share = 0;    ///< Share of equal foreground pairs among the pairs with at least one voxel in the foreground
+  double roughness = 0;       ///< Foreground: mean |second difference| / mean |first difference|; white noise: 1.7
+  double distance_share = 0;  ///< Share of the points with a gradient at which its magnitude is 0.95 to 1.05
 };
 
+/// Samples the grid. A grid without any finite value gives only the flags from the file.
 ScalarStats compute_scalar_stats(const field::ScalarGrid& grid, const field::Units& units);
+/// Returns the kind by the first rule that holds.
 DataKind classify_scalar(const ScalarStats& facts);
 
-/// "a CT", "a label map", ...
+/// Returns the kind with its article: "a CT", "a label map", ...
 std::string_view to_string(DataKind kind);
-/// What made it that kind: "31 % of the values are air near -1000".
+/// Returns the reason for the kind, for messages: "31 % of the values are air near -1000".
 std::string explain_kind(DataKind kind, const ScalarStats& facts);
 
 }  // namespace catena::scene

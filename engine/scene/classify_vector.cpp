@@ -12,9 +12,10 @@ namespace catena::scene {
 namespace {
 
 constexpr std::size_t kMostVectors = 1u << 18;
-constexpr std::size_t kParts = 3;                                               // an axis: each gives a start
-constexpr double kOpposite = -0.5, kOppositeShare = 0.001, kRandomSigns = 0.3;  // of neighbours: the cosine, and how many
-constexpr double kUnitSpread = 0.02;                                            // of unit vectors' lengths
+constexpr std::size_t kParts = 3;  // parts of the domain along each axis; each contributes its fastest point
+// neighbors are opposite below the cosine kOpposite; minimum fractions of such pairs in a line field
+constexpr double kOpposite = -0.5, kOppositeShare = 0.001, kRandomSigns = 0.3;
+constexpr double kUnitSpread = 0.02;  // relative spread of the lengths of unit vectors
 
 double share_above(const std::vector<float>& values, double least) {
   const auto many = std::count_if(values.begin(), values.end(), [&](float v) { return v >= least; });
@@ -58,7 +59,7 @@ VectorStats compute_vector_stats(const field::VectorGrid& grid) {
       });
   for (const auto& [speed, place] : fastest)
     if (speed > 0) facts.fastest_points.push_back(grid.mapping().world_from_index(place));
-  std::vector<float> moving;  // what is empty has no length to compare
+  std::vector<float> moving;  // zero vectors are left out: they have no length to compare
   std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(moving), [](float v) { return v > 0; });
   facts.slow_speed = quantile(moving, 0.02);
   facts.median_speed = quantile(speeds, 0.5);

@@ -16,7 +16,7 @@
 namespace catena::scene {
 namespace {
 
-/// An entry of a published map of 256: the maps are linear between these.
+/// One entry of a published color map of 256 entries; the map is linear between anchors.
 struct Anchor {
   int entry;
   std::uint32_t rgb;
@@ -40,7 +40,7 @@ constexpr Anchor kPlasma[] = {{0, 0x0d0887},   {7, 0x20068f},   {26, 0x43039e}, 
                               {216, 0xfeb82c}, {233, 0xfbd324}, {250, 0xf3f027}, {254, 0xf0f724}, {255, 0xf0f921}};
 constexpr Anchor kGrey[] = {{0, 0x000000}, {255, 0xffffff}};
 
-/// From dusk blue over green to ivory: light enough on black, dark enough on white.
+/// Dusk blue over green to ivory: light enough on a black background, dark enough on a white one.
 constexpr Color kDusk[] = {{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f},
                            {0.72f, 0.79f, 0.52f}, {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}};
 
@@ -127,7 +127,7 @@ std::vector<ColorPoint> make_color_map(std::string_view name, double lo, double 
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const ColorPoint& point = map->points[reversed ? count - 1 - i : i];
     const double t = reversed ? 1 - point.value : point.value, value = symlog_interpolate(lo, hi, i == 0 ? 0 : t, linear_below);
-    // in a range of a few bits neighbours fall together
+    // in a range of a few bits, neighboring values become equal
     if (i == 0 || (value > points.back().value && value < hi)) points.push_back({value, point.color});
   }
   points.push_back({hi, map->points[reversed ? 0 : count - 1].color});
@@ -140,7 +140,7 @@ bool is_color_range(double lo, double hi) {
 }
 
 double linear_below(const ValueMapping& mapping, double lo, double hi) {
-  constexpr double kShown = 1e-3;  // of the greatest
+  constexpr double kShown = 1e-3;  // fraction of the largest magnitude
   if (mapping.kind == ValueMapping::Kind::linear) return 0;
   if (mapping.kind == ValueMapping::Kind::log) return std::max(lo, 0.0);
   return mapping.linear_below > 0 ? mapping.linear_below : kShown * std::max(std::fabs(lo), std::fabs(hi));
@@ -198,8 +198,8 @@ std::vector<ColorPoint> make_color_table(const std::vector<ColorPoint>& table, c
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kWhiteX = 0.9505, kWhiteZ = 1.089;  // D65, Y = 1
-constexpr double kUnsaturated = 0.05;                // in s: below it a hue says nothing
+constexpr double kWhiteX = 0.9505, kWhiteZ = 1.089;  // D65 white point, Y = 1
+constexpr double kUnsaturated = 0.05;                // Msh saturation s below which the hue is meaningless
 constexpr double kLeastWhite = 88;
 
 double linear_of(double v) { return v > 0.04045 ? std::pow((v + 0.055) / 1.055, 2.4) : v / 12.92; }
@@ -208,7 +208,7 @@ double encoded(double v) { return v > 0.0031308 ? 1.055 * std::pow(v, 1 / 2.4) -
 double lab_curve(double v) { return v > 216.0 / 24389 ? std::cbrt(v) : (24389.0 / 27 * v + 16) / 116; }
 double lab_curve_back(double v) { return v * v * v > 216.0 / 24389 ? v * v * v : (116 * v - 16) * 27 / 24389; }
 
-/// The hue of a saturated colour as it nears white of length `white`.
+/// Hue of a saturated color, turned as it approaches a white of Msh magnitude `white`.
 double turned_hue(const Vec3& msh, double white) {
   if (msh.x >= white) return msh.z;
   const double spin = msh.y * std::sqrt(white * white - msh.x * msh.x) / (msh.x * std::sin(msh.y));

@@ -1,4 +1,6 @@
-/// The components: plain structs that say what an entity is. Field's terms; world units; display (sRGB) colours as written.
+/// Components of the scene's entities: plain structs. Lengths and positions are in world units unless stated otherwise; colors are display
+/// (sRGB) colors as written in the scene file. Members named `where` are the JSON node that an item was read from; error messages take the
+/// file name and line from it.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,451 +23,459 @@
 
 namespace catena::scene {
 
-/// What a scene calls an entity.
+/// Name of an entity in the scene file.
 struct Name {
-  std::string value;  ///< unique among entities of a kind
+  std::string value;  ///< Unique among entities of a kind
 };
 
-struct LabelMap;  ///< labels.h
+struct LabelMap;  ///< Defined in labels.h
 
-/// The surface of labels of another field (engine/field/derived/label_surface.h), as a field of its own.
+/// Source of a field that is the surface around chosen labels of a label map (engine/field/derived/label_surface.h).
 struct LabelSource {
-  std::string label_map;           ///< the label map's name
-  std::vector<double> values;      ///< the labels whose voxels are inside; empty with `any`
-  std::vector<std::string> names;  ///< of the map's table
-  bool all_labels = false;         ///< every label but 0
-  double smoothing_voxels = 0;     ///< voxels
+  std::string label_map;           ///< Name of the field that holds the label map
+  std::vector<double> values;      ///< Labels whose voxels are inside the surface; empty with `all_labels`
+  std::vector<std::string> names;  ///< Further labels, by their names in the map's table
+  bool all_labels = false;         ///< All labels but 0
+  double smoothing_voxels = 0;     ///< Standard deviation of the Gaussian smoothing, voxels; 0: none
   bool operator==(const LabelSource&) const = default;
 };
 
-/// A field of the scene: where it comes from, and the field itself once something has asked for it.
+/// A field of the scene: its source (exactly one of `file`, `analytic`, `label`) and the field itself, which is loaded on first use.
 struct FieldSource {
-  json::Node where;                        ///< its place in the scene file, for messages
-  std::optional<field::LoadRequest> file;  ///< either this
-  bool grid_is_optional = false;           ///< a replaced file may lack the grid that the first one had
-  std::string pattern{};                   ///< the name in the scene, where it stands for several files; empty: one file
-  std::vector<std::string> series{};       ///< the files of a pattern, in order; `file` has the one of the scene's step
-  bool follows = false;                    ///< steps may be added while it is shown (follow.h)
-  std::vector<double> known_times{};       ///< with `follows`: of the steps within one file that are whole; empty: not looked at yet
-  bool has_changed_step = false;           ///< it has gone from one step to another
-  bool has_own_step = false;               ///< it states its step, and does not follow the scene's
-  std::string analytic;                    ///< or this
-  field::AnalyticParameters parameters;    ///< of `analytic`
-  int resolution = 128;                    ///< analytic fields are drawn from a sampled grid: nodes an axis
-  std::array<double, 2> box{-2, 2};        ///< least and greatest coordinate of the cube that it is sampled in, world units
-  std::optional<LabelSource> label;        ///< or this
-  std::string labels_file;                 ///< the table that a label map's names and colours come from; empty: the scene's own
-  LabelTable labels_table;                 ///< values rising; empty: none
-  std::shared_ptr<const LabelMap> labels;  ///< with `loaded`: what the voxels of a field that is read by the nearest of them stand for
-  field::AnyField loaded;                  ///< exact (the hand's)
-  field::AnyField rendered;                ///< a grid (the eye's); the same object for files
+  json::Node where;                        ///< Node in the scene file
+  std::optional<field::LoadRequest> file;  ///< File to load; empty: the source is no file
+  /// True if the requested grid may be missing in the file, as for a replaced file (FieldOverride); any grid is then loaded.
+  bool grid_is_optional = false;
+  std::string pattern{};              ///< File pattern as resolved from the scene file; empty: a single file
+  std::vector<std::string> series{};  ///< Files of the pattern, in order; `file` holds the one of the current step
+  bool follows = false;               ///< True if steps may be added while the scene is shown (follow_files.h)
+  /// With `follows`: times of the complete steps within one file; empty: the file has not been polled yet.
+  std::vector<double> known_times{};
+  bool has_changed_step = false;           ///< True after set_step has changed the source
+  bool has_own_step = false;               ///< True if the scene file states this field's step; it then ignores the scene's step
+  std::string analytic;                    ///< Name of the formula; empty: the source is no formula
+  field::AnalyticParameters parameters;    ///< Parameters of `analytic`
+  int resolution = 128;                    ///< Nodes per axis of the grid that stands for an analytic field in images
+  std::array<double, 2> box{-2, 2};        ///< Min and max coordinate of the cube in which an analytic field is sampled, on each axis
+  std::optional<LabelSource> label;        ///< Labels to surround; empty: the source is no label surface
+  std::string labels_file;                 ///< File with the names and colors of a label map; empty: rows of the scene file
+  LabelTable labels_table;                 ///< Names and colors of labels, values rising; empty: none
+  std::shared_ptr<const LabelMap> labels;  ///< Labels of `loaded`; null: not loaded, or not a label map
+  field::AnyField loaded;                  ///< Exact field, used by haptics; empty: not loaded yet
+  field::AnyField rendered;                ///< Grid for images: sampled for an analytic field, else the same object as `loaded`
 };
 
-/// The scale on which values lie between the points of colours and opacities, and along a colour bar (engine/base/symlog_scale.h).
+/// Scale of the field values between the points of colors and opacities, and along a scalar bar (engine/base/symlog_scale.h).
 struct ValueMapping {
-  /// log: by the logarithm of the value; symlog: the same away from zero on both sides, and linear about zero.
+  /// log: logarithm of the value. symlog: logarithmic in |value| on both sides of zero, and linear near zero.
   enum class Kind { linear, log, symlog };
-  Kind kind = Kind::linear;  ///< linear unless stated
-  double linear_below = 0;   ///< symlog: linear up to this size of a value, the field's unit; 0: a thousandth of the greatest that is shown
+  Kind kind = Kind::linear;  ///< Scale; linear unless stated
+  /// symlog: |value| up to which the scale is linear, in the field's unit; 0: a thousandth of the greatest |value| shown.
+  double linear_below = 0;
   bool operator==(const ValueMapping&) const = default;
 };
 
-/// A colour map by its name, laid over a range once the values are known (color_maps.h).
+/// A color map by its name. It is stretched over a range when the values are known (color_maps.h).
 struct NamedColors {
-  std::string map;                             ///< empty: the default of what is coloured
-  std::optional<std::array<double, 2>> range;  ///< empty: that of the values
-  ValueMapping mapping{};                      ///< of a table of colours, too, and of opacities
+  std::string map;                             ///< Name of the map; empty: the default map of the colored object
+  std::optional<std::array<double, 2>> range;  ///< [min, max] of the values; empty: range of the data
+  ValueMapping mapping{};                      ///< Scale between the points; also used by explicit color tables and by opacities
   bool operator==(const NamedColors&) const = default;
-  /// Whether nothing of it was stated.
+  /// Returns whether nothing was specified.
   bool is_default() const { return *this == NamedColors{}; }
 };
 
-/// Piecewise-linear maps over field values, on the scale of `named.mapping`, values rising. The scene gives either extinctions (sigma per
-/// world unit) or opacities (alpha per opacity_length), which become sigma = -ln(1 - alpha) / opacity_length at their points once the drawn
-/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear on the scale. A factor that follows the
-/// length of the field's gradient (field units per world unit) multiplies sigma.
+/// Piecewise-linear functions of field values, on the scale of `named.mapping`, values rising. The scene gives either extinctions (sigma
+/// per world unit) or opacities (alpha per `opacity_unit`), which become sigma = -ln(1 - alpha) / opacity_unit at their points when the
+/// rendered grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear on the scale. An optional
+/// factor that depends on the magnitude of the field's gradient (field units per world unit) multiplies sigma.
 struct TransferFunction {
-  /// A colour at a value.
+  /// Color at a value.
   struct ColorPoint {
-    double value;  ///< the field's unit
-    Color color;   ///< where nothing else gives one
+    double value;  ///< Field's unit
+    Color color;   ///< Display (sRGB) color
   };
-  /// An extinction at a value.
+  /// Extinction at a value.
   struct ExtinctionPoint {
-    double value, sigma;  ///< the field's unit; per world unit
+    double value, sigma;  ///< Field's unit; per world unit
   };
-  /// An opacity at a value. At most kMaxAlpha: an alpha of 1 over a length would be an infinite extinction.
+  /// Opacity at a value. At most kMaxAlpha: an alpha of 1 over a length would be an infinite extinction.
   struct OpacityPoint {
-    static constexpr double kMaxAlpha = 0.999;  ///< what an alpha of 1 counts as
-    double value, alpha;                        ///< the field's unit; 0 to kMaxAlpha over opacity_length
+    static constexpr double kMaxAlpha = 0.999;  ///< Used instead of an alpha of 1
+    double value, alpha;                        ///< Field's unit; 0 to kMaxAlpha over opacity_unit
   };
-  std::vector<ColorPoint> colors;            ///< values rising
-  std::vector<OpacityPoint> opacities;       ///< either these
-  double opacity_unit = 0;                   ///< world length; 0: the smallest voxel edge of the drawn grid
-  std::vector<ExtinctionPoint> extinctions;  ///< or these; values rising
-  NamedColors named;                         ///< where `colors` is empty; its mapping always
-  /// A factor at a length of the gradient.
+  std::vector<ColorPoint> colors;            ///< Color table, values rising; empty: a color map, see `named`
+  std::vector<OpacityPoint> opacities;       ///< Opacities, values rising; empty if `extinctions` are given
+  double opacity_unit = 0;                   ///< World length over which an alpha applies; 0: smallest voxel edge of the rendered grid
+  std::vector<ExtinctionPoint> extinctions;  ///< Extinctions, values rising; empty if `opacities` are given
+  NamedColors named;                         ///< Color map used if `colors` is empty; its mapping always applies
+  /// Factor on sigma at a gradient magnitude.
   struct GradientPoint {
-    double gradient, factor;  ///< field units per world unit; 0 to 1
+    double gradient, factor;  ///< Field units per world unit; 0 to 1
   };
-  std::vector<GradientPoint> gradient_factors;  ///< gradients rising, factors 0..1; empty: 1 everywhere
-  std::string file;                             ///< that it was read from; empty: the scene's own
+  std::vector<GradientPoint> gradient_factors;  ///< Gradients rising; empty: factor 1 everywhere
+  std::string file;                             ///< Transfer file it was read from; empty: the scene file itself
 };
 
-/// Colours that follow values. The one shape of "color_by", and what a slice shows of its own field.
+/// Colors by value: the scene key "color_by", and the colors of a slice.
 struct ColorBy {
-  /// What gives the values.
+  /// Origin of the values: another field at the same position, speed or arc length of a line, or values stored in a data file.
   enum class Source { field, speed, arc_length, value };
-  Source source = Source::field;                     ///< lines alone know speed and arc length, what comes from a file its values
-  std::string value_name{};                          ///< the name that the file has for it
-  Entity field;                                      ///< at the same place of the world: a scalar, or the magnitude of a vector
-  json::Node where;                                  ///< its place in the file, for messages
-  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
-  NamedColors named{};  ///< viridis, all values (lines, surfaces: the drawn ones), where it does not say; mapping
+  Source source = Source::field;                     ///< speed: streamlines, glyphs; arc_length: streamlines, curves; value: curves, points
+  std::string value_name{};                          ///< Source::value: name of the values in the data file
+  Entity field;                                      ///< Source::field: scalar field, or vector field for its magnitude
+  json::Node where;                                  ///< Node in the scene file
+  std::vector<TransferFunction::ColorPoint> colors;  ///< Color table, values rising; empty: a color map, see `named`
+  /// Color map used if `colors` is empty; default: viridis over all values (of lines and surfaces: over the rendered ones). Its mapping
+  /// always applies.
+  NamedColors named{};
 };
 
-/// A scalar field that rays go through.
+/// Volume rendering of a scalar field.
 struct Volume {
-  /// What a ray makes of its values: emission and absorption, or the look of one value.
+  /// How a ray combines the values: emission and absorption, or a single value along the ray.
   enum class Projection { composite, maximum, minimum, average };
-  Entity field;                                   ///< the field that it shows
-  json::Node where;                               ///< its place in the file, for messages
-  TransferFunction transfer;                      ///< colours and opacities
-  bool shaded = false;                            ///< lit by the gradient
-  bool clipped = true;                            ///< the clip planes count
-  Projection projection = Projection::composite;  ///< what a ray makes of its values
-  std::optional<ColorBy> color_by{};              ///< composite only
+  Entity field;                                   ///< Scalar field
+  json::Node where;                               ///< Node in the scene file
+  TransferFunction transfer;                      ///< Colors and opacities
+  bool shaded = false;                            ///< Lighting by the gradient
+  bool clipped = true;                            ///< Cut by the clip planes
+  Projection projection = Projection::composite;  ///< How a ray combines the values
+  std::optional<ColorBy> color_by{};              ///< Colors by another field; composite only
 };
 
-/// The surface on which a scalar field has one value.
+/// Surface on which a scalar field has a given value.
 struct Isosurface {
-  Entity field;                       ///< the field that it shows
-  json::Node where;                   ///< its place in the file, for messages
-  double level = 0;                   ///< the value
-  Entity level_widget{};              ///< the isolevel widget whose value the level follows
-  Color color{0.8f, 0.8f, 0.9f};      ///< where nothing else gives one
-  double opacity = 1;                 ///< 0 to 1, of one side
-  bool clipped = true;                ///< the clip planes count
-  std::optional<ColorBy> color_by{};  ///< none: `color` everywhere
+  Entity field;                       ///< Scalar field
+  json::Node where;                   ///< Node in the scene file
+  double level = 0;                   ///< Field value on the surface
+  Entity level_widget{};              ///< Isolevel widget that sets `level`; none: `level` is constant
+  Color color{0.8f, 0.8f, 0.9f};      ///< Color without color_by
+  double opacity = 1;                 ///< Opacity of one side, 0 to 1
+  bool clipped = true;                ///< Cut by the clip planes
+  std::optional<ColorBy> color_by{};  ///< Empty: `color` everywhere
 };
 
-/// The steps in time of a file, or of a pattern.
+/// Time steps of a file or of a file pattern.
 struct TimeSteps {
-  int count = 1;              ///< how many there are
-  std::vector<double> times;  ///< of all steps; of a pattern those of its first and its last file; empty: none is stated
-  std::string time_unit;      ///< of `times`; empty: not stated
+  int count = 1;  ///< Number of steps
+  /// Times of all steps; of a pattern with many or large files only the times of the first and the last file; empty: not specified.
+  std::vector<double> times;
+  std::string time_unit;  ///< Unit of `times`; empty: not specified
 };
 
-/// The steps in time of what a mesh, curves or points are read from.
+/// Time steps of the files from which a mesh, curves or points are read.
 struct FileSteps {
-  std::string pattern;              ///< the name in the scene, where it stands for several files; empty: one file
-  std::vector<std::string> series;  ///< the files of a pattern, in order; `path` is that of the scene's step; empty: one file
-  std::vector<double> times;        ///< of the steps within one file (.pvd, .series), once it is loaded; empty: it has one
-  int step = 0;                     ///< which step within one file
-  bool follows = false;             ///< steps may be added while it is shown (follow.h)
+  std::string pattern;              ///< File pattern as resolved from the scene file; empty: a single file
+  std::vector<std::string> series;  ///< Files of the pattern, in order; the source's `path` is the one of the current step
+  std::vector<double> times;        ///< Times of the steps within one file (.pvd, .series), set on load; empty: one step
+  int step = 0;                     ///< Current step within one file
+  bool follows = false;             ///< True if steps may be added while the scene is shown (follow_files.h)
 };
 
-/// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
+/// A triangle mesh of the scene: its source and the mesh itself, which is loaded on first use.
 struct MeshSource {
-  json::Node where;               ///< its place in the file, for messages
-  std::string path;               ///< the file, as the program opens it
-  FileSteps steps;                ///< of the file, or of the pattern
-  mesh::MeshTransform placement;  ///< world = scale * file + offset
-  mesh::MeshPtr loaded;           ///< felt and drawn: one object
+  json::Node where;               ///< Node in the scene file
+  std::string path;               ///< Path of the file to open
+  FileSteps steps;                ///< Time steps of the file or pattern
+  mesh::MeshTransform placement;  ///< World = scale * file + offset
+  mesh::MeshPtr loaded;           ///< Mesh, shared by rendering and haptics; null: not loaded yet
 };
 
-/// A mesh that is drawn.
+/// Rendering of a triangle mesh.
 struct SurfaceMesh {
-  Entity mesh;                      ///< the mesh that it shows
-  json::Node where;                 ///< its place in the file, for messages
-  Color color{0.8f, 0.8f, 0.9f};    ///< where nothing else gives one
-  bool clipped = true;              ///< the clip planes count
-  double opacity = 1;               ///< 0 to 1, of one side
-  bool smooth_shading = false;      ///< "shading": the felt mesh is flat
-  bool show_edges = false;          ///< the triangles' edges are drawn, too
-  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
+  Entity mesh;                      ///< Mesh to render
+  json::Node where;                 ///< Node in the scene file
+  Color color{0.8f, 0.8f, 0.9f};    ///< Color without color_by
+  bool clipped = true;              ///< Cut by the clip planes
+  double opacity = 1;               ///< Opacity of one side, 0 to 1
+  bool smooth_shading = false;      ///< Interpolated normals for lighting; haptic contact is with the flat triangles in any case
+  bool show_edges = false;          ///< Triangle edges are rendered
+  std::optional<ColorBy> color_by;  ///< Empty: `color` everywhere
 };
 
-/// The core lines of the vortices of a field, as curves.
+/// Curves that are the vortex core lines of a vector field.
 struct VortexCoreCurves {
-  std::string field;             ///< the name of the vector field
-  json::Node where;              ///< the place that names it, for messages
-  flow::CoreOptions options;     ///< how they are told
-  flow::VortexCoresPtr cores{};  ///< what `loaded` was made of: what a link `vortex_core` feels, too
+  std::string field;             ///< Name of the vector field
+  json::Node where;              ///< Node in the scene file that names the field
+  flow::CoreOptions options;     ///< Criterion and minimum length and swirl of a core line
+  flow::VortexCoresPtr cores{};  ///< Cores from which `loaded` was built; shared with links of type `vortex_core`
 };
 
-/// Curves from a file, or traced in a field: drawn as tubes, and felt by links that name them.
+/// Curves from a file, or vortex cores of a field. Rendered as tubes; links of the chain can name them.
 struct CurvesSource {
-  json::Node where;                              ///< its place in the file, for messages
-  std::string path;                              ///< the file, as the program opens it; empty: they are traced
-  std::optional<VortexCoreCurves> vortex_cores;  ///< instead of a file
-  FileSteps steps;                               ///< of the file, or of the pattern
-  curves::CurveSetPtr loaded;                    ///< felt and drawn: one object; none before something asks for it
-  double radius = 0;                             ///< of the tubes; 0: fitted
-  std::optional<Color> color;                    ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
-  std::optional<ColorBy> color_by;               ///< none: `color` everywhere
-  bool clipped = true;                           ///< the clip planes count
+  json::Node where;                              ///< Node in the scene file
+  std::string path;                              ///< Path of the file to open; empty: vortex cores
+  std::optional<VortexCoreCurves> vortex_cores;  ///< Instead of a file
+  FileSteps steps;                               ///< Time steps of the file or pattern
+  curves::CurveSetPtr loaded;                    ///< Curves, shared by rendering and haptics; null: not loaded yet
+  double radius = 0;                             ///< Radius of the tubes, world units; 0: fitted
+  std::optional<Color> color;                    ///< Empty, and no color_by: color (|x|, |y|, |z|) of the direction
+  std::optional<ColorBy> color_by;               ///< Empty: `color` everywhere
+  bool clipped = true;                           ///< Cut by the clip planes
 };
 
-/// Points from a table: drawn as balls, and felt by links that name them.
+/// Points from a table. Rendered as balls; links of the chain can name them.
 struct PointsSource {
-  json::Node where;                 ///< its place in the file, for messages
-  std::string path;                 ///< the file, as the program opens it
-  FileSteps steps;                  ///< of the file, or of the pattern
-  curves::PointSetPtr loaded;       ///< felt and drawn: one object; none before something asks for it
-  double radius = 0;                ///< of all balls; 0: by `radius_by`, or fitted
-  std::string radius_by;            ///< the column that says each ball's; empty: the column "radius", where the table has one
-  Color color{0.9f, 0.75f, 0.45f};  ///< where nothing else gives one
-  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
-  bool clipped = true;              ///< the clip planes count
+  json::Node where;                 ///< Node in the scene file
+  std::string path;                 ///< Path of the file to open
+  FileSteps steps;                  ///< Time steps of the file or pattern
+  curves::PointSetPtr loaded;       ///< Points, shared by rendering and haptics; null: not loaded yet
+  double radius = 0;                ///< Radius of all balls, world units; 0: by `radius_by`, or fitted
+  std::string radius_by;            ///< Column with the radius of each ball; empty: column "radius" if the table has one
+  Color color{0.9f, 0.75f, 0.45f};  ///< Color without color_by
+  std::optional<ColorBy> color_by;  ///< Empty: `color` everywhere
+  bool clipped = true;              ///< Cut by the clip planes
 };
 
-/// A plane through a field, coloured by its values, with lines of constant value.
+/// Plane through a field, colored by its values, with optional contour lines.
 struct Slice {
-  ColorBy color_by;                        ///< the field, and its colours
-  json::Node where;                        ///< its place in the file, for messages
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< a place on the plane and an arrow across it, world
-  Entity widget{};                         ///< the cutting plane that the plane follows
-  double opacity = 1;                      ///< 0 to 1
-  bool lit = false;                        ///< lit, or the plain colours of the values
-  bool clipped = true;                     ///< the clip planes count
-  /// Lines of constant value.
+  ColorBy color_by;                        ///< Field and its colors
+  json::Node where;                        ///< Node in the scene file
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< Point on the plane and normal of the plane, world
+  Entity widget{};                         ///< Cutting-plane widget that moves the plane; none: fixed plane
+  double opacity = 1;                      ///< Opacity of the slice, 0 to 1
+  bool lit = false;                        ///< True: shaded like a surface; false: colors of the values as they are
+  bool clipped = true;                     ///< Cut by the clip planes
+  /// Contour lines. Exactly one of `levels`, `count` and `spacing` is set.
   struct Contours {
-    json::Node where;            ///< its place in the file, for messages
-    std::vector<double> levels;  ///< rising; or
-    int count = 0;               ///< so many within the colours' range, its ends left out; or
-    double spacing = 0;          ///< all multiples
-    Color color{0, 0, 0};        ///< of the lines
-    double width = 1;            ///< pixels
+    json::Node where;            ///< Node in the scene file
+    std::vector<double> levels;  ///< Values of the lines, rising
+    int count = 0;               ///< Number of lines, evenly within the range of the colors without its ends
+    double spacing = 0;          ///< Lines at all multiples of this value
+    Color color{0, 0, 0};        ///< Color of the lines
+    double width = 1;            ///< Width of the lines, pixels
   };
-  std::optional<Contours> contours;  ///< none: no lines
+  std::optional<Contours> contours;  ///< Empty: no contour lines
 };
-inline constexpr int kMaxContours = 1000;  ///< On one slice.
+inline constexpr int kMaxContours = 1000;  ///< Maximum number of contour lines on a slice.
 
-/// Seeds that are not listed one by one. Which members mean something follows from the kind.
+/// Pattern of seed points. Which members are used depends on `kind`.
 struct SeedPattern {
-  /// Where the seeds lie.
+  /// Shape on which the seeds lie.
   enum class Kind { line, plane, sphere, isosurface, evenly_spaced };
-  Kind kind = Kind::line;          ///< which of the members count
-  json::Node where;                ///< its place in the file, for messages
-  Vec3 origin{0.0};                ///< a line's first end, a plane's corner, a sphere's centre
-  Vec3 u{0.0}, v{0.0};             ///< a line's other end (u); a plane's edges
-  int count = 1;                   ///< of seeds; a plane's along u; evenly spaced: the most lines
-  int count_v = 1;                 ///< a plane's along v
-  double radius = 0;               ///< of a sphere
-  bool inside = false;             ///< the ball rather than the sphere
-  Entity field;                    ///< of an isosurface
-  double level = 0;                ///< of an isosurface
-  double distance = 0;             ///< evenly spaced: of the lines, world units
-  double termination_ratio = 0.5;  ///< evenly spaced: lines end nearer than this share of the distance
-  std::vector<Vec3> start_points;  ///< evenly spaced: where the first lines begin; empty: the middle of the domain
+  Kind kind = Kind::line;          ///< Shape; selects the members in use
+  json::Node where;                ///< Node in the scene file
+  Vec3 origin{0.0};                ///< Line: first end; plane: a corner; sphere: center
+  Vec3 u{0.0}, v{0.0};             ///< Line: other end (u); plane: the two edges
+  int count = 1;                   ///< Number of seeds; plane: along u; evenly spaced: maximum number of lines
+  int count_v = 1;                 ///< Plane: number of seeds along v
+  double radius = 0;               ///< Sphere: radius, world units
+  bool inside = false;             ///< Sphere: seeds in the ball instead of on the sphere
+  Entity field;                    ///< Isosurface: scalar field
+  double level = 0;                ///< Isosurface: its level
+  double distance = 0;             ///< Evenly spaced: distance between lines, world units
+  double termination_ratio = 0.5;  ///< Evenly spaced: a line ends where another is nearer than this share of `distance`
+  std::vector<Vec3> start_points;  ///< Evenly spaced: seeds of the first lines; empty: found, beginning with the domain's middle
 };
 
-/// Where streamlines begin.
+/// Seed points of streamlines: points, a pattern, or a widget.
 struct Seeds {
-  std::vector<Vec3> points;            ///< listed one by one, world
-  std::optional<SeedPattern> pattern;  ///< instead of points
-  Entity widget{};                     ///< the seed or rake that the points follow
-  int count = 1;                       ///< of the points along a rake
+  std::vector<Vec3> points;            ///< Seed points, world; with `widget`: those of its current pose
+  std::optional<SeedPattern> pattern;  ///< Instead of `points`
+  Entity widget{};                     ///< Seed or rake widget that sets `points`; none: fixed points
+  int count = 1;                       ///< Number of points along a rake
 };
 
-/// Tubes along streamlines.
+/// Streamlines of a vector field, rendered as tubes.
 struct StreamlineSet {
-  Entity field;                     ///< the field that it shows
-  json::Node where;                 ///< its place in the file, for messages
-  Seeds seeds;                      ///< where they begin
-  double radius = 0;                ///< 0: fitted to the domain
-  Color color{1.0f, 0.3f, 0.2f};    ///< where nothing else gives one
-  std::optional<ColorBy> color_by;  ///< none: `color` everywhere
-  bool is_line_field = false;       ///< "kind": "line"
-  double min_speed = 0;             ///< the lines end where the field is slower; its unit
-  double length = 0;                ///< 0: 10 L, each direction
-  double tolerance = 0;             ///< times L; 0: by the seeds' kind (lines.h)
-  double arrow_spacing = 0;         ///< arrowheads every so far along a line, world units; 0: none
-  double band_length = 0;           ///< bands of this length run along the lines as the scene's phase goes from 0 to 1; 0: none
-  bool clipped = true;              ///< the clip planes count
+  Entity field;                     ///< Vector field
+  json::Node where;                 ///< Node in the scene file
+  Seeds seeds;                      ///< Seed points
+  double radius = 0;                ///< Radius of the tubes, world units; 0: fitted to the domain
+  Color color{1.0f, 0.3f, 0.2f};    ///< Color without color_by
+  std::optional<ColorBy> color_by;  ///< Empty: `color` everywhere
+  bool is_line_field = false;       ///< Line field ("kind": "line"): v and -v are equivalent
+  double min_speed = 0;             ///< Speed at or below which a line ends, in the field's unit
+  double length = 0;                ///< Maximum arc length in each direction, world units; 0: 10 L
+  double tolerance = 0;             ///< Error per step, relative to L; 0: by the kind of seeds (streamlines.h)
+  double arrow_spacing = 0;         ///< Distance between arrowheads along a line, world units; 0: none
+  /// Length of the animated bands, world units; they advance by one length while Scene::animation_phase goes from 0 to 1; 0: none.
+  double band_length = 0;
+  bool clipped = true;  ///< Cut by the clip planes
 };
 
-/// Arrows of a vector field, evenly placed; of a line field, rods.
+/// Arrows of a vector field at evenly spaced points; rods for a line field.
 struct GlyphSet {
-  /// What the glyphs lie on.
+  /// Geometry on which the glyphs lie.
   enum class Support { box, plane, slice, isosurface, mesh };
-  /// What of a glyph lies at its place.
+  /// Part of a glyph that lies at its point.
   enum class Anchor { center, tail, head };
-  Entity field;                      ///< the field that it shows
-  json::Node where;                  ///< its place in the file, for messages
-  bool is_line_field = false;        ///< "kind": "line"
-  Support support = Support::box;    ///< what they lie on
-  Entity support_entity{};           ///< the slice, the isosurface or the mesh that they lie on, drawn or not
-  Vec3 point{0.0}, normal{0, 0, 1};  ///< of a plane of their own
-  Entity widget{};                   ///< the cutting plane that this plane follows
-  std::optional<field::Box> box{};   ///< empty: the field's domain
-  double spacing = 0;                ///< world units; 0: fitted to the domain (even_places.h)
-  bool constant_length = false;      ///< "scale": "constant": all as long as the longest
-  double length = 0;                 ///< of the longest, world units; 0: the spacing
-  double reference_speed = 0;        ///< the speed that has this length; 0: the greatest that is drawn
-  double min_speed = 0;              ///< speeds up to this have none
-  double radius = 0;                 ///< of the longest one's shaft, world units; 0: a share of its length
-  Anchor anchor = Anchor::center;    ///< what of it lies at its place
-  Color color{1.0f, 0.75f, 0.2f};    ///< where nothing else gives one
-  std::optional<ColorBy> color_by;   ///< none: `color` everywhere
-  bool clipped = true;               ///< the clip planes count
+  Entity field;                      ///< Vector field
+  json::Node where;                  ///< Node in the scene file
+  bool is_line_field = false;        ///< Line field ("kind": "line"): v and -v are equivalent
+  Support support = Support::box;    ///< Geometry on which the glyphs lie
+  Entity support_entity{};           ///< Slice, isosurface or mesh on which the glyphs lie, visible or not
+  Vec3 point{0.0}, normal{0, 0, 1};  ///< Support::plane: point and normal, world
+  Entity widget{};                   ///< Support::plane: cutting-plane widget that moves the plane; none: fixed plane
+  std::optional<field::Box> box{};   ///< Support::box: empty: domain of the field
+  double spacing = 0;                ///< Distance between neighbors, world units; 0: fitted to the domain (uniform_sampling.h)
+  bool constant_length = false;      ///< True: all glyphs have the length `length`; false: proportional to the magnitude
+  double length = 0;                 ///< Length of the longest glyph, world units; 0: the spacing
+  double reference_speed = 0;        ///< Speed at which a glyph has the length `length`; 0: greatest speed among the glyphs
+  double min_speed = 0;              ///< Speed at or below which a point has no glyph
+  double radius = 0;                 ///< Shaft radius of the longest glyph, world units; 0: 0.06 of its length
+  Anchor anchor = Anchor::center;    ///< Part of a glyph that lies at its point
+  Color color{1.0f, 0.75f, 0.2f};    ///< Color without color_by
+  std::optional<ColorBy> color_by;   ///< Empty: `color` everywhere
+  bool clipped = true;               ///< Cut by the clip planes
 };
-inline constexpr std::size_t kMaxGlyphs = 20000;  ///< of one set
+inline constexpr std::size_t kMaxGlyphs = 20000;  ///< Maximum number of glyphs in a set
 
-/// A short piece of the streamline through the cursor, with an arrowhead: what the flow does here.
+/// Short piece of the streamline through the cursor, with an arrowhead: local direction of the flow.
 struct Indicator {
-  Entity field;                    ///< the field that it shows
-  json::Node where;                ///< its place in the file, for messages
-  double length = 0;               ///< world units; 0: a tenth of L
-  double radius = 0;               ///< 0: fitted
-  Color color{1.0f, 0.85f, 0.1f};  ///< where nothing else gives one
-  bool starts_at_cursor = false;   ///< the piece begins at the cursor; else the cursor is its middle
+  Entity field;                    ///< Vector field
+  json::Node where;                ///< Node in the scene file
+  double length = 0;               ///< Length of the piece, world units; 0: a tenth of L
+  double radius = 0;               ///< Radius, world units; 0: fitted
+  Color color{1.0f, 0.85f, 0.1f};  ///< Display color
+  bool starts_at_cursor = false;   ///< True: the piece begins at the cursor; false: the cursor is its middle
 };
 
-/// The cursor: what the hand holds, as the last tick left it. ImageWriteResult by the cursor system, drawn as a glyph.
+/// Probe, proxies and force of the newest haptic state, rendered as a glyph. Written by update_cursor (prepare.h).
 struct Cursor {
-  Vec3 probe{0.0};                     ///< the hand, world
-  std::vector<Vec3> proxies;           ///< by link, world
-  std::vector<bool> active;            ///< by link: it holds
-  std::vector<double> release_ratios;  ///< by link: 0 on its feature .. 1 where the hand has left it
-  std::vector<LinkStatus> statuses;    ///< by link
-  std::vector<std::string> names;      ///< of the links, once the chain is made
-  Vec3 force_n{0.0};                   ///< on the hand, world axes, newtons
-  double size = 0;                     ///< glyph radius, world units; 0: fitted
-  bool visible = false;                ///< drawn at all
-  bool show_occluded = true;           ///< shines through what hides it
-  bool drop_line = false;              ///< a line leads down to the floor of what is drawn
-  bool crosshair = false;              ///< three rods that cross at the hand, and nothing that says what is felt
-  bool pseudo_haptic = false;          ///< nothing pushes the hand: lag and colour show the force
+  Vec3 probe{0.0};                     ///< Probe position, world
+  std::vector<Vec3> proxies;           ///< Proxy of each link, world
+  std::vector<bool> active;            ///< For each link: enabled and not released
+  std::vector<double> release_ratios;  ///< For each link: 0 on its feature to 1 at release
+  std::vector<LinkStatus> statuses;    ///< Status of each link
+  std::vector<std::string> names;      ///< Names of the links; empty before the program is built
+  Vec3 force_n{0.0};                   ///< Force on the user, world axes, newtons
+  double size = 0;                     ///< Radius of the glyph, world units; 0: fitted
+  bool visible = false;                ///< Rendered at all
+  bool show_occluded = true;           ///< Visible through occluders
+  bool drop_line = false;              ///< Thin line from the probe down to the bottom of the rendered domain
+  /// Three rods that cross at the probe; proxies and force are not rendered, so that the image does not show the contact.
+  bool crosshair = false;
+  bool pseudo_haptic = false;  ///< True for a device without force: lag and color show the force
 };
 
-/// One link of the chain; its own keys are read by the constraint that it names.
+/// One link of the chain. The constraint type reads its own keys from `node`.
 struct Link {
-  std::string name, type;  ///< the link's name; the constraint's word
-  json::Node node;         ///< all of its keys
+  std::string name, type;  ///< Name of the link; name of its constraint type
+  json::Node node;         ///< Item of "chain" with all its keys
 };
 
-/// A mode of operation: while its switch is on, these links run in this order. The switch is read by haptics/build.
+/// A mode of operation: while its switch is on, its links run in its order and all others are off. haptics/build reads the switch.
 struct Mode {
-  std::string name;                ///< its name
-  std::vector<std::string> links;  ///< names of links, in the order of the chain
-  json::Node node;                 ///< all of its keys, the switch with them
+  std::string name;                ///< Name of the mode
+  std::vector<std::string> links;  ///< Names of its links, in the order of the chain
+  json::Node node;                 ///< Item of "modes" with all its keys, including the switch
 };
 
-/// A thing that the hand takes hold of (engine/widget/widget.h); its pose as the last tick left it. Slices, clips, seeds and levels follow
-/// it.
+/// A widget that the user can grab (engine/widget/widget.h), with its pose after the last tick. Slices, clip planes, seeds and levels can
+/// be bound to it.
 struct Widget {
-  json::Node where;                          ///< its place in the file, for messages
-  widget::Spec spec;                         ///< as stated; resolve_widget (scene.h) completes it
-  widget::Report report;                     ///< as the last tick left it
-  Entity field;                              ///< isolevel
-  std::vector<std::string> along_links;      ///< ruler: names of links
-  Color color{1.0f, 0.75f, 0.2f};            ///< where nothing else gives one
-  bool is_complete = false;                  ///< resolve_widget has been here
-  std::optional<widget::Pose> applied_pose;  ///< the pose that its followers have
-  std::optional<double> applied_value;       ///< and the isolevel's value
+  json::Node where;                          ///< Node in the scene file
+  widget::Spec spec;                         ///< As stated in the scene; resolve_widget (scene.h) fills in the missing sizes
+  widget::Report report;                     ///< Report of the last tick
+  Entity field;                              ///< Isolevel: scalar field
+  std::vector<std::string> along_links;      ///< Ruler: names of the links that its ends stay on
+  Color color{1.0f, 0.75f, 0.2f};            ///< Display color
+  bool is_complete = false;                  ///< True after resolve_widget has completed `spec`
+  std::optional<widget::Pose> applied_pose;  ///< Pose last applied to the objects bound to the widget
+  std::optional<double> applied_value;       ///< Isolevel: value last applied to the bound isosurfaces
 };
 
-/// How the links make one force, as the scene says it (haptics/chain/program.h has the law).
+/// How the links make one force, as the scene states it (force law: haptics/chain/program.h).
 struct Coupling {
-  double stiffness_n_per_m = 500;                 ///< of links that do not say, N/m
-  double damping_ns_per_m = 0;                    ///< of the hand, N s/m
-  double max_force_n = 8;                         ///< of the whole force, newtons
-  std::optional<double> ramp_s;                   ///< seconds over which a switch fades; none: the default
-  double rotational_stiffness_nm_per_rad = 0.5;   ///< of links that align and do not say, N m/rad
-  double rotational_damping_nms_per_rad = 0;      ///< N m s/rad
-  CouplingMethod method = CouplingMethod::chain;  ///< the proxy chain, or a baseline
-  CouplingForce force = CouplingForce::paper;     ///< of the chain
+  double stiffness_n_per_m = 500;  ///< Stiffness of links that state none, N/m
+  double damping_ns_per_m = 0;     ///< Damping of the probe's velocity, N s/m
+  double max_force_n = 8;          ///< Limit of the total force, newtons
+  std::optional<double> ramp_s;    ///< Ramp time of a force step of max_force_n, seconds; empty: 0 in replay, 0.02 with a device
+  double rotational_stiffness_nm_per_rad = 0.5;   ///< Rotational stiffness of aligning links that state none, N m/rad
+  double rotational_damping_nms_per_rad = 0;      ///< Damping of the tool's rotation, N m s/rad
+  CouplingMethod method = CouplingMethod::chain;  ///< Proxy chain, or a baseline method
+  CouplingForce force = CouplingForce::paper;     ///< CouplingMethod::chain only: force law
 };
 
-/// What may be given up for what, by measured curves (engine/app/tuning/plan): of each pair one at most.
+/// Tuning targets for image and haptics, met by measured error and time curves (engine/app/tuning/plan). At most one of each pair is set.
 struct TuningTargets {
-  std::optional<double> max_image_error;  ///< of the picture, 1/255, root mean square over what is covered
-  std::optional<double> max_image_ms;     ///< of a picture, ms
-  std::optional<double> max_proxy_error;  ///< of the places that links hold, world units
-  std::optional<double> max_tick_us;      ///< of a tick, us
-  /// Whether it asks anything of the picture.
+  std::optional<double> max_image_error;  ///< Maximum error of an image, 1/255, root mean square over covered pixels
+  std::optional<double> max_image_ms;     ///< Maximum time of an image, ms
+  std::optional<double> max_proxy_error;  ///< Maximum deviation of a proxy from its line, world units
+  std::optional<double> max_tick_us;      ///< Maximum time of a tick, us
+  /// Returns whether there is a target for images.
   bool has_image_targets() const { return max_image_error || max_image_ms; }
-  /// Whether it asks anything of the hand.
+  /// Returns whether there is a target for haptics.
   bool has_haptic_targets() const { return max_proxy_error || max_tick_us; }
   bool operator==(const TuningTargets&) const = default;
 };
 
-/// How the hand's metres lie in the world.
+/// Mapping from the device's workspace (meters) to the world.
 struct Workspace {
-  double meters_per_unit = 1;  ///< metres of hand a world unit
-  Vec3 origin{0.0};            ///< world place of the hand's origin
-  Mat3 rotation{1.0};          ///< world from hand
-  bool is_explicit = false;    ///< false: fitted to the scene
+  double meters_per_unit = 1;  ///< Device meters per world unit
+  Vec3 origin{0.0};            ///< World position of the middle of the device's workspace
+  Mat3 rotation{1.0};          ///< Rotation from device axes to world axes
+  bool is_explicit = false;    ///< True if the scene file states the scale; false: 1 in replay, else fitted to the device
 };
 
-/// The eye. World units.
+/// The camera. World units.
 struct Camera {
-  Vec3 position{0.0, -8.0, 3.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< where it is, what it looks at, what is up
-  double fovy_deg = 30;                                           ///< vertical angle of view, degrees
-  bool orthographic = false;                                      ///< no perspective
-  double ortho_height = 1;                                        ///< orthographic: world units from bottom to top
-  bool is_explicit = false;                                       ///< false: fitted to what is drawn
+  Vec3 position{0.0, -8.0, 3.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< Position, point it looks at, up direction
+  double fovy_deg = 30;                                           ///< Vertical angle of view, degrees
+  bool orthographic = false;                                      ///< True: parallel projection
+  double ortho_height = 1;                                        ///< Orthographic: height of the image, world units
+  bool is_explicit = false;  ///< True if the scene file states the camera; false: fitted to the visible objects
 };
 
-/// What is drawn lies on the side of the plane to which the normal points. A clip box is six of them.
+/// Clip plane: only the side to which its normal points is rendered. A clip box consists of six of them.
 struct ClipPlane : Plane {
-  Entity widget{};              ///< the cutting plane or box that it follows
-  int box_face = -1;            ///< of a box: 0..5, -x +x -y +y -z +z
-  bool keep_back_side = false;  ///< of a cutting plane: what its normal points away from is kept
+  Entity widget{};              ///< Cutting plane or box widget that moves the plane; none: fixed plane
+  int box_face = -1;            ///< Face of the box widget: 0..5 for -x +x -y +y -z +z; -1: not a box
+  bool keep_back_side = false;  ///< Cutting plane: keep the side that its normal points away from
 };
 
-/// Help for the eye: what shows where things stand. Sizes of 0 are fitted to what is drawn.
+/// Edges of a bounding box, as a spatial reference. A radius of 0 is fitted to the visible objects.
 struct BoundingBox {
-  Entity field;                   ///< none: everything that is drawn
-  json::Node where;               ///< its place in the file, for messages
-  Color color{0.7f, 0.7f, 0.7f};  ///< where nothing else gives one
-  double radius = 0;              ///< of the edges, world units; 0: fitted
+  Entity field;                   ///< Field whose box is shown; none: box of everything visible
+  json::Node where;               ///< Node in the scene file
+  Color color{0.7f, 0.7f, 0.7f};  ///< Color of the edges
+  double radius = 0;              ///< Radius of the edges, world units; 0: fitted
 };
 
-/// Three edges of the box with ticks and numbers, of its outline in the picture.
+/// Three edges with ticks and numbers, chosen on the outline of the box in the image.
 struct Axes {
-  Entity field;                                     ///< none: everything that is drawn
-  json::Node where;                                 ///< its place in the file, for messages
-  std::array<std::string, 3> names{"x", "y", "z"};  ///< at the ends of the axes
-  Color color{0.7f, 0.7f, 0.7f};                    ///< where nothing else gives one
-  int ticks = 5;                                    ///< about so many an axis
-  double radius = 0;                                ///< of the edges, world units; 0: fitted
+  Entity field;                                     ///< Field whose box is used; none: box of everything visible
+  json::Node where;                                 ///< Node in the scene file
+  std::array<std::string, 3> names{"x", "y", "z"};  ///< Labels at the ends of the axes
+  Color color{0.7f, 0.7f, 0.7f};                    ///< Color of the axes
+  int ticks = 5;                                    ///< Approximate number of ticks per axis
+  double radius = 0;                                ///< Radius of the edges, world units; 0: fitted
 };
 
-/// A checkerboard across z.
+/// A checkerboard perpendicular to z.
 struct Ground {
-  std::optional<double> z;         ///< z; none: just below what is drawn
-  double size = 0, tile_size = 0;  ///< of the whole; of one square; world units, 0: fitted
-  std::array<Color, 2> colors{Color{0.42f, 0.42f, 0.44f}, Color{0.32f, 0.32f, 0.34f}};  ///< of the squares in turn
+  std::optional<double> z;         ///< Height of the board; empty: just below the visible objects
+  double size = 0, tile_size = 0;  ///< Edge of the whole board; edge of a tile; world units, 0: fitted
+  std::array<Color, 2> colors{Color{0.42f, 0.42f, 0.44f}, Color{0.32f, 0.32f, 0.34f}};  ///< Colors of alternate tiles
 };
 
-/// Depth cue: colours turn to the fog's as the view depth goes from start to end.
+/// Depth cue: colors blend into the fog color as the view depth goes from near to far.
 struct Fog {
-  std::optional<Color> color;       ///< none: the background's
-  std::optional<double> near, far;  ///< view depth, world units; none: the nearest and farthest of what is drawn
-  double max_opacity = 0.8;         ///< share of the fog at the end
+  std::optional<Color> color;       ///< Fog color; empty: color of the background
+  std::optional<double> near, far;  ///< View depths, world units; empty: nearest and farthest visible depth
+  double max_opacity = 0.8;         ///< Share of the fog color at `far`, 0 to 1
 };
 
-/// A light from far away. Without one there is a headlight.
+/// A directional light. Without any light the scene has a headlight.
 struct Light {
-  Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light; camera: right, up, towards the eye
-  Color color{1, 1, 1};           ///< display colour
-  double intensity = 1;           ///< factor on its colour
-  bool follows_camera = false;    ///< it goes with the camera; else it rests in the world
+  Vec3 direction{0.0, 0.0, 1.0};  ///< Toward the light, world axes; with follows_camera: right, up, toward the camera
+  Color color{1, 1, 1};           ///< Display color
+  double intensity = 1;           ///< Factor on `color`
+  bool follows_camera = false;    ///< True: fixed to the camera; false: fixed in the world
 };
 
-/// Steps in time (steps.h).
+/// Current time step and playback speed (time_steps.h).
 struct TimeLine {
-  int step = 0;                 ///< the step that is shown, from 0
-  double steps_per_second = 5;  ///< steps a second while it plays
+  int step = 0;                 ///< Current step, counted from 0
+  double steps_per_second = 5;  ///< Steps per second during playback
 };
 
-/// What stands behind all that is drawn.
+/// Background of the image.
 struct Background {
-  Color color{0, 0, 0};      ///< where nothing else gives one
-  bool transparent = false;  ///< pictures with an alpha channel; the colour does not count
+  Color color{0, 0, 0};      ///< Display color
+  bool transparent = false;  ///< True: images have an alpha channel and `color` is ignored
 };
 
 }  // namespace catena::scene

@@ -19,15 +19,15 @@
 namespace catena::scene {
 namespace {
 
-/// A running number says nothing of its points.
+/// Whether the values only number the rows (each is the previous one + 1).
 bool counts_rows(const std::vector<float>& values) {
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i] - values[i - 1] != 1) return false;
   return true;
 }
 
-/// From the 1 to the 99 percentile, where the rest would take a tenth of the colours or more (of few values half of them, for their ends
-/// are far apart by chance); else none: all.
+/// The 1 to 99 percentile range if the tails would otherwise take a tenth of the color range or more (with fewer than 100 values half of
+/// it, because their extremes are far apart by chance); otherwise nullopt: all values.
 std::optional<std::array<double, 2>> range_without_tails(const std::vector<float>& values) {
   constexpr double kTail = 0.01;
   constexpr std::size_t kMany = 100;

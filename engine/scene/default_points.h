@@ -1,4 +1,4 @@
-/// How a table of points is shown of which nobody says how. Inside this room only.
+/// Default visualization of a table of points. Private to this module.
 #pragma once
 #include <string>
 
@@ -8,9 +8,9 @@
 
 namespace catena::scene {
 
-/// Members of a scene's object: balls, coloured by the first column of values that differ, from its 1 to its 99 percentile where the rest
-/// would take most of the colours. `file`: as JSON. `note`: what is shown, one sentence. Error: colours are stated and there is no such
-/// column.
+/// Returns members of a scene object: balls, colored by the first column whose values differ (without "radius" and row numbers). Colors
+/// range from the 1 to the 99 percentile if the values outside would take most of the color range. `file`: JSON string with the file
+/// name. `note` receives one sentence on what is shown. Error: `colors` are specified but there is no such column.
 Result<std::string> default_points_members(const curves::PointSet& set, const std::string& file, const NamedColors& colors,
                                            std::string& note);
 

@@ -24,11 +24,11 @@
 namespace catena::scene {
 namespace {
 
-/// A file that is looked into; its grids are described once, when somebody asks for them.
+/// A data file to be shown; its grids are described on first use, and the description is cached.
 struct LookedInto {
   std::string path;   ///< of a pattern: its file at the step
-  int step = 0;       ///< in that file
-  bool found = true;  ///< false: no file is called like the pattern
+  int step = 0;       ///< step within that file
+  bool found = true;  ///< false: no file matches the pattern
   FileKind kind = FileKind::field;
   std::optional<Result<std::vector<field::GridInfo>>> described{};
 
@@ -54,7 +54,7 @@ LookedInto look_into(const std::string& name, int step = 0) {
   return file;
 }
 
-/// The grid asked for; else the only one; else the first scalar one, else the first vector one.
+/// Loads the requested grid; without a request the only grid, the first scalar grid, or the first vector grid, in this order.
 Result<field::AnyField> load_best(LookedInto& file, field::LoadRequest& request) {
   auto loaded = field::load(request);
   if (loaded || !request.grid.empty()) return loaded;
@@ -68,7 +68,7 @@ Result<field::AnyField> load_best(LookedInto& file, field::LoadRequest& request)
   return field::load(request);
 }
 
-/// A name that the scene file allows, as like the grid's as can be.
+/// A valid field name of a scene file that is as close to the grid's name as possible.
 std::string field_name(std::string_view grid) {
   std::string name;
   for (const char c : grid) {
@@ -80,7 +80,7 @@ std::string field_name(std::string_view grid) {
   return is_identifier(name) ? name : is_identifier("field_" + name) && !name.empty() ? "field_" + name : "field";
 }
 
-/// The file's other grids, to be shown when somebody asks for them; nothing loads them before.
+/// Scene members for the other grids of the file. They are loaded on demand only.
 std::string other_fields(LookedInto& looked, const std::string& shown, const std::string& file, const std::string& taken) {
   if (shown.empty() || !looked.grids()) return {};
   std::vector<std::string> names{taken};
@@ -100,7 +100,7 @@ struct LaterStep {
   int step = 0;
 };
 
-/// The last step of a field that is uniform at the step of `bare`, as a simulation's often is when it starts: colours are chosen by it.
+/// The last step, if the field is uniform at the step of `bare`, as a simulation often is when it starts: the colors are chosen from it.
 std::optional<LaterStep> later_step(const std::string& path, const DefaultScene& bare) {
   const auto is_uniform = [](const field::AnyField& field) {
     const DisplayRange range = field::display_range(field);
@@ -116,7 +116,7 @@ std::optional<LaterStep> later_step(const std::string& path, const DefaultScene&
   return LaterStep{*field, last};
 }
 
-/// Fibres that lie in a body are what its file is looked at for: in a translucent shell.
+/// Adds the fibers of a file that also holds a body, inside the body's translucent shell.
 void show_fibres(LookedInto& file, DefaultScene& bare, DefaultVisualization& look) {
   const auto& grids = file.grids();
   if (look.shell_members.empty() || bare.request.grid.empty() || !grids) return;
@@ -267,7 +267,7 @@ void adopt_loaded_data(const DefaultScene& bare, Scene& scene) {
 
 namespace {
 
-/// The text that made the scene is nowhere: its lines would say nothing.
+/// Removes all source locations: the scene's text is generated, so that its line numbers mean nothing to the user.
 void forget_all_lines(Scene& scene) {
   forget_lines<FieldSource>(scene);
   forget_lines<MeshSource>(scene);
@@ -279,7 +279,7 @@ void forget_all_lines(Scene& scene) {
   forget_lines<PointsSource>(scene);
 }
 
-/// A scene states its numbers, and these have a least and a most.
+/// Returns an Error if the largest magnitude is not within 1e-30 to 1e30, the limits of the numbers in a scene file.
 Outcome check_size_of_values(const field::AnyField& field, const std::string& path) {
   const field::ScalarGrid* grid = field.scalar ? field.scalar->grid() : nullptr;
   if (grid == nullptr) return Done{};
@@ -301,7 +301,7 @@ Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& co
   const DefaultVisualization look = grid.scalar ? choose_default_visualization(name, *grid.scalar->grid(), {}, colors)
                                                 : choose_default_visualization(name, *grid.vector->grid(), colors);
   if (look.is_label_map) with.in_memory_field.scalar = grid.scalar->grid()->with_interpolation(field::Interpolation::nearest);
-  // `fields` has more of them, each after a comma
+  // `extra_fields` starts with a comma
   const std::string more = look.extra_fields.empty() ? look.extra_fields : look.extra_fields.substr(1);
   CATENA_TRY(Scene scene, parse_scene("{\"fields\": {" + more + "},\n" + look.scene_members + "}", "field", {with}));
   scene.notes.push_back("field " + look.note);

@@ -1,4 +1,5 @@
-/// A data file as a scene: the text that scene_for_file and Document read, and what had to be loaded to write it. Inside this room only.
+/// Default scene of a data file: the scene text that scene_for_file and Document read, and the data loaded to write it. Private to this
+/// module.
 #pragma once
 #include <string>
 
@@ -6,21 +7,24 @@
 
 namespace catena::scene {
 
+/// Scene text and loaded data of one data file.
 struct DefaultScene {
-  std::string text;        ///< a scene file; it names the data file without its folder
-  std::string scene_path;  ///< where that scene file would be: FILE.json beside it
-  std::string note;        ///< what the data look like, and why; of a mesh nothing
-  field::LoadRequest request;
-  field::AnyField field;      ///< either this
-  std::string fibers_grid{};  ///< with a body's field: the fibres in it
-  field::AnyField fibers{};
-  mesh::MeshPtr mesh;  ///< or this
-  curves::PointSetPtr points;
-  curves::CurveSetPtr curves;  ///< or this
+  std::string text;            ///< Scene file text; names the data file without its folder
+  std::string scene_path;      ///< Path where that scene file would be saved: FILE.json beside the data file
+  std::string note;            ///< Classification of the data and the reason; empty for a mesh
+  field::LoadRequest request;  ///< Request that loaded the file; for a pattern the file of the step
+  field::AnyField field;       ///< The loaded field; empty for other data
+  std::string fibers_grid{};   ///< Grid of the fibers that lie in the body shown; empty: none
+  field::AnyField fibers{};    ///< The loaded `fibers_grid`
+  mesh::MeshPtr mesh;          ///< The loaded mesh; null for other data
+  curves::PointSetPtr points;  ///< The loaded points; null for other data
+  curves::CurveSetPtr curves;  ///< The loaded curves; null for other data
 };
 
+/// Loads the data file and writes its default scene. `grid`: the grid to show; empty: the first usable scalar grid, else the first vector
+/// grid. `step`: time step that is loaded and shown. Error: the file cannot be read, or colors are specified for a mesh or curves.
 Result<DefaultScene> make_default_scene(const std::string& path, const std::string& grid, const NamedColors& colors, int step = 0);
-/// Gives the scene that was read from the text what is loaded already, and the notes on it.
+/// Hands the loaded data, and the notes on them, to the scene that was read from `text`, so that nothing is loaded twice.
 void adopt_loaded_data(const DefaultScene& bare, Scene& scene);
 
 }  // namespace catena::scene

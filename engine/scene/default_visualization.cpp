@@ -23,20 +23,20 @@ namespace {
 constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
 constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
 constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25, kShellOpacity = 0.2;
-constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;                         // optical depths of a ray across the domain
-constexpr double kMostlyEmpty = 0.5;                                                         // of the values: the background
-constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // of lines: by the domain's diagonal
+constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;                         // optical depths along a ray across the domain
+constexpr double kMostlyEmpty = 0.5;                                                         // background as a fraction of the values
+constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // relative to the domain's diagonal
 constexpr Color kFibre{0.90f, 0.62f, 0.42f};
-constexpr double kFlat = 1, kWide = 7;  // cells: a single image has at most so many one way, and at least so many the others
+constexpr double kFlat = 1, kWide = 7;  // in cells: a single image has at most kFlat along one axis and at least kWide along the others
 constexpr const char* kQuantityMap = "viridis";
 
-/// A level that a surface can have: within the values.
+/// Whether an isosurface of this level can exist: the level lies within the range of values.
 bool has_level(const field::ScalarGrid& grid, double level) {
   const DisplayRange& range = display_range(grid);
   return level > range.lo && level < range.hi;
 }
 
-/// With as many digits as say it to a thousandth of the range.
+/// Rounds a value to a thousandth of the range.
 double rounded(double value, const ScalarStats& facts) {
   const double step = std::pow(10, std::floor(std::log10(std::max(facts.hi - facts.lo, 1e-30))) - 2);
   return std::round(value / step) * step;
@@ -55,12 +55,12 @@ std::string surfaces(const std::vector<std::string>& items) {
   return text + "]";
 }
 
-/// Its title is the name of what is shown, with its unit.
+/// A scalar bar; its title is the name of the colored object, with its unit.
 std::string bar_of(const std::string& what, bool box = true) {
   return ",\n  \"scalar_bars\": [{" + what + "}]" + (box ? ",\n  \"bounding_box\": true" : "");
 }
 
-/// In the colours that are asked for. A map that is named without a range reaches over the values that the opacity follows, not over all.
+/// A volume in the requested colors. A named color map without a range covers the values that the opacity covers, not all values.
 std::string colored_volume(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
   if (!colors.map.empty() && !colors.range) {
     TransferFunction transfer;
@@ -75,7 +75,7 @@ std::string colored_volume(const std::string& field, const field::ScalarGrid& gr
 std::string quantity(const std::string& field, const field::ScalarGrid& grid, const ScalarStats& facts) {
   double lo = rounded(facts.lo, facts), hi = rounded(facts.hi, facts);
   if (!is_color_range(lo, hi)) return colored_volume(field, grid, {kQuantityMap, {}});
-  // what is empty is left out; without an empty part the low values can be seen, too
+  // the background is omitted; without one, low values may be visible, too
   const bool empty = facts.background_share > kMostlyEmpty;
   const double clear = 1 / std::max(grid.domain_length(), 1e-300);
   std::string text = "  \"volumes\": [{\"field\": " + field + ", \"color\": " + to_json(kQuantityMap) +
@@ -97,7 +97,7 @@ std::string computed_tomography(const std::string& field, const field::ScalarGri
   return items.empty() ? quantity(field, grid, facts) : surfaces(items);
 }
 
-/// All labels in one surface: what lies between two of them is hidden, and a surface for each would be many times the work.
+/// All labels in one surface: faces between two labels are hidden, and one surface per label would cost many times as much.
 void show_labels(const std::string& field, DefaultVisualization& look) {
   const std::string name = field.substr(1, field.size() - 2) + "_labels";
   const std::string surface = json::serialize_string(name);
@@ -122,7 +122,7 @@ int flat_axis(const field::ScalarGrid& grid) {
   return -1;
 }
 
-/// A single image: as it is, from lo to hi in grey.
+/// A single image: a slice with a linear gray map from lo to hi.
 std::string image(const std::string& field, const field::ScalarGrid& grid, int axis, const ScalarStats& facts, NamedColors colors) {
   const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
   if (colors.map.empty()) colors.map = "grey";
@@ -147,7 +147,7 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
                                                   NamedColors colors) {
   const ScalarStats facts = compute_scalar_stats(grid, units);
   DataKind kind = classify_scalar(facts);
-  // by a part of the voxels it may look like one
+  // a sample of its voxels may look like a label map
   if (kind == DataKind::label_map && !field::count_labels(grid)) kind = DataKind::solid;
   DefaultVisualization look;
   look.ignore_mask = facts.has_mask && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
@@ -187,7 +187,7 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
         look.scene_members = body(level(0));
         break;
       case DataKind::angiogram:
-        // black, as its least values are: on anything lighter its outline would be a dark rag
+        // a black background, because the lowest values are black: on a lighter one the outline of the volume would be a dark fringe
         look.scene_members = angiogram(field, facts) + ",\n  \"background\": [0, 0, 0]";
         return look;
       case DataKind::cloud:
@@ -205,7 +205,7 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
 DefaultVisualization choose_default_visualization(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors) {
   const VectorStats facts = compute_vector_stats(grid);
   const double diagonal = grid.world_bounds().diagonal();
-  // where most of the field stands still, what moves is narrow
+  // where most of the field is stagnant, the moving region is narrow
   const bool narrow = facts.median_speed < kStillSpeedRatio * facts.fast_speed;
   const double size = narrow ? std::clamp(std::cbrt(facts.moving_share), kNarrowest, 1.0) : 1;
   const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
@@ -220,7 +220,7 @@ DefaultVisualization choose_default_visualization(const std::string& field, cons
   const std::array<double, 2> speeds{three_digits(facts.slow_speed), three_digits(facts.fast_speed)};
   if (!shown.range && is_color_range(speeds[0], speeds[1])) shown.range = speeds;
 
-  // a line must begin somewhere, and be as long as lines are apart
+  // streamlines only if at least one can start and is as long as the line distance
   const double still = narrow ? three_digits(kStillSpeedRatio * facts.fast_speed) : 0;
   flow::EvenSpacingOptions spacing{distance, 0.5, facts.fastest_points, 1};
   flow::BatchOptions options;

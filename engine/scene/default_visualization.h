@@ -1,16 +1,16 @@
-/// How data are shown of which nobody says how: the parts of a scene file, chosen by the kind of the data (data_kind.h). Inside this room
-/// only. ResolutionLevels and ranges are values of the field.
-///   image        one or two voxels thick, whatever it holds: a slice in grey with its scalar bar
-///   CT           the skin (-300 HU, translucent) over the bone (250 HU), where the values reach them
-///   MR           the surface of what is not background: halfway from the background to Otsu's threshold, which dark tissue lies below
-///   label map    the surface of all labels together, each in its colour, with a legend; the field is read by its nearest voxels
-///   solid        the surface at Otsu's threshold; a level set's at 0
-///   angiogram    the brightest value along each ray, grey
-///   cloud        a shaded volume, grey to white
-///   simulation   a volume with a perceptual map and its scalar bar, in its box
-///   flow         lines that keep a distance from each other, coloured by speed with a scalar bar, in the box; fibres (unit length) in one
-///                colour; three slices of the speed where no line begins
-/// A stated colour map or range makes it a volume in these colours, whatever the kind.
+/// Default visualization of grids: parts of a scene file, chosen by the kind of data (classify_scalar.h, classify_vector.h). Private to
+/// this module. Levels and ranges are in the field's unit.
+///   image        grid that is one or two voxels thick, whatever its kind: a slice in gray with its scalar bar
+///   CT           skin (-300 HU, translucent) and bone (250 HU), as far as the values reach these levels
+///   MR           one surface at the level halfway from the background to Otsu's threshold, which includes dark tissue
+///   label map    one surface around all labels, each in its own color, with a legend; nearest-voxel interpolation
+///   solid        surface at Otsu's threshold; for a level set at 0
+///   angiogram    maximum intensity projection in gray, on black
+///   cloud        shaded volume, gray to white
+///   simulation   volume with a perceptually uniform map, its scalar bar and a bounding box
+///   flow         evenly spaced lines, colored by speed, with scalar bar and bounding box; fibers (unit length or line field) in one
+///                color; three slices of the speed if no line can be traced
+/// If a color map or range is specified, or all values are equal, any scalar grid but an image is a volume in these colors.
 #pragma once
 #include <string>
 
@@ -20,23 +20,25 @@
 
 namespace catena::scene {
 
+/// Parts of a scene file that show one grid.
 struct DefaultVisualization {
-  std::string scene_members;    ///< members of a scene's object, without a comma at either end
-  std::string extra_fields{};   ///< more fields, ", NAME: {...}"
-  bool is_label_map = false;    ///< a label map: its nearest voxels count, and its table belongs to it
-  bool ignore_mask = false;     ///< the mask only cuts away what is empty: without it surfaces are closed, with it they end in torn cells
-  std::string shell_members{};  ///< of a body without a quantity: its surface once more, translucent, for what lies in it
-  bool is_fibers = false;       ///< vectors of one length
-  std::string note;             ///< one sentence: what the data look like, and why
+  std::string scene_members;   ///< Members of a scene object, without a comma at either end
+  std::string extra_fields{};  ///< Further entries of "fields", as ", NAME: {...}"
+  bool is_label_map = false;   ///< Label map: use nearest-voxel interpolation and the label table beside the file
+  /// Whether the mask is better ignored: it only removes empty space, and surfaces are closed without it but end in torn cells with it.
+  bool ignore_mask = false;
+  std::string shell_members{};  ///< Solid, level set: its surface as a translucent shell, for use around other data
+  bool is_fibers = false;       ///< Vectors of unit length
+  std::string note;             ///< One sentence: the kind of data and the reason
 };
 
-/// `field`: its name in the scene, as JSON.
+/// Chooses the visualization of a grid. `field`: its name in the scene, as a JSON string.
 DefaultVisualization choose_default_visualization(const std::string& field, const field::ScalarGrid& grid, const field::Units& units,
                                                   NamedColors colors);
 DefaultVisualization choose_default_visualization(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors);
-/// , "color": MAP, "range": [LO, HI] and so on: what is stated of them.
+/// Returns the specified colors as further members: `, "color": MAP, "range": [MIN, MAX]` and so on.
 std::string color_members(const NamedColors& colors);
-/// Of a mesh: what goes beside it.
+/// Returns the background member of the default scene of meshes; all default scenes but angiograms use it.
 std::string default_mesh_background();
 
 }  // namespace catena::scene

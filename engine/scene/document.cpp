@@ -81,7 +81,7 @@ Outcome Document::push_version(std::string edited, const std::string& what, cons
     versions_.push_back({std::move(edited), what, drag});
     ++current_;
   }
-  // the oldest steps go
+  // drop the oldest undo steps
   std::size_t bytes = 0, kept = 0;
   while (kept <= current_ && kept <= kMaxUndoSteps && (kept == 0 || bytes + versions_[current_ - kept].text.size() <= kMaxHistoryBytes))
     bytes += versions_[current_ - kept++].text.size();
@@ -103,7 +103,7 @@ void Document::redo() {
   if (can_redo()) ++current_;
 }
 
-// ---- to and from the disk ----
+// ---- loading and saving ----
 
 Document::DiskState Document::disk_state() const {
   std::error_code code;

@@ -1,4 +1,4 @@
-/// The ECS: entities are numbers, components plain structs in sparse sets, systems free functions over them.
+/// Entity-component store: entities are numbers, components are plain structs in sparse sets, systems are free functions over them.
 /// Frame thread only.
 #pragma once
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace catena::scene {
 
-/// A number that stands for a thing in a world. False: none.
+/// Identifier of an entity in a store. Converts to false if it refers to none.
 struct Entity {
-  std::uint32_t id = 0xffffffffu;  ///< unique in its world; the greatest number: none
+  std::uint32_t id = 0xffffffffu;  ///< Unique within its store; 0xffffffff: none
   bool operator==(const Entity&) const = default;
-  /// Whether it stands for something.
+  /// Returns whether it refers to an entity.
   explicit operator bool() const { return id != 0xffffffffu; }
 };
 
-/// A sparse set: dense arrays of owners and components, in order of insertion until something is removed.
+/// Components of one type as a sparse set: dense arrays of owners and components, in order of insertion until a component is removed.
 template <class T>
 class ComponentPool {
  public:
-  /// Gives the entity one; it must have none.
+  /// Adds a component. Precondition: the entity has none.
   T& emplace(Entity e, T value) {
     CATENA_ASSERT(!contains(e));
     if (sparse_.size() <= e.id) sparse_.resize(e.id + 1, kNone);
@@ -33,19 +33,19 @@ class ComponentPool {
     dense_.push_back(std::move(value));
     return dense_.back();
   }
-  /// Whether the entity has one.
+  /// Returns whether the entity has a component.
   bool contains(Entity e) const { return e.id < sparse_.size() && sparse_[e.id] != kNone; }
-  /// The entity's; it must have one.
+  /// Returns the entity's component. Precondition: it has one.
   T& get(Entity e) {
     CATENA_ASSERT(contains(e));
     return dense_[sparse_[e.id]];
   }
-  /// The entity's; it must have one.
+  /// Returns the entity's component. Precondition: it has one.
   const T& get(Entity e) const {
     CATENA_ASSERT(contains(e));
     return dense_[sparse_[e.id]];
   }
-  /// Takes the entity's away; nothing where it has none. The last one moves into its place.
+  /// Removes the entity's component, if any. The last component of the pool takes its slot.
   void remove(Entity e) {
     if (!contains(e)) return;
     const std::uint32_t hole = sparse_[e.id];
@@ -56,9 +56,9 @@ class ComponentPool {
     dense_.pop_back();
     owners_.pop_back();
   }
-  /// How many entities have one.
+  /// Returns the number of components.
   std::size_t size() const { return dense_.size(); }
-  /// The entities that have one, in the order of the pool.
+  /// Returns the entities that have a component, in the order of the pool.
   const std::vector<Entity>& owners() const { return owners_; }
 
  private:
@@ -71,38 +71,38 @@ class ComponentPool {
 /// Entities with their components of any types.
 class EntityStore {
  public:
-  /// A new entity, without components.
+  /// Creates an entity without components.
   Entity create() { return Entity{next_++}; }
 
-  /// Gives the entity a T; it must have none.
+  /// Adds a T. Precondition: the entity has none.
   template <class T>
   T& emplace(Entity e, T value = {}) {
     return pool<T>().emplace(e, std::move(value));
   }
-  /// Whether the entity has a T.
+  /// Returns whether the entity has a T.
   template <class T>
   bool has(Entity e) const {
     const auto* p = find_pool<T>();
     return p != nullptr && p->contains(e);
   }
-  /// The entity's T; it must have one. References last until a T is added or removed.
+  /// Returns the entity's T, which must exist. References are valid until a T is added or removed.
   template <class T>
   T& get(Entity e) {
     return pool<T>().get(e);
   }
-  /// The entity's T; it must have one.
+  /// Returns the entity's T, which must exist.
   template <class T>
   const T& get(Entity e) const {
     const auto* p = find_pool<T>();
     CATENA_ASSERT(p != nullptr);
     return p->get(e);
   }
-  /// Takes the entity's T away; nothing where it has none.
+  /// Removes the entity's T, if any.
   template <class T>
   void remove(Entity e) {
     pool<T>().remove(e);
   }
-  /// Moves over what `there` has in another world and `here` has none of in this one.
+  /// Moves the components of entity `there` of the store `other` to entity `here` of this store, except for types that `here` already has.
   void move_missing_from(Entity here, EntityStore& other, Entity there) {
     for (auto& [type, slot] : other.pools_) {
       auto& mine = pools_[type];
@@ -110,18 +110,18 @@ class EntityStore {
       mine->move_from(here, *slot, there);
     }
   }
-  /// How many entities have a T.
+  /// Returns the number of entities that have a T.
   template <class T>
   std::size_t count() const {
     const auto* p = find_pool<T>();
     return p == nullptr ? 0 : p->size();
   }
-  /// Calls f(entity, T&) for each owner of a T, in order of insertion. f may not add or remove Ts.
+  /// Calls f(entity, T&) for each owner of a T, in the order of the pool. f must not add or remove Ts.
   template <class T, class F>
   void each(F&& f) {
     for (Entity e : pool<T>().owners()) f(e, pool<T>().get(e));
   }
-  /// The same, to read.
+  /// Same, with f(entity, const T&).
   template <class T, class F>
   void each(F&& f) const {
     if (const auto* p = find_pool<T>())
@@ -132,7 +132,7 @@ class EntityStore {
   struct Slot {
     virtual ~Slot() = default;
     virtual std::unique_ptr<Slot> make_empty() const = 0;
-    virtual void move_from(Entity here, Slot& other, Entity there) = 0;  ///< `other` is of the same type
+    virtual void move_from(Entity here, Slot& other, Entity there) = 0;  ///< Precondition: `other` holds the same type
   };
   template <class T>
   struct TypedSlot final : Slot {

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// "before{item,item}after"
+/// The parts of "before{item,item}after".
 struct NameList {
   std::string before, after;
   std::vector<std::string> items;
@@ -40,7 +40,7 @@ std::vector<std::string> in_folder(std::vector<std::string> names, const fs::pat
   return names;
 }
 
-/// Whether a name that is no file looks like a pattern of another program.
+/// Whether a name that is not a file looks like a glob pattern of another program.
 bool is_other_glob(const std::string& path) {
   const std::string name = fs::path(path).filename().string();
   std::error_code code;
@@ -48,7 +48,7 @@ bool is_other_glob(const std::string& path) {
          (name.find_first_of("?[") != std::string::npos || (name.find('{') != std::string::npos && name.find("..") != std::string::npos));
 }
 
-/// How many items two sequences begin with in common.
+/// Length of the common prefix of two sequences.
 template <class A, class B>
 std::size_t common_length(A a, A a_end, B b, B b_end) {
   return static_cast<std::size_t>(std::distance(a, std::mismatch(a, a_end, b, b_end).first));
@@ -118,7 +118,7 @@ Result<std::string> make_pattern(std::vector<std::string> files) {
     return Error{fmt::format("{} and {} are no series: files whose names differ in their numbers alone were expected, or one file",
                              names.front(), *other)};
   }
-  // what all have in common, without parts of numbers
+  // common prefix and suffix of all names, without parts of numbers
   const auto is_part = [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+'; };
   std::size_t before = names.front().size(), after = names.front().size();
   for (const std::string& name : names) {

@@ -1,4 +1,4 @@
-/// Names that stand for several files of one series. Any thread.
+/// File patterns: names that stand for the files of a series. Any thread.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace catena::scene {
 
-/// A name that stands for several files: with a `*` in its last part ("wind_*.vti"), or with a list ("wind_{1,3,10}.vti"). A file that is
-/// really called so is none.
+/// Returns whether the name is a pattern: a `*` in the file name ("wind_*.vti"), or a list ("wind_{1,3,10}.vti"). A name of an existing
+/// file is no pattern.
 bool is_pattern(const std::string& path);
-/// The files that a pattern stands for, by the numbers in their names; empty: none.
+/// Returns the files that match a pattern, in the order of the numbers in their names; empty: no match.
 std::vector<std::string> expand_pattern(const std::string& path);
-/// The file that a name stands for: of a pattern its first one, or the pattern itself where there is none.
+/// Returns the first file of a pattern; the argument itself if it is no pattern or matches no file.
 std::string first_file(const std::string& path);
-/// The pattern that stands for these files and no others. Error: they are no series, in a sentence.
+/// Returns the pattern that matches exactly these files (for one file its name). Error: the files are not one series, or one is missing.
 Result<std::string> make_pattern(std::vector<std::string> files);
 
 }  // namespace catena::scene

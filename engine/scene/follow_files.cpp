@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without a change for so long a file counts as written.
+/// A file that has not changed for this long counts as completely written.
 constexpr std::int64_t kSettledNs = 1'000'000'000;
 
 std::int64_t age_ns(std::int64_t changed) {
@@ -26,14 +26,14 @@ std::int64_t age_ns(std::int64_t changed) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - changed;
 }
 
-/// False: it has just been changed, or it is not there.
+/// False if the file has just been changed, or does not exist.
 bool is_settled(const std::string& path) {
   struct stat about {};
   if (::stat(path.c_str(), &about) != 0) return false;
   return S_ISDIR(about.st_mode) || age_ns(modified_ns(about)) >= kSettledNs;
 }
 
-/// Whether a step can be read whole. A field is kept, so that it is shown without being read again.
+/// Whether a step can be read completely. A field is added to the cache, so that it is shown without being read twice.
 bool is_whole(const FollowedSource& one, const field::LoadRequest& request) {
   switch (one.kind) {
     case FollowedSource::Kind::field: {
@@ -75,7 +75,7 @@ bool look_for_times(FollowedSource& one) {
   const std::size_t before = one.times.size();
   if (!std::equal(one.times.begin(), one.times.end(), times.begin(),
                   times.begin() + static_cast<std::ptrdiff_t>(std::min(before, times.size()))))
-    return false;  // it is another file by now
+    return false;  // the file has been replaced by another one
   for (std::size_t step = before; step < times.size(); ++step) {
     field::LoadRequest request = one.request;
     request.step = static_cast<std::int32_t>(step);
@@ -85,7 +85,7 @@ bool look_for_times(FollowedSource& one) {
   return one.times.size() > before;
 }
 
-/// A file of which one more step may come.
+/// Whether the format is one to which more time steps can be added.
 bool can_grow(const std::string& path) {
   std::error_code code;
   return std::ranges::any_of(std::initializer_list<std::string_view>{".pvd", ".series", ".foam", ".case", ".encas", ".nc", ".cdf"},
@@ -98,7 +98,7 @@ void hold_newest_back(std::vector<std::string>& series) {
   while (series.size() > 1 && !is_settled(series.back())) series.pop_back();
 }
 
-/// Calls `visit(kind, name, part)` with each mesh, each set of curves and each of points.
+/// Calls `visit(kind, name, part)` for each mesh, each curve set and each point set.
 template <class S, class Visit>
 void each_shape_kind(S& scene, const Visit& visit) {
   const auto call = [&](FollowedSource::Kind kind) {

@@ -1,7 +1,7 @@
-/// Following a program that still writes: steps in time that are added to a pattern, or to a file of steps, while a scene shows them. A
-/// step counts once it can be read whole and none of its files has changed for a second; until then it is waited for.
-///   frame thread   follow_steps, followed, apply_steps
-///   any thread     poll_steps, on a copy of its own
+/// Following a running simulation: time steps that are added to a file pattern, or to a file with steps, while a scene shows them. A step
+/// is added when it can be read completely and none of its files has changed for a second; until then it is polled.
+///   frame thread   start_following, followed_sources, apply_steps
+///   any thread     poll_steps, on its own copy of a source
 #pragma once
 #include <string>
 #include <vector>
@@ -10,32 +10,33 @@
 
 namespace catena::scene {
 
-/// One field, mesh, set of curves or of points that is followed: what it is read from, and its steps so far.
+/// A field, mesh, curve set or point set that is followed: its files and the steps known so far.
 struct FollowedSource {
   enum class Kind { field, mesh, curves, points };
   Kind kind = Kind::field;
-  std::string name;                 ///< in the scene
-  std::string pattern;              ///< of a pattern
-  std::vector<std::string> series;  ///< its files, in order
-  field::LoadRequest request;       ///< of a field, at any step; of the others its path
-  std::vector<double> times;        ///< of the steps within one file
+  std::string name;                 ///< Name in the scene
+  std::string pattern;              ///< File pattern; empty: one file with steps
+  std::vector<std::string> series;  ///< Known files of the pattern, in order
+  field::LoadRequest request;       ///< Request that loads a field, at any step; for the other kinds only its path is used
+  std::vector<double> times;        ///< Known times of the steps within one file
 };
 
-/// From now on the scene's parts that have steps in time are followed. The newest of several steps is held back, since it may be half
-/// written. False: nothing in the scene can get steps.
+/// Starts following: marks the sources of the scene to which steps can be added. The newest of several steps is held back, since it may
+/// be incomplete. Returns false if no source can get further steps.
 bool start_following(Scene& scene);
-/// What is followed of a scene.
+/// Returns the sources of the scene that are followed and loaded.
 std::vector<FollowedSource> followed_sources(const Scene& scene);
-/// Looks at the disk: whole steps are added. Reads what is new, and keeps fields (engine/io/field_cache.h). True: there are more.
+/// Polls the disk and adds the complete new steps to `one`. Reads new steps, and caches fields (engine/io/field_cache.h). Returns whether
+/// there are new steps.
 bool poll_steps(FollowedSource& one);
-/// What was found goes into the scene, where it still has the same parts. True: something has more steps.
+/// Applies polled steps to the sources that still have the same name and files. Returns whether the scene has more steps.
 bool apply_steps(Scene& scene, const std::vector<FollowedSource>& found);
 
-/// What is followed where a data file, or several of a series, are named: a pattern for all files that may come ("wake_*.vtu" of
-/// "wake_007.vtu"), or the file itself where steps are added to it. Error: neither can be.
+/// Returns the path to follow for a data file or for several of a series: a pattern that matches all future files ("wake_*.vtu" for
+/// "wake_007.vtu"), or the file itself if steps are added to it. Error: the file does not exist, or can have no further steps.
 Result<std::string> find_followable_path(const std::string& path);
-/// Whether a file that cannot be read may be one that is being written: it has changed within ten seconds, or none of a pattern's
-/// files is there yet.
+/// Returns whether an unreadable file may be one that is being written: it has changed within ten seconds, or no file matches the pattern
+/// yet.
 bool may_be_incomplete(const std::string& path);
 
 }  // namespace catena::scene

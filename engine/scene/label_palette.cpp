@@ -11,15 +11,15 @@
 namespace catena::scene {
 namespace {
 
-constexpr int kLevels = 14;                                                      // of each component
-constexpr double kDarkest = 45, kLightest = 88, kGreyest = 20, kBrightest = 90;  // lightness, chroma
-constexpr double kLightness = 0.5;                                               // how much it counts
+constexpr int kLevels = 14;                                                      // candidates per RGB component
+constexpr double kDarkest = 45, kLightest = 88, kGreyest = 20, kBrightest = 90;  // limits of CIELAB lightness and chroma
+constexpr double kLightness = 0.5;                                               // weight of the lightness in distances
 constexpr Color kFirst{0.88f, 0.38f, 0.30f};
 
 struct Candidate {
   Color color;
   Vec3 place;                                             ///< CIELAB, lightness weighted
-  double away = std::numeric_limits<double>::infinity();  ///< squared, from all that are chosen
+  double away = std::numeric_limits<double>::infinity();  ///< squared distance to the nearest chosen color
 };
 
 std::vector<Color> choose() {

@@ -20,7 +20,7 @@ constexpr std::uint64_t kMaxTableBytes = std::uint64_t{16} << 20;
 constexpr std::size_t kMostNameBytes = 200;
 constexpr std::size_t kLutBytes = 768;
 
-/// Separated by runs of blanks.
+/// Splits a line at runs of blanks.
 Cells words_of_line(std::string_view line) {
   Cells words;
   for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != std::string_view::npos;) {
@@ -31,7 +31,7 @@ Cells words_of_line(std::string_view line) {
   return words;
 }
 
-/// Separated by one character, which does not count within quotes at a cell's ends.
+/// Splits a line at a separator character, which is ignored within a quoted cell.
 Cells cells_of_line(std::string_view line, char separator) {
   Cells cells;
   while (true) {
@@ -49,13 +49,13 @@ std::optional<double> number_of(std::string_view word) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-/// What a row says, before it is checked.
+/// One row of the table, unchecked.
 struct Row {
   std::string_view value, name;
   Cells color{};
 };
 
-/// The columns of a table with a row of names.
+/// Column indices of a table that has a header row.
 struct Columns {
   char separator = ',';
   std::optional<std::size_t> value, name, red, green, blue;
@@ -101,7 +101,7 @@ Row row_of_columns(std::string_view line, const Columns& columns) {
   return row;
 }
 
-/// Of a line without column names.
+/// Parses a line of a table without a header row.
 Row row_of_words(std::string_view line) {
   const Cells words = words_of_line(line);
   Row row{words[0], {}};
@@ -113,7 +113,7 @@ Row row_of_words(std::string_view line) {
     row.color = {words[1], words[2], words[3]};
     return row;
   }
-  // FreeSurfer: the colour and the transparency stand last
+  // FreeSurfer: color and transparency are the last four columns
   if (words.size() >= 6 && all_numbers(words, words.size() - 4, words.size())) {
     const std::size_t last = words.size() - 4;
     row.name = line.substr(static_cast<std::size_t>(words[1].data() - line.data()),
@@ -121,7 +121,7 @@ Row row_of_words(std::string_view line) {
     row.color = {words[last], words[last + 1], words[last + 2]};
     return row;
   }
-  // a name
+  // a value and a name
   if (line.find('\t') != std::string_view::npos) {
     const Cells cells = cells_of_line(line, '\t');
     row.value = cells[0];
@@ -135,7 +135,7 @@ Row row_of_words(std::string_view line) {
   return row;
 }
 
-/// A name within its bytes, whole characters of UTF-8.
+/// The name, cut to the maximum number of bytes without splitting a UTF-8 character.
 std::string name_within(std::string_view name) {
   name = trim(name);
   if (name.size() > kMostNameBytes) {
@@ -148,7 +148,7 @@ std::string name_within(std::string_view name) {
 
 Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
   LabelTable table;
-  std::vector<std::array<double, 4>> colors;  // row, red, green, blue
+  std::vector<std::array<double, 4>> colors;  // row index, red, green, blue
   std::set<double> known;
   std::optional<Columns> columns;
   double brightest = 0;
@@ -198,7 +198,7 @@ Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
   return table;
 }
 
-/// The colours of a .lut beside the table, where it has none.
+/// Adds the colors of a .lut file next to the table, if the table has none.
 void add_lut(const std::string& path, LabelTable& table) {
   if (std::any_of(table.begin(), table.end(), [](const LabelRow& label) { return label.color.has_value(); })) return;
   const auto bytes = read_text_file(std::filesystem::path(path).replace_extension(".lut").string(), "a table of colours", kLutBytes);
@@ -208,7 +208,7 @@ void add_lut(const std::string& path, LabelTable& table) {
     const auto at = static_cast<std::size_t>(label.value);
     const auto part = [&](std::size_t i) { return float(static_cast<unsigned char>((*bytes)[i * 256 + at])) / 255; };
     const Color color{part(0), part(1), part(2)};
-    if (!(color == Color{})) label.color = color;  // black is what was left out
+    if (!(color == Color{})) label.color = color;  // black entries are unset
   }
 }
 

@@ -21,7 +21,7 @@ std::shared_ptr<const LabelMap> make_label_map(const field::ScalarGrid& grid, co
   if (!counts) return nullptr;
   auto map = std::make_shared<LabelMap>();
   map->counts = std::move(*counts);
-  std::size_t beyond = table.size();  // the table's rows have the first colours, whichever of them this map holds
+  std::size_t beyond = table.size();  // the first colors are reserved for the table's rows, even for those not in this map
   for (const field::LabelCount& count : map->counts) {
     if (count.value == 0) continue;
     LabelEntry label{count.value, {}, {}, count.voxels};
@@ -53,10 +53,10 @@ std::string describe_label(const LabelMap& map, double value) {
 
 namespace {
 
-/// The label map that a surface is of; none: the scene has none of that name.
+/// The label map from which a surface is extracted; a null entity: the scene has none of that name.
 Entity map_of(const Scene& scene, const LabelSource& source) { return find_field(scene, source.label_map); }
 
-/// The values that the source names, by number or by name.
+/// The label values that the source selects, by number or by name.
 Result<std::vector<double>> values_of(const LabelSource& source, const LabelMap& map, const json::Node& where) {
   std::vector<double> values = source.values;
   for (const std::string& name : source.names) {

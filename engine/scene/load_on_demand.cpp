@@ -16,10 +16,10 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kFarthestDrawn = 1e30;  ///< world coordinates: as those that a scene may write
-constexpr std::size_t kManyCurves = 64;  ///< from here on those that nothing holds are looked for
+constexpr double kFarthestDrawn = 1e30;  ///< world coordinates: the limit that a scene file also has
+constexpr std::size_t kManyCurves = 64;  ///< number of curves from which on unused ones are looked for
 
-/// A field without a single value helps nobody.
+/// Returns an Error if the grid has no valid value at all.
 Outcome check_grid(const field::AnyField& any) {
   const field::GridStats* stats = nullptr;
   if (any.scalar && any.scalar->grid()) stats = &any.scalar->grid()->stats();
@@ -44,7 +44,7 @@ Result<field::AnyField> load_source(const FieldSource& source) {
   return *loaded;
 }
 
-/// What lies in a source's file; the error stands at the source's place in the scene file, where it has one.
+/// Loads the source's file on first use; an Error names the source's location in the scene file, if it has one.
 template <class Source, class Load>
 auto load_once(Scene& scene, Entity entity, const std::string& kind, const Load& load) -> Result<decltype(Source::loaded)> {
   Source& source = scene.entities.get<Source>(entity);
@@ -60,8 +60,8 @@ auto load_once(Scene& scene, Entity entity, const std::string& kind, const Load&
   return source.loaded;
 }
 
-/// Between labels there is nothing to mix: a note where what is marked as labels is read by cells, unless a surface of labels is made of
-/// it.
+/// Adds a note if labels are interpolated linearly or cubically, because values between labels mean nothing; no note if a label surface is
+/// extracted from the field.
 void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource& source) {
   const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
   if (!source.file || grid == nullptr || grid->interpolation() == field::Interpolation::nearest) return;
@@ -78,7 +78,7 @@ void note_mixed_labels(Scene& scene, const std::string& name, const FieldSource&
       grid->interpolation() == field::Interpolation::cubic ? "cubic" : "linear"));
 }
 
-/// Pictures and forces are of numbers that a scene can state.
+/// Adds a note if all magnitudes are below kMinSize, the smallest number in a scene file: too small for images and forces.
 void note_tiny_values(Scene& scene, const std::string& name, const FieldSource& source) {
   const field::ScalarGrid* grid = source.loaded.scalar ? source.loaded.scalar->grid() : nullptr;
   if (grid == nullptr) return;
@@ -89,7 +89,7 @@ void note_tiny_values(Scene& scene, const std::string& name, const FieldSource& 
       in_quotes(name), format_readable(most), format_readable(kMinSize)));
 }
 
-/// Colours without a stated range leave outliers and fill values out.
+/// Adds a note that automatic color ranges omit outliers and fill values.
 void note_outliers(Scene& scene, const std::string& name, const FieldSource& source) {
   if (source.has_changed_step) return;
   const std::string note = outlier_note(field::display_range(source.loaded));
@@ -127,7 +127,7 @@ Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, con
   return resolve_field(scene, field, where);
 }
 
-/// Of the farthest corner, along an axis.
+/// Largest absolute coordinate of the grid's corners along any axis.
 static double reach_of(const field::Field& grid) {
   const Bounds box = field::world_bounds(grid.mapping(), grid.index_box());
   double most = 0;

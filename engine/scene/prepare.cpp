@@ -10,7 +10,7 @@ namespace catena::scene {
 
 namespace {
 
-/// The entities with a visible T; a copy, as components are added meanwhile.
+/// The entities with a visible T; a copy, because components are added during the iteration.
 template <class T>
 std::vector<Entity> visible(const EntityStore& world) {
   std::vector<Entity> all;
@@ -20,7 +20,7 @@ std::vector<Entity> visible(const EntityStore& world) {
   return all;
 }
 
-/// What rays meet: a field, and the field that colours it.
+/// Loads the fields of surfaces and volumes that rays intersect, and the fields that color them.
 template <class T>
 Outcome load_drawn(Scene& scene) {
   for (const Entity e : visible<T>(scene.entities)) {
@@ -53,7 +53,7 @@ Outcome load_flows(Scene& scene, StreamlineTracing streamlines) {
   return Done{};
 }
 
-/// The vectors, what colours them, and what they lie on, drawn or not.
+/// Loads the vector fields of glyphs, the fields that color them, and the surfaces that they lie on, visible or not.
 Outcome load_glyphs(Scene& scene) {
   for (const Entity e : visible<GlyphSet>(scene.entities)) {
     const GlyphSet& set = scene.entities.get<GlyphSet>(e);
@@ -72,7 +72,7 @@ Outcome load_glyphs(Scene& scene) {
   return Done{};
 }
 
-/// Of curves and points: what `use` loads of them, and the field that colours it.
+/// Loads the files of curves or points by `use`, and the fields that color them.
 template <class T, class Use>
 Outcome load_files(Scene& scene, const Use& use) {
   for (const Entity e : visible<T>(scene.entities)) {
@@ -126,7 +126,7 @@ Bounds scene_bounds(const Scene& scene) {
   return bounds;
 }
 
-/// Widgets: the tick's reports -> components -> what follows them.
+/// Widgets: tick reports -> components -> everything that is bound to them.
 
 namespace {
 
@@ -170,7 +170,7 @@ void drive_seeds(Scene& scene, Entity entity, const Widget& widget, WidgetChange
   });
 }
 
-/// It is drawn, or something that is drawn lies on it.
+/// Whether a surface is visible, or a visible object lies on it.
 bool is_shown(const Scene& scene, Entity surface) {
   bool shown = !is_hidden(scene.entities, surface);
   scene.entities.each<GlyphSet>(
@@ -178,7 +178,7 @@ bool is_shown(const Scene& scene, Entity surface) {
   return shown;
 }
 
-/// ResolutionLevels of surfaces that nobody sees are left: their fields are not loaded for them.
+/// Sets the levels of isosurfaces bound to the widget. Invisible surfaces are skipped: their fields are not loaded for this.
 Outcome drive_levels(Scene& scene, Entity entity, double value, WidgetChanges& changes) {
   std::vector<Entity> surfaces;
   scene.entities.each<Isosurface>([&](Entity e, const Isosurface& surface) {
@@ -187,7 +187,7 @@ Outcome drive_levels(Scene& scene, Entity entity, double value, WidgetChanges& c
   for (const Entity e : surfaces) {
     const Isosurface& surface = scene.entities.get<Isosurface>(e);
     CATENA_TRY(const field::AnyField drawn, resolve_rendered_field(scene, surface.field, surface.where));
-    // a vector field is an error where the surface is extracted
+    // a vector field becomes an error where the surface is extracted
     if (!drawn.scalar) continue;
     scene.entities.get<Isosurface>(e).level = std::clamp(value, drawn.scalar->min_value(), drawn.scalar->max_value());
     changes.levels = true;
@@ -221,7 +221,7 @@ Result<WidgetChanges> propagate_widgets(Scene& scene) {
     const widget::Pose pose = widget.report.pose;
     const bool moved = widget.applied_pose != pose, other_value = widget.applied_value != widget.report.value;
     if (!moved && !other_value) continue;
-    // the first time a program may have been made already: of the pose as stated
+    // at the first call the haptic program may already have been built from the pose in the scene file
     if (widget.applied_pose || pose != widget.spec.pose) changes.links = changes.links || has_haptic_link(scene, entity);
     if (moved) drive_planes(scene, entity, pose, changes);
     if (moved) drive_seeds(scene, entity, widget, changes);

@@ -1,4 +1,4 @@
-/// What is written over the picture: "scalar_bars", "labels", "title", "orientation_marker", "status", "overlay".
+/// Reads the overlay of the image: "scalar_bars", "labels", "title", "orientation_marker", "status", "overlay".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -6,9 +6,9 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
+constexpr double kMaxPoints = 576;  // points along the shorter side of the image
 
-/// What has colours that a bar can show; drawn or hidden.
+/// Whether a component of the entity has colors that a scalar bar can show, visible or hidden.
 bool has_colors(const EntityStore& world, Entity e) {
   return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<Isosurface>(e) && world.get<Isosurface>(e).color_by) ||
          (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
@@ -17,7 +17,7 @@ bool has_colors(const EntityStore& world, Entity e) {
          (world.has<PointsSource>(e) && world.get<PointsSource>(e).color_by);
 }
 
-/// The first thing with colours that shows a field.
+/// The first entity with colors that shows the field.
 Entity shown_field(const EntityStore& world, Entity field) {
   Entity found;
   const auto take = [&](Entity e, bool shows) {
@@ -37,7 +37,7 @@ Entity shown_field(const EntityStore& world, Entity field) {
   return found;
 }
 
-/// What has colours only with "color_by". `set`: an item is a set of them.
+/// Finds an entity that has colors only with "color_by". `set`: an item stands for a set of objects.
 template <class T>
 Result<Entity> read_coloured(const Scene& scene, const json::Node& item, const std::string& key, bool set) {
   CATENA_TRY(const Entity shown, read_index<T>(scene, item, key, key, "a scalar bar"));
@@ -71,7 +71,7 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   return shown;
 }
 
-/// One number's format: text, %, an optional precision, one of e f g, text. Nothing else of printf.
+/// Whether the text is a printf format of one number: text, %, an optional precision, one of e f g, text; no other printf syntax.
 bool is_format(std::string_view text) {
   const std::size_t at = text.find('%');
   if (at == std::string_view::npos || text.size() > 40) return false;
@@ -145,7 +145,7 @@ const Table<OrientationMarker>& orientation_marker_table() {
   return table;
 }
 
-/// What all text has in common.
+/// Keys shared by all overlay text.
 const Table<Annotations>& overlay_table() {
   static const auto table = [] {
     Table<Annotations> t;

@@ -38,7 +38,7 @@ Keys transfer_keys() {
            .with_default("1 everywhere")});
 }
 
-/// How values become colours: the one shape of "color_by", {"field" or "quantity", "color", "range", "mapping", "transfer"}.
+/// Reads how values become colors: the object form of "color_by", {"field" or "quantity", "color", "range", "mapping", "transfer"}.
 
 namespace {
 
@@ -88,7 +88,7 @@ Outcome read_object(const Scene& scene, const json::Node& node, ColorTarget subj
   return take_scale(scene, node, by);
 }
 
-/// As it was written once: a word, with the colours' keys beside it.
+/// Reads the deprecated form: "color_by" as a name, with the color keys next to it.
 Outcome read_word(Scene& scene, const json::Node& item, ColorTarget subjects, ColorBy& by) {
   const json::Node& node = *item.find("color_by");
   const std::string name = node.string;

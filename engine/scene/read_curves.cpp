@@ -1,4 +1,4 @@
-/// "curves": polylines from a file, or the vortex cores of a field, drawn as tubes.
+/// Reads "curves": polylines from a file, or the vortex core lines of a field, rendered as tubes.
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {

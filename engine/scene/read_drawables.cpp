@@ -1,4 +1,4 @@
-/// What is drawn: "volumes", "isosurfaces", "meshes", and the "cursor".
+/// Reads the rendered objects "volumes", "isosurfaces", "meshes", and the "cursor".
 #include <filesystem>
 
 #include "engine/base/numbers.h"
@@ -73,7 +73,7 @@ const Table<Isosurface>& isosurface_table() {
   return table;
 }
 
-/// An item of "meshes": the file, which is felt and drawn, and how it is drawn.
+/// An item of "meshes": the file, which is both haptic and rendered, and its appearance.
 struct MeshItem {
   std::string name;
   MeshSource source;
@@ -81,7 +81,7 @@ struct MeshItem {
   bool drawn = true;
 };
 
-/// "color", or "color_by".
+/// Reads "color" or "color_by".
 Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
   SurfaceMesh& surface = mesh.surface;
   CATENA_CHECK(read_color_by(scene, item, ColorTarget::surfaces, surface.color_by));
@@ -126,7 +126,7 @@ const Table<MeshItem>& mesh_table() {
     t.bind(
         clip_key(), [](auto& m) -> auto& { return m.surface.clipped; });
     t.companion(visible_key());
-    t.deprecated("range").deprecated("transfer");  // beside "color_by" as a word
+    t.deprecated("range").deprecated("transfer");  // next to "color_by" as a name
     return t;
   }();
   return table;

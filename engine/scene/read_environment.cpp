@@ -1,4 +1,4 @@
-/// What shows where things stand: "bounding_box", "axes", "ground", "fog": true, false or an object; "lights": a list.
+/// Reads the spatial references "bounding_box", "axes", "ground", "fog" (each true, false or an object), and the list "lights".
 #include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -10,7 +10,7 @@ namespace {
 
 using schema::Section;
 
-/// Reads an annotation that is true (all as it is by default), false (none) or an object.
+/// Reads an annotation: true (defaults), false (none) or an object.
 template <class T>
 Outcome read_on_off(Scene& scene, const json::Node& node, const Table<T>& table, std::optional<T>& out) {
   if (node.kind == json::Kind::boolean && !node.boolean) return Done{};

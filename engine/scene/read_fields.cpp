@@ -1,4 +1,4 @@
-/// "fields": grids from files, and formulas.
+/// Reads "fields": grids from files, and analytic fields.
 #include <algorithm>
 #include <filesystem>
 
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using field::LoadRequest;
 
 constexpr int kMostSeed = (1 << 30) - 1;
-constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
+constexpr int kMaxNodes = 1024;  // along each axis of a sampled analytic field
 
 std::string field_fault(const std::string& path) {
   return file_problem(path, field::is_field_file(path), field::describe_field_extensions(), true);
@@ -56,7 +56,7 @@ Keys grid_keys() {
   return schema::concatenate(std::move(keys), grid_source_keys());
 }
 
-/// What a file without a header says of itself in the scene.
+/// Layout of a file without a header, as given in the scene.
 using LayoutTable = schema::StructSchema<field::RawLayout, const std::string>;
 
 const LayoutTable& layout_table() {
@@ -99,7 +99,7 @@ const LayoutTable& layout_table() {
   return table;
 }
 
-/// What an array of NumPy does not say of itself.
+/// Reads "axes", "spacing" and "origin", which a NumPy array does not define.
 Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
   CATENA_TRY(const std::string axes, json::get_string(node, "axes", "zyx"));
   if (axes != "zyx" && axes != "xyz")
@@ -119,7 +119,7 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
   return Done{};
 }
 
-/// Which of the steps, and of a pattern's files.
+/// Reads which step, and which of a pattern's files, a field shows.
 Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request, FieldSource& source) {
   source.has_own_step = node.find("step") != nullptr;
   CATENA_TRY(const int step, json::get_integer(node, "step", scene_step, 0, 1'000'000));
@@ -165,7 +165,7 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
   return read_grid_source(scene_path, node, source);
 }
 
-// ---- fields by formula ----
+// ---- analytic fields ----
 
 Keys formula_keys() {
   std::vector<std::string> names;
@@ -216,7 +216,7 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
   CATENA_TRY(source.parameters.seed, json::get_integer(node, "seed", 1, 0, kMostSeed));
   CATENA_TRY(source.parameters.dimensions, json::get_integer(node, "dimensions", 3, 2, 3));
 
-  // a part is a grid of what `generate` writes
+  // "part" selects one grid of the files that `generate` writes
   const json::Node* part = node.find("part");
   if (part != nullptr && node.find("grid") != nullptr)
     return json::error_at(*part, "both \"part\" and \"grid\" are given; one of them was expected");
@@ -254,7 +254,7 @@ Outcome read_source(const std::string& scene_path, int scene_step, const json::N
 
 // ---- --field NAME=FILE[:GRID] ----
 
-/// The field of that name; a new one where there is none.
+/// The source of the field with that name; a new one if there is none.
 FieldSource& source_named(Scene& scene, const std::string& name) {
   Entity entity = find_field(scene, name);
   if (!entity) {
@@ -265,7 +265,7 @@ FieldSource& source_named(Scene& scene, const std::string& name) {
   return scene.entities.get<FieldSource>(entity);
 }
 
-/// What the program has made in the place of a file.
+/// Replaces the source of a field by one that the caller created in memory.
 Outcome take_given(Scene& scene, const FieldOverride& with) {
   if (!is_identifier(with.name)) return Error{"field " + in_quotes(with.name) + ": a name like [a-z][a-z0-9_]* was expected"};
   FieldSource& source = source_named(scene, with.name);

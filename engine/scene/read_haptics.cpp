@@ -1,4 +1,4 @@
-/// What the hand feels: "chain", "modes", "coupling", "workspace", "device".
+/// Reads the haptic sections "chain", "modes", "coupling", "workspace", "device".
 #include "engine/base/haptic_state.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -8,8 +8,8 @@ namespace {
 
 constexpr auto kMaxLinkCount = static_cast<std::size_t>(kMaxSceneLinks);
 
-/// Names, types and the field that a link names are checked here; its other keys by the constraint of its type, where the
-/// program for the hand is made.
+/// Checks the names and types of the links and the fields that they name; the other keys are checked by the constraint of the link's type
+/// when the haptic program is built.
 Outcome read_chain(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"chain\" is no array; an array of links was expected");
   for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -40,7 +40,7 @@ Keys modes_keys() {
           schema::object("on", {}, "A switch, as of a link.").required()};
 }
 
-/// Whether its links exist is checked where the program is made: a link may stand for several.
+/// Reads the modes. Whether their links exist is checked when the haptic program is built, because a link may stand for several.
 Outcome read_modes(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"modes\" is no array; an array of modes was expected");
   for (const json::Node& item : node.items) {
@@ -144,7 +144,7 @@ Part workspace_part() {
           }};
 }
 
-/// Its keys are read by haptics/device, which knows the devices; one of them names a file.
+/// The "device" section. Its keys are read by haptics/device, which defines the device types; one key names a file.
 Part device_part() {
   return {{"device", "What the hand holds.", Section::Layout::object, {}}, [](Scene& scene, const json::Node& node) -> Outcome {
             CATENA_CHECK(json::expect_object(node, "device"));

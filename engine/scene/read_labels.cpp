@@ -1,4 +1,4 @@
-/// Of "fields": how a grid is read between its voxels, the names and colours of a label map, and the surface of labels as a field.
+/// Reads keys of "fields": interpolation between voxels, names and colors of a label map, and label surfaces as fields.
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +21,7 @@ Keys labels_keys() {
           schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
 }
 
-/// Whole numbers that floats tell apart.
+/// Returns an Error unless the node is an integer that floats represent exactly.
 Outcome check_label(const json::Node& node) {
   const double value = node.number;
   if (node.kind == json::Kind::number && value == std::nearbyint(value) && std::fabs(value) <= kMaxLabelValue) return Done{};

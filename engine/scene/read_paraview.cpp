@@ -1,7 +1,7 @@
-/// ParaView's colour map as it exports it: [{"Name", "ColorSpace", "HSVWrap", "RGBPoints": [x, r, g, b, ...], "Points": [x, a, middle,
-/// sharpness, ...], ...}]. Other keys say nothing about the colours and are passed over. Between points ParaView works in
-/// ColorSpace (none: RGB); what is not linear in RGB becomes kPieces linear pieces. "Points" are opacities, straight lines only
-/// (middle 0.5, sharpness 0); at most OpacityPoint::kMaxAlpha.
+/// Reads ParaView's exported color map: [{"Name", "ColorSpace", "HSVWrap", "RGBPoints": [x, r, g, b, ...], "Points": [x, a, middle,
+/// sharpness, ...], ...}]. Keys that do not affect the colors are ignored. Between points ParaView interpolates in ColorSpace (default
+/// RGB); other spaces than RGB are approximated by kPieces linear pieces. "Points" are opacities, straight lines only (middle 0.5,
+/// sharpness 0), clamped to OpacityPoint::kMaxAlpha.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPieces = 32;
 
-/// A flat list of rows of four numbers, the first of each rising.
+/// Reads a flat list of rows of four numbers; the first number of each row must rise.
 Result<std::vector<std::array<double, 4>>> read_rows(const json::Node& node, std::string_view what) {
   if (node.kind != json::Kind::array || node.items.empty() || node.items.size() % 4 != 0)
     return json::error_at(node, in_quotes(what) + " is no list of rows; four numbers for each point were expected");

@@ -1,4 +1,4 @@
-/// A plane: a point with a normal, an axis with a place on it, or a widget.
+/// Reads a plane: a point with a normal, an axis with a position on it, or a widget.
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/widgets.h"
@@ -6,7 +6,7 @@
 namespace catena::scene {
 namespace {
 
-/// The plane of a widget.
+/// Reads a plane that is bound to a widget.
 Outcome read_followed(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget) {
   for (const char* key : {"point", "normal", "axis", "at"})
     if (const json::Node* node = item.find(key))

@@ -1,4 +1,4 @@
-/// "points": places from a table, drawn as balls.
+/// Reads "points": positions from a table, rendered as spheres.
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {

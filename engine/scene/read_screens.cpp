@@ -1,4 +1,4 @@
-/// "screens": flat displays that pictures are made for, by their corners.
+/// Reads "screens": flat displays for which images are rendered, by their corners.
 #include <algorithm>
 
 #include "engine/scene/readers.h"
@@ -19,7 +19,7 @@ const Table<DisplayScreen>& screen_table() {
            &DisplayScreen::upper_left);
     t.check([](Scene& scene, const json::Node& node, DisplayScreen& screen) -> Outcome {
       const Vec3 right = screen.lower_right - screen.lower_left, up = screen.upper_left - screen.lower_left;
-      constexpr double kSquare = 1e-6;  // cosine of the corner
+      constexpr double kSquare = 1e-6;  // maximum cosine of the angle between the edges
       if (!(norm(right) > 0 && norm(up) > 0) || !(std::fabs(dot(direction(right), direction(up))) <= kSquare))
         return json::error_at(node, "the corners of screen " + in_quotes(screen.name) +
                                         " span no rectangle; lower left, lower right and upper left of one were expected");

@@ -1,4 +1,4 @@
-/// Where lines begin: places, a pattern, or a widget.
+/// Reads the seeds of lines: points, a pattern, or a widget.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -13,7 +13,7 @@ constexpr int kMaxSeeds = 100000, kMaxEvenLines = 20000;
 using Pattern = SeedPattern;
 using PatternTable = schema::StructSchema<Pattern, const Scene>;
 
-/// A pattern's word, its kind, and its keys.
+/// A pattern's name in the scene file, its kind, and its keys.
 struct PatternType {
   std::string_view word, help;
   Pattern::Kind kind;
@@ -94,7 +94,7 @@ const std::vector<PatternType>& patterns() {
   return all;
 }
 
-/// {"widget": NAME}: of a rake with "count".
+/// Reads {"widget": NAME}; "count" applies to a rake.
 Result<Seeds> read_followed(const Scene& scene, const json::Node& node) {
   CATENA_CHECK(json::check_known_keys(node, {"widget", "count"}));
   Seeds seeds;

@@ -1,4 +1,4 @@
-/// "slices": a plane, colours, contours.
+/// Reads "slices": plane, colors, contours.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"

@@ -1,4 +1,4 @@
-/// "streamlines" and the "indicator": lines of the flow.
+/// Reads "streamlines" and the "indicator".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"
@@ -8,7 +8,7 @@
 namespace catena::scene {
 namespace {
 
-/// "color", or "color_by".
+/// Reads "color" or "color_by".
 Outcome read_line_color(Scene& scene, const json::Node& item, StreamlineSet& set) {
   const json::Node *by = item.find("color_by"), *color = item.find("color");
   const bool of_values =
@@ -61,7 +61,7 @@ const Table<StreamlineSet>& streamlines_table() {
            &StreamlineSet::band_length);
     t.bind(clip_key(), &StreamlineSet::clipped);
     t.companion(visible_key());
-    t.deprecated("range").deprecated("transfer");  // beside "color_by" as a word
+    t.deprecated("range").deprecated("transfer");  // next to "color_by" as a name
     return t;
   }();
   return table;

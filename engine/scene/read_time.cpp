@@ -1,4 +1,4 @@
-/// "time": which step of its series a scene shows, and how fast they go by.
+/// Reads "time": the time step that a scene shows, and the playback rate.
 #include "engine/scene/readers.h"
 
 namespace catena::scene {

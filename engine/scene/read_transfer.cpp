@@ -16,7 +16,7 @@ namespace {
 
 using Pair = std::array<double, 2>;
 
-/// Rows [value, ...] of a table, values rising strictly, at least one.
+/// Reads a table of rows [value, ...]; at least one row, values strictly rising.
 Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std::string_view what, std::size_t width) {
   CATENA_TRY(auto rows, json::as_rows(node, what, width));
   if (rows.empty())
@@ -28,7 +28,7 @@ Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std:
   return rows;
 }
 
-/// [lo, hi]
+/// Reads "range": [lo, hi].
 Result<std::optional<Pair>> read_range(const json::Node& object) {
   const json::Node* node = object.find("range");
   if (node == nullptr) return std::optional<Pair>();
@@ -41,7 +41,7 @@ Result<std::optional<Pair>> read_range(const json::Node& object) {
   return std::optional<Pair>({lo, hi});
 }
 
-/// "mapping" and "linear_below"; none where they are not stated.
+/// Reads "mapping" and "linear_below"; nullopt if neither is given.
 Result<std::optional<ValueMapping>> read_mapping(const json::Node& object) {
   const json::Node* below = object.find("linear_below");
   CATENA_TRY(const int kind, json::get_choice(object, "mapping", 0, {std::begin(kMappingNames), std::end(kMappingNames)}));
@@ -53,7 +53,7 @@ Result<std::optional<ValueMapping>> read_mapping(const json::Node& object) {
   return object.find("mapping") == nullptr ? std::nullopt : std::optional(mapping);
 }
 
-/// Of stated values; those of the data are looked at where they are known.
+/// Checks the mapping against explicit values; automatic ones are checked when the data are loaded.
 Outcome check_mapping(const json::Node& object, const TransferFunction& transfer) {
   double least = std::numeric_limits<double>::infinity();
   std::string what;
@@ -68,7 +68,7 @@ Outcome check_mapping(const json::Node& object, const TransferFunction& transfer
   return problem.empty() ? Outcome(Done{}) : json::error_at(json::member_or_parent(object, "mapping"), problem);
 }
 
-/// "color", "range" and "mapping".
+/// Reads "color", "range" and "mapping".
 Outcome read_colors(const json::Node& object, std::vector<ColorPoint>& colors, NamedColors& named) {
   CATENA_TRY(named.range, read_range(object));
   CATENA_TRY(const std::optional<ValueMapping> mapping, read_mapping(object));
@@ -105,7 +105,7 @@ Outcome read_gradient_opacity(const json::Node& object, TransferFunction& transf
   return Done{};
 }
 
-/// "opacity", "opacity_length", "extinction", "gradient_opacity".
+/// Reads "opacity", "opacity_length", "extinction", "gradient_opacity".
 Outcome read_opacities(const json::Node& object, TransferFunction& transfer) {
   const json::Node *opacity = object.find("opacity"), *extinction = object.find("extinction"), *unit = object.find("opacity_unit");
   if (opacity != nullptr && extinction != nullptr)
@@ -150,8 +150,8 @@ bool rises(const TransferFunction& transfer) {
          std::adjacent_find(transfer.extinctions.begin(), transfer.extinctions.end(), falls) == transfer.extinctions.end();
 }
 
-/// Lays the tables anew, from their own ends to `range`: each value at its share of the way, on the scale of the file's mapping before and
-/// on that of `mapping` after.
+/// Moves the values of the tables from their own range to `range`: each keeps its relative position, measured on the scale of the file's
+/// mapping and set on the scale of `mapping`.
 Outcome lay_anew(TransferFunction& transfer, const Pair& range, const ValueMapping& mapping, const json::Node& where) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   each_value(transfer, [&](const double& v) { lo = std::min(lo, v), hi = std::max(hi, v); });
@@ -162,7 +162,7 @@ Outcome lay_anew(TransferFunction& transfer, const Pair& range, const ValueMappi
       const double t = (symlog(v, from) - symlog(lo, from)) / (symlog(hi, from) - symlog(lo, from));
       v = symlog_interpolate(range[0], range[1], t, to);
     });
-    // one value alone, or values that fall together
+    // a single value, or values that become equal
     if (!(lo < hi) || !std::isfinite(hi - lo) || !rises(transfer))
       return json::error_at(where, "\"range\" cannot hold the values of the transfer file, which reach from " + to_text(lo) + " to " +
                                        to_text(hi) + "; a wider range was expected");
@@ -171,7 +171,7 @@ Outcome lay_anew(TransferFunction& transfer, const Pair& range, const ValueMappi
   return Done{};
 }
 
-/// The file that "transfer" names.
+/// Reads the file that "transfer" names.
 Result<TransferFunction> read_transfer_file(const std::string& scene_path, const json::Node& object) {
   const json::Node& node = *object.find("transfer");
   for (const char* key : {"color", "opacity", "extinction"})

@@ -1,4 +1,4 @@
-/// "plan": what a person wants of error and time, of the eye and of the hand.
+/// Reads "plan": the user's tuning targets for error and time, of the image and of the haptics.
 #include <cmath>
 
 #include "engine/base/numbers.h"
@@ -23,7 +23,7 @@ const Table<TuningTargets>& plan_table() {
   return table;
 }
 
-/// What is wrong with the keys together; empty: nothing.
+/// Message if the combination of keys is invalid; empty if it is valid.
 std::string fault_of(const TuningTargets& plan) {
   if (plan.max_image_error && plan.max_image_ms) return "\"error\" and \"time\" exclude each other; one of them was expected";
   if (plan.max_proxy_error && plan.max_tick_us) return "\"hand_error\" and \"hand_time\" exclude each other; one of them was expected";

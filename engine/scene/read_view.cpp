@@ -1,4 +1,4 @@
-/// The eye and the picture: "camera", "background", "quality", "jitter".
+/// Reads the camera and the image: "camera", "background", "quality", "jitter", and "clip".
 #include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -10,7 +10,7 @@ namespace catena::scene {
 
 namespace {
 
-/// What one key alone cannot tell.
+/// Checks constraints between several keys of the camera.
 Outcome check_camera(Scene&, const json::Node& node, Camera& camera) {
   const Vec3 view = camera.target - camera.position;
   if (const std::string problem = validate_view(camera.position, camera.target); !problem.empty())
@@ -120,7 +120,7 @@ Part jitter_part() {
 
 std::string to_json(const Camera& camera) { return camera_table().write({}, camera); }
 
-/// "clip": planes, boxes and widgets; what every one of them keeps is drawn.
+/// Reads "clip": planes, boxes and widgets; the intersection of what they keep is rendered.
 
 namespace {
 
@@ -183,7 +183,7 @@ Outcome read_box(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
-/// A cutting plane is one plane, a box six.
+/// Reads a clip item bound to a widget. A cutting plane is one plane, a box six.
 Outcome read_followed(Scene& scene, const json::Node& item) {
   ClipPlane plane;
   CATENA_TRY(plane.widget, read_widget_name(scene, item, {widget::Kind::cutting_plane, widget::Kind::box}, "a cutting plane or a box"));

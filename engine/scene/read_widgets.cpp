@@ -1,4 +1,4 @@
-/// "widgets": what the hand takes hold of and moves, by type.
+/// Reads "widgets", which the user grabs and moves with the device, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/reader_bindings.h"
@@ -28,7 +28,7 @@ Result<Quat> read_orientation(const json::Node& node) {
 
 constexpr double kLargest = 1e100;
 
-/// A length, stated or 0.
+/// Reads a length; 0 if it is not given.
 Result<double> read_size(const json::Node& item, std::string_view key) {
   CATENA_TRY(const double size, json::get_number(item, key, 0, json::NumberRange::positive));
   if (size > kLargest)
@@ -36,7 +36,7 @@ Result<double> read_size(const json::Node& item, std::string_view key) {
   return size;
 }
 
-/// A length that the kind of widget has a default for.
+/// Key of a length for which the widget type has a default.
 Key size_key(const std::string& name, const std::string& help, const std::string& usual) {
   return schema::number(name, "world", help).with_limits({0.0, kLargest, true}).with_range_text("> 0").with_default(usual);
 }
@@ -117,7 +117,7 @@ Table<Widget> rake_table() {
   return t;
 }
 
-/// Whether the field is a scalar one, and the place within it, resolve_widget tells: it loads the field.
+/// The keys of an isolevel widget. resolve_widget() checks that the field is scalar and contains the position, because it loads the field.
 Table<Widget> isolevel_table() {
   Table<Widget> t;
   bind_field(t, schema::reference("field", Role::scalar_field, "A scalar field; the level is its value at the handle.").required(),
@@ -139,7 +139,8 @@ Table<Widget> box_widget_table() {
   return t;
 }
 
-/// A link of the chain, or one that a ready-made mode of it stands for (NAME_...): which those are the program's maker knows.
+/// Whether the chain has this link, or a link whose ready-made mode may generate it (NAME_...); the exact names are known when the haptic
+/// program is built.
 bool is_link(const Scene& scene, std::string_view name) {
   bool found = false;
   scene.entities.each<Link>([&](Entity, const Link& link) { found = found || name == link.name || name.starts_with(link.name + "_"); });
@@ -196,7 +197,7 @@ const std::vector<WidgetType>& types() {
   return all;
 }
 
-/// What every widget has.
+/// Keys common to all widget types.
 const Table<Widget>& common_table() {
   static const auto table = [] {
     Table<Widget> t;

@@ -1,6 +1,6 @@
-/// What the scene calls by names, fields, meshes, curves, points and widgets: how their names and files are read, and what is said of a
-/// name that nothing has. RecordWords of the messages: `kind` is what one is called ("mesh"), `list` what all of them are. Inside this room
-/// only.
+/// Readers for objects that have names in the scene file (fields, meshes, curves, points, widgets): their names and files, and the errors
+/// for unknown names. In the messages `kind` is the singular ("mesh") and `list` the plural or key of all ("meshes"). Private to this
+/// module.
 #pragma once
 #include "engine/scene/readers.h"
 #include "engine/scene/time_steps.h"
@@ -8,6 +8,7 @@
 
 namespace catena::scene {
 
+/// Returns the names of all entities that own a T.
 template <class T>
 std::vector<std::string_view> list_names(const Scene& scene) {
   std::vector<std::string_view> names;
@@ -15,7 +16,7 @@ std::vector<std::string_view> list_names(const Scene& scene) {
   return names;
 }
 
-/// The one of that name; an error at `where`.
+/// Returns the T of that name; an Error at `where` lists the known names.
 template <class T>
 Result<Entity> require_named(const Scene& scene, const std::string& name, const json::Node& where, const std::string& kind,
                              const std::string& list) {
@@ -25,7 +26,7 @@ Result<Entity> require_named(const Scene& scene, const std::string& name, const 
                                    " was expected: " + (names.empty() ? "it has none" : join_words(names)) + suggestion(name, names));
 }
 
-/// The one that member `key` of `object` names.
+/// Returns the T that member `key` of `object` names; an Error lists the known names.
 template <class T>
 Result<Entity> read_named(const Scene& scene, const json::Node& object, std::string_view key, const std::string& kind,
                           const std::string& list) {
@@ -37,7 +38,7 @@ Result<Entity> read_named(const Scene& scene, const json::Node& object, std::str
                                                " was expected" + suggestion(name, names));
 }
 
-/// "name" of a new one. `many`: one of them is several things ("curves").
+/// Returns member "name" of a new T. `many`: the kind is a plural ("curves"). Error: not an identifier, or another T has the name.
 template <class T>
 Result<std::string> read_new_name(const Scene& scene, const json::Node& item, const std::string& kind, bool many = false) {
   CATENA_TRY(std::string name, json::require_string(item, "name"));
@@ -49,8 +50,8 @@ Result<std::string> read_new_name(const Scene& scene, const json::Node& item, co
   return name;
 }
 
-/// "file" of the item called `name`: the path of a file that is there and has one of these endings, or the file of a pattern for the
-/// scene's step.
+/// Returns the path in member "file" of the item `name`: an existing file with one of the endings, or for a pattern the file of the scene's
+/// current step. Sets pattern, files and step of `steps`.
 inline Result<std::string> read_path(const Scene& scene, const json::Node& item, const std::string& kind, const std::string& name,
                                      const std::vector<std::string_view>& endings, FileSteps& steps) {
   CATENA_TRY(const std::string file, json::require_string(item, "file"));
@@ -69,14 +70,14 @@ inline Result<std::string> read_path(const Scene& scene, const json::Node& item,
   return path;
 }
 
-/// An item of "curves" or "points": a file, drawn under a name.
+/// An item of "curves" or "points": a named source.
 template <class T>
 struct FileItem {
   std::string name;
   T item;
 };
 
-/// Its first keys, "name" and "file"; `file` says what that is, and `needs_file` whether it must be there.
+/// Returns the table of its first keys, "name" and "file". `file`: help text; `needs_file`: whether "file" is required.
 template <class T>
 Table<FileItem<T>> make_file_table(const std::string& kind, const std::string& file, const std::vector<std::string_view>& endings,
                                    bool needs_file = true) {
@@ -96,6 +97,7 @@ Table<FileItem<T>> make_file_table(const std::string& kind, const std::string& f
   return t;
 }
 
+/// Reads an array of such items into new entities.
 template <class T>
 Outcome read_file_items(Scene& scene, const json::Node& node, const Table<FileItem<T>>& table) {
   return each_item(node, [&](const json::Node& item) -> Outcome {

@@ -1,6 +1,6 @@
-/// The parts of the scene file, one function a top-level key: its description (engine/schema) and its reader, which checks keys and values
-/// completely and answers "FILE:LINE: what; what was expected". A new part is one file and one line in scene_file.cpp. Inside this room
-/// only.
+/// Sections of the scene file, one function per top-level key: its description (engine/schema) and its reader, which checks all keys and
+/// values; errors are "FILE:LINE: what; what was expected". A new section is one file and one line in scene_file.cpp. Private to this
+/// module.
 #pragma once
 #include <string>
 
@@ -19,12 +19,13 @@ using schema::Key;
 using schema::Keys;
 using schema::Role;
 
+/// A top-level key of the scene file.
 struct Part {
-  schema::Section description;                 ///< of "chain", "modes" and "device" the keys are told by the rooms that read them
-  Outcome (*read)(Scene&, const json::Node&);  ///< nullptr: read_root reads it before the others
+  schema::Section description;                 ///< For "chain", "modes" and "device" the modules that read the keys describe them
+  Outcome (*read)(Scene&, const json::Node&);  ///< Nullptr: read_root reads it before the others
 };
 
-// in the order of docs/scene.md
+// In the order of docs/scene.md.
 Part time_part();
 Part fields_part();
 Part chain_part();
@@ -64,7 +65,7 @@ Part orientation_marker_part();
 Part status_part();
 Part overlay_part();
 
-/// Calls read(item) for each object of an array.
+/// Calls read(item) for each object of an array. Error: the node is no array, or an item is no object.
 template <class Read>
 Outcome each_item(const json::Node& node, Read&& read) {
   if (node.kind != json::Kind::array) return json::error_at(node, in_quotes(node.label) + " is no array; an array of objects was expected");
@@ -75,45 +76,50 @@ Outcome each_item(const json::Node& node, Read&& read) {
   return Done{};
 }
 
-/// [a-z][a-z0-9_]*
+/// Returns whether the text matches [a-z][a-z0-9_]*.
 bool is_identifier(std::string_view text);
-/// `kind` says in the message what is called so: "mesh".
+/// Checks that a name is an identifier. `kind` names the object in the message: "mesh".
 Outcome check_name(const std::string& kind, const std::string& name, const json::Node& node);
 
-/// A plane in one of three ways; `word` says what lies on it ("slice"). Of a widget, its pose as stated.
+/// Reads a plane: "axis" and "at", "point" and "normal", or "widget", which gives the widget's stated pose. `word` names the object on the
+/// plane in messages ("slice").
 Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget);
-/// Empty where `path` is a file, or folder, that is there and of a known kind; else what is wrong, and that `wanted` was expected.
+/// Returns an empty string if `path` is an existing file (or folder, with `folders`) and `known`, its type, is true; else the problem, with
+/// `wanted` as what was expected.
 std::string file_problem(const std::string& path, bool known, const std::string& wanted, bool folders = false);
 
-/// Relative paths start at the scene file's folder.
+/// Returns the path of a file named in the scene; relative paths start at the scene file's folder.
 std::string resolve_path(const std::string& scene_path, const std::string& file);
 
+/// Reads "time". Fields depend on it, so it is read before them.
 Outcome read_time(Scene& scene, const json::Node& node);
+/// Reads "fields" (null: the scene has none) and applies the overrides.
 Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides);
-/// Of a grid's source, beside its own keys: "interpolation" and "labels"; the source has its file already.
+/// Keys of a grid's source besides those of its file: "interpolation" and "labels". The source already has its file.
 Keys grid_source_keys();
 Outcome read_grid_source(const std::string& scene_path, const json::Node& node, FieldSource& source);
-/// The surface of labels as a source: "label", "of", "smooth".
+/// Keys of a label surface as a source: "label", "of", "smooth".
 Keys label_keys();
 Outcome read_label_source(const json::Node& node, FieldSource& source);
-/// Once all fields are read: what they are of are fields from files.
+/// Checks, after all fields are read, that the label maps of label surfaces are fields from files.
 Outcome check_label_sources(const Scene& scene);
-/// The entity of the field that member `key` of `object` names; an error lists the known ones.
+/// Returns the field that member `key` of `object` names; an Error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
-/// Rows [value, r, g, b], values rising.
+/// Reads rows [value, r, g, b], values rising.
 Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
 
-/// The widget that member "widget" of `object` names, one of `kinds`; `wanted` says them in words ("a cutting plane or a box").
+/// Returns the widget that member "widget" of `object` names. Error: unknown, or none of `kinds`, which `wanted` states for the message ("a
+/// cutting plane or a box").
 Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<widget::Kind> kinds,
                                 std::string_view wanted);
 
-/// Keys that several components of a scene have, and how the types of this room are read and written. Inside this room only.
+// Keys that several sections share, and the table type of this module.
 
 template <class T>
 using Table = schema::StructSchema<T, Scene>;
 
-/// Binds a key that names a field to the entity of it; absent and not required: none.
+/// Binds a key that names a field to the field's entity; if the key is optional and absent, the entity is none.
 template <class T, class C, class Access>
 void bind_field(schema::StructSchema<T, C>& table, const Key& key, Access access) {
   table.custom(
@@ -129,34 +135,35 @@ void bind_field(schema::StructSchema<T, C>& table, const Key& key, Access access
       });
 }
 
-/// "clip" and "visible" of what is drawn. The second is read by read_visible (hidden.h), which knows the entity.
+/// Keys "clip" and "visible" of visible objects. read_visible (visibility.h), which has the entity, reads the second.
 Key clip_key();
 Key visible_key();
 Key opacity_key(const std::string& help);
-/// "point", "normal", "axis", "at", "widget" as read_plane takes them.
+/// Keys "point", "normal", "axis", "at" and "widget", as read by read_plane.
 Keys plane_keys();
+/// Returns the members that state a plane: its widget, else "axis" and "at" if it is across an axis, else "point" and "normal".
 schema::Members plane_members(const Scene& scene, const Vec3& point, const Vec3& normal, Entity widget);
-/// "color", "range", "mapping", "linear_below" and "transfer" where values become colours.
+/// Keys "color", "range", "mapping", "linear_below" and "transfer" of objects that color by value.
 Keys color_scale_keys(std::string_view map = kDefaultLineColorMap, const std::string& range = "that of the values");
-/// Those, and a volume's opacities.
+/// The same keys, and the opacity keys of a volume.
 Keys transfer_keys();
 
-/// The keys of a list's item under `name`.
+/// Returns the section of a list with the item keys of `table`. `most`: maximum number of items; 0: any number.
 template <class T>
 schema::Section make_list_component(const std::string& name, const std::string& help, const Table<T>& table, int most = 0) {
   return {name, help, schema::Section::Layout::list, table.keys(), most};
 }
 
-/// "color_by": colours that follow values, one shape wherever it stands. Inside this room only.
-
-/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), lines (which know their speed and length, too),
-/// glyphs (which know their speed, and are never a word), curves from a file (which know their length and the file's values), or points
-/// (the file's values).
+/// Kind of object that "color_by" colors, and the values that it allows: volumes and isosurfaces hit by rays (fields), surfaces (fields),
+/// lines (fields, speed, arc length), glyphs (fields, speed), curves from a file (fields, arc length, values in the file), points (fields,
+/// values in the file). For surfaces and lines "color_by" may also be a word.
 enum class ColorTarget { rays, surfaces, lines, glyphs, curves, points };
 
+/// Returns the key "color_by" for that kind of object.
 Key color_by_key(ColorTarget subjects);
-/// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.
+/// Reads "color_by"; `out` is empty if the item has none. A word with the color keys beside it, an older form, is accepted with a note.
 Outcome read_color_by(Scene& scene, const json::Node& item, ColorTarget subjects, std::optional<ColorBy>& out);
+/// Binds "color_by" to a member of T of type std::optional<ColorBy>.
 template <class T, class Access>
 void bind_color_by(Table<T>& table, ColorTarget subjects, Access access) {
   table.custom(
@@ -167,13 +174,14 @@ void bind_color_by(Table<T>& table, ColorTarget subjects, Access access) {
         return by ? to_json(scene, *by) : std::string();
       });
 }
-/// "color", "range" and "mapping" as members.
+/// Returns "color", "range" and "mapping" as members.
 schema::Members color_scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named);
 
-/// A volume's colours and opacities.
+/// Returns a volume's colors and opacities as members.
 schema::Members transfer_members(const TransferFunction& transfer);
 
-/// Member `key` as an index into the entities that own a T; `what` they are called, and `whose` the index is, for messages.
+/// Returns the entity at the index in member `key`, counted among the entities that own a T. For messages `what` names them and `whose` the
+/// object with the index.
 template <class T>
 Result<Entity> read_index(const Scene& scene, const json::Node& object, std::string_view key, const std::string& what,
                           const std::string& whose) {
@@ -185,33 +193,34 @@ Result<Entity> read_index(const Scene& scene, const json::Node& object, std::str
   return owners[static_cast<std::size_t>(index)];
 }
 
-/// "seeds" of streamlines; read_seeds itself is in lines.h, as `trace` reads the same. Inside this room only.
+/// Key "seeds" of streamlines. read_seeds is in streamlines.h, because the command `trace` reads the same.
 Key seeds_key();
+/// Returns the JSON text of "seeds".
 std::string write_seeds(const Scene& scene, const Seeds& seeds);
 
-/// Colours and opacities of the scene file, inside this room only. An object that colours by values takes
-///   "color"     a table [[value, r, g, b], ...], or the name of a colour map (color_maps.h)
-///   "range"     [lo, hi], the values between which a named map lies; without it those of the data
-///   "mapping"   "linear", "log" or "symlog", with "linear_below": the scale between the points, of opacities, too
-///   "transfer"  instead of "color": a file, relative to the scene's. Either an object with a volume's keys, or ParaView's
-///               exported colour map (read_paraview.cpp). "range" beside it lays its tables anew, from their own ends to lo..hi
-/// and a volume, or a transfer file, besides
+/// Colors and opacities of the scene file. An object that colors by value has the keys
+///   "color"     a table [[value, r, g, b], ...], or the name of a color map (color_maps.h)
+///   "range"     [min, max], the values between which a named map is stretched; default: the range of the data
+///   "mapping"   "linear", "log" or "symlog", with "linear_below": the scale between the points, also of opacities
+///   "transfer"  instead of "color": a file, relative to the scene's. Either an object with a volume's keys, or a color map exported by
+///               ParaView (read_paraview.cpp). "range" beside it stretches its tables from their own ends to the range
+/// and a volume, or a transfer file, has also
 ///   "opacity" with "opacity_length", or "extinction", and "gradient_opacity": [[gradient, factor], ...], field units per world
 ///   unit, 0 <= factor <= 1, which multiplies the extinction.
-/// Errors name the file, the scene's or the transfer file, and the line.
+/// Errors have the name and line of the scene file or the transfer file.
 struct ColorScale {
-  std::vector<TransferFunction::ColorPoint> colors;
-  NamedColors named;  ///< where `colors` is empty; its mapping always
+  std::vector<TransferFunction::ColorPoint> colors;  ///< Color table, values rising; empty: a color map
+  NamedColors named;                                 ///< Color map used if `colors` is empty; its mapping always applies
 };
 
-/// "color", "range", "mapping" and "transfer" of an object.
+/// Reads "color", "range", "mapping" and "transfer" of an object.
 Result<ColorScale> read_color_scale(const std::string& scene_path, const json::Node& object);
-/// The keys of a volume.
+/// Reads the colors and opacities of a volume.
 Result<TransferFunction> read_transfer(const std::string& scene_path, const json::Node& object);
 
-/// A transfer file's text; `path` is for the messages.
+/// Parses the text of a transfer file; `path` is for messages.
 Result<TransferFunction> parse_transfer(std::string_view text, const std::string& path);
-/// ParaView's colour map: an array of one object with "RGBPoints".
+/// Reads a color map of ParaView: an array of one object with "RGBPoints".
 Result<TransferFunction> read_paraview_map(const json::Node& root);
 
 }  // namespace catena::scene

@@ -18,7 +18,7 @@ void add_string(const json::Node& object, std::string_view key, std::vector<cons
   if (node != nullptr && node->kind == json::Kind::string && !node->string.empty()) names.push_back(node);
 }
 
-/// Every string of `object` whose key names a file, by the keys' roles; in lists and objects of it, too.
+/// Adds every string of `object` whose key has the role of a file; also in nested lists and objects.
 void add_files(const json::Node& object, const schema::Keys& keys, std::vector<const json::Node*>& names) {
   for (const schema::Key& key : keys) {
     if (key.role == schema::Role::file) add_string(object, key.name, names);
@@ -27,14 +27,14 @@ void add_files(const json::Node& object, const schema::Keys& keys, std::vector<c
   }
 }
 
-/// Of an item of a part, or of the part itself.
+/// Adds the file names in an item of a section, or in the section itself.
 void add_files(const json::Node& item, const schema::Section& component, std::vector<const json::Node*>& names) {
   add_files(item, component.keys, names);
   for (const schema::Variant& variant : component.variants) add_files(item, variant.keys, names);
-  if (schema::find(component.keys, "color_by") != nullptr) add_string(item, "transfer", names);  // beside "color_by" as a word
+  if (schema::find(component.keys, "color_by") != nullptr) add_string(item, "transfer", names);  // next to "color_by" as a name
 }
 
-/// The values that name files, in the text's order.
+/// The values that name files, in text order.
 std::vector<const json::Node*> file_names(const json::Node& root) {
   std::vector<const json::Node*> names;
   for (const schema::Section& component : scene_components()) {
@@ -58,14 +58,15 @@ fs::path folder_of(const std::string& path) {
   return code ? fs::path(path).parent_path() : folder;
 }
 
-/// The file as a scene in that folder names it. Links on the way are followed, the file itself keeps its name: its ending counts.
+/// Path of the file relative to a scene in that folder. Links in the folder part are resolved; the file keeps its own name because its
+/// extension matters.
 std::string name_from(const std::string& file, const fs::path& folder) {
   const std::string name = (folder_of(file).lexically_relative(folder) / fs::path(file).filename()).lexically_normal().string();
   std::error_code code;
   return is_same_file((folder / name).string(), file) ? name : fs::absolute(file, code).lexically_normal().string();
 }
 
-/// The text with an override in it: what apply_override makes of the field, said by the field.
+/// The scene text with an override in it: the same effect as apply_override, written as a field.
 Result<std::string> with_override(std::string text, const std::string& path, const FieldOverride& with) {
   const std::string name = fs::path(with.file).is_absolute() ? with.file : name_from(with.file, folder_of(path));
   CATENA_TRY(const json::Node root, json::parse(text, path));
@@ -80,7 +81,7 @@ Result<std::string> with_override(std::string text, const std::string& path, con
   CATENA_TRY(text, json::set_value(text, path, pointer + "/file", json::serialize_string(name)));
   if (raw) return text;
 
-  // the grid and the mask of the file before are wishes: without them the file's own
+  // the grid and the mask of the previous file are optional: if the new file has none of that name, its own are used
   const json::Node *grid = field->find("grid"), *valid = field->find("valid");
   const bool wish = grid != nullptr && with.grid.empty(), mask = valid != nullptr && valid->kind == json::Kind::string;
   const auto grids = wish || mask ? field::describe_grids(with.file) : Result<std::vector<field::GridInfo>>(Error{});
@@ -121,7 +122,7 @@ Result<std::string> relocate_text(std::string_view text, const std::string& from
   if (folder_of(from) != folder) {
     CATENA_TRY(const json::Node root, json::parse(text, from));
     const std::vector<const json::Node*> names = file_names(root);
-    // from the end, so that the places before keep theirs
+    // from the end, so that earlier offsets stay valid
     for (auto it = names.rbegin(); it != names.rend(); ++it)
       if (fs::path((*it)->string).is_relative())
         moved.replace((*it)->begin, (*it)->end - (*it)->begin,

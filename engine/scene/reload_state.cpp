@@ -24,7 +24,7 @@ bool same_source(const FieldSource& a, const FieldSource& b) {
   return a.analytic == b.analytic && a.parameters == b.parameters;
 }
 
-/// A surface of labels is what it was while its label map is.
+/// Whether a label surface is unchanged: its label map is.
 bool same_map(const Scene& old, const FieldSource& before, const Scene& fresh, const FieldSource& source) {
   if (!source.label) return true;
   const Entity was = find_field(old, source.label->label_map), is = find_field(fresh, source.label->label_map);
@@ -35,7 +35,7 @@ bool same_map(const Scene& old, const FieldSource& before, const Scene& fresh, c
 
 bool same_drawing(const FieldSource& a, const FieldSource& b) { return a.file || (a.resolution == b.resolution && a.box == b.box); }
 
-/// Of one step of one file.
+/// Whether both are the same step of the same file.
 template <class T>
 bool same_table(const T& a, const T& b) {
   const bool same_step = a.steps.step == b.steps.step || std::max(a.steps.times.size(), b.steps.times.size()) < 2;
@@ -59,7 +59,7 @@ void carry_fields(Scene& old, Scene& fresh) {
       load_label_map(source);
       if (source.rendered.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
         source.rendered = before.rendered;
-      // of whose values someone asked before
+      // keep a value sample that was already computed
       if (source.rendered.get() != nullptr && source.rendered.get() == before.rendered.get() && old.cache.has<ValueSample>(f) &&
           !fresh.cache.has<ValueSample>(e))
         fresh.cache.emplace<ValueSample>(e, old.cache.get<ValueSample>(f));
@@ -67,7 +67,7 @@ void carry_fields(Scene& old, Scene& fresh) {
   });
 }
 
-/// Meshes, curves or points.
+/// Transfers loaded meshes, curves or points.
 template <class T, class Same>
 void carry_shapes(Scene& old, Scene& fresh, const Same& is_same) {
   fresh.entities.each<T>([&](Entity, T& source) {
@@ -80,7 +80,7 @@ void carry_shapes(Scene& old, Scene& fresh, const Same& is_same) {
   });
 }
 
-// ---- automatic colours and opacities: functions of the drawn grid and of what is stated besides ----
+// ---- automatic colors and opacities: functions of the rendered grid and of the explicit keys ----
 
 bool states(const json::Node& where, const char* key) { return where.find(key) != nullptr; }
 bool states_colors(const json::Node& where) {
@@ -106,7 +106,7 @@ void carry_transfers(const Scene& old, Scene& fresh) {
   });
 }
 
-// ---- what the rooms keep beside the things ----
+// ---- cached data of the entities ----
 
 bool names_a_file(const json::Node& node) {
   for (const json::Node& item : node.items)
@@ -116,7 +116,7 @@ bool names_a_file(const json::Node& node) {
   return false;
 }
 
-/// Every T of the fresh scene is that of the same name before.
+/// Whether every T of the fresh scene equals the one of the same name in the old scene.
 template <class T, class Same>
 bool all_same(const Scene& old, const Scene& fresh, const Same& is_same) {
   bool same = true;
@@ -127,7 +127,7 @@ bool all_same(const Scene& old, const Scene& fresh, const Same& is_same) {
   return same;
 }
 
-/// A description that is the same means the same.
+/// Whether all sources are the same, so that equal descriptions mean the same data.
 bool same_sources(const Scene& old, const Scene& fresh) {
   const auto same_field = [](const FieldSource& a, const FieldSource& b) {
     return same_source(a, b) && same_drawing(a, b) && a.labels_table == b.labels_table;
@@ -166,7 +166,7 @@ void carry_widgets(const Scene& old, Scene& fresh) {
       if (same_place(before.where, widget.where)) {
         widget.spec.pose = before.spec.pose;
       } else if (!(widget.spec.pose == before.report.pose)) {
-        // set elsewhere than the hand has it
+        // the scene file now places it elsewhere than the user moved it
         widget.spec.revision = before.spec.revision + 1;
         widget.report = {};
         widget.report.pose = widget.spec.pose;
@@ -179,7 +179,7 @@ void carry_widgets(const Scene& old, Scene& fresh) {
   });
 }
 
-/// The steps that are known of what is read from the same pattern or file: those that have come since stay, and no others come.
+/// Transfers the known steps of sources with the same pattern or file: steps found since the first load are kept, none are added.
 void carry_steps(const Scene& old, Scene& fresh) {
   fresh.entities.each<FieldSource>([&](Entity, FieldSource& source) {
     old.entities.each<FieldSource>([&](Entity, const FieldSource& before) {
@@ -217,7 +217,7 @@ void transfer_state(Scene& old, Scene& fresh) {
   carry_shapes<CurvesSource>(old, fresh, same_curves);
   carry_shapes<PointsSource>(old, fresh, same_table<PointsSource>);
   carry_transfers(old, fresh);
-  // before the lines, which hold their curves
+  // before the line sets, which refer to these curves
   for (auto& [key, curve] : old.traced_curves)
     if (curve.use_count() > 1) fresh.traced_curves.emplace(key, curve);
   if (same_sources(old, fresh)) {

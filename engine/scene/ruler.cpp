@@ -13,7 +13,7 @@ namespace {
 using How = RulerMeasure::PathKind;
 constexpr std::size_t kMaxPoints = 4096;
 
-/// What a ruler is measured along: at most one is set.
+/// Object along which a ruler measures; at most one of the pointers is set.
 struct Track {
   flow::CurvePtr curve;
   field::ScalarFieldPtr surface;
@@ -25,14 +25,14 @@ struct Track {
   }
 };
 
-/// What this room keeps beside a ruler.
+/// Cached data of a ruler.
 struct MadeRuler {
   widget::Pose pose;
   Track track;
   RulerMeasure measure;
 };
 
-/// The widget that a link's key names instead of a value; none: it does not.
+/// The widget that a link's key names instead of a value; a null entity if it names none.
 Entity named_widget(const Scene& scene, const json::Node* value) {
   const json::Node* name = value == nullptr ? nullptr : value->find("widget");
   return name == nullptr || name->kind != json::Kind::string ? Entity{} : find_widget(scene, name->string);
@@ -77,7 +77,7 @@ Result<Track> level_track(Scene& scene, const Link& link) {
   return track;
 }
 
-/// A link of the chain by its name, or by that of a part of a ready-made mode (NAME_...).
+/// The link with this name, or the link whose ready-made mode generates it (NAME_...).
 Link link_of(const Scene& scene, const std::string& name) {
   Link found;
   scene.entities.each<Link>([&](Entity, const Link& link) {
@@ -127,7 +127,7 @@ RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const 
   double a = nearest.find(from).s, b = nearest.find(to).s;
   const bool turned = a > b;
   if (turned) std::swap(a, b);
-  // round a closed line the other way, past its first knot
+  // along the other way of a closed curve, past its first knot
   const double whole = curve->period();
   const bool wrapped = curve->is_closed() && b - a > 0.5 * whole;
   if (wrapped) {

@@ -1,8 +1,8 @@
-/// What a ruler measures: the straight way between its ends, or the way along what its "along" names.
-///   streamline   arc length on the link's curve, between its places nearest to the ends; on a closed line the shorter way round
+/// Length measured by a ruler widget: the straight distance between its ends, or the length along a link that its "along" names.
+///   streamline   arc length on the link's curve between the points nearest to the ends; on a closed curve the shorter way
 ///   isosurface   a shortest path on the level set (engine/geometry/geodesics)
 ///   mesh         a shortest path on the mesh (engine/geometry/geodesics)
-/// Which of them a link is, its keys say. Of several the first streamline counts, or else the first surface. World units.
+/// The link's keys determine its kind. Of several links the first streamline is used, else the first surface. World units.
 /// Frame thread, off the tick.
 #pragma once
 #include <string>
@@ -12,31 +12,33 @@
 
 namespace catena::scene {
 
+/// Result of a measurement.
 struct RulerMeasure {
   enum class PathKind { straight, streamline, isosurface, mesh } path_kind = PathKind::straight;
-  std::vector<Vec3> points;  ///< at least two: to draw
-  double length = 0;
-  std::string note;  ///< why it is straight where "along" names something else; else empty
+  std::vector<Vec3> points;  ///< The measured path, at least two points, for rendering
+  double length = 0;         ///< World units
+  std::string note;          ///< Why the path is straight although "along" names links; empty: no such case
 };
 
-/// Of the widget's pose as it is; measured again only when an end, or what it is measured along, has moved.
+/// Measures at the widget's current pose. Cached: measured only if an end, or the object it is measured along, has changed.
 Result<RulerMeasure> resolve_ruler(Scene& scene, Entity ruler);
 
-/// As resolve_ruler measured it last; nullptr: it has not.
+/// Returns the last result of resolve_ruler; nullptr: not measured yet.
 const RulerMeasure* find_ruler_measure(const Scene& scene, Entity ruler);
 
-/// Between the places of the curve nearest to the ends.
+/// Measures along a curve between the points nearest to `from` and `to`.
 RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to);
 
-/// What of the scene a link of the chain lies on. Its keys say it, whatever its type: `seed` with `field` is a streamline, `level` with
-/// `surface` or `field` a level of that field, `mesh` a mesh. A new constraint that has these keys is measured along, follows and is
-/// followed like the others. Pure.
+/// Geometric feature that a link of the chain is on. It follows from the link's keys, whatever its type: `seed` with `field` is a
+/// streamline, `level` with `surface` or `field` is a level of that field, `mesh` is a mesh. Rulers and widgets handle any constraint type
+/// with these keys. Pure functions.
 enum class LinkFeature { none, curve, level, mesh };
 
+/// Returns the feature of a link; `link`: its item of "chain".
 LinkFeature find_link_feature(const json::Node& link);
-/// Which key names the field of the link's level: "surface", or else "field".
+/// Returns the key that names the field of the link's level: "surface" if present, else "field".
 const char* level_field_key(const json::Node& link);
-/// The name of that field; empty: the link lies on no level.
+/// Returns the name of that field; empty: the link is on no level.
 std::string level_field_name(const json::Node& link);
 
 }  // namespace catena::scene

@@ -1,5 +1,5 @@
-/// A scene: the world of entities and the few things there is one of. Read from a scene file or made for a bare data file.
-/// Nothing is loaded before it is asked for: a field is loaded once, and only if something names it.
+/// A scene: entities with components, and the parts that exist once. Read from a scene file or created for a data file without a scene.
+/// Data are loaded on first use only: a field is loaded once, and only if something refers to it.
 #pragma once
 #include <functional>
 #include <map>
@@ -15,98 +15,97 @@
 
 namespace catena::scene {
 
-/// The least size of a number of a scene, but 0: its squares and quotients are numbers, too, of a double and (lengths of the picture) of a
-/// float.
+/// Minimum size of a number in a scene, apart from 0: squares and quotients of such numbers remain normal doubles and, for lengths in the
+/// image, normal floats.
 inline constexpr double kMinSize = 1e-30;
-/// The largest.
+/// Maximum size of a number in a scene.
 inline constexpr double kMaxSize = 1e30;
 
-/// All of a scene. One thread, the frame's; a copy is a scene of its own that shares fields, meshes and curves.
+/// A complete scene. Frame thread only. A copy is an independent scene that shares fields, meshes and curves.
 struct Scene {
-  std::string path;                           ///< the file that it was read from, as it was given
-  std::vector<std::string> referenced_files;  ///< all that its text and the overrides name, as the scene opens them, read so far or not
-  /// About what still reads, but is written in another way now: "FILE:LINE: ..."; of a data file: what it looks like.
+  std::string path;                           ///< Path it was read from, as it was given
+  std::vector<std::string> referenced_files;  ///< All files that the text and the overrides name, as the scene opens them
+  /// Messages: "FILE:LINE: ..." about deprecated keys, problems of the loaded data, and for a data file the classification of its data.
   std::vector<std::string> notes;
-  EntityStore entities;  ///< the entities: fields, what is drawn, links, widgets
-  /// What was made from it, by the same entities: traced lines, sorted values, measured rulers, polylines for the eye. Nothing here is of
-  /// the scene: it can be dropped, and is made again.
+  EntityStore entities;  ///< Fields, visible objects, links, widgets
+  /// Derived data, with the same entities as `entities`: traced lines, sorted values, ruler results, polylines for rendering. Can be
+  /// dropped at any time and is computed again on use.
   EntityStore cache;
-  Coupling coupling;                        ///< how the links make a force
-  Workspace workspace;                      ///< how the hand lies in the world
-  std::optional<json::Node> device;         ///< "device": its keys are read where the device is opened
-  Camera camera;                            ///< the eye
-  Stereo stereo;                            ///< the eyes and screens
-  Background background;                    ///< behind all
-  TimeLine time;                            ///< the step in time
-  Annotations annotations;                  ///< what is written over the picture
-  std::vector<ClipPlane> clip_planes;       ///< what of the world is left out
-  std::optional<bool> jitter;               ///< of rays; not stated: by the quality
-  std::optional<BoundingBox> bounding_box;  ///< none: not drawn
-  std::optional<Axes> axes;                 ///< none: not drawn
-  std::optional<Ground> ground;             ///< none: not drawn
-  std::optional<Fog> fog;                   ///< none: no fog
-  std::vector<Light> lights;                ///< none: a headlight
-  std::string quality;                      ///< draft, balanced, reference, time=MS, error=E; empty: not stated
-  TuningTargets tuning;                     ///< empty: none
-  Entity cursor;                            ///< what the hand holds; has a Cursor
-  double animation_phase = 0;               ///< of what moves along the streamlines; the fraction counts
+  Coupling coupling;                        ///< How the links make a force
+  Workspace workspace;                      ///< Mapping from the device's workspace to the world
+  std::optional<json::Node> device;         ///< Item "device"; its keys are read when the device is opened
+  Camera camera;                            ///< The camera
+  Stereo stereo;                            ///< Stereo mode, eye separation and screens
+  Background background;                    ///< Background of the image
+  TimeLine time;                            ///< Current time step
+  Annotations annotations;                  ///< Text and marks over the image
+  std::vector<ClipPlane> clip_planes;       ///< Planes that cut the scene
+  std::optional<bool> jitter;               ///< Jitter of ray samples; empty: by `quality`
+  std::optional<BoundingBox> bounding_box;  ///< Empty: not rendered
+  std::optional<Axes> axes;                 ///< Empty: not rendered
+  std::optional<Ground> ground;             ///< Empty: not rendered
+  std::optional<Fog> fog;                   ///< Empty: no fog
+  std::vector<Light> lights;                ///< Empty: a headlight
+  std::string quality;                      ///< Image quality: draft, balanced, reference, time=MS or error=E; empty: not specified
+  TuningTargets tuning;                     ///< Without any target: no tuning
+  Entity cursor;                            ///< Entity that has the Cursor component
+  double animation_phase = 0;               ///< Phase of the animated bands of streamlines; only the fractional part is used
 
-  /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object. Those that nothing holds any more are
-  /// dropped as seeds move (lines.h), so that hours of it do not fill the memory.
+  /// Key of a traced curve: field version, flow and seed. Tubes and links share the curves. Curves without another owner are dropped as
+  /// seeds move (drop_unused_curves, streamlines.h), which bounds the memory.
   struct CurveKey {
     std::uint64_t field_version;  ///< Field::version()
-    bool is_line_field;           ///< followed as a line field
-    double min_speed, length;     ///< as in flow::Flow; world units, 0: 10 L
-    std::array<double, 3> seed;   ///< world
+    bool is_line_field;           ///< Line field: v and -v are equivalent
+    double min_speed, length;     ///< As in flow::Flow; world units, 0: 10 L
+    std::array<double, 3> seed;   ///< World
     auto operator<=>(const CurveKey&) const = default;
   };
-  std::map<CurveKey, flow::CurvePtr> traced_curves;  ///< curves that something holds, or held lately
+  std::map<CurveKey, flow::CurvePtr> traced_curves;  ///< Curves in use, or recently used
 };
 
-/// "--field NAME=FILE[:GRID]": replaces the source of a named field, or adds one. Or a program gives the field itself.
+/// Replaces the source of a named field, or adds a field: the option "--field NAME=FILE[:GRID]", or a field that the calling program owns.
 struct FieldOverride {
-  std::string name, file, grid;  ///< the field's name in the scene; the file; its grid, empty: the only one
-  field::AnyField
-      in_memory_field{};  ///< made by the program: `file` and `grid` are not looked at. Not a grid: drawn from samples of its bounds
+  std::string name, file, grid;  ///< Name of the field in the scene; file; grid of the file, empty: the only one
+  /// Field of the calling program; if set, `file` and `grid` are ignored. A field that is no grid is sampled within its bounds for images.
+  field::AnyField in_memory_field{};
 };
 
-/// "error=2,max_tick_us=5": a plan as the command line has it. The error begins with the words.
+/// Parses tuning targets of the command line, such as "error=2,hand_time=5". The Error message starts with the option and `words`.
 Result<TuningTargets> parse_tuning_targets(std::string_view words);
 
-/// Reads and checks the whole file; every error names file, line and what was expected. Does not load fields, but every
-/// file that it names must exist.
+/// Reads and checks a whole scene file. Fields are not loaded, but every file that the scene names must exist. Error: file, line and what
+/// was expected.
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
-Result<Scene> parse_scene(std::string_view text, const std::string& path,
-                          const std::vector<FieldOverride>& overrides =
-                              {});  ///< The same of a text; `path` is where relative names begin, and what messages call it.
-/// A bare data file: its (first usable) scalar grid as the kind of its data is best shown (first_look.h), a vector grid as streamlines,
-/// a triangle mesh as it is, curves in the colours of their directions, points as balls; the camera is fitted to what can be seen. `colors`
-/// may name a colour map and a range: a scalar grid is then a volume whose opacity follows the range, lines show the speed by them. `step`:
-/// in time, at which it is looked at and shown.
+/// Same for a text; relative file names start at the folder of `path`, which also names the text in messages.
+Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
+/// Creates the scene of a data file. Scalar grids are shown by the kind of data (default_visualization.h), vector grids as streamlines,
+/// triangle meshes as they are, curves in the colors of their directions, points as balls; the camera is fitted. `grid`: the grid to show;
+/// empty: the first usable scalar grid, else the first vector grid. `colors` may specify a color map and a range: a scalar grid is then a
+/// volume whose opacity follows the range, and lines are colored by speed. `step`: time step that is analyzed and shown.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {}, int step = 0);
 
-/// The same of a grid that a program gives: the field "field" of the scene. An error where it is no grid, or has no finite value.
+/// Same for a grid of the calling program, which becomes the field "field". Error: it is no grid, or has no finite value.
 Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
 
-/// What such a file looks like at a step in time, and its steps.
+/// Description of a data file at a time step.
 struct FileSummary {
-  std::vector<std::string> lines;  ///< what it looks like, and why, in one sentence; then what of it is not as it was
-  TimeSteps steps;                 ///< of the file, or of the pattern
+  std::vector<std::string> lines;  ///< Classification of the data with its reason, in one sentence; then notes on the loaded data
+  TimeSteps steps;                 ///< Time steps of the file or pattern
 };
-/// Of a file that cannot be shown nothing.
+/// Returns the description; empty for a file that cannot be shown.
 FileSummary summarize_file(const std::string& path, const std::string& grid = {}, int step = 0);
 
-/// What a data file is shown as: by its ending, and where that leaves it open by what it holds: fields before surfaces, lines and points.
-/// Of a pattern: its first file.
+/// How a data file is shown. If the file name extension allows several, the content decides: fields before surfaces, lines and points.
+/// For a pattern its first file counts.
 enum class FileKind { field, mesh, curves, points };
-/// The kind of that file. It is looked into only where its ending leaves it open.
+/// Returns the kind of a file. Opens the file only if its extension allows several kinds.
 FileKind detect_file_kind(const std::string& path);
 
-/// What a scene file may say, part by part (engine/schema): docs/scene.md, the JSON Schema and the reader are made of it. The links of
-/// "chain" and the keys of "device" are described by the rooms that read them.
+/// Returns the sections of the scene file (engine/schema), from which docs/scene.md, the JSON Schema and the reader are made. The modules
+/// that read the links of "chain" and the keys of "device" describe them.
 const std::vector<schema::Section>& scene_components();
 
-/// The entity of that name among those that have a T.
+/// Returns the entity of that name among those that own a T; none: an entity that is false.
 template <class T>
 Entity find_named(const Scene& scene, std::string_view name) {
   Entity found;
@@ -115,48 +114,49 @@ Entity find_named(const Scene& scene, std::string_view name) {
   });
   return found;
 }
-/// The field of that name; none: an entity that is false.
+/// Returns the field of that name; none: an entity that is false.
 inline Entity find_field(const Scene& scene, std::string_view name) { return find_named<FieldSource>(scene, name); }
-/// The mesh of that name; none: an entity that is false.
+/// Returns the mesh of that name; none: an entity that is false.
 inline Entity find_mesh(const Scene& scene, std::string_view name) { return find_named<MeshSource>(scene, name); }
-/// The widget of that name; none: an entity that is false.
+/// Returns the widget of that name; none: an entity that is false.
 inline Entity find_widget(const Scene& scene, std::string_view name) { return find_named<Widget>(scene, name); }
 
-/// Loads on first use. `where` is the place that names the field, for messages.
+/// Returns the field, loading it on first use. `where`: node that names the field, for messages. Error: it cannot be loaded.
 Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::Node& where);
-/// The same by its name.
+/// Same by name; an Error lists the known names.
 Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, const json::Node& where);
-/// The same as a grid that can be drawn (analytic fields are sampled once). Volumes over the field that state no colours or
-/// no opacity get theirs from its histogram.
+/// Returns the field as a grid for images; an analytic field is sampled once. Completes the colors and opacities of volumes over the field
+/// from its histogram (auto_transfer.h). Error: it cannot be loaded or sampled, or is too far from the origin.
 Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const json::Node& where);
-/// Loads on first use: the hand's and the eye's mesh are one object.
+/// Returns the mesh, loading it on first use; rendering and haptics share it.
 Result<mesh::MeshPtr> resolve_mesh(Scene& scene, Entity mesh);
-/// What has been loaded; empty where nothing has asked for it yet.
+/// Returns the field if it is loaded, else an empty one.
 inline const field::AnyField& loaded_field(const Scene& scene, Entity field) { return scene.entities.get<FieldSource>(field).loaded; }
-/// The grid that is drawn; empty where nothing has asked for it yet.
+/// Returns the grid for images if it exists, else an empty one.
 inline const field::AnyField& rendered_field(const Scene& scene, Entity field) { return scene.entities.get<FieldSource>(field).rendered; }
-/// The same by its name.
+/// Returns the mesh of that name, loading it on first use.
 Result<mesh::MeshPtr> resolve_mesh(Scene& scene, const std::string& name, const json::Node& where);
-/// Curves from a file; loaded on first use.
+/// Returns curves from a file, loading them on first use, or the vortex core curves of a field.
 Result<curves::CurveSetPtr> resolve_curves(Scene& scene, Entity curves);
-/// The same by their name.
+/// Same by name.
 Result<curves::CurveSetPtr> resolve_curves(Scene& scene, const std::string& name, const json::Node& where);
-/// The same of points from a table.
+/// Returns points from a table, loading them on first use.
 Result<curves::PointSetPtr> resolve_points(Scene& scene, Entity points);
-/// The same by their name.
+/// Same by name.
 Result<curves::PointSetPtr> resolve_points(Scene& scene, const std::string& name, const json::Node& where);
-/// The one curve of (field, flow, seed, length), while something holds it.
+/// Returns the streamline through a seed; `length`: maximum arc length in each direction, world units, 0: 10 L. While it is in use, all
+/// callers get the same object. Error, at `where`: the seed starts no line.
 Result<flow::CurvePtr> resolve_streamline(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where,
                                           double length = 0);
 
-/// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields,
-/// meshes, curves and points that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's
-/// field is loaded and its value set. `along` is left to the maker of the program, which knows the links. Completed once.
+/// Returns the widget for the haptic program. Sizes that the scene does not specify are set from L, the longest edge of the domain boxes of
+/// all fields, meshes, curves and points that the scene renders or the widget names (if there are none: of the fields that links name;
+/// else 4). Loads the field of an isolevel and sets its value. `along_links` is left to the builder of the program. Computed once.
 Result<widget::Spec> resolve_widget(Scene& scene, Entity widget);
 
-/// Checks that a field that is loaded can have a surface: it is not read by its nearest voxels.
+/// Checks that a loaded field can have isosurfaces. Error: it uses nearest-voxel interpolation.
 Outcome check_surface(const Scene& scene, Entity field, const json::Node& where);
-/// Checks that a level can be drawn and felt: it lies within the field's values.
+/// Checks that a level lies within the field's values, so that it can be rendered and be in haptic contact.
 Outcome check_level(const field::ScalarField& field, double level, const json::Node& where);
 
 }  // namespace catena::scene

@@ -10,8 +10,8 @@
 namespace catena::scene {
 namespace {
 
-/// All parts, in the order in which they are read: fields first, which the others name; widgets name
-/// links; what follows a widget names it; scalar bars name what is drawn.
+/// All sections in reading order, so that every name is defined before it is used: fields first; links before the widgets that name them;
+/// widgets before the objects bound to them; rendered objects before their scalar bars.
 const std::vector<Part>& parts() {
   static const std::vector<Part> all{time_part(),         fields_part(),
                                      chain_part(),        widgets_part(),
@@ -44,7 +44,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
     CATENA_CHECK(json::require_string(root, "$schema"));
   }
   CATENA_CHECK(json::check_known_keys(root, keys));
-  // which fields follow
+  // time first: it selects the step of the fields
   if (const json::Node* time = root.find("time")) CATENA_CHECK(read_time(scene, *time));
   CATENA_CHECK(read_fields(scene, root.find("fields"), overrides));
   for (const Part& part : parts())
@@ -76,7 +76,7 @@ const std::vector<schema::Section>& scene_components() {
 
 namespace {
 
-/// "NAME: /volumes/0/opacity" as the place of every value. RFC 6901.
+/// Sets the location of every value to "NAME: /volumes/0/opacity" (a JSON pointer, RFC 6901).
 void place_by_pointer(json::Node& node, const std::string& name, const std::string& pointer) {
   node.file = std::make_shared<const std::string>(pointer.empty() ? name : name + ": " + pointer);
   node.line = -1;

@@ -1,4 +1,4 @@
-/// A scene that a program holds as an object, as Python's dict, and that lies in no file. Off the tick, any thread.
+/// A scene given as an object in memory, such as a Python dict, instead of a file. Off the tick, any thread.
 #pragma once
 #include <string>
 #include <string_view>
@@ -8,8 +8,8 @@
 
 namespace catena::scene {
 
-/// parse_scene() of the object's JSON text; `name` stands for it. Messages name the place within the object, "NAME: /volumes/0/opacity:
-/// ...", because the text has no lines that anybody could look at.
+/// parse_scene() for the JSON text of the object; `name` stands for its path. Since the text has no lines that a user could look up, errors
+/// give the position by a JSON pointer: "NAME: /volumes/0/opacity: ...".
 Result<Scene> parse_scene_object(std::string_view text, const std::string& name, const std::vector<FieldOverride>& overrides = {});
 
 }  // namespace catena::scene

@@ -1,4 +1,4 @@
-/// What a stereo picture is made of: the words of "stereo": {"mode"} and of `--stereo`.
+/// Stereo rendering: modes (values of "stereo": {"mode"} and of `--stereo`), eyes and screens.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace catena::scene {
 
-/// In the order of the words; a viewer goes through them in this order.
+/// Composition of the eyes' images, in the order of the mode names; a viewer steps through the modes in this order.
 enum class StereoMode {
   mono,
   left,
@@ -25,36 +25,36 @@ enum class StereoMode {
   column_interlaced,
   checkerboard
 };
-inline constexpr int kStereoModeCount = 13;  ///< How many modes there are.
+inline constexpr int kStereoModeCount = 13;  ///< Number of modes
 
-/// "side-by-side" and so on.
+/// Returns the name of a mode: "side-by-side" and so on.
 std::string_view to_string(StereoMode mode);
-/// The mode of that word.
+/// Returns the mode of that name; nullopt: unknown.
 std::optional<StereoMode> parse_stereo_mode(std::string_view word);
-/// "mono, left, .. or checkerboard"
+/// Returns all names, for messages: "mono, left, .. or checkerboard".
 std::string stereo_mode_names();
-/// Whether the mode takes two eyes and no other number.
+/// Returns whether the mode requires exactly two views.
 bool needs_two_views(StereoMode mode);
 
-/// A flat display that shows what lies behind it as a window does. World units.
+/// A flat screen that shows the scene behind it as a window does. World units.
 struct DisplayScreen {
-  std::string name;                                         ///< what --screen calls it
-  Vec3 lower_left{0.0}, lower_right{0.0}, upper_left{0.0};  ///< corners, as one sees them who stands before it
+  std::string name;                                         ///< Name for the option --screen
+  Vec3 lower_left{0.0}, lower_right{0.0}, upper_left{0.0};  ///< Corners, as seen by a viewer in front of the screen
 };
-inline constexpr std::size_t kMaxScreens = 64;  ///< More are refused.
+inline constexpr std::size_t kMaxScreens = 64;  ///< Maximum number of screens; more are an error
 
-/// The eyes of the picture, and the screens that they may look through. Lengths in world units.
+/// Eyes of the image, and the screens through which they can look. Lengths in world units.
 struct Stereo {
-  StereoMode mode = StereoMode::mono;   ///< how the eyes' pictures make one
-  std::optional<double> separation;     ///< of neighbouring eyes; none: a 30th of the zero-parallax distance
-  std::optional<double> zero_parallax;  ///< distance from the eyes to where both see the same; none: to the camera's target
-  int view_count = 2;                   ///< for the modes that take any number
-  bool swap_eyes = false;               ///< the right eye's picture in the left eye's place
-  std::vector<DisplayScreen> screens;   ///< screens that a picture may be of
-  std::optional<std::size_t>
-      screen_index;  ///< which of them the picture is of: the camera's position is the head, beside which the eyes are
+  StereoMode mode = StereoMode::mono;   ///< Composition of the eyes' images
+  std::optional<double> separation;     ///< Distance of neighboring eyes; empty: a 30th of the zero-parallax distance
+  std::optional<double> zero_parallax;  ///< Distance from the eyes at which their images agree; empty: that of the camera's target
+  int view_count = 2;                   ///< Number of views; other than 2 only for modes that allow it
+  bool swap_eyes = false;               ///< Exchanges the images of the left and right eye
+  std::vector<DisplayScreen> screens;   ///< Screens that an image can be rendered for
+  /// Index into `screens`; the camera's position is then the head between the eyes. Empty: no screen.
+  std::optional<std::size_t> screen_index;
 };
-inline constexpr int kMaxStereoViews = 64;            ///< More are refused.
-inline constexpr double kMaxStereoSeparation = 1e15;  ///< world units
+inline constexpr int kMaxStereoViews = 64;            ///< Maximum number of views; more are an error
+inline constexpr double kMaxStereoSeparation = 1e15;  ///< Maximum eye separation, world units
 
 }  // namespace catena::scene

@@ -17,24 +17,24 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kExact = 1e-9;  ///< tolerances up to it: the exact tracer
+constexpr double kExact = 1e-9;  ///< up to this tolerance the exact tracer is used
 constexpr double kPatternTolerance = 1e-7;
-constexpr int kFineLattice = 24;  ///< places an axis, where a formula is not found to flow at fewer
+constexpr int kFineLattice = 24;  ///< seeds along each axis, tried if a coarser grid finds no flow in an analytic field
 constexpr std::uint64_t kMaxKnots = 40'000'000;
 
 using Curves = std::vector<flow::CurvePtr>;
 
-/// What this room keeps beside a StreamlineSet.
+/// Cached lines of a StreamlineSet.
 struct MadeLines {
   std::uint64_t field_version = 0;
   std::vector<Vec3> points;  ///< the seeds, which a widget may move
   Curves curves;
   std::uint64_t version = 0;
   bool released = false;
-  Bounds bounds;  ///< of their knots
+  Bounds bounds;  ///< of all knots
 };
 
-/// Points through the scene's curves; those that are new, over all cores.
+/// Curves through the seeds; curves that are not yet in scene.traced_curves are traced on all cores.
 Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
   const std::vector<Vec3>& points = seeds.points;
   const auto place = [&](std::size_t i) -> const json::Node& { return i < where.items.size() ? where.items[i] : where; };
@@ -65,8 +65,8 @@ Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
   return curves;
 }
 
-/// The curves that leave the box, or end for their length alone, once more, to its end; the others are what a link feels, the same objects.
-/// A seed outside of the box keeps its curve.
+/// Retraces, up to the edge of the box, the curves that leave the box or end only at the maximum length. The others stay the same objects,
+/// which haptic links use. A curve whose seed lies outside of the box is unchanged.
 void end_at_box(Curves& curves, const flow::Flow& bounded) {
   std::vector<Vec3> seeds;
   std::vector<std::size_t> at;
@@ -112,8 +112,8 @@ Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
   return places;
 }
 
-/// Where an evenly spaced set begins if the scene does not say it: the middle of the domain, and a lattice about it; where none of these is
-/// within the flow, as in a hollow domain, the fastest places.
+/// Default start points of an evenly spaced set: the center of the domain and a sampling grid about it; if none of these is in the flow, as
+/// in a hollow domain, the fastest points.
 std::vector<Vec3> default_start(const flow::Flow& flow) {
   const field::Mapping& mapping = flow.field->mapping();
   const field::Box& box = flow.field->index_box();
@@ -147,10 +147,10 @@ field::Box formula_box(const LineRequest& request) {
 }
 
 constexpr std::size_t kFirstBlock = 64, kLargestBlock = 8192;
-constexpr std::size_t kBlockKnots = 400'000;         ///< of lines that are not kept
-constexpr std::size_t kMaxVisited = 10'000'000'000;  ///< knots, none of them kept: hours
+constexpr std::size_t kBlockKnots = 400'000;         ///< of lines that are not cached
+constexpr std::size_t kMaxVisited = 10'000'000'000;  ///< knots of lines that are only visited, not cached: hours of work
 
-/// Seeds whose lines have room if they are as those so far.
+/// Number of seeds whose lines fit into the remaining knots if they are as long as the lines so far.
 std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
   const std::size_t left = most - std::min(most, knots), each = std::max<std::size_t>(1, knots / seeds);
   return std::clamp(left / each, kFirstBlock, kLargestBlock);
@@ -168,8 +168,8 @@ std::string too_many_knots_message(std::size_t seeds, std::size_t done, std::siz
 
 namespace {
 
-/// A formula has no end of its own: evenly spaced lines end at the box of its picture, and so do those of other seeds within it, if no
-/// length was asked for. Places of a pattern outside of it start nothing then, unless all of them are.
+/// Whether lines in an analytic field end at its render box, because such a field has no boundary: evenly spaced lines always do, other
+/// lines if at least one seed is within the box and no length is given. Seeds of a pattern outside of the box then start no lines.
 bool ends_at_box(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request) {
   if (request.flow.field->is_grid()) return false;
   if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) return true;
@@ -177,13 +177,13 @@ bool ends_at_box(const Seeds& seeds, std::span<const Vec3> places, const LineReq
   return request.box && !(request.length > 0) && std::any_of(places.begin(), places.end(), within);
 }
 
-/// KeyMapping over together, where they were asked for block by block.
+/// Passes all curves to `visit` at once, if the request visits its lines in blocks.
 Result<Curves> all_at_once(Curves curves, const LineRequest& request) {
   if (request.visit && !curves.empty()) CATENA_CHECK(request.visit({curves, curves.size(), curves.size()}));
   return curves;
 }
 
-/// The lines of many seeds: a block has as many as the knots that are left allow for.
+/// Traces the lines of many seeds in blocks; the remaining knots determine the size of a block.
 Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request,
                                const flow::BatchOptions& batch, const json::Node& where) {
   const json::Node& place = seeds.pattern ? seeds.pattern->where : where;
@@ -215,7 +215,7 @@ Result<Curves> lines_in_blocks(const Seeds& seeds, std::span<const Vec3> places,
     if (knots > most) return json::error_at(place, too_many_knots_message(places.size(), begin + some.size(), most));
     if (request.visit) {
       CATENA_CHECK(request.visit({std::span(curves).subspan(first), begin + some.size(), places.size()}));
-      // as many as these let expect
+      // cached only as long as the expected total fits
       const double expected = static_cast<double>(knots) * static_cast<double>(places.size()) / static_cast<double>(begin + some.size());
       kept = kept && expected <= static_cast<double>(request.max_cached_knots);
       if (!kept) curves.clear();
@@ -276,7 +276,8 @@ void set_trace_progress(TraceProgress called) { while_tracing = std::move(called
 
 namespace {
 
-/// What is remembered of a set's lines; made anew by `visit`, or to be kept, where a widget or another step has changed them.
+/// The cached lines of a set, traced if a widget or another step has changed them. With `visit` new lines are passed to it in blocks, and
+/// are cached only if they have at most `most_kept` knots.
 Result<MadeLines*> made_lines(Scene& scene, Entity entity, const std::function<Outcome(const LineBlock&)>& visit, std::size_t most_kept) {
   const StreamlineSet& set = scene.entities.get<StreamlineSet>(entity);
   CATENA_TRY(const field::AnyField any, resolve_field(scene, set.field, set.where));

@@ -1,9 +1,9 @@
-/// The lines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced).
-///   points     the exact tracer, through the scene's own curves: a line that a link of the chain feels is the same object
-///   widget     a seed as a point, a rake as a pattern
-///   patterns   the batch tracer (engine/geometry/flow/batch_tracer.h); places of a pattern that start nothing are left out
-///   formulas   their lines end at the box of the field's picture where no length is given and the seed lies in it; evenly spaced always
-///   tolerance  of one step, times L, chooses otherwise: up to 1e-9 the exact tracer, above it the batch tracer
+/// Streamlines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced).
+///   points     exact tracer, with the curves cached in the scene: a link in haptic contact with such a line uses the same object
+///   widget     a seed widget is a point, a rake a pattern
+///   patterns   batch tracer (engine/geometry/flow/batch_tracer.h); seeds of a pattern that start no line are left out
+///   formulas   if no length is given and the seed is inside, lines end at the sampled box of the field; evenly spaced lines always do
+///   tolerance  error per step, relative to L; if specified, up to 1e-9 selects the exact tracer, above it the batch tracer
 /// Frame thread.
 #pragma once
 #include <array>
@@ -16,63 +16,65 @@
 
 namespace catena::scene {
 
-/// The value of "seeds": an array of places, or an object with one pattern. `trace --seeds` reads the same.
+/// Reads the value of "seeds": an array of points, or an object with one pattern or widget. Also used by `trace --seeds`.
 Result<Seeds> read_seeds(const Scene& scene, const json::Node& node);
 
-/// Of all lines of one set together: 40 million, or what the allowed memory (memory_limit.h) holds of them. More are an error, said
-/// before they fill the memory.
+/// Returns the maximum number of knots of all lines of a set together: 40 million, or fewer if the allowed memory (memory_limit.h) holds
+/// fewer. More are an error, reported before they fill the memory.
 std::size_t knot_limit();
 
 /// Some of the lines of a set, in the order of their seeds.
 struct LineBlock {
-  std::span<const flow::CurvePtr> curves;
-  std::size_t seeds_done = 0, seeds_total = 0;  ///< how many seeds are done with these, of how many
+  std::span<const flow::CurvePtr> curves;       ///< The lines
+  std::size_t seeds_done = 0, seeds_total = 0;  ///< Number of seeds processed with this block; number of all seeds
 };
 
+/// What to trace, and how.
 struct LineRequest {
-  flow::Flow flow;
-  double length = 0;     ///< 0: 10 L each direction, and of a formula no farther than `box`
-  double tolerance = 0;  ///< 0: by the seeds' kind
-  double max_step = 0;   ///< the batch tracer's longest, voxels; 0: its default
-  std::size_t max_knots = knot_limit();
-  std::function<void(std::size_t seeds, std::size_t of)> progress{};  ///< told now and then how many seeds of a pattern are done
-  std::optional<std::array<double, 2>> box{};                         ///< of a formula: the cube that its picture shows, world
-  std::function<Outcome(const LineBlock&)> visit{};                   ///< gets the lines as they are made
-  std::size_t max_cached_knots = knot_limit();                        ///< with `visit`: of a set of more knots nothing is returned
+  flow::Flow flow;                       ///< Vector field, line field or not, minimum speed
+  double length = 0;                     ///< Maximum arc length in each direction, world units; 0: 10 L, of a formula at most to `box`
+  double tolerance = 0;                  ///< Error per step, relative to L; 0: by the kind of seeds
+  double max_step = 0;                   ///< Maximum step size of the batch tracer, voxels; 0: its default
+  std::size_t max_knots = knot_limit();  ///< Maximum number of knots of all lines; more are an error; ignored with `visit`
+  /// Progress callback: seeds of a pattern processed so far, number of all seeds.
+  std::function<void(std::size_t seeds, std::size_t of)> progress{};
+  std::optional<std::array<double, 2>> box{};        ///< Formula: cube in which it is sampled for images, [min, max], world
+  std::function<Outcome(const LineBlock&)> visit{};  ///< Receives the lines block by block as they are traced
+  std::size_t max_cached_knots = knot_limit();       ///< With `visit`: a set of more knots is not returned
 };
 
-/// The sentence that says that the lines of so many seeds have more knots together, and what was expected.
+/// Returns the error message for lines of `seeds` seeds that have more than `most` knots together after `done` seeds.
 std::string too_many_knots_message(std::size_t seeds, std::size_t done, std::size_t most);
 
-/// Called now and then while the seeds of a pattern are traced for a set through that field, and once, with 0 of 0, at their end.
-/// Any thread that makes frames.
+/// Progress callback: called repeatedly while the lines of a pattern are traced in the named field, and at the end with seeds = of = 0.
+/// Called on any thread that builds frames.
 using TraceProgress = std::function<void(const std::string& field, std::size_t seeds, std::size_t of)>;
-/// Once, before any set is traced.
+/// Sets the callback. Call before any set is traced.
 void set_trace_progress(TraceProgress called);
 
-/// Every line of the seeds. Points that start nothing are errors at their place in the file; a pattern of which no place
-/// starts a line is one, too. Not those of a widget, which the hand may carry anywhere: what starts nothing is left out.
+/// Traces all lines of the seeds. Error, at the seed's position in the file: a listed point that starts no line, or a pattern of which no
+/// point starts one. Seeds of a widget, which the user can move anywhere, are left out instead.
 Result<std::vector<flow::CurvePtr>> trace_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where);
 
-/// The lines of a streamline set; made once, and again when a widget has moved their seeds.
+/// Returns the lines of a streamline set. Cached; traced again after a widget has moved the seeds or the time step has changed.
 Result<std::vector<flow::CurvePtr>> resolve_lines(Scene& scene, Entity set);
 
-/// Which lines resolve_lines returns: another number with every other set of them; 0: they are not made, or out of date.
+/// Returns the version of the lines that resolve_lines returns, different for each set of lines; 0: not traced, or out of date.
 std::uint64_t lines_version(Scene& scene, Entity set);
-/// The box of the lines as they were made last, released or not; empty before.
+/// Returns the bounds of the lines last traced, whether still cached or not; empty: none traced.
 Bounds lines_bounds(const Scene& scene, Entity set);
 
-/// Knots of a set that are kept for the next who needs its lines: 72 MB.
+/// Maximum number of knots of a set that are cached for further use: 72 MB.
 inline constexpr std::size_t kMaxCachedKnots = 1'000'000;
-/// Hands the lines of a set over block by block, each once, to those who need them once: 1e5 lines are gigabytes. Where the
-/// first let expect more than `max_cached_knots` knots together they are not kept, and resolve_lines would make them again; lines_version
-/// and lines_bounds answer as after resolve_lines.
+/// Passes the lines of a set to `visit` block by block, each line once, for callers that need them only once: 1e5 lines are gigabytes. If
+/// the first blocks predict more than `most_kept` knots, the lines are not cached, and resolve_lines would trace them again; lines_version
+/// and lines_bounds return the same as after resolve_lines.
 Outcome visit_lines(Scene& scene, Entity set, const std::function<Outcome(const LineBlock&)>& visit,
                     std::size_t most_kept = kMaxCachedKnots);
 
-/// Drops the curves that nothing but the scene holds any more (no line that is drawn, no link of a program).
+/// Drops the cached curves that have no other owner (no rendered line, no link of a program).
 void drop_unused_curves(Scene& scene);
-/// Sets of `fresh` with a field, seeds and tracing that one of `old` has take over its lines (document.h, transfer_state).
+/// Hands over the lines of sets in `old` to the sets in `fresh` with the same field, seeds and tracing (transfer_state, document.h).
 void transfer_lines(Scene& old, Scene& fresh);
 
 }  // namespace catena::scene

@@ -9,7 +9,7 @@
 namespace catena::scene {
 namespace {
 
-/// Each mesh, each set of curves and each of points.
+/// Calls `visit` with each mesh, each curve set and each point set.
 template <class S, class Visit>
 void each_shape(S& scene, const Visit& visit) {
   scene.entities.template each<MeshSource>([&](Entity, auto& shape) { visit(shape); });
@@ -23,7 +23,7 @@ int steps_of(const FieldSource& source) {
   return std::max(1, static_cast<int>(step_times(source).size()));
 }
 
-/// The time that each file states; of files that would take long to read the first and the last one's; empty where one states none.
+/// The time stated in each file; for files that would take long to read only in the first and the last one; empty if a file states none.
 std::vector<double> times_of_files(const std::vector<std::string>& files) {
   constexpr std::uint64_t kMostBytes = 64 << 20, kBytesOfStart = 1 << 20;  // starting a reader costs as much as a megabyte
   std::uint64_t bytes = 0;
@@ -82,7 +82,7 @@ std::optional<StepTime> current_step_time(const Scene& scene) {
   std::optional<StepTime> time;
   const auto step = static_cast<std::size_t>(scene.time.step);
   scene.entities.each<FieldSource>([&](Entity, const FieldSource& source) {
-    // a file of a pattern states its own
+    // each file of a pattern states its own time
     const std::span<const double> times = source.series.empty() ? step_times(source) : source.loaded.times;
     const std::size_t at = source.series.empty() ? step : 0;
     if (!time && !source.has_own_step && at < times.size() && step < static_cast<std::size_t>(steps_of(source)))
@@ -97,13 +97,13 @@ std::optional<StepTime> current_step_time(const Scene& scene) {
 std::span<const double> step_times(const FieldSource& source) {
   if (!source.known_times.empty()) return source.known_times;
   const std::span<const double> times(source.loaded.times);
-  return source.follows && times.size() > 1 ? times.first(times.size() - 1) : times;  // the newest may be half written
+  return source.follows && times.size() > 1 ? times.first(times.size() - 1) : times;  // the newest may be incomplete
 }
 
 void request_step_times(FileSteps& steps, const std::string& path) {
   if (!steps.times.empty() || !steps.series.empty()) return;
   steps.times = field::read_times(path);
-  if (steps.follows && steps.times.size() > 1) steps.times.pop_back();  // it may be half written
+  if (steps.follows && steps.times.size() > 1) steps.times.pop_back();  // it may be incomplete
 }
 
 void assign_step(FieldSource& source, int step) {
@@ -143,7 +143,7 @@ bool set_step(Scene& scene, int step) {
     const field::LoadRequest before = *source.file;
     const std::size_t times = step_times(source).size();
     assign_step(source, step);
-    // a file without steps stays as it is
+    // a file without steps stays unchanged
     const bool same = *source.file == before || (source.series.empty() && source.loaded.get() != nullptr && times < 2);
     if (same) return;
     source.loaded = source.rendered = {};

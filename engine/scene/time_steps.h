@@ -1,6 +1,6 @@
-/// Steps in time. A field, a mesh, curves or points whose file has several, or whose "file" is a pattern (the files in the order of the
-/// numbers in their names, engine/base/natural_sort.h), follows the scene's step; a field that states a step of its own does not. Outliers
-/// the last step of one its last one stands. Frame thread.
+/// Time steps. A field, mesh, curves or points whose file has several steps, or whose "file" is a pattern (files in the order of the
+/// numbers in their names, engine/base/natural_sort.h), follows the scene's current step; a field that states its own step does not. Beyond
+/// the last step of a source its last one is used. Frame thread.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -14,39 +14,40 @@
 
 namespace catena::scene {
 
-/// Steps of a data file: of one that is loaded already, or of a mesh, curves or points, which are none.
+/// Returns the time steps of a data file or pattern. `loaded`: the field if it is loaded; empty for meshes, curves and points.
 TimeSteps list_time_steps(const std::string& path, const field::AnyField& loaded);
 
-/// What a request for a file, or for a pattern, reads at a step; beyond the last file of a pattern the last.
+/// Returns the request for one step of a file or pattern; beyond the last file of a pattern, the last file.
 field::LoadRequest request_at(field::LoadRequest request, int step);
-/// The same by the path alone.
+/// Same by the path alone.
 field::LoadRequest request_at(const std::string& path, int step);
 
-/// Of the field with most; 1: nothing changes. Steps within a file are known once it is loaded.
+/// Returns the number of steps of the source with the most; 1: nothing changes. The steps within a file are known after it is loaded.
 int step_count(const Scene& scene);
-/// A step's time, where a file states it.
+/// Time of a step, as stated in a file.
 struct StepTime {
-  double value = 0;
-  std::string unit;  ///< "s", "hours since 2001-01-01"; empty: not stated
+  double value = 0;  ///< Time, in `unit`
+  std::string unit;  ///< Unit of `value`: "s", "hours since 2001-01-01"; empty: not specified
 };
-/// Of the scene's step, once its fields are loaded.
+/// Returns the time of the current step; nullopt: no loaded source states one.
 std::optional<StepTime> current_step_time(const Scene& scene);
-/// "0.25 s"; where no file states a time "step 3"; empty: nothing has steps.
+/// Returns "0.25 s"; "step 3" if no file states a time; empty if there is only one step.
 std::string format_time(const Scene& scene);
-/// A title with `{time}` and `{step}` in it as it is shown: format_time() and the step's number stand for them.
+/// Returns the title with `{time}` replaced by format_time() and `{step}` by the number of the current step.
 std::string substitute_time(std::string title, const Scene& scene);
 
-/// Fields that follow change their source, and what was made of the scene is dropped. Nothing is loaded. False: nothing changes.
+/// Sets the current step: changes the source of what follows it, and drops loaded data and the scene's cache accordingly. Loads nothing.
+/// Returns false if no source has changed.
 bool set_step(Scene& scene, int step);
-/// What the fields that are loaded now will need at that step, so that it can be loaded ahead (engine/io/field_cache.h).
+/// Returns the requests that the loaded fields will need at a step, so that it can be loaded ahead (engine/io/field_cache.h).
 std::vector<field::LoadRequest> prefetch_requests(const Scene& scene, int step);
 
-/// Private to this room: the source of one field at a step, and its times as far as they are known.
+/// Private to this module: sets the source of one field to a step; step_times returns the known times of the steps within its file.
 void assign_step(FieldSource& source, int step);
 std::span<const double> step_times(const FieldSource& source);
-/// Asks for the times of the steps within the file of a mesh, curves or points, once that is loaded.
+/// Reads the times of the steps within the file of a mesh, curves or points, after it is loaded.
 void request_step_times(FileSteps& steps, const std::string& path);
-/// assign_step of a mesh, curves or points. True: another file or step is to be loaded.
+/// Sets a mesh, curves or points to a step. Returns whether another file or step has to be loaded.
 template <class Shape>
 bool assign_step(Shape& shape, int step) {
   FileSteps& steps = shape.steps;

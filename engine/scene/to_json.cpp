@@ -6,7 +6,7 @@
 namespace catena::scene {
 namespace {
 
-/// [a, b, ...] of the texts of the rows.
+/// A JSON array of the rows' texts: [a, b, ...].
 template <class Rows, class Text>
 std::string table_of(const Rows& rows, Text&& text) {
   std::string out = "[";

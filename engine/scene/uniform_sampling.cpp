@@ -6,11 +6,11 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kCornersLost = 4;   ///< a rectangle about a section is at most so many times larger than it
-constexpr double kOnTheEdge = 1e-9;  ///< of a step, or of a voxel: rounding
+constexpr double kCornersLost = 4;   ///< upper bound of the area of the bounding rectangle of a section, relative to the section
+constexpr double kOnTheEdge = 1e-9;  ///< tolerance for rounding, as a fraction of a step or of a voxel
 constexpr double kMostAnAxis = 1 << 24;
 
-/// Where the plane crosses the twelve edges of the domain.
+/// Intersections of the plane with the twelve edges of the domain.
 std::vector<Vec3> section_corners(const Domain& domain, const Vec3& point, const Vec3& normal) {
   const auto corner = [&](int i) { return field::world_corner(domain.mapping, domain.box, i); };
   double most = 0;
@@ -41,7 +41,7 @@ UniformSamples sample_plane(const Domain& domain, const Vec3& point, const Vec3&
   const Vec3 u = direction(along - dot(along, n) * n), v = cross(n, u);
   const Vec3 centre = domain.mapping.world_from_index(0.5 * (domain.box.lo + domain.box.hi)), origin = centre - dot(centre - point, n) * n;
 
-  // the lattice's rows and columns about the section
+  // rows and columns of the sampling grid that cover the section
   double least_u = HUGE_VAL, most_u = -HUGE_VAL, least_v = HUGE_VAL, most_v = -HUGE_VAL;
   for (const Vec3& corner : section_corners(domain, point, n)) {
     const double a = dot(corner - origin, u), b = dot(corner - origin, v);

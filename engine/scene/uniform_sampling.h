@@ -1,12 +1,10 @@
-/// Places that are evenly spaced on a plane, in a box, or on a surface: the same at every call. World coordinates. Off the tick, any
-/// thread.
-///   plane     a triangular lattice, its neighbours one spacing apart, a point of it below the domain's centre and a row of it along the
-///             world's axis that the plane is most nearly parallel to (of equal ones the first)
-///   box       a cubic lattice along the domain's edges, in its middle
-///   surfaces  of places that lie closer than a quarter of the spacing those that are no nearer than it to one chosen before, in an order
-///   by
-///             a hash of where they are: those of a level stay while it moves a little. No two are nearer than the spacing, a neighbour is
-///             within 1.5, and no place of the surface is further from one than 1.1 spacings, as measured
+/// Evenly spaced points on a plane, in a box, or on a surface. World coordinates. Deterministic. Off the tick, any thread.
+///   plane     triangular grid with the spacing between neighbors; one point is the domain's center projected onto the plane, and one
+///             row is along the world axis most nearly parallel to the plane (of several, the first)
+///   box       cubic grid along the domain's edges, centered in it
+///   surfaces  from candidate points closer than a quarter of the spacing: those at least the spacing from all points chosen before, in an
+///             order given by a hash of their cell or triangle, so that the points of a level stay while it moves a little. As measured,
+///             each has a neighbor within 1.5 spacings, and no point of the surface is farther than 1.1 spacings from a chosen one.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -16,23 +14,27 @@
 
 namespace catena::scene {
 
-/// A box that may lie obliquely in the world.
+/// A box that may be rotated and sheared in the world.
 struct Domain {
-  field::Mapping mapping;
-  field::Box box;
+  field::Mapping mapping;  ///< From index to world space
+  field::Box box;          ///< In index space
 };
 
+/// Result of the sampling.
 struct UniformSamples {
-  std::vector<Vec3> positions;
-  double expected_count = 0;  ///< about so many there would be; more than the most allowed: `places` is empty
+  std::vector<Vec3> positions;  ///< World; empty also if there are more than `most`
+  /// Approximate number of points; if it exceeds the maximum allowed, `positions` is empty.
+  double expected_count = 0;
 };
 
+/// Points on the part of a plane, or in the volume, of a domain. `spacing`: world units; `most`: maximum number of points.
 UniformSamples sample_plane(const Domain& domain, const Vec3& point, const Vec3& normal, double spacing, std::size_t most);
 UniformSamples sample_box(const Domain& domain, double spacing, std::size_t most);
 
-/// The level is looked for at the grid's voxels, of which it takes at most 128 an axis: a sheet or a bubble thinner than a 128th of the
-/// domain may be missed in larger grids. Only valid places.
+/// Points on a level set in the field's domain. The level is searched on a grid of the field's voxels, at most 128 cells per axis: in
+/// larger grids a sheet or bubble thinner than a 128th of the domain may be missed. Only points with valid values.
 UniformSamples sample_isosurface(const field::ScalarField& field, double level, double spacing, std::size_t most);
+/// Points on the triangles of a mesh.
 UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::size_t most);
 
 }  // namespace catena::scene

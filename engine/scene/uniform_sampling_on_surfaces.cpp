@@ -11,20 +11,20 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kFineness = 4;       ///< places to choose from are closer than the spacing by so much
-constexpr double kFinest = 4;         ///< places of very small triangles, by step^2 of area
-constexpr double kMostCells = 128;    ///< an axis, where a level is looked for
-constexpr double kCellsByArea = 1.5;  ///< cells that a surface of one cell's face in size meets, on average over its directions
-constexpr double kPacking = 0.65;     ///< places by spacing^2 of area that are left, about
+constexpr double kFineness = 4;       ///< ratio of the spacing to that of the candidates
+constexpr double kFinest = 4;         ///< candidates per step^2 of area, on very small triangles
+constexpr double kMostCells = 128;    ///< along each axis of the grid in which a level is searched
+constexpr double kCellsByArea = 1.5;  ///< cells intersected by a surface with the area of one cell face, averaged over its directions
+constexpr double kPacking = 0.65;     ///< approximate number of samples per spacing^2 of area
 constexpr int kNewtonSteps = 8;
-constexpr double kRoot = 1e-9;  ///< of a cell: how well a place lies on the level
+constexpr double kRoot = 1e-9;  ///< tolerance of a point on the level, as a fraction of a cell
 
 struct Candidate {
   std::uint64_t order;
   Vec3 p;
 };
 
-/// Those that keep their distance, in cubes of one spacing.
+/// The chosen points, which keep a minimum distance; hashed into cubes with edges of one spacing.
 class Chosen {
  public:
   Chosen(const Vec3& origin, double spacing) : origin_(origin), spacing_(spacing) {}
@@ -72,7 +72,7 @@ UniformSamples chosen_of(std::vector<Candidate> candidates, double spacing, std:
   return even;
 }
 
-/// A lattice over the domain with the values at its nodes, and the search of places of a level in its cells.
+/// A sampling grid over the domain with the values at its nodes; finds points of a level in its cells.
 class LevelCells {
  public:
   LevelCells(const field::ScalarField& field, double level, double spacing) : field_(field), level_(level), spacing_(spacing) {
@@ -92,7 +92,7 @@ class LevelCells {
     });
   }
 
-  /// The cells that hold the level.
+  /// The cells that contain the level.
   std::vector<std::array<int, 3>> holders() const {
     std::vector<std::array<int, 3>> cells;
     for (int k = 0; k < count_[2]; ++k)
@@ -102,7 +102,7 @@ class LevelCells {
     return cells;
   }
 
-  /// The area of the level in so many cells, about.
+  /// Approximate area of the level in this number of cells.
   double area(std::size_t cells) const {
     const Vec3 x = edge(0, 1), y = edge(1, 1), z = edge(2, 1);
     const double flat = std::max({norm(cross(x, y)), norm(cross(y, z)), norm(cross(z, x))});
@@ -140,8 +140,8 @@ class LevelCells {
     return lo <= level_ && hi >= level_ && lo < hi;
   }
 
-  /// Halves a cell, across its longest edge, down to the fineness wanted; parts that the level is far from, by the slope in their middle,
-  /// are left out.
+  /// Halves a cell across its longest edge, recursively, down to spacing / kFineness; parts that are far from the level, judged by the
+  /// gradient at their center, are skipped.
   void refine(const Vec3& centre, const Vec3& size, std::uint64_t order, std::vector<Candidate>& candidates) {
     const double lengths[3] = {norm(edge(0, size.x)), norm(edge(1, size.y)), norm(edge(2, size.z))};
     const int longest = static_cast<int>(std::max_element(lengths, lengths + 3) - lengths);
@@ -160,7 +160,7 @@ class LevelCells {
     refine(centre + aside, half, mix_bits(order + 1), candidates);
   }
 
-  /// By Newton's steps along the gradient, no further than `reach`.
+  /// Moves p to the level by Newton steps along the gradient; false if it does not converge within the distance `reach`.
   bool moves_to_level(Vec3& p, double reach) {
     const Vec3 from = p;
     for (int i = 0; i <= kNewtonSteps; ++i) {
@@ -184,7 +184,7 @@ class LevelCells {
   field::Cursor cursor_;
 };
 
-/// Calls place(p) for places of a triangle in rows along its longest edge, closer than `step`.
+/// Calls place(p) for points of a triangle in rows along its longest edge, closer together than `step`.
 template <class Place>
 void each_place(const std::array<Vec3, 3>& corner, double step, Place&& place) {
   std::size_t longest = 0;
@@ -205,7 +205,7 @@ UniformSamples sample_isosurface(const field::ScalarField& field, double level, 
   LevelCells cells(field, level, spacing);
   const auto holders = cells.holders();
   const double wanted = kPacking * cells.area(holders.size()) / (spacing * spacing);
-  // twice: the area is a guess
+  // factor 2, because the area is an estimate
   if (!(wanted <= 2 * static_cast<double>(most) + 1000)) return {{}, wanted};
   std::vector<Candidate> candidates;
   candidates.reserve(holders.size());
@@ -219,7 +219,7 @@ UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::
     const mesh::Triangle& t = mesh.triangles()[f];
     return std::array<Vec3, 3>{mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]]};
   };
-  // as many as area and, of slivers, length ask for
+  // number of candidates: by area and, for slivers, by length
   double wanted = 0;
   for (std::size_t f = 0; f < mesh.triangles().size(); ++f) {
     const auto c = corners(f);
@@ -231,7 +231,7 @@ UniformSamples sample_mesh(const mesh::TriangleMesh& mesh, double spacing, std::
   std::vector<Candidate> candidates;
   for (std::size_t f = 0; f < mesh.triangles().size(); ++f) {
     const auto c = corners(f);
-    // of very small triangles as many as their area asks for, so that what is kept does not grow with the mesh
+    // very small triangles contribute candidates in proportion to their area, so that their number does not grow with the mesh
     const double share = kFinest * 0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / (step * step);
     if (share < 1 && static_cast<double>(mix_bits(f)) > share * 0x1p64) continue;
     std::uint64_t number = 0;

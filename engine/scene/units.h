@@ -1,5 +1,5 @@
-/// The words that go with numbers: "unit": "m/s" of a field, "length_unit": "mm" of the scene. They change no number. Stated in the scene,
-/// else what the data files say (engine/io/volume/units.h). Frame thread.
+/// Unit names shown after numbers: "unit": "m/s" of a field, "unit_length": "mm" of the scene. They do not change any number. If the scene
+/// does not state them, those of the data files are used (engine/io/volume/units.h). Frame thread.
 #pragma once
 #include <string>
 
@@ -7,22 +7,22 @@
 
 namespace catena::scene {
 
-/// Of a field's values, as the scene states it: a component beside FieldSource.
+/// Component beside FieldSource: unit of the field's values, as stated in the scene.
 struct Unit {
-  std::string symbol;
+  std::string symbol;  ///< At most 24 bytes
 };
-/// Of the world's lengths: a component that at most one entity has.
+/// Component of at most one entity: unit of lengths in the world, as stated in the scene.
 struct LengthUnit {
-  std::string symbol;
+  std::string symbol;  ///< At most 24 bytes
 };
 
-/// Empty: nobody says.
+/// Return the unit of a field's values, or of lengths; empty: not specified.
 std::string unit_of(const Scene& scene, Entity field);
 std::string length_unit(const Scene& scene);
-/// "m/s" as " m/s"; empty as empty.
+/// Returns a unit as a suffix: " m/s" for "m/s"; empty for an empty unit.
 std::string unit_suffix(const std::string& unit);
 
-/// "unit" of a field's node.
+/// Reads "unit" of a field's node.
 Outcome read_unit(Scene& scene, Entity field, const json::Node& node);
 
 }  // namespace catena::scene

@@ -1,16 +1,17 @@
-/// "visible": false of volumes, isosurfaces, slices, streamlines, glyphs and meshes: the thing is of the scene, the eye leaves it out. Its
-/// numbers in lists, what follows it and what the hand feels stay as they are. Frame thread.
+/// "visible": false for volumes, isosurfaces, slices, streamlines, glyphs, curves, points and meshes: the object is part of the scene but
+/// not rendered. Its index in lists, objects bound to it, and haptics are unaffected. Frame thread.
 #pragma once
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
 
-/// Beside the component of what is hidden.
+/// Component of an object that is not rendered.
 struct Hidden {};
 
+/// Returns whether the entity is not rendered.
 inline bool is_hidden(const EntityStore& world, Entity e) { return world.has<Hidden>(e); }
 
-/// Reads the key of the item that `e` was read from.
+/// Reads the key "visible" of the item from which `e` was read.
 inline Outcome read_visible(Scene& scene, Entity e, const json::Node& item) {
   CATENA_TRY(const bool visible, json::get_boolean(item, "visible", true));
   if (!visible) scene.entities.emplace<Hidden>(e);

@@ -9,7 +9,7 @@
 namespace catena::scene {
 namespace {
 
-/// Vortex cores as curves, with the swirl at each point. Between two knots so many points that a chord leaves the core by at most kSagitta.
+/// Vortex core lines as curves with the swirl at each point; points are added between knots until the chord error is at most kSagitta.
 Result<curves::CurveSetPtr> curves_of(const flow::VortexCores& cores, const VortexCoreCurves& traced) {
   constexpr double kSagitta = 1e-6;  // of L
   constexpr double kMostParts = 16;

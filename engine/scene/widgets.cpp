@@ -11,7 +11,7 @@ namespace {
 
 using widget::Kind;
 
-// of L
+// fractions of L
 constexpr double kPlaneRadius = 0.12, kHandleRadius = 0.012, kSnap = 0.02, kRelease = 0.05, kPlaneNear = 0.02, kHandleNear = 0.03,
                  kStep = 0.02;
 
@@ -65,7 +65,7 @@ Result<double> length_of(Scene& scene, const Widget& widget) {
   scene.entities.each<PointsSource>([&](Entity e, const PointsSource&) { drawn.add_points(e); });
   CATENA_TRY(const double longest, drawn.length());
   if (longest > 0) return longest;
-  // nothing is drawn: what is felt
+  // nothing is visible: use the haptic objects
   Longest felt(scene);
   scene.entities.each<Link>([&](Entity, const Link& link) {
     if (const json::Node* field = link.node.find("field"); field != nullptr && field->kind == json::Kind::string)
@@ -75,7 +75,7 @@ Result<double> length_of(Scene& scene, const Widget& widget) {
   return of_links > 0 ? of_links : 4;
 }
 
-/// Of a size that is not stated.
+/// Sets a size that is not given.
 void fit(double& size, double fitted) {
   if (!(size > 0)) size = fitted;
 }
@@ -87,7 +87,7 @@ void complete_sizes(widget::Spec& spec) {
   fit(spec.grab_distance, (plane ? kPlaneNear : kHandleNear) * length);
   fit(spec.step, kStep * length);
   if (!plane) return;
-  // where one is stated the other keeps its proportion
+  // if one of the two is given, the other keeps the default ratio to it
   const double snap = spec.snap, release = spec.release;
   fit(spec.snap, release > 0 ? kSnap / kRelease * release : kSnap * length);
   fit(spec.release, snap > 0 ? kRelease / kSnap * snap : kRelease * length);

@@ -1,5 +1,5 @@
-/// The JSON Schema (draft 2020-12) of what keys describe: an editor that is given it checks a scene while it is written, completes its
-/// keys, and shows their sentences.
+/// Documents generated from keys: the JSON Schema (draft 2020-12), with which an editor checks a scene while it is written, completes its
+/// keys and shows their help; the Markdown tables of docs/scene.md; and the output of a `keys` command.
 #pragma once
 #include <string>
 #include <utility>
@@ -10,27 +10,28 @@
 
 namespace catena::schema {
 
-/// Of one value, on one line.
+/// Returns the schema of one value, on one line.
 std::string json_schema(const Key& key);
-/// Of an object with these keys and no others. `more`: members of its "properties" before them, JSON text.
+/// Returns the schema of an object that has these keys and no others. `more`: additional members of its "properties", placed before them,
+/// as JSON text.
 std::string object_schema(const Keys& keys, const std::string& help = {}, const std::string& more = {});
-/// Of a part of the scene.
+/// Returns the schema of one section of the scene.
 std::string json_schema(const Section& component);
-/// Of the whole scene: a document of its own. A scene may name its schema itself, as "$schema".
+/// Returns the schema of the whole scene as a document of its own. A scene may name its schema in its key "$schema".
 std::string json_schema(const std::vector<Section>& components, const std::string& title);
 
 /// The tables of docs/scene.md.
 
-/// What a key takes, in a word or two: "number", "3 numbers", "value or map".
+/// Returns a short name of the value type of a key: "number", "3 numbers", "value or map".
 std::string describe_type(const Key& key);
-/// | key | type | unit | range | default | meaning |, a row a key; of keys with an object, the object's keys are not in it.
+/// Returns a table | key | type | unit | range | default | meaning | with one row per key. The keys of nested objects are not included.
 std::string markdown_table(const Keys& keys);
 
-/// All tables of a component with their names: "volumes", "fields/raw" (a variant), "slices.contours" (an object in it).
+/// Returns all tables of a section with their names: "volumes", "fields/raw" (a variant), "slices.contours" (a nested object).
 std::vector<std::pair<std::string, std::string>> markdown_tables(const Section& component);
 
-/// What `keys` of a command prints: sentence and tables of the part of that name, of all parts where it is empty, with `behind` a table. An
-/// Error: "COMMAND: "x" is no part of WHOLE; one of ... was expected".
+/// Returns the output of the `keys` subcommand of `command`: help and tables of the section `name`, or of all sections when it is empty,
+/// with `behind` appended to each table. Error: "COMMAND: "x" is no part of WHOLE; one of ... was expected".
 Result<std::string> format_keys(const std::vector<Section>& parts, const std::string& name, const std::string& command,
                                 const std::string& whole, const char* behind = "");
 

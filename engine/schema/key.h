@@ -1,11 +1,11 @@
-/// A key of the scene file, stated once: what it takes, its unit, its range, its default, and one sentence for a person. A component of
-/// the scene (a volume, a link of the chain, a light ...) is a list of them. Its reader and writer (table.h), the JSON Schema
-/// (documents.h), the tables of docs/scene.md, the files that a scene names and the window's controls all come from it.
+/// Key of the scene file, described in a single place: value type, unit, range, default, and one sentence of help. A section of the scene
+/// (a volume, a link of the chain, a light ...) is a list of keys. Its reader and writer (struct_schema.h), the JSON Schema and the tables
+/// of docs/scene.md (documents.h), the list of files that a scene names, and the controls of the window are all generated from it.
 ///
 ///   schema::number("radius", "world", "Its radius.").positive().required()
-///   schema::word("shading", {"flat", "smooth"}, "How it is lit.")
+///   schema::choice("shading", {"flat", "smooth"}, "How it is lit.")
 ///
-/// Made at start-up, read from any thread.
+/// Keys are made at program start and read from any thread.
 #pragma once
 #include <memory>
 #include <optional>
@@ -15,111 +15,112 @@
 
 namespace catena::schema {
 
-/// The shape of a value.
+/// Type of a value.
 enum class ValueType {
   number,
   integer,
   boolean,
   text,
-  choice,    ///< one of `words`
+  choice,    ///< one of `options`
   vector,    ///< `count` numbers: [x, y, z], a quaternion, an interval
   color,     ///< [r, g, b], display (sRGB) components from 0 to 1
-  numbers,   ///< a list of any length
-  texts,     ///< a list of strings, of names for instance
-  points,    ///< a list of [x, y, z]
-  table,     ///< rows of `count` numbers, the first of each rising
+  numbers,   ///< list of numbers of any length
+  texts,     ///< list of strings, for example of names
+  points,    ///< list of [x, y, z]
+  table,     ///< rows of `count` numbers; the first number increases from row to row
   rotation,  ///< three rows, nine numbers, or {"axis", "angle_deg"}
-  null,      ///< null
-  object,    ///< `inner`
-  any_of,    ///< one of `choices`, which have no names
+  null,      ///< the literal null
+  object,    ///< object with the keys `members`
+  any_of,    ///< one of `alternatives`, which have no names
 };
 
-/// What of the scene a value names or stands for.
+/// Kind of scene item that a value names or stands for; none: an ordinary value.
 enum class Role { none, scalar_field, vector_field, any_field, mesh, curves, points, widget, level, file };
 
 /// Bounds of a number, or of each number of a vector. An open bound does not belong to the range.
 struct Limits {
-  std::optional<double> lo, hi;           ///< least and greatest number; none: no bound
-  bool lo_open = false, hi_open = false;  ///< the bound itself does not belong to it
-  /// Whether a number lies within them.
+  std::optional<double> lo, hi;           ///< lower and upper bound; nullopt: unbounded
+  bool lo_open = false, hi_open = false;  ///< true: the bound itself is excluded
+  /// Returns true when a number is in the range.
   bool contains(double x) const;
-  /// "> 0", "0 to 1", "at most 8"; empty: any.
+  /// Returns the range as text: "> 0", "0 to 1", "at most 8"; empty: unbounded.
   std::string to_string() const;
 };
 
-/// One key. Plain data: the functions below make it, and its own functions return a changed copy.
+/// Description of one key. Plain data: the functions below create it; its member functions return a changed copy.
 struct Key {
-  std::string name;                          ///< as the file has it
-  ValueType value_type = ValueType::number;  ///< the shape of its value
-  std::string unit;                          ///< "world" (world units), "value" (of the field), "N/m" ...
+  std::string name;                          ///< name in the file
+  ValueType value_type = ValueType::number;  ///< type of the value
+  std::string unit;                          ///< "world" (world units), "value" (unit of the field), "N/m" ...
   std::string help;                          ///< one sentence
-  std::string range_text = {};               ///< in words, where the limits do not say it: "rising", "not 0"
-  std::string default_text = {};             ///< the default in words; JSON text where it is a value
-  Limits limits = {};                        ///< of a number, or of each of several
-  int count = 0;                             ///< of a vector's numbers, of a row's
-  int min_size = 0;                          ///< items of a list
-  int max_size = 0;                          ///< items of a list, bytes of a text; 0: any number
-  Role role = Role::none;                    ///< what of the scene it names
-  bool is_required = false;                  ///< the file must have it
-  bool is_recommended = false;               ///< a new component states it though it need not: without it the component means little
-  /// How a new one begins in the window: JSON text, "0.1 L" (a share of the length of all that is there), "hand" (a place where the hand
-  /// is) or "hand + 0.1 L"; empty: places begin at the hand, lengths with 0.02 L, words with the first one.
+  std::string range_text = {};               ///< range in words, where the limits do not express it: "rising", "not 0"
+  std::string default_text = {};             ///< default in words, or JSON text when it is a value
+  Limits limits = {};                        ///< limits of a number, or of each of several
+  int count = 0;                             ///< number of numbers in a vector, or in a row of a table
+  int min_size = 0;                          ///< minimum number of items of a list
+  int max_size = 0;                          ///< maximum number of items of a list, or bytes of a text; 0: unlimited
+  Role role = Role::none;                    ///< kind of scene item that the value names
+  bool is_required = false;                  ///< the key must be present in the file
+  /// An optional key that new items nevertheless include, because without it they have little effect.
+  bool is_recommended = false;
+  /// Initial value for a new item in the window: JSON text, "0.1 L" (a fraction of L, the length of the whole scene), "hand" (position of
+  /// the probe) or "hand + 0.1 L". Empty: positions start at the probe, lengths at 0.02 L, choices with the first option.
   std::string initial_value = {};
-  bool is_identifier = false;                            ///< [a-z][a-z0-9_]*
-  bool has_default = true;                               ///< what is left out means `fallback`
-  bool accepts_field_map = false;                        ///< a number that may be an object {"field", "map", ...} instead
-  bool accepts_widget = false;                           ///< or {"widget": NAME}
-  std::vector<std::string> options = {};                 ///< of Form::word
-  std::vector<Key> alternatives = {};                    ///< any_of
-  std::shared_ptr<const std::vector<Key>> members = {};  ///< object
+  bool is_identifier = false;                            ///< the text must match [a-z][a-z0-9_]*
+  bool has_default = true;                               ///< an absent key means the default of the struct
+  bool accepts_field_map = false;                        ///< a number that may be replaced by an object {"field", "map", ...}
+  bool accepts_widget = false;                           ///< the value may be replaced by {"widget": NAME}
+  std::vector<std::string> options = {};                 ///< names allowed for ValueType::choice
+  std::vector<Key> alternatives = {};                    ///< allowed types for ValueType::any_of
+  std::shared_ptr<const std::vector<Key>> members = {};  ///< keys for ValueType::object
 
-  /// A copy: the file must have the key.
+  /// Returns a copy that must be present in the file.
   Key required() const {
     return with([](Key& k) { k.is_required = true; });
   }
-  /// A copy: new components state the key.
+  /// Returns a copy that new items include.
   Key recommended() const {
     return with([](Key& k) { k.is_recommended = true; });
   }
-  /// A copy: more than 0.
+  /// Returns a copy whose number must be > 0.
   Key positive() const { return with_limits({0.0, {}, true}); }
-  /// A copy: 0 or more.
+  /// Returns a copy whose number must be >= 0.
   Key non_negative() const { return with_limits({0.0, {}}); }
-  /// A copy: from lo to hi, both included.
+  /// Returns a copy whose number must be from lo to hi, both included.
   Key within(double lo, double hi) const { return with_limits({lo, hi}); }
-  /// A copy with these limits.
+  /// Returns a copy with these limits.
   Key with_limits(const Limits& l) const {
     return with([&](Key& k) { k.limits = l; });
   }
-  /// The range in words.
+  /// Returns a copy with the range in words.
   Key with_range_text(const std::string& text) const {
     return with([&](Key& k) { k.range_text = text; });
   }
-  /// Left out it means something else than its value at the start.
+  /// Returns a copy whose absence means something other than the default of the struct.
   Key without_default() const {
     return with([](Key& k) { k.has_default = false; });
   }
-  /// The default, in words or as JSON text.
+  /// Returns a copy with the default in words or as JSON text.
   Key with_default(const std::string& text) const {
     return with([&](Key& k) { k.default_text = text; });
   }
-  /// A copy that begins like this in the window.
+  /// Returns a copy with the initial value for a new item in the window.
   Key with_initial_value(const std::string& text) const {
     return with([&](Key& k) { k.initial_value = text; });
   }
-  /// A copy that names such a thing of the scene.
+  /// Returns a copy that names a scene item of this kind.
   Key with_role(Role r) const {
     return with([&](Key& k) { k.role = r; });
   }
-  /// A copy that takes from lo to hi items; hi 0: any number.
+  /// Returns a copy that has from lo to hi items; hi 0: unlimited.
   Key with_size(int lo, int hi) const {
     return with([&](Key& k) { k.min_size = lo, k.max_size = hi; });
   }
-  /// A copy that may be an object which follows a field.
+  /// Returns a copy that may be replaced by an object that maps a field to the number.
   Key or_field() const {
     return with([](Key& k) { k.accepts_field_map = true; });
   }
-  /// A copy that may name a widget.
+  /// Returns a copy that may be replaced by the name of a widget.
   Key or_widget() const {
     return with([](Key& k) { k.accepts_widget = true; });
   }
@@ -133,92 +134,93 @@ struct Key {
   }
 };
 
-/// Keys in the order of the documents.
+/// Keys in the order in which the documents list them.
 using Keys = std::vector<Key>;
 
-/// A number with a unit; "" has none.
+/// Makes a key for a number; `unit` "" means none.
 Key number(const std::string& name, const std::string& unit, const std::string& help);
-/// A whole number from `least` to `most`.
+/// Makes a key for an integer from `least` to `most`.
 Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
-/// True or false.
+/// Makes a key for true or false.
 Key boolean(const std::string& name, const std::string& help);
-/// Any text.
+/// Makes a key for any text.
 Key text(const std::string& name, const std::string& help);
-/// A name that others may use: [a-z][a-z0-9_]*.
+/// Makes a key for a name that other keys may refer to: [a-z][a-z0-9_]*.
 Key identifier(const std::string& name, const std::string& help);
-/// One of `words`.
+/// Makes a key for one of `words`.
 Key choice(const std::string& name, std::vector<std::string> words, const std::string& help);
-/// Three numbers.
+/// Makes a key for three numbers.
 Key vec3(const std::string& name, const std::string& unit, const std::string& help);
-/// An arrow of any length but 0.
+/// Makes a key for a vector of any length except 0.
 Key direction(const std::string& name, const std::string& help);
-/// `count` numbers.
+/// Makes a key for `count` numbers.
 Key vector(const std::string& name, int count, const std::string& unit, const std::string& help);
-/// [r, g, b], 0 to 1.
+/// Makes a key for a color [r, g, b], 0 to 1.
 Key color(const std::string& name, const std::string& help);
-/// A list of numbers of any length.
+/// Makes a key for a list of numbers of any length.
 Key numbers(const std::string& name, const std::string& unit, const std::string& help);
-/// A list of texts.
+/// Makes a key for a list of strings.
 Key texts(const std::string& name, const std::string& help);
-/// A list of [x, y, z].
+/// Makes a key for a list of at least one [x, y, z].
 Key points(const std::string& name, const std::string& unit, const std::string& help);
-/// A list of rows of `width` numbers.
+/// Makes a key for a list of at least one row of `width` numbers.
 Key table(const std::string& name, int width, const std::string& unit, const std::string& help);
-/// A rotation, as json::as_rotation reads it.
+/// Makes a key for a rotation in a form that json::as_rotation reads.
 Key rotation(const std::string& name, const std::string& help);
-/// The word null, as one of several choices.
+/// Makes the literal null, as one of several alternatives.
 Key null();
-/// An object with keys of its own.
+/// Makes a key for an object with keys of its own.
 Key object(const std::string& name, Keys inner, const std::string& help);
-/// Several forms in one key; the first is the usual one.
+/// Makes a key that accepts several types; the first of `choices` is the usual one.
 Key any_of(const std::string& name, Keys choices, const std::string& help);
-/// The name of a field, a mesh, curves, points, a widget.
+/// Makes a key for the name of a field, mesh, curves, points or widget.
 Key reference(const std::string& name, Role role, const std::string& help);
-/// A file's name, relative to the scene's file.
+/// Makes a key for a file name, relative to the folder of the scene file.
 Key file(const std::string& name, const std::string& help);
-/// How the core lines of vortices are traced (engine/geometry/flow/vortex_cores.h).
+/// Key for the criterion by which vortex core lines are found (engine/geometry/flow/vortex_cores.h).
 Key core_criterion_key();
-/// The least length of a core line.
+/// Key for the minimum length of a core line.
 Key core_length_key();
-/// Its least swirl, of the strongest one's.
+/// Key for the minimum mean swirl of a core line, relative to that of the strongest one.
 Key core_swirl_key();
-/// "kind" of a vector field: vectors, or lines without a direction.
+/// Key "kind" of a vector field: vectors, or lines without a direction.
 Key line_kind_key();
 
-/// The key of that name; null: none.
+/// Returns the key with a name; null: there is none.
 const Key* find(const Keys& keys, std::string_view name);
-/// `first`, then `second`.
+/// Returns the keys of `first`, followed by those of `second`.
 Keys concatenate(Keys first, const Keys& second);
-/// The names of the keys, for json::check_known_keys.
+/// Returns the names of the keys, for json::check_known_keys.
 std::vector<std::string_view> key_names(const Keys& keys);
-/// Of both, in order.
+/// Returns the names of both lists in order.
 std::vector<std::string_view> key_names(const Keys& first, const Keys& second);
-/// The words of a choice as json::get_choice takes them.
+/// Returns the options of a choice, for json::get_choice.
 std::vector<std::string_view> option_names(const Key& key);
 
-/// What an item of a component may be: a streamline among links, a raw file among fields.
+/// One of several kinds of items of a section: a streamline among links, a raw file among fields.
 struct Variant {
-  std::string name;  ///< its word: of "type", or of the key that tells it from the others
+  /// Name: the value of "type", or the key whose presence distinguishes it from the others.
+  std::string name;
   std::string help;  ///< one or two sentences
-  Keys keys = {};    ///< beside the component's own
+  Keys keys = {};    ///< keys in addition to those of the section
 };
 
-/// A part of the scene file: what stands at one of its top-level keys.
+/// Section of the scene file: the value at one of its top-level keys.
 struct Section {
-  /// What stands at the key.
+  /// Form of the value.
   enum class Layout {
-    object,
+    object,  ///< one object
     list,    ///< an array of objects
-    map,     ///< names -> objects
+    map,     ///< an object of named objects: names -> objects
     on_off,  ///< true, false, or an object
-    value    ///< `keys` has one key: the part itself
+    value    ///< a single value, described by the only key in `keys`
   };
-  std::string name;                ///< "isosurfaces"
+  std::string name;                ///< top-level key: "isosurfaces"
   std::string help;                ///< one or two sentences
-  Layout layout = Layout::object;  ///< what stands at its key
-  Keys keys = {};                  ///< of the object, or of each item
-  int max_items = 0;               ///< items of a list; 0: any number
-  /// Empty, or each item is one of these; told by "type" where `keys` has that.
+  Layout layout = Layout::object;  ///< form of the value
+  Keys keys = {};                  ///< keys of the object, or of each item
+  int max_items = 0;               ///< maximum number of items of a list; 0: unlimited
+  /// Kinds of items; empty: all items are alike. "type" selects one where `keys` contains that key.
   std::vector<Variant> variants = {};
 };
 

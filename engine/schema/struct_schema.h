@@ -1,8 +1,9 @@
-/// The keys of one struct and where their values go: from a table come its reader and its writer. C is what reading needs besides (the
-/// scene). A key is bound to a member, or to what a function makes of the struct, and then read and written without more; or it is read by
-/// hand. What keys must say together are checks, made after all keys have been read.
+/// Keys of one struct with the members that store their values: generates the struct's reader and writer. T is the struct, C the context
+/// that reading needs in addition (the scene). A key is bound to a member, or to a reference that a function returns for the struct, and is
+/// then read and written automatically; or it has a custom reader. Conditions on several keys are checks, which run after all keys have
+/// been read.
 ///
-///   Table<Light, Scene>()
+///   StructSchema<Light, Scene>()
 ///       .bind(direction("direction", "Towards the light.").required(), &Light::direction)
 ///       .bind(number("intensity", "", "Its strength.").non_negative(), &Light::intensity)
 #pragma once
@@ -18,16 +19,19 @@ namespace catena::schema {
 /// Keys with their values as JSON text.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
+/// Schema of a struct T. Built at program start, then read-only: any thread.
 template <class T, class C>
 class StructSchema {
  public:
+  /// Reads one or several keys of `object` into T.
   using Read = std::function<Outcome(C&, const json::Node& object, T&)>;
-  /// The value as JSON text; empty: the key is not written.
+  /// Returns the value of a key as JSON text; empty: the key is not written.
   using Write = std::function<std::string(const C&, const T&)>;
+  /// Returns several keys with their values.
   using WriteMany = std::function<Members(const C&, const T&)>;
 
-  /// `access`: a pointer to a member, or a function from (const) T& to a reference. Its default is that of a T, where the key has no words
-  /// for it.
+  /// Binds a key. `access`: a pointer to a member, or a function from (const) T& to a reference. When the key states no default, its
+  /// default is the value in a default-constructed T.
   template <class Access>
   StructSchema& bind(Key key, Access access) {
     const T made{};
@@ -43,19 +47,19 @@ class StructSchema {
     return *this;
   }
 
-  /// Read by `read`, which is called whether the key is there or not; written by `write`, if at all.
+  /// Adds a key with a custom reader and an optional writer. `read` is called whether or not the key is present.
   StructSchema& custom(Key key, Read read, Write write = {}) {
     rows_.push_back({std::move(read), std::move(write)});
     keys_.push_back(std::move(key));
     return *this;
   }
-  /// Read together with another key.
+  /// Adds a key that is read together with another key.
   StructSchema& companion(Key key, Write write = {}) {
     rows_.push_back({{}, std::move(write)});
     keys_.push_back(std::move(key));
     return *this;
   }
-  /// Keys that `read` reads together; the first one's place in the table is where that happens.
+  /// Adds keys that `read` reads together, at the position of the first of them in the table.
   StructSchema& group(const Keys& keys, Read read, WriteMany write = {}) {
     for (const Key& key : keys) {
       rows_.push_back({std::exchange(read, {}), {}, std::exchange(write, {})});
@@ -63,19 +67,21 @@ class StructSchema {
     }
     return *this;
   }
-  /// A key that scenes had once: it is read, but no longer told of.
+  /// Adds a deprecated key: it is accepted when reading, but not documented or written.
   StructSchema& deprecated(const std::string& key) {
     deprecated_.push_back(key);
     return *this;
   }
+  /// Adds a check that runs after all keys have been read.
   StructSchema& check(Read check) {
     checks_.push_back(std::move(check));
     return *this;
   }
 
+  /// Returns the keys in the order in which they were added.
   const Keys& keys() const { return keys_; }
 
-  /// Every key of the object is known and within its range.
+  /// Reads all keys of the object. Error: a key is unknown, or a value is missing, of the wrong type or out of range.
   Outcome read(C& context, const json::Node& object, T& out) const {
     std::vector<std::string_view> names = key_names(keys_);
     for (const std::string& key : deprecated_)
@@ -83,14 +89,14 @@ class StructSchema {
     CATENA_CHECK(json::check_known_keys(object, names));
     return read_own_keys(context, object, out);
   }
-  /// Of an object that has other keys, too, which another table knows.
+  /// Like read(), for an object that also has keys of another schema: unknown keys are not reported.
   Outcome read_own_keys(C& context, const json::Node& object, T& out) const {
     for (const Row& row : rows_)
       if (row.read) CATENA_CHECK(row.read(context, object, out));
     for (const Read& check : checks_) CATENA_CHECK(check(context, object, out));
     return Done{};
   }
-  /// A JSON object on one line with what must be stated and what differs from the default.
+  /// Returns a JSON object on one line with the required keys and those that differ from their defaults.
   std::string write(const C& context, const T& in) const {
     std::string text;
     const auto add = [&](const std::string& key, const std::string& value) {
@@ -105,12 +111,14 @@ class StructSchema {
   }
 
  private:
+  /// Reader and writer of one key.
   struct Row {
     Read read;
     Write write;
     WriteMany write_many = {};
   };
 
+  /// Returns a value as JSON text; a choice by its name.
   template <class V>
   static std::string to_json_text(const Key& key, const V& value) {
     if (key.value_type == ValueType::choice)

@@ -1,5 +1,7 @@
-/// A key's value as C++ sees it: read_value checks it by the key's own range and words, write_value makes the JSON text that reads back the
-/// same. One pair a type. A key that is absent leaves the value as it is, unless it is required.
+/// Conversion between JSON and C++ values of a key: read_value checks a value against the range and options of its key, write_value returns
+/// JSON text that reads back to the same value. One pair of functions per type.
+/// An absent key leaves `out` unchanged. An absent required key is an Error for double, text, Vec3, Color and choices; int and bool do not
+/// check it; for rotations and lists (Mat3, array, vector) the caller must make sure that a required key is present.
 #pragma once
 #include <array>
 #include <optional>
@@ -15,7 +17,8 @@ namespace catena::schema {
 
 Outcome read_value(const Key& key, const json::Node& object, double& out);
 Outcome read_value(const Key& key, const json::Node& object, int& out);
-Outcome read_value(const Key& key, const json::Node& object, bool& out);  ///< or the first (false) and the second of two words
+/// Reads a boolean; for a choice, the first of two options is false and the second true.
+Outcome read_value(const Key& key, const json::Node& object, bool& out);
 Outcome read_value(const Key& key, const json::Node& object, std::string& out);
 Outcome read_value(const Key& key, const json::Node& object, Vec3& out);
 Outcome read_value(const Key& key, const json::Node& object, Mat3& out);
@@ -23,9 +26,9 @@ Outcome read_value(const Key& key, const json::Node& object, std::array<std::str
 Outcome read_value(const Key& key, const json::Node& object, std::vector<double>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out);
 Outcome read_value(const Key& key, const json::Node& object, Color& out);
-/// A list of [x, y, z], at least one.
+/// Reads a list of at least one [x, y, z].
 Outcome read_points(const json::Node& node, std::string_view what, std::vector<Vec3>& out);
-/// The index of a word.
+/// Reads the index of an option of a choice.
 Outcome read_choice(const Key& key, const json::Node& object, int& out);
 
 std::string write_value(double value);
@@ -39,12 +42,13 @@ std::string write_value(const std::array<std::string, 3>& value);
 std::string write_value(const std::vector<double>& value);
 std::string write_value(const std::vector<std::string>& value);
 std::string write_value(const std::vector<Vec3>& value);
-std::string write_value(const Color& value);  ///< components, which are floats, in the fewest digits that give the same float
+/// Writes the components, which are floats, with the fewest digits that give the same float.
+std::string write_value(const Color& value);
 
-/// Three numbers from 0 to 1 as a colour.
+/// Converts three numbers from 0 to 1 to a color.
 Result<Color> as_color(const Vec3& components, const json::Node& node, std::string_view what);
 
-/// An enum: its words in their order.
+/// Reads an enum: the index of the option is the value of the enumerator.
 template <class E>
 requires std::is_enum_v<E> Outcome read_value(const Key& key, const json::Node& object, E& out) {
   int index = static_cast<int>(out);
@@ -53,6 +57,7 @@ requires std::is_enum_v<E> Outcome read_value(const Key& key, const json::Node& 
   return Done{};
 }
 
+/// Reads an optional value; an absent key leaves it unchanged.
 template <class T>
 Outcome read_value(const Key& key, const json::Node& object, std::optional<T>& out) {
   if (object.find(key.name) == nullptr && !key.is_required) return Done{};

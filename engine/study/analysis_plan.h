@@ -1,13 +1,14 @@
-/// What the data of a study are asked: "compare", pairs of tasks, and "findings", sentences of a paper, each with the test that would bear
-/// it out. Read from the study file; errors are FILE:LINE: what; what was expected.
-///   difference   every condition named against the baseline, paired over subjects, in every task named
-///   intervals    the intervals of the means of the same, apart from the baseline's or overlapping it
-///   tasks        the first of two tasks against the second, paired over subjects, in every condition named; a pair of "compare"
-///   correlation  of error and time over subjects, in every task and condition named
-///   weaker       that correlation, nearer 0 in every condition named than in the baseline
+/// The analysis plan of a study: the task pairs to compare ("compare") and the paper's claims ("findings"), each with the test that would
+/// support it. Read from the study file. Errors have the form "FILE:LINE: what; what was expected".
+/// The kinds of test:
+///   difference   every listed condition against the baseline, paired over subjects, in every listed task
+///   intervals    whether the confidence interval of every listed condition's mean is apart from the baseline's or overlaps it
+///   tasks        the first of two tasks against the second, paired over subjects, in every listed condition; the pair must be in "compare"
+///   correlation  correlation of error and time over subjects, in every listed task and condition
+///   weaker       that correlation is closer to 0 in every listed condition than in the baseline
 ///   largest      the gain over the baseline, in one task against every other task
-///   rejections   the share of trials that were left out, beside `rejected` of `trials`
-///   none         these data cannot say; `why`
+///   rejections   the fraction of rejected trials, compared with `rejected` of `trials`
+///   none         these data cannot test the claim; `why` gives the reason
 #pragma once
 #include <array>
 
@@ -15,34 +16,44 @@
 
 namespace catena::study {
 
+/// Measured quantity of a trial.
 enum class Measure { error, time };
+/// Kind of test; the list above describes each.
 enum class TestKind { difference, intervals, tasks, correlation, weaker, largest, rejections, none };
+/// Alternative hypothesis of a test. from_test: the test's default, or none where the test has no choice.
 enum class Alternative { from_test, lower, higher, apart, overlap, negative, positive };
+/// The key of the study file: "difference", "intervals", ...
 const char* to_string(TestKind asks);
+/// The value in the study file: "lower", "higher", ...; "by_test" for from_test.
 const char* to_string(Alternative expect);
 
+/// One claim of a paper with its test.
 struct Finding {
-  std::string claim;     ///< the sentence
-  std::string reported;  ///< its numbers, as it prints them
+  std::string claim;     ///< The claim, a sentence
+  std::string reported;  ///< The claim's numbers as the paper prints them
   TestKind test = TestKind::none;
   Measure measure = Measure::error;
-  bool uses_deviations = false;                      ///< a subject's standard deviation over its trials, instead of its mean
-  std::vector<int> tasks;                            ///< indices
-  std::vector<int> conditions;                       ///< indices; of `difference`, `intervals`, `weaker` and `largest` never the baseline
-  Alternative alternative = Alternative::from_test;  ///< once read, one of the others where the test has a choice
-  int rejected = 0, trials = 0;                      ///< of `rejections`
-  std::string why;                                   ///< of `none`
+  bool uses_deviations = false;  ///< `difference`: compares the subjects' standard deviations over their trials instead of their means
+  std::vector<int> tasks;        ///< Indices of tasks
+  /// Indices of conditions; without the baseline (index 0) except in `tasks` and `correlation`
+  std::vector<int> conditions;
+  Alternative alternative = Alternative::from_test;  ///< After reading, from_test only where the test has no choice
+  int rejected = 0, trials = 0;                      ///< `rejections`: counts that the paper reports
+  std::string why;                                   ///< `none`: why these data cannot test the claim
+  /// Source location in the study file, for messages.
   json::Node where;
 };
 
+/// The comparisons and findings of one study.
 struct AnalysisPlan {
-  std::vector<std::array<int, 2>> pairs;  ///< of tasks
+  std::vector<std::array<int, 2>> pairs;  ///< Pairs of task indices; differences are first - second
   std::vector<Finding> findings;
 };
 
+/// Reads "compare" and "findings" of a study. Error: unknown names or keys, or a test without the values that it needs.
 Result<AnalysisPlan> read_analysis_plan(const Study& study);
 
-/// Their keys, for the study file's schema and docs/study.md.
+/// The keys of "compare" and "findings", for the study file's schema and docs/study.md.
 std::vector<schema::Section> analysis_plan_components();
 
 }  // namespace catena::study

@@ -1,6 +1,6 @@
-/// The answers to a study's questionnaire: DIR/questionnaire/007.csv, a row `question,answer` for each question that was answered, in the
-/// study's order, the question by its name. Rows are appended whole and synced, as those of trials; cells as RFC 4180 has them, with no
-/// line ends within.
+/// The answers to a study's questionnaire: DIR/questionnaire/007.csv for subject 7, with a row `question,answer` for each answered
+/// question, in the study's order; a question is identified by its name. Rows are appended atomically and synced to disk, as trial rows
+/// are. Cells are in the format of RFC 4180, without line breaks in them.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -12,17 +12,21 @@
 
 namespace catena::study {
 
+/// Path of the answers of `subject` in the data folder `folder`: "DIR/questionnaire/007.csv".
 std::string answers_file(const std::string& folder, int subject);
-std::string_view answers_header();  ///< with its line end
+std::string_view answers_header();  ///< The header row, with its line break
+/// One row of the file, with its line break.
 std::string answer_row(const std::string& question, const std::string& answer);
 
+/// The answers in a subject's file.
 struct Answers {
-  std::vector<std::string> texts;  ///< to the study's first questions
-  std::size_t complete_bytes = 0;  ///< of the file that hold them
-  bool has_partial_line = false;   ///< a last line without its end stands behind those: no answer
+  std::vector<std::string> texts;  ///< Answers to the study's first questions, in order
+  std::size_t complete_bytes = 0;  ///< Size of the file's part that holds complete lines
+  bool has_partial_line = false;   ///< A partial last line follows them; it is not an answer
 };
 
-/// None where the file is missing. Errors: "PATH:LINE: ...", where it does not answer the study's questions in their order.
+/// Reads the answers of a file; none if it does not exist. Error, "PATH:LINE: ...": the rows do not match the study's questions in their
+/// order.
 Result<Answers> read_answers(const std::string& path, const Study& study);
 
 }  // namespace catena::study

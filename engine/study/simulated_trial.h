@@ -1,5 +1,6 @@
-/// A trial done by the model of a subject: its scene, the real tick, the simulated device, and the judge. Off the tick; any thread, each
-/// with an object of its own. The same bits for the same trial, whatever was done before, on one type of machine.
+/// Runs a trial with the human model instead of a subject: the trial's scene, the real haptic tick, the simulated device and the trial
+/// scorer. Not for the haptic thread; otherwise any thread, with one object per thread. A trial gives bit-identical results whichever
+/// trials were run before it, on one type of machine.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,23 +15,28 @@
 
 namespace catena::study {
 
+/// Tick rate of a simulated trial, Hz.
 inline constexpr double kSimulatedRateHz = 1000;
 
+/// Simulates trials of one study. It caches the stimuli of the current task and the data of the last scene.
 class TrialSimulator {
  public:
-  /// Who records a trial, if anybody: asked once its program stands, with the scene's text; may answer with nothing.
+  /// Called when a trial's program is built, with the trial and the scene's JSON text. Returns the sink that receives every tick, or null
+  /// to record nothing. An Error ends run().
   using Recorder = std::function<Result<haptics::TickSink*>(const Trial&, const std::string& scene_text, const haptics::HapticProgram&)>;
 
-  /// `study` outlives it.
+  /// `study` must outlive this object. `recorder`: empty: nothing is recorded.
   explicit TrialSimulator(const Study& study, Recorder recorder = {});
 
-  /// An error where the trial's scene, field or chain cannot be read.
+  /// Runs one trial to its end and returns what was measured; a trial whose clock never starts is aborted 30 s after the task's timeout.
+  /// Error: the trial's scene, field or chain cannot be read.
   Result<TrialResult> run(const Trial& trial);
-  /// Whether every task can be done in every condition: of the first trials of a session everything is made, and nothing is done.
+  /// Checks that every task can be run in every condition: builds the scene and the program of the first trial of each pair in the session
+  /// of subject 1, without simulating it. Error: as run().
   Outcome check();
 
  private:
-  /// All that the hand of a trial meets.
+  /// Everything that one simulated trial needs.
   struct TrialSetup {
     const Stimulus* stimulus;
     std::string text;
@@ -43,12 +49,12 @@ class TrialSimulator {
   const Study& study_;
   Recorder recorder_;
   StimulusGenerator generator_;
-  std::optional<scene::Scene> last_scene_;  ///< what it has loaded goes over to the next
+  std::optional<scene::Scene> last_scene_;  ///< The last trial's scene; its loaded data are reused by the next one
   struct CachedStimulus {
     int task = -1, seed = 0;
     Stimulus stimulus;
   };
-  std::vector<CachedStimulus> stimulus_cache_;  ///< of the block at hand: conditions share stimuli
+  std::vector<CachedStimulus> stimulus_cache_;  ///< Stimuli of the current task; conditions share them
 };
 
 }  // namespace catena::study

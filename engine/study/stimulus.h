@@ -1,15 +1,18 @@
-/// The places of a trial, found in its field under the paper's rules (section 7.1):
-///   global lines   `lines` streamlines through places drawn in the field's box
-///   start          drawn in the middle `region` of the box (2D: of the picture plane); at least `clearance` from every global line
-///   path           the streamline from there, downstream; its length is the same in all trials
-///   bends          of radius `bend` at least: it keeps away from critical points
-///   2D             the path lies in the picture plane
-///   3D             at least `parallel` of its length is seen in the picture plane; of the starts that are allowed the one whose path is
-///                  hidden least by global lines
-///   circle         of advection: about the start, through the path's end; the path does not meet it before
-///   plane          of advection: level, through the path's end, below all of the path before
-/// and meets either at `crossing` or steeper. Where a field has no such start among `candidates`, that of another seed is asked.
-/// The same bits on one type of machine. Off the tick; any thread.
+/// The stimulus of a trial: start, path and target, found in the trial's vector field under the rules of the paper's section 7.1.
+/// The rules (StimulusRules):
+///   global lines   `context_streamlines` streamlines through points sampled at random in the field's box
+///   start          sampled at random in the central fraction `region` of the box (2D: of the image plane); at least `clearance_mm` from
+///                  every global line
+///   path           the streamline from the start, downstream; it has the same length in all trials
+///   curvature      radius of curvature of at least `min_curvature_radius_mm`, which keeps the path away from critical points; the tangent
+///                  turns by at least `turn_deg`
+///   2D             the path lies in the image plane
+///   3D             the path's length projected onto the image plane is at least the fraction `parallel` of its length; of the valid
+///                  starts, the one whose path is least occluded by global lines is taken
+///   circle         advection target: centered at the start, through the path's end; the path does not reach it earlier
+///   plane          advection target: horizontal, through the path's end, below all earlier points of the path
+/// The path meets the circle or the plane at an angle of at least `crossing_deg`. Where a field has no valid start among `candidates`, the
+/// field of the next seed is tried. Results are bit-identical on one type of machine. Not for the haptic thread; otherwise any thread.
 #pragma once
 #include <memory>
 #include <vector>
@@ -19,27 +22,29 @@
 
 namespace catena::study {
 
-/// The places of one trial. World units.
+/// The geometry of one trial. Positions and lengths in world units.
 struct Stimulus {
-  int seed = 0;                            ///< of the field: the trial's, or the first of those that follow from it whose field has a start
-  Vec3 start{0.0}, middle{0.0}, end{0.0};  ///< world, of the path
-  std::vector<Vec3> path;                  ///< evenly by length, from start to end
-  double length = 0;                       ///< of the path, world
-  double radius = 0;                       ///< circle: world
-  double occluded_share = 0;               ///< share of the path behind a global line, 3D
-  std::vector<Vec3> context_points;        ///< a place of each global line
-  double context_length = 0;               ///< world, each way
+  int seed = 0;  ///< Seed of the field: the trial's, or the first seed derived from it whose field has a valid start
+  Vec3 start{0.0}, middle{0.0}, end{0.0};  ///< Of the path: its first point, its point at half the length, and its last point
+  std::vector<Vec3> path;                  ///< kPathPoints points evenly spaced by arc length, from start to end
+  double length = 0;                       ///< Length of the path
+  double radius = 0;                       ///< Radius of the circle target: distance from start to end
+  double occluded_share = 0;               ///< 3D: fraction of the path that global lines occlude, 0 to 1; 0 in 2D
+  std::vector<Vec3> context_points;        ///< Seed point of each global line
+  double context_length = 0;               ///< Maximum length of a global line from its seed point, in each direction
 };
 
-/// Corners of Stimulus::path.
+/// Number of points of Stimulus::path.
 inline constexpr int kPathPoints = 513;
 
-/// Makes stimuli one after the other; a field that does not depend on the seed is read once. One thread, each its own.
+/// Generates stimuli one at a time, and caches the last field of every task, so that a field that does not depend on the seed is loaded
+/// only for the first stimulus. Not thread-safe: one object per thread.
 class StimulusGenerator {
  public:
-  /// `study` outlives it.
+  /// `study` must outlive this object.
   explicit StimulusGenerator(const Study& study) : study_(study), field_cache_(study.tasks.size()) {}
-  /// An error where the field cannot be read, or none of many seeds gives a start.
+  /// Returns the stimulus of task `task` (index into Study::tasks) for `seed`. Error: the field cannot be read, is not a vector field, a
+  /// length of the task is more than 100 times the diagonal of the field's box, or no field of up to 200 seeds has a valid start.
   Result<Stimulus> generate(int task, int seed);
 
  private:

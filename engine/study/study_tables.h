@@ -1,18 +1,18 @@
-/// How the parts of the study file are read, one table each. Inside this room only.
+/// The key tables that read the parts of the study file. Private to this module.
 #pragma once
 #include "engine/schema/struct_schema.h"
 #include "engine/study/study.h"
 
 namespace catena::study {
 
-/// What reading needs besides: nothing.
+/// Empty context: reading a study needs no other object.
 struct NoContext {};
 template <class T>
 using StudyTable = schema::StructSchema<T, const NoContext>;
 
 inline constexpr NoContext kNoContext{};
 
-/// A key whose value, an array or an object, another room reads: any_of without choices.
+/// A key whose value, an array or an object, is read by another module: any_of without choices.
 inline schema::Key array_or_object(const std::string& name, const std::string& help) {
   schema::Key key;
   key.name = name;

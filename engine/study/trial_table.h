@@ -1,12 +1,13 @@
-/// The rows of finished trials, and the folder that holds them:
-///   DIR/study.json        the study file, verbatim: another one is refused
-///   DIR/subjects/007.csv  a subject's rows in the order of the session, a header first; each is appended whole and synced, and a torn last
-///                         line is dropped when the file is read, so that whatever ends the program costs the trial at hand alone
-///   DIR/recordings/       every tick of a trial, where that was asked for
-///   DIR/trials.csv        all subjects' rows by their numbers, as they were when a command last ended; alone it is read, too
-///   DIR/questionnaire/    answers (answers.h)
-///   DIR/simulated.json    there where a model of a person did trials: whoever reads them must know
-/// Doubles in the fewest digits that read back.
+/// The table of finished trials, and the data folder that holds it:
+///   DIR/study.json        the study file, verbatim; opening the folder with a different study is an error
+///   DIR/subjects/007.csv  a subject's rows in the order of the session, after a header; each row is appended atomically and synced, and a
+///                         partial last line is dropped on reading, so that a crash at any moment loses only the current trial
+///   DIR/recordings/       recordings of every tick of a trial, if requested
+///   DIR/trials.csv        the rows of all subjects, ordered by subject, as of the end of the last command; its rows are used only if
+///                         subjects/ has none
+///   DIR/questionnaire/    answers (questionnaire_answers.h)
+///   DIR/simulated.json    exists if the human model did trials of this folder, so that every reader can tell
+/// Doubles are written with the fewest digits that read back exactly.
 #pragma once
 #include <string>
 #include <vector>
@@ -19,69 +20,75 @@ namespace catena::study {
 
 /// One finished trial, as a row of the table.
 struct TrialRow {
-  int subject = 1, index = 0, block = 0;                               ///< as in Trial
-  std::string task, kind;                                              ///< "advection", "tracing"
-  int dimensions = 2;                                                  ///< 2 or 3
-  std::string condition;                                               ///< its name
-  int stimulus = 0, seed = 0;                                          ///< as in Trial
-  bool training = false;                                               ///< not analysed
-  bool reached_target = true;                                          ///< ended by its target; else by the limit
-  double time_s = 0, error_mm = 0, traveled_mm = 0, peak_force_n = 0;  ///< as in TrialResult; of the cursor, not of a proxy
-  Vec3 end_mm{0.0};                                                    ///< where it ended, world axes, millimetres of the hand
+  int subject = 1, index = 0, block = 0;  ///< As in Trial
+  /// Name of the task; "advection" or "tracing"
+  std::string task, kind;
+  int dimensions = 2;          ///< 2 or 3
+  std::string condition;       ///< Name of the condition
+  int stimulus = 0, seed = 0;  ///< As in Trial
+  bool training = false;       ///< Excluded from the analysis
+  bool reached_target = true;  ///< False: ended by the timeout
+  /// As in TrialResult; measured on the cursor, not on a proxy
+  double time_s = 0, error_mm = 0, traveled_mm = 0, peak_force_n = 0;
+  Vec3 end_mm{0.0};  ///< End position, world axes, device millimeters
   bool operator==(const TrialRow&) const = default;
 };
 
-/// The row of a measured trial of this study's design (make_session()), which gives the names of its task and condition. Any thread.
+/// Makes the row of a trial of this study's design (make_session()); the study gives the names of task and condition. Any thread.
 TrialRow make_row(const Study& study, const Trial& trial, const TrialResult& measured);
 
-/// "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
+/// The header row, with its line break: "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
 std::string table_header();
-std::string format_row(const TrialRow& row);  ///< with its line end
-/// All rows, a header first.
+std::string format_row(const TrialRow& row);  ///< One row, with its line break
+/// The header, then all rows.
 std::string format_table(const std::vector<TrialRow>& rows);
-/// `torn_end`: a last line without its end is left out rather than an error; `whole` gets the bytes before it.
+/// Parses a table with its header. `file`: name in error messages. `torn_end`: a partial last line is ignored instead of an error, and an
+/// empty text gives no rows. `whole`: receives the number of bytes of the complete lines. Error, "FILE:LINE: ...": another header, or a bad
+/// value.
 Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false,
                                          std::size_t* whole = nullptr);
 
-/// "DIR/subjects/007.csv"
+/// Path of a subject's rows: "DIR/subjects/007.csv".
 std::string subject_file(const std::string& folder, int subject);
 
-/// "DIR/recordings".
+/// Path of the recordings: "DIR/recordings".
 std::string recordings_folder(const std::string& folder);
-/// With those that it lies in.
+/// Creates the folder with its parent folders.
 Outcome make_folder(const std::string& path);
-/// In it "007-012.catlog": subject and index.
+/// Path of a trial's recording: "DIR/recordings/007-012.catlog", with the numbers of subject and trial index.
 std::string recording_file(const std::string& folder, const Trial& trial);
 
-/// The numbers of the subjects that have a file in a data folder, rising; other files are told in `notes`.
+/// Returns the numbers of the subjects that have a file in a data folder, ascending. `notes`: if not null, receives a line for every other
+/// file in its subfolder "subjects".
 Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr);
-/// The finished trials of a subject as they are on the disk, in the order of the session; none where the subject has no file. A torn last
-/// line is left out and told in `notes`, where that is not null. Nothing is written. An error names file and line.
+/// Reads the finished trials of a subject, in the order of the session; none if the subject has no file. A partial last line is ignored and
+/// reported in `notes`, if that is not null. Writes nothing. Error: names file and line.
 Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
 
-/// Who does the trials of a data folder: people and models never share one.
+/// Whether people or the human model do the trials of a data folder; a folder never holds both.
 enum class ParticipantKind { people, model };
 
-/// A data folder that is written to, by one program at a time: it is locked as long as this lives.
+/// A data folder opened for writing. It is locked for other programs during the lifetime of this object. One thread.
 class DataFolder {
  public:
-  /// Makes it where it is missing. An error where it holds another study, another program writes to it, or it holds trials of a model
-  /// where people's are to come, or people's where a model's are.
+  /// Opens the folder, and creates it if it does not exist. Error: it holds another study, another program writes to it, or it holds trials
+  /// of the human model while `who` is people, or the reverse.
   static Result<DataFolder> open(const std::string& path, const Study& study, ParticipantKind who);
 
-  /// The folder, as it was given.
+  /// Path of the folder, as given to open().
   const std::string& path() const { return path_; }
-  /// read_rows(), but a torn end is cut off the file, so that rows can be appended.
+  /// As read_rows(), but a partial last line is cut off the file, so that rows can be appended.
   Result<std::vector<TrialRow>> rows(int subject) const;
-  /// Appends one and waits until it is on the disk.
+  /// Appends a row to its subject's file and returns when it is synced to disk.
   Outcome append(const TrialRow& row) const;
-  /// All of a subject's rows at once, whole or not at all.
+  /// Replaces all rows of a subject, atomically.
   Outcome write_subject(int subject, const std::vector<TrialRow>& rows) const;
-  /// Where the recording of a trial is written until it is whole, under a name of its own; what ended programs left of it is gone.
+  /// Path of a temporary file for a trial's recording; commit_recording() renames it. Removes temporary files that ended programs left for
+  /// this trial.
   std::string partial_recording_path(const Trial& trial) const;
-  /// It is whole, and gets its name: recordings/007-012.catlog, on the disk.
+  /// Renames the complete recording at `unfinished` to recordings/007-012.catlog and syncs the folder.
   Outcome commit_recording(const Trial& trial, const std::string& unfinished) const;
-  /// Writes trials.csv of all of them.
+  /// Writes trials.csv with the rows of all subjects.
   Outcome write_table() const;
 
  private:
@@ -90,15 +97,16 @@ class DataFolder {
   FolderLock lock_;
 };
 
-/// The rows of a data folder: of DIR/subjects/*.csv, or of DIR/trials.csv where there are none of those.
+/// All rows of a data folder: those of DIR/subjects/*.csv, or of DIR/trials.csv if there are none.
 struct TrialTable {
-  std::vector<TrialRow> rows;      ///< in the order of subjects and trials
-  std::vector<std::string> notes;  ///< lines: what of the folder was not taken, or torn, and that trials.csv differs from what was
+  std::vector<TrialRow> rows;  ///< Ordered by subject, then trial
+  /// One line each: files that were not read, partial lines, and whether trials.csv differs from the rows
+  std::vector<std::string> notes;
 };
-/// Reads all rows of a folder. An error names file and line.
+/// Reads all rows of a data folder. Error: names file and line; or the folder has neither trials.csv nor rows in subjects/.
 Result<TrialTable> read_trial_table(const std::string& folder);
 
-/// Whether a model did the trials.
+/// Whether the human model did the trials of this data folder.
 bool is_simulated(const std::string& folder);
 
 }  // namespace catena::study

@@ -49,7 +49,7 @@ Proximity plane_proximity(const Spec& spec, const State& state, const Vec3& prob
 }
 
 void begin_turn(const Spec& spec, State& state, const Vec3& probe) noexcept {
-  // the nearest great circle, if it is near enough
+  // grab the nearest great circle, if the probe is near enough to it
   state.grip = {probe, state.pose.orientation, 0, 0};
   state.axis = -1;
   state.rebase_arm = true;

@@ -45,7 +45,7 @@ bool goes_along(const Spec& spec, const State& state) noexcept {
   return spec.kind == Kind::ruler && !spec.along_links.empty() && state.handle < kMiddle;
 }
 
-// The face moves, as far as the opposite one lets it.
+// Moves the grabbed face of the box, but not past the opposite face.
 void move_face(const Spec& spec, State& state, double by) noexcept {
   const int axis = state.handle / 2;
   const Pose& from = state.start_pose;

@@ -9,7 +9,7 @@ namespace catena::widget {
 
 namespace {
 
-// Where a cutting plane goes that is not held by the hand.
+// Mode of a cutting plane that is not grabbed.
 Mode at_rest(const TransitionInput& f) noexcept {
   return f.near_sphere ? (f.rotate_on_contact ? Mode::turn : Mode::rotate) : f.near_plane ? Mode::explore : Mode::idle;
 }
@@ -36,10 +36,10 @@ Mode next_of_handles(Mode mode, const TransitionInput& f) noexcept {
   return f.near_handle ? Mode::hover : Mode::idle;
 }
 
-// What the probe is near: how much it comes first, and how far it is.
+// The part of a widget that the probe is near: its priority and the probe's distance.
 struct Near {
   Proximity reach;
-  int rank = 0;  // 0 nothing, 1 a cutting plane, 2 its sphere, 3 a handle
+  int rank = 0;  // priority: 0 nothing, 1 a cutting plane, 2 its sphere, 3 a handle
 };
 
 Near near_of(const Spec& spec, const State& state, const Vec3& probe) noexcept {
@@ -82,7 +82,7 @@ void enter(const Spec& spec, State& state, Mode mode, const TransitionInput& fac
     state.grip = make_grip(spec, state, probe);
 }
 
-// After a while without a probe a grab goes on as it was, from where the probe is now.
+// After an interval without a probe, a grab continues from the probe's present position.
 void take_anew(State& state, const TickInput& input) noexcept {
   const Vec3 grab = state.grip.grab_point + (input.probe - input.last_probe);
   state.grip.grab_point = is_finite(grab) ? grab : input.probe;
@@ -118,7 +118,7 @@ int step_modes(std::span<const Spec> specs, std::span<State> states, const TickI
     if (input.probe_returned && drags_along(specs[i], states[i])) states[i].mode = Mode::idle;
     nears[i] = near_of(specs[i], states[i], input.probe);
     facts[i] = facts_of(specs[i], states[i], nears[i].reach, input);
-    // what the hand has, or takes now
+    // the widget that is grabbed, or becomes grabbed in this tick
     if (states[i].mode != Mode::idle && is_grabbed(next_mode(specs[i].kind, states[i].mode, facts[i]))) chosen = i;
   }
   if (chosen == count) {

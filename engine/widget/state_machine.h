@@ -1,10 +1,11 @@
-/// The machine of the widgets (paper, section 6.2): one tick in two phases around the chain, pure functions of (specs, states, input).
-///   before   step_modes: transitions of all widgets, by `next_mode` alone;  plan: links, order and shapes of the one that is engaged
-///   after    finish: its pose, from the chain's last proxy
-/// One widget is engaged at a time; the others are away. Who is: the one that is grabbed or grabs now; else by what the probe is near:
-/// a handle before a sphere before a cutting plane, the engaged one before others, then the nearest, then the first.
-/// A probe that was not there for a while (`back`): a press does not count; a grab goes on only where its button is down, with the pose
-/// as it was (it is taken anew at the new place); a ruler's end on links is let go.
+/// State machine of the widgets (paper, section 6.2): one tick in two phases, before and after the chain runs. Pure functions of specs,
+/// states and input.
+///   before   step_modes: transitions of all widgets, by `next_mode` alone;  plan_chain: links, order and shapes of the engaged widget
+///   after    update_pose: its pose, from the last proxy of the chain
+/// One widget at a time is engaged; the others are idle. It is the widget that is grabbed or being grabbed; else it is chosen by what the
+/// probe is near: a handle before a sphere before a cutting plane, then the engaged widget before others, then the nearest, then the first.
+/// When the probe returns after ticks without one (`probe_returned`), a button press is ignored; a grab continues only if its button is
+/// down, with the pose unchanged and the grip moved to the new probe position; a ruler's end on links is released.
 /// World units. Haptic thread: no allocation, lock, throw.
 #pragma once
 #include <span>
@@ -13,45 +14,45 @@
 
 namespace catena::widget {
 
-/// What a transition looks at.
+/// Input of a mode transition.
 struct TransitionInput {
-  bool near_handle = false;        ///< the probe is within `near` of a handle
-  bool near_sphere = false;        ///< ... of the sphere
-  bool near_plane = false;         ///< within `snap` of the cutting plane; where it explores: within `release`
-  bool button_pressed = false;     ///< the button went down in this tick
-  bool button_down = false;        ///< the button is down
-  bool rotate_on_contact = false;  ///< Spec::touch
-  bool is_gripped = false;         ///< the mode was entered, or kept, by a press
+  bool near_handle = false;        ///< The probe is within grab_distance of a handle
+  bool near_sphere = false;        ///< The probe is within grab_distance of the sphere
+  bool near_plane = false;         ///< The probe is within `snap` of the cutting plane; in mode explore: within `release`
+  bool button_pressed = false;     ///< The button went down in this tick
+  bool button_down = false;        ///< The button is down
+  bool rotate_on_contact = false;  ///< Spec::rotate_on_contact
+  bool is_gripped = false;         ///< The mode was entered, or continued, by a press that still holds
 };
 
-/// All transitions of all widgets.
+/// Returns the next mode of a widget; all transitions are here.
 Mode next_mode(Kind kind, Mode mode, const TransitionInput& facts) noexcept;
 
-/// Whether the hand has taken hold of the widget.
+/// Returns whether the widget is grabbed.
 constexpr bool is_grabbed(Mode mode) noexcept { return mode == Mode::translate || mode == Mode::turn || mode == Mode::drag; }
 
-/// What the machine gets of a tick.
+/// Input of one tick.
 struct TickInput {
-  Vec3 probe{0.0};                 ///< finite
-  Vec3 last_probe{0.0};            ///< of the last tick that had one
-  std::uint32_t buttons = 0;       ///< bit n - 1: button n
-  std::uint32_t last_buttons = 0;  ///< of the tick before
-  bool probe_returned = false;     ///< the ticks before had no probe
+  Vec3 probe{0.0};                 ///< Probe position, finite
+  Vec3 last_probe{0.0};            ///< Probe position of the last tick that had one
+  std::uint32_t buttons = 0;       ///< Bit n - 1: button n is down
+  std::uint32_t last_buttons = 0;  ///< Buttons of the tick before
+  bool probe_returned = false;     ///< True if the ticks before had no probe
 };
 
-/// The pose as the Spec says, away.
+/// Resets the state to the pose of the spec, in mode idle.
 void reset_state(const Spec& spec, State& state) noexcept;
-/// The engaged widget; -1: none.
+/// Steps the modes of all widgets. Returns the index of the engaged widget; -1: none.
 int step_modes(std::span<const Spec> specs, std::span<State> states, const TickInput& input) noexcept;
-/// The chain that the engaged widget asks for in this tick.
+/// Returns the chain that the engaged widget requests for this tick.
 ChainRequest plan_chain(const Spec& spec, State& state, const Vec3& probe) noexcept;
-/// `proxy`: the last one of the chain that `plan` asked for.
+/// Updates the pose of the engaged widget. `proxy`: last proxy of the chain that plan_chain requested.
 void update_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept;
 
-/// What the frame is told of it.
+/// Returns the report of a widget for the frame thread.
 Report make_report(const State& state) noexcept;
 
-/// Is this a state that the machine can leave, as far as it indexes with it? For states that come from a file; off the tick.
+/// Returns whether the state is valid, so that the state machine can index with it. For states read from a file; off the tick.
 bool is_valid_state(const Spec& spec, const State& state) noexcept;
 
 }  // namespace catena::widget

@@ -1,7 +1,7 @@
-/// What the widgets are and remember (paper, section 6.2 and Figure 6): things in the scene that the hand takes hold of. Plain components;
-/// the machine that steps them (machine.h) is a function over these, run by the tick, so that the mouse, a haptic device and a replayed
-/// path all drive the same one. Lengths in world units. The functions use + - * / and square roots only, so that bits repeat; any thread,
-/// no allocation.
+/// Widgets: objects in the scene that the user can grab (paper, section 6.2 and Figure 6), as plain specs and states. The state machine
+/// (state_machine.h) is a set of functions over these, run by the tick, so that mouse, haptic device and replayed path drive the same
+/// machine. Lengths in world units. The functions use only + - * / and square roots, so that results are bit-identical everywhere. Any
+/// thread, no allocation.
 #pragma once
 #include <array>
 #include <memory>
@@ -14,19 +14,20 @@
 
 namespace catena::widget {
 
-/// Axis i of the frame q, world: unit.
+/// Returns axis i of the frame q in world coordinates, unit length.
 inline Vec3 frame_axis(const Quat& q, int i) noexcept { return rotate(q, i == 0 ? Vec3(1, 0, 0) : i == 1 ? Vec3(0, 1, 0) : Vec3(0, 0, 1)); }
 
-/// u beyond -zone..zone, 0 within: continuous, and one to one beyond.
+/// Returns u reduced by the dead zone: 0 within -zone..zone, u - zone or u + zone outside; continuous.
 inline double deadzone(double u, double zone) noexcept { return u > zone ? u - zone : u < -zone ? u + zone : 0; }
 
-/// v without its part along the unit vector n, unit; zero where nothing is left.
+/// Returns the direction of v without its component along the unit vector n; zero if nothing is left.
 inline Vec3 perpendicular_direction(const Vec3& v, const Vec3& n) noexcept {
   const Vec3 d = direction(v - n * dot(n, v));
   return direction(d - n * dot(n, d));
 }
 
-/// The rotation about the unit axis e that turns a onto b, both unit and square to e. Its vector part is a multiple of e to the bit.
+/// Returns the rotation about the unit axis e that turns a onto b, both unit and perpendicular to e. Its vector part is an exact multiple
+/// of e.
 ///   cos(t/2) = |a + b| / 2,  sin(t/2) = |b - a| / 2, with the sign of e . (a x b)
 inline Quat rotation_about(const Vec3& e, const Vec3& a, const Vec3& b) noexcept {
   const double c = 0.5 * norm(a + b), s = dot(e, cross(a, b)) < 0 ? -0.5 * norm(b - a) : 0.5 * norm(b - a);
@@ -35,101 +36,102 @@ inline Quat rotation_about(const Vec3& e, const Vec3& a, const Vec3& b) noexcept
   return {c / length, e.x * (s / length), e.y * (s / length), e.z * (s / length)};
 }
 
-/// What a widget does.
+/// Interaction mode of a widget.
 using Mode = WidgetMode;
-/// Where a widget is.
+/// Position and orientation of a widget.
 using Pose = WidgetPose;
-/// What a tick says of a widget.
+/// State of a widget as reported by a tick.
 using Report = WidgetReport;
 
-/// What a widget is. `points` and the orientation are those of its Pose.
-///   cutting_plane  a sphere and three orthogonal planes, in the chain by mode; points[0] is the centre, the orientation's z the normal
+/// Kind of widget. `points` and the orientation are those of its Pose.
+///   cutting_plane  a sphere and three orthogonal planes, in the chain by mode; points[0] is the center, the orientation's z the normal
 ///   seed           one handle, points[0]
-///   rake           a line of seeds from points[0] to points[1]
+///   rake           a segment with seeds from points[0] to points[1]
 ///   isolevel       a handle on an isosurface, points[0]; its level is the field's value there
-///   box            from points[0], the least corner, to points[1]
+///   box            from points[0], the min corner, to points[1], the max corner
 ///   ruler          from points[0] to points[1]
 enum class Kind : std::uint8_t { cutting_plane, seed, rake, isolevel, box, ruler };
 
-/// The turns of a cutting plane that the hand may make: about an axis where it takes the sphere near one of the three great circles and
-/// else freely; freely only; about the nearest axis only.
+/// How a cutting plane turns. any: about an axis if grabbed near one of the three great circles of the sphere, else freely; free: freely
+/// only; axis: about the nearest axis only.
 enum class RotationMode : std::uint8_t { any, free, axis };
 
-/// What a widget is made of. Off the tick; it does not change while a program runs.
+/// Description of a widget. Created off the tick; constant while a program runs.
 struct Spec {
-  Kind kind = Kind::cutting_plane;  ///< what it is
-  Pose pose;                        ///< at the start, or as set since
-  double value = 0;                 ///< isolevel: at the start, where the field says nothing at the handle
-  std::uint32_t revision = 0;       ///< counts the poses that were set from outside (a panel, undo): a higher one replaces the hand's
-  double length = 4;                ///< L, which the sizes that are not stated follow
-  double radius = 0;                ///< of the sphere; of a handle's ball
-  double snap = 0;                  ///< the cutting plane takes hold of a probe this near
-  double release = 0;               ///< and lets it go this far; more than snap
-  double grab_distance = 0;         ///< the sphere, a great circle, a handle: taken hold of within it
-  double step = 0;                  ///< a plane that holds an axis lets go where the probe is this far from it
-  RotationMode rotation = RotationMode::any;        ///< which turns the hand may make
-  bool rotate_on_contact = false;                   ///< the sphere turns without the button
-  int button = 1;                                   ///< 1..32
-  std::shared_ptr<const field::ScalarField> field;  ///< isolevel
-  std::vector<int> along_links;                     ///< ruler: links of the program that its ends keep to while they are dragged
+  Kind kind = Kind::cutting_plane;  ///< Kind of widget
+  Pose pose;                        ///< Pose at the start, or as last set from outside
+  double value = 0;                 ///< Isolevel: value at the start, used where the field has none at the handle
+  /// Number of times the pose was set from outside (a panel, undo): a higher revision replaces the user's pose.
+  std::uint32_t revision = 0;
+  double length = 4;                                ///< L, which scales the sizes that are not specified
+  double radius = 0;                                ///< Radius of the sphere or of a handle's ball
+  double snap = 0;                                  ///< Cutting plane: distance within which it snaps to the probe
+  double release = 0;                               ///< Cutting plane: distance beyond which it releases the probe; more than `snap`
+  double grab_distance = 0;                         ///< Distance within which the sphere, a great circle or a handle can be grabbed
+  double step = 0;                                  ///< Distance of the probe at which a plane that holds an axis releases it
+  RotationMode rotation = RotationMode::any;        ///< How a cutting plane turns
+  bool rotate_on_contact = false;                   ///< True: the sphere turns on contact, without the button
+  int button = 1;                                   ///< Button that grabs, 1..32
+  std::shared_ptr<const field::ScalarField> field;  ///< Isolevel: field whose value at the handle is the level; else null
+  std::vector<int> along_links;                     ///< Ruler: links of the program that its ends stay on while dragged
 };
 
-/// What a widget remembers from tick to tick, and what it asks of the chain. Plain data, no pointers. World units.
+// State of a widget between ticks, and its request to the chain. Plain data without pointers. World units.
 
-/// A feature that a link of the program has been put on; widgets share four links: planes x, y, z, and the sphere.
+/// Geometric feature assigned to one of the four links that the widgets share: planes x, y, z, and the sphere.
 struct LinkShape {
-  /// What the link is put on.
+  /// Kind of feature.
   enum class Kind : std::uint8_t { none, plane, sphere, point };
-  Kind kind = Kind::none;  ///< none: the link lets its probe through
-  Vec3 origin{0.0};        ///< a place on it; a sphere's centre
-  Vec3 normal{0.0};        ///< plane: unit
-  double radius = 0;       ///< sphere
+  Kind kind = Kind::none;  ///< none: the link passes its probe on unchanged
+  Vec3 origin{0.0};        ///< Point on the plane; center of the sphere; the point
+  Vec3 normal{0.0};        ///< Plane: unit normal
+  double radius = 0;       ///< Sphere: radius
   bool operator==(const LinkShape&) const = default;
 };
 
-inline constexpr int kSharedLinks = 4, kSphereLink = 3;  ///< Links that widgets share; the one that is the sphere.
+inline constexpr int kSharedLinks = 4, kSphereLink = 3;  ///< Number of links that the widgets share; index of the sphere among them
 inline constexpr std::array<const char*, kSharedLinks> kSharedLinkNames{
-    "widget_x", "widget_y", "widget_z", "widget_sphere"};  ///< Their names, which no link of a scene may have.
+    "widget_x", "widget_y", "widget_z", "widget_sphere"};  ///< Names of the shared links; no link of a scene may have one
 
-/// The chain that a widget asks for in this tick.
+/// Chain that the engaged widget requests for one tick.
 struct ChainRequest {
-  bool disables_scene_links = false;              ///< the scene's links are off
-  bool uses_along_links = false;                  ///< Spec::along in place of slots
-  int count = 0;                                  ///< slots in use
-  std::array<std::int8_t, kSharedLinks> order{};  ///< in order
-  std::array<LinkShape, kSharedLinks> shapes{};   ///< by slot
-  /// Puts the next link in order on a shape.
+  bool disables_scene_links = false;              ///< The scene's links are off
+  bool uses_along_links = false;                  ///< Spec::along_links in place of the shared links
+  int count = 0;                                  ///< Number of entries of `order` in use
+  std::array<std::int8_t, kSharedLinks> order{};  ///< Shared links in the order of the chain
+  std::array<LinkShape, kSharedLinks> shapes{};   ///< Features, by shared link
+  /// Appends a shared link to the order and assigns it a feature.
   void add_link(int slot, const LinkShape& shape) noexcept {
     order[static_cast<std::size_t>(count++)] = static_cast<std::int8_t>(slot);
     shapes[static_cast<std::size_t>(slot)] = shape;
   }
 };
 
-/// A translation: planes through `grab` across the axes of `frame`.
-///   held where fixed, or within `step` of the plane and not loose;  displacement along axis i: 0 where held, u_i where loose, else
-///   deadzone(u_i, step), with u_i = axis_i . (proxy - grab): continuous, and a function of the probe alone (no path)
+/// Translation of a widget: planes through `grab_point` across the axes of `frame`. A plane holds its axis if the axis is fixed, or if the
+/// probe is within `step` of the plane and the axis is not free. Displacement along axis i: 0 if held, u_i if free, else
+/// deadzone(u_i, step), with u_i = axis_i . (proxy - grab_point): continuous, and a function of the probe alone (not of its path).
 struct Grip {
-  Vec3 grab_point{0.0};           ///< the probe at the press
-  Quat frame{kIdentityRotation};  ///< world from the axes
-  std::uint8_t fixed_axes = 0;    ///< bits: axes that never move
-  std::uint8_t free_axes = 0;     ///< bits: axes that always move
+  Vec3 grab_point{0.0};           ///< Probe position at the press
+  Quat frame{kIdentityRotation};  ///< Rotation from the axes to the world
+  std::uint8_t fixed_axes = 0;    ///< Bit i: axis i never moves
+  std::uint8_t free_axes = 0;     ///< Bit i: axis i always moves
 };
 
-/// What a widget remembers.
+/// State of a widget between ticks.
 struct State {
-  bool is_initialized = false;     ///< begun
-  bool is_gripped = false;         ///< by the button
-  bool rebase_arm = false;         ///< a turn: the next arm is where it goes on from
-  Mode mode = Mode::idle;          ///< what it does
-  std::int8_t handle = -1;         ///< as in Report
-  std::int8_t axis = -1;           ///< of a turn; -1: free
-  std::uint8_t active_planes = 0;  ///< planes that are active
-  std::uint32_t revision = 0;      ///< of the pose that the hand began with
-  Pose pose;                       ///< where it is now
-  double value = 0;                ///< isolevel: the field's value at the handle
-  Pose start_pose;                 ///< at the press
-  Grip grip;                       ///< translate, drag
-  Vec3 arm{0.0};                   ///< turn: unit, about an axis at its start, freely in the last tick
+  bool is_initialized = false;     ///< True after reset_state
+  bool is_gripped = false;         ///< Grabbed by the button
+  bool rebase_arm = false;         ///< Turn: the next arm becomes the new start arm
+  Mode mode = Mode::idle;          ///< Current mode
+  std::int8_t handle = -1;         ///< Handle in use, numbered as in WidgetReport; -1: none
+  std::int8_t axis = -1;           ///< Turn: axis; -1: free
+  std::uint8_t active_planes = 0;  ///< Bit i: the plane across axis i is active
+  std::uint32_t revision = 0;      ///< Revision of the pose at the reset
+  Pose pose;                       ///< Current pose
+  double value = 0;                ///< Isolevel: field value at the handle
+  Pose start_pose;                 ///< Pose at the press
+  Grip grip;                       ///< Translate, drag: the grip
+  Vec3 arm{0.0};                   ///< Turn: unit arm; about an axis that of its start, freely that of the last tick
 };
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<ChainRequest>);
 

@@ -15,8 +15,8 @@ namespace catena::haptics {
 
 namespace {
 
-/// What a link was built from: its text but for "enabled" (one that is switched off and on again has not become another), and the versions
-/// of its fields and meshes.
+/// Adds to the spec hash what a link is built from: its text except "enabled" (a link that is switched off and on is still the same), and
+/// the versions of its fields and meshes.
 void add_recipe(const json::Node& node, Fnv1a& recipe) {
   recipe.add(static_cast<int>(node.kind));
   recipe.add(node.boolean);
@@ -29,8 +29,8 @@ void add_recipe(const json::Node& node, Fnv1a& recipe) {
   }
 }
 
-/// A baseline lets go by itself (haptics/chain/baseline.h): "release" goes from the constraint's node to the link. Its linear
-/// method knows of a streamline only what the field says at the proxy.
+/// Prepares a link's node for a baseline method. Baselines release by themselves (haptics/chain/baseline.h): "release" is moved from the
+/// constraint's node to the link. The linear method uses only the field at the proxy, not a streamline.
 Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod method, Link& link) {
   json::Node node = from;
   const ConstraintType* type = find_constraint_type(from.find("type")->string);
@@ -59,7 +59,7 @@ Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod meth
   return node;
 }
 
-constexpr double kConservativeTolerance = 1e-10;  // of L: of proxies whose derivative along the probe's way enters the force
+constexpr double kConservativeTolerance = 1e-10;  // of L; for proxies whose derivative along the path of the probe enters the force
 
 }  // namespace
 
@@ -118,10 +118,10 @@ namespace {
 
 std::atomic<std::uint64_t> newest_epoch{0};
 
-/// The links that a name stands for: indices into the program's. A mode's links have names of their own, too.
+/// For each name, the links it stands for, as indices into the program's links. The links of a mode also have names of their own.
 using LinksOf = std::vector<std::pair<std::string, std::vector<int>>>;
 
-/// A note where a mesh that has an outside says in places that it is the other one.
+/// Adds a note if a mesh that has an outside is oriented the other way in places.
 Outcome note_sides(scene::Scene& scene, const json::Node& name, const std::string& link) {
   CATENA_TRY(const mesh::MeshPtr mesh, scene::resolve_mesh(scene, name.string, name));
   if (mesh->misoriented_edges() == 0) return Done{};
@@ -133,7 +133,7 @@ Outcome note_sides(scene::Scene& scene, const json::Node& name, const std::strin
   return Done{};
 }
 
-/// Adds the link, or the links of a ready-made mode.
+/// Adds the link, or the links of a preset mode.
 Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildContext& context, HapticProgram& program, LinksOf& links_of) {
   CATENA_TRY(const json::Node item, resolve_widget_values(scene, from.node));
   CATENA_TRY(const std::vector<json::Node> nodes, expand_link(item));

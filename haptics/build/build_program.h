@@ -1,4 +1,4 @@
-/// One item of the scene's chain -> one link of the program: its keys, its switch, its indication, its constraint. Off the tick.
+/// Builds the haptic program from the scene: the links of the chain, the modes and the widgets. Off the tick.
 #pragma once
 #include <functional>
 #include <memory>
@@ -10,23 +10,22 @@
 
 namespace catena::haptics {
 
-/// `coupling` gives the default stiffness, and says whether a baseline needs the link's linear primitive.
+/// Builds one link from an element of the scene's chain: its keys, switch, release cue, alignment and constraint. `coupling` gives the
+/// default stiffness and the method; a baseline needs the link's linear primitive and takes over its `release`. The Error names the line.
 Result<Link> build_link(const json::Node& from, const Coupling& coupling, const BuildContext& context);
 
-/// The scene's widgets -> the program's, and links that follow a widget. Off the tick.
-
-/// An item of the chain with {"widget": NAME} replaced by where that widget is now: "seed" by a seed's place, "level" by an isolevel's
-/// value. Others are copied. The error names the line.
+/// Returns a copy of an element of the chain with {"widget": NAME} replaced by the present value of that widget: "seed" by the position of
+/// a seed, "level" by the value of an isolevel. The Error names the line.
 Result<json::Node> resolve_widget_values(scene::Scene& scene, const json::Node& item);
 
-/// Adds all widgets of the scene as they are now (pose, revision), and their links behind the scene's. `links_of`: the indices that a
-/// name of the chain stands for, or none.
+/// Appends all widgets of the scene with their present pose and revision, and their links after the scene's. `links_of` returns the link
+/// indices for a name in the chain; null: no such name. An Error if there are too many widgets, a baseline is used, or a name is unknown
+/// or taken.
 Outcome add_widgets(scene::Scene& scene, const std::function<const std::vector<int>*(const std::string&)>& links_of,
                     HapticProgram& program);
 
-/// The door from the scene to the hand: links of the scene -> a program for the tick. Off the tick.
-
-/// Builds the program of all link entities in order, loading only the fields that they name. `limits`: what the device allows.
+/// Builds the program from all link, mode and widget entities of the scene in order, loading only the data that they name. `limits`: limits
+/// of the device. Each program gets a new epoch. The Error names the line in the scene.
 Result<std::shared_ptr<const HapticProgram>> build_program(scene::Scene& scene, const DeviceLimits& limits = {});
 
 }  // namespace catena::haptics

@@ -5,16 +5,16 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kPastSquare =
-    0.17364817766693033;  // sin 10 degrees: so far past square to an axis without a sense, the tool turns to its other end
-constexpr double kQuarterTurn = 1.5707963267948966;  // radians: the longest way to an axis without a sense
+    0.17364817766693033;  // sin(10 degrees): the tool turns to the other end of an unsigned axis this far past the perpendicular
+constexpr double kQuarterTurn = 1.5707963267948966;  // radians; the largest possible angle to an unsigned axis
 
-// It constrains: not on the free side, not released, and something is there.
+// Whether the link constrains the proxy: active, not on its free side, not released, and a feature exists.
 bool holds(const LinkState& link) noexcept {
   return link.active() && (link.status == LinkStatus::ok || link.status == LinkStatus::budget || link.status == LinkStatus::critical ||
                            link.status == LinkStatus::boundary);
 }
 
-// The axis of the link's primitive at its proxy; zero: none here.
+// Axis of the link's primitive at its proxy; zero if there is none. Out of budget: `last`.
 Vec3 axis_of(const Link& spec, LinkState& link, LinkScratch& scratch, const Vec3& last) noexcept {
   if (!holds(link)) return Vec3(0.0);
   if (link.evaluations >= kMaxEvaluations) return last;
@@ -25,7 +25,8 @@ Vec3 axis_of(const Link& spec, LinkState& link, LinkScratch& scratch, const Vec3
   return found && primitive.kind != Primitive::Kind::point ? primitive.axis : Vec3(0.0);
 }
 
-// Of +-n the one that the tool is drawn to: the one of the last tick until the tool is well past square to it; the nearer one at first.
+// The one of +n and -n to which the tool is aligned: the nearer one at first, then that of the last tick until the tool is kPastSquare past
+// the perpendicular.
 Vec3 end_of(const Align& align, const Vec3& tool_axis, const Vec3& n, const Vec3& last) noexcept {
   if (align.sign == Align::Sign::same) return n;
   if (!(max_abs(last) > 0)) return dot(tool_axis, n) < 0 ? -n : n;
@@ -49,7 +50,7 @@ Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Qua
     return Vec3(0.0);
   }
 
-  // each rotational proxy is the next link's orientation
+  // each rotational proxy is the orientation that the next link receives
   Quat incoming = tool;
   Vec3 torque(0.0);
   double stiffness = 0;
@@ -78,14 +79,14 @@ Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Qua
     out.links[i].torque_nm = shares[i];
   }
 
-  // a link that is off passes on what comes before it
+  // a link that is switched off reports the orientation before it (the tool's, if a mode orders the chain)
   Quat before = tool;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     if (!order.contains(i)) out.links[i].orientation = before;
     if (order.mode < 0) before = out.links[i].orientation;
   }
 
-  // no step of the torque
+  // steps of the torque are ramped
   const Quat q0 = normalized(tool);
   const Vec3 turned = step.first_tick ? Vec3(0.0) : rotation_vector(normalized(q0 * glm::conjugate(normalized(state.last_orientation))));
   if (step.first_tick) state.ramp.last_force = torque;

@@ -6,7 +6,7 @@ namespace catena::haptics {
 
 namespace {
 
-/// Where the probe is, seen from a surface that has let go. True: it has crossed it since the last time.
+/// Updates the side on which the probe is of a released surface. Returns true if the probe has crossed the surface since the last call.
 bool note_side(SingleProxyTick& tick, std::size_t i) noexcept {
   SingleProxyState::ReleaseState& watch = tick.state.release_states[i];
   Primitive primitive;
@@ -29,7 +29,7 @@ bool takes_hold_again(SingleProxyTick& tick, std::size_t i) noexcept {
   return near && (crossed || norm(tick.probe - tick.links[i].proxy) <= kRearmFraction * spec.release);
 }
 
-/// Starts the links that have just been switched on. False: none has.
+/// Starts the links that have just been switched on. Returns false if there is none.
 bool begin_links(SingleProxyTick& tick) noexcept {
   SingleProxyState& single = tick.state;
   const CouplingMethod method = tick.program.coupling.method;
@@ -48,7 +48,7 @@ bool begin_links(SingleProxyTick& tick) noexcept {
     begun = true;
     single.release_states[i] = {};
     begin_link(tick.program.links[i], at_proxy ? single.proxy : tick.probe, tick.first_tick, link, tick.scratch[i]);
-    // what is not corrected later must begin on the constraint
+    // methods that do not correct the proxy later must start with it on the constraint
     if ((any_tick || (at_proxy && first)) && is_finite(link.proxy)) single.proxy = link.proxy;
   }
   single.has_proxy = true;
@@ -68,7 +68,7 @@ Vec3 proxy_of(SingleProxyTick& tick) noexcept {
   }
 }
 
-/// Lets go of the links whose release the proxy has reached. False: of none.
+/// Releases the links whose release distance the proxy has reached. Returns false if none was released.
 bool let_go(SingleProxyTick& tick, const Vec3& p) noexcept {
   const double stretch = norm(tick.probe - p);
   bool any = false;
@@ -115,7 +115,7 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
   const bool begun = begin_links(tick);
   if (single.settled && same_order && !begun && bitwise_equal(single.probe, tick.probe)) return;
 
-  // links that have let go
+  // released links
   const bool is_linear = tick.program.coupling.method == CouplingMethod::linear;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
@@ -125,7 +125,7 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
     if (is_linear) single.proxy = tick.links[i].proxy;
   }
 
-  // the proxy; again without those that let go
+  // the proxy; solved a second time without the links that were released
   const Vec3 before = single.proxy;
   Vec3 p = tick.probe;
   for (int round = 0; round <= kMaxLinks; ++round) {
@@ -139,7 +139,7 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
   if (count == 0) p = tick.probe;
   if (!is_finite(p)) p = before;
 
-  // what the links report
+  // link reports
   bool spent = false;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
@@ -160,12 +160,11 @@ void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept {
   single.settled = !spent && (method == CouplingMethod::pipe || method == CouplingMethod::closest);
 }
 
-/// Force balance: p minimises 1/2 K |x - p|^2 + sum 1/2 k_i dist(p, primitive_i)^2, the primitives taken at the last proxy.
-///   (K I + sum k_i P_i) (p - x) = sum k_i P_i (o_i - x),   P = I for a point, I - t t' for a line, n n' for a plane
+/// Force balance: p minimizes 1/2 K |x - p|^2 + sum 1/2 k_i dist(p, primitive_i)^2, with the primitives of the last proxy.
 
 namespace {
 
-/// Symmetric positive semidefinite 3 x 3, by L D L'; a direction without stiffness stays where it is.
+/// Solves a symmetric positive semidefinite 3 x 3 system by L D L'. A direction without stiffness gets 0.
 Vec3 solve(const Mat3& a, const Vec3& b) noexcept {
   const double least = 1e-14 * std::max(std::max(a[0][0], a[1][1]), a[2][2]);
   const auto part = [&](double value, double pivot) { return pivot > least ? value / pivot : 0; };

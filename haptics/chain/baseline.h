@@ -1,50 +1,50 @@
-/// The baselines that the paper compares the chain with (section 3): one proxy p for all links, F = K S (p - x) - b v.
-///   pipe     [6]   the constraints are applied again and again, p = advance_i(p), until all are satisfied; baseline_spans.cpp
+/// Baselines with which the paper compares the chain (section 3): one proxy p for all links, F = K S (p - x) - b v.
+///   pipe     [6]   the constraints are applied in turn, p = advance_i(p), until all are satisfied; baseline_subspace.cpp
 ///   balance  [13]  p balances the springs to the probe and to the links' linear primitives; baseline.cpp
-///   closest  [9]   of the constraints' own projections of the probe, the nearest; baseline_spans.cpp
-///   linear   [7]   the probe's move along what the linear primitives at p leave free, never corrected; baseline_spans.cpp
-/// Release: a link that holds lets go in the tick in which |x - p| >= its release, and p is found again without it. It takes hold
-/// again by the probe x itself: one-sided links on the free side, two-sided ones where x crosses the surface or comes within a
-/// tenth of release. Where no link holds p = x, bit for bit.
-/// Every link reports p. A link that holds reports an equal share of F (weight 1 / their number, stiffness K), the others none;
-/// no weights rise at a switch: the step of the whole force is ramped (ramp.h).
-/// In LinkState `proxy` stays the constraint's own. Haptic thread: no allocation, lock, throw or unbounded loop.
+///   closest  [9]   p is the nearest of the constraints' own projections of the probe; baseline_subspace.cpp
+///   linear   [7]   p moves with the probe as far as the linear primitives at p leave it free, never corrected; baseline_subspace.cpp
+/// Release: an engaged link releases in the tick in which |x - p| >= its release, and p is recomputed without it. It re-engages by the
+/// probe x: a one-sided link where x is on the free side, a two-sided one where x crosses the surface or comes within a tenth of release.
+/// Where no link is engaged p = x, bit for bit.
+/// Every link reports p. An engaged link reports an equal share of F (weight 1 / number of engaged links, stiffness K), the others none.
+/// Weights do not rise at a switch: the step of the whole force is ramped (ramp.h).
+/// LinkState::proxy remains the constraint's own proxy. Haptic thread: no allocation, lock, throw or unbounded loop.
 #pragma once
 #include "haptics/chain/switching.h"
 
 namespace catena::haptics {
 
-/// What the baselines remember.
+/// State of the baselines between ticks.
 struct SingleProxyState {
-  /// What is remembered of a link.
+  /// Release state of one link.
   struct ReleaseState {
-    double height = 0;         ///< of the probe above a surface that has let go
-    bool has_height = false;   ///< `height` means something
-    bool released = false;     ///< it has let go
-    bool was_holding = false;  ///< in the last tick
+    double height = 0;         ///< signed height of the probe above a surface that is released, world units
+    bool has_height = false;   ///< `height` is valid
+    bool released = false;     ///< the link is released
+    bool was_holding = false;  ///< the link was engaged in the last tick
   };
   Vec3 proxy{0.0};                                       ///< p, world units
-  Vec3 probe{0.0};                                       ///< of the last tick
-  bool has_proxy = false;                                ///< `proxy` means something
-  bool settled = false;                                  ///< a probe that rests gives the same again
-  std::array<ReleaseState, kMaxLinks> release_states{};  ///< by link
+  Vec3 probe{0.0};                                       ///< probe of the last tick, world units
+  bool has_proxy = false;                                ///< `proxy` is valid
+  bool settled = false;                                  ///< converged: an unchanged probe and link order give the same result
+  std::array<ReleaseState, kMaxLinks> release_states{};  ///< release state of each link
 };
 
-/// One tick as the methods see it; they find p and set `holds`, and each link's status and residual.
+/// Input and output of one tick of a method, which computes p and sets `holding` and each link's status and residual.
 struct SingleProxyTick {
-  const HapticProgram& program;                 ///< what runs
-  const LinkOrder& order;                       ///< which links run
-  Vec3 probe;                                   ///< the hand, world units
-  double dt_s;                                  ///< since the last tick
-  bool first_tick;                              ///< there was no tick before
-  SingleProxyState& state;                      ///< p, and what else is remembered
-  std::array<LinkState, kMaxLinks>& links;      ///< by link
-  std::array<LinkScratch, kMaxLinks>& scratch;  ///< by link
-  double domain_length = 0;                     ///< L, the largest of the links
-  int iterations = 0;                           ///< of the pipe, in this tick
-  std::array<bool, kMaxLinks> holding{};        ///< by link: it holds in this tick
+  const HapticProgram& program;                 ///< program that runs
+  const LinkOrder& order;                       ///< links that run
+  Vec3 probe;                                   ///< position of the probe, world units
+  double dt_s;                                  ///< time since the last tick with a probe, seconds
+  bool first_tick;                              ///< no earlier tick had a probe
+  SingleProxyState& state;                      ///< p and the release states
+  std::array<LinkState, kMaxLinks>& links;      ///< state of each link
+  std::array<LinkScratch, kMaxLinks>& scratch;  ///< caches of each link
+  double domain_length = 0;                     ///< L, the largest of the links' domain lengths, world units
+  int iterations = 0;                           ///< iterations of the pipe in this tick
+  std::array<bool, kMaxLinks> holding{};        ///< the link is engaged in this tick
 
-  /// Calls f(i) for the links that run and have not let go, in order.
+  /// Calls f(i) for the links that run and are not released, in order.
   template <class F>
   void for_each_held_link(const F& f) noexcept {
     for (int k = 0; k < order.count; ++k) {
@@ -52,32 +52,34 @@ struct SingleProxyTick {
       if (!state.release_states[i].released) f(i);
     }
   }
-  /// The constraint's own advance. True where it holds.
+  /// Runs the constraint's own `advance`. Returns whether the constraint holds the probe.
   bool apply(std::size_t i, const Vec3& incoming) noexcept;
-  /// The constraint's primitive near `at`; none: false, and the status says why.
+  /// Computes the constraint's primitive near `at`, world units. Returns false if there is none; the link's status is the cause.
   bool primitive(std::size_t i, const Vec3& at, Primitive& out) noexcept;
 };
 
-/// Moves state.proxy by the probe; `same_order`: the order of the last tick.
+/// Moves state.proxy according to the probe. `same_order`: the link order is that of the last tick.
 void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept;
 
-/// By "pipe": where p comes to rest.
+/// Returns p by the method pipe: the point at which the iteration converges, or ends after its maximum of passes.
 Vec3 solve_pipe(SingleProxyTick& tick) noexcept;
-/// By "balance".
+/// Returns p by the method balance.
 Vec3 solve_balance(SingleProxyTick& tick) noexcept;
-/// By "closest".
+/// Returns p by the method closest.
 Vec3 solve_closest(SingleProxyTick& tick) noexcept;
-/// By "linear".
+/// Returns p by the method linear.
 Vec3 solve_linear(SingleProxyTick& tick) noexcept;
 
-/// The directions that some primitives take away, and the shortest way onto all of them.
+/// Linear equations of several primitives (at most three independent ones): the directions that they constrain, and the shortest step that
+/// satisfies all of them.
 class ConstrainedSubspace {
  public:
-  /// Adds a primitive's equations, as seen from `from`; what contradicts those before it is left out.
+  /// Adds the equations of a primitive relative to the point `from`; equations that depend on earlier ones, or contradict them, are
+  /// dropped.
   void add(const Primitive& primitive, const Vec3& from) noexcept;
-  /// The shortest move from `from` that satisfies all.
+  /// Returns the shortest step from `from` that satisfies all equations.
   Vec3 shortest_step() const noexcept;
-  /// A vector without what is taken away.
+  /// Returns the component of v along the directions that are not constrained.
   Vec3 project_free(Vec3 v) const noexcept;
 
  private:
@@ -87,7 +89,7 @@ class ConstrainedSubspace {
   int count_ = 0;
 };
 
-/// The distance of a place from a primitive.
+/// Returns the distance of a point from a primitive, world units.
 double distance_to(const Primitive& primitive, const Vec3& place) noexcept;
 
 }  // namespace catena::haptics

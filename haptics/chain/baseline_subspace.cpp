@@ -1,6 +1,6 @@
-/// Single proxy with linear constraints: the move x - p along what the primitives at p leave free (Eqs 1-2 for a line, Eq. 6 for
-/// a plane), nothing corrected. A one-sided surface takes part while the probe is behind it; where it begins to, the proxy is
-/// put on it. A move to a place without a primitive is not made.
+/// Single proxy with linear constraints: moves the proxy by the part of x - p that the primitives at p leave free (Eqs 1-2 for a
+/// line, Eq. 6 for a plane), without correcting drift. A one-sided surface takes part while the probe is behind it; when contact begins,
+/// the proxy is put on the surface. A move to a point at which a primitive does not exist is not made.
 #include "haptics/chain/baseline.h"
 
 namespace catena::haptics {
@@ -8,7 +8,7 @@ namespace catena::haptics {
 Vec3 solve_linear(SingleProxyTick& tick) noexcept {
   Vec3 p = tick.state.proxy;
 
-  // who takes part
+  // the links that take part
   tick.for_each_held_link([&](std::size_t i) {
     LinkState& link = tick.links[i];
     if (!tick.program.links[i].one_sided) {
@@ -20,7 +20,7 @@ Vec3 solve_linear(SingleProxyTick& tick) noexcept {
     if (tick.holding[i] && !tick.state.release_states[i].was_holding) p = link.proxy;
   });
 
-  // the primitives at p
+  // their primitives at p
   ConstrainedSubspace span;
   bool any = false;
   tick.for_each_held_link([&](std::size_t i) {
@@ -41,7 +41,7 @@ Vec3 solve_linear(SingleProxyTick& tick) noexcept {
   });
   if (!any) return tick.probe;
 
-  // a move to where every primitive still exists
+  // move only to a point where every primitive still exists
   const Vec3 next = p + span.project_free(tick.probe - p);
   if (!is_finite(next)) return p;
   bool stays = false;
@@ -61,22 +61,22 @@ Vec3 solve_linear(SingleProxyTick& tick) noexcept {
   return stays ? p : next;
 }
 
-/// Constraint pipe: p = x; then p = advance_i(p), link after link, until a pass moves p by at most 1e-11 L.
-/// Projecting in turn contracts by cos^2 of the angle between two constraints. So after two passes the links that still move p
-/// are met at once, by Newton's method on their primitives (the shortest way onto all of them, as the passes would find where
-/// the constraints are flat), and the links that took no part, one-sided ones that were free, are asked again there.
-/// At most kPasses passes a tick (kPassesAgain at least after a link has let go), then BUDGET: constraints that do not intersect end so.
+/// Constraint pipe: p = x; then p = advance_i(p), link after link, until a pass moves p by at most 1e-11 L. Successive projection contracts
+/// by only cos^2 of the angle between two constraints. So after two passes Newton's method on the primitives solves for all links that
+/// still move p together (the shortest step onto all of them: the point that the passes would find if the constraints were flat), and the
+/// links that did not constrain (one-sided, probe on the free side) are checked at the result. At most kPasses passes a tick (at least
+/// kPassesAgain after a link was released), then status BUDGET; constraints that do not intersect end so.
 
 namespace {
 
 constexpr int kPasses = 32, kPassesAgain = 4, kNewton = 12;
 constexpr double kSatisfied = 1e-11, kLongest = 0.25;  // of L
 
-/// One pass. Returns how far any link was left behind by those after it.
+/// Runs one pass. Returns the largest distance from a link's proxy to the final proxy of the pass.
 double pass(SingleProxyTick& tick, Vec3& p, std::array<bool, kMaxLinks>& holds) noexcept {
   std::array<Vec3, kMaxLinks> left{};
   tick.for_each_held_link([&](std::size_t i) {
-    // on the edge of its free side is still held, where the last pass held it
+    // a link held by the last pass still holds on the edge of its free side
     Primitive edge;
     const bool held = holds[i];
     holds[i] = tick.apply(i, p);
@@ -93,7 +93,7 @@ double pass(SingleProxyTick& tick, Vec3& p, std::array<bool, kMaxLinks>& holds) 
   return worst;
 }
 
-/// From p to a place on all that hold. False: not found; p is where it was.
+/// Moves p to a point on all links that hold. Returns false, with p unchanged, if none is found.
 bool meet(SingleProxyTick& tick, const std::array<bool, kMaxLinks>& holds, Vec3& p) noexcept {
   Vec3 q = p;
   for (int k = 0; k < kNewton; ++k) {
@@ -122,7 +122,7 @@ bool meet(SingleProxyTick& tick, const std::array<bool, kMaxLinks>& holds, Vec3&
   return false;
 }
 
-/// The links that took no part: none of them holds where p is now, but for round-off.
+/// Whether none of the links that did not take part constrains p (within round-off).
 bool others_agree(SingleProxyTick& tick, const std::array<bool, kMaxLinks>& holds, const Vec3& p) noexcept {
   bool agree = true;
   tick.for_each_held_link([&](std::size_t i) {
@@ -156,9 +156,9 @@ Vec3 solve_pipe(SingleProxyTick& tick) noexcept {
 
 namespace {
 
-constexpr double kParallel = 1e-7;  // sine of the least angle at which two equations count as two
+constexpr double kParallel = 1e-7;  // sine of the smallest angle at which two equations count as independent
 
-/// An orthonormal pair across the unit vector n.
+/// Orthonormal pair perpendicular to the unit vector n.
 void across_pair(const Vec3& n, Vec3& a, Vec3& b) noexcept {
   const Vec3 pick = std::fabs(n.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   a = direction(cross(n, pick));
@@ -168,7 +168,7 @@ void across_pair(const Vec3& n, Vec3& a, Vec3& b) noexcept {
 }  // namespace
 
 void ConstrainedSubspace::add(const Vec3& normal, double distance) noexcept {
-  // the part of the equation that those before it do not fix (twice: as good as orthogonal)
+  // the component of the equation that is independent of those before it (two passes, for orthogonality)
   Vec3 n = normal;
   double d = distance;
   for (int turn = 0; turn < 2; ++turn)
@@ -222,7 +222,8 @@ double distance_to(const Primitive& primitive, const Vec3& place) noexcept {
   }
 }
 
-/// Closest constraint: every constraint projects the probe, the nearest projection is the proxy; the first of equals.
+/// Closest constraint: every constraint projects the probe; the nearest projection is the proxy (the first one if several are equally
+/// near).
 Vec3 solve_closest(SingleProxyTick& tick) noexcept {
   Vec3 p = tick.probe;
   double best = -1;

@@ -1,9 +1,11 @@
-/// A link that has just been switched on: everything anew, then the constraint's own start. Haptic thread.
+/// Initialization of a link that has just been switched on. Haptic thread: no allocation, lock, throw.
 #pragma once
 #include "haptics/chain/program.h"
 
 namespace catena::haptics {
 
+/// Resets the state of a link to its initial values, with the proxy at the incoming probe, and calls the constraint's `start`. The weight
+/// starts at 0, or at 1 in the first tick of the chain.
 inline void begin_link(const Link& spec, const Vec3& incoming, bool first_tick, LinkState& link, LinkScratch& scratch) noexcept {
   link.switched_on = true;
   link.started = true;

@@ -4,7 +4,8 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kLeastStep = 1e-3;  // of a ramp out, a tick: it ends whatever the clock does
+// minimum decrease of the ramp factor per tick while ramping out: the ramp ends even if the clock stands still
+constexpr double kLeastStep = 1e-3;
 
 void stop(ForceLimiterState& state, ForceState as) noexcept {
   state.force_n = state.torque_nm = Vec3(0.0);
@@ -16,7 +17,7 @@ double step_out(const DeviceLimits& limits, double dt_s) noexcept {
   return limits.ramp_out_s > 0 ? std::fmax(kLeastStep, dt_s / limits.ramp_out_s) : 1;
 }
 
-// Magnitude, direction kept.
+// Limits force and torque to their maximum magnitudes; directions are kept.
 void limit(const DeviceLimits& limits, ForceLimiterState& state) noexcept {
   state.force_n = clamp_norm(state.force_n, limits.max_force_n);
   state.torque_nm = clamp_norm(state.torque_nm, limits.max_torque_nm);
@@ -42,7 +43,7 @@ void hold(const DeviceLimits& limits, double dt_s, ForceLimiterState& state) noe
   state.force_state = ForceState::ramping_out;
 }
 
-// From `last` towards the force that is asked for, no further than the slew limit lets it.
+// Moves from `last` toward `force`, no further than the slew limit allows.
 Vec3 slewed(const DeviceLimits& limits, const Vec3& last, const Vec3& force, double dt_s) noexcept {
   if (!(limits.slew_n_per_s < DeviceLimits::kUnlimited)) return force;
   const Vec3 step = force - last;
@@ -64,14 +65,14 @@ void ramp_out(const DeviceLimits& limits, const ForceLimiterInput& input, ForceL
   state.force_n = clamp_norm(slewed(limits, last_n, state.force_n, input.dt_s), most_n);
 }
 
-// The part of what is asked for that was sent last.
+// Fraction of the input force or torque that was sent in the last tick, at most 1.
 double share_of(const Vec3& sent, const Vec3& asked) noexcept {
   const double most = norm(asked), length = norm(sent);
   return most > length ? length / most : 1;
 }
 
 void let_through(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept {
-  // a ramp out may have left less than its ramp says: the chain's force has grown since
+  // while ramping out, the sent fraction may be below the ramp factor: the chain force may have grown meanwhile
   if (state.force_state == ForceState::ramping_out)
     state.ramp_factor =
         std::fmin(state.ramp_factor, std::fmin(share_of(state.force_n, input.force_n), share_of(state.torque_nm, input.torque_nm)));
@@ -96,7 +97,7 @@ void limit_force(const DeviceLimits& limits, const ForceLimiterInput& input, For
   const bool fault = input.condition == TickCondition::no_device || input.condition == TickCondition::watchdog ||
                      !is_finite(input.force_n) || !is_finite(input.torque_nm);
   const bool late = !fault && input.condition == TickCondition::late;
-  // ticks in time again after a hold, or switched off in it: on from what the hold has left
+  // first tick in time after a hold, or forces switched off during one: resume from the level to which the hold has decayed
   if ((!late || !input.forces_on) && state.late_ticks > 0) {
     if (state.late_ticks > limits.max_late_ticks) state.ramp_factor *= state.hold_factor;
     state.late_ticks = 0;

@@ -4,27 +4,27 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kLeastEnergy = 1e-15;  // joules: below it is round-off
-constexpr double kLeastDamping = 1e-3;  // N s/m: below it is nothing
+constexpr double kLeastEnergy = 1e-15;  // joules; less is round-off
+constexpr double kLeastDamping = 1e-3;  // N s/m; less counts as none
 
 bool is_apart(const LinkState& link, bool has_gap) noexcept {
   return !link.switched_on || link.released || link.status == LinkStatus::no_surface || (link.status == LinkStatus::budget && !has_gap);
 }
 
-/// The part of a spring's energy that it can give back through a force limit: r (2 - r), r = limit / force.
+/// Fraction of a spring's energy that it can return through a force limit: r (2 - r), r = limit / force.
 double through_limit(double force_n, double most_n) noexcept {
   if (!(force_n > most_n)) return 1;
   const double r = most_n / force_n;
   return r * (2 - r);
 }
 
-/// The part of the chain's force that the guard's ramps let through.
+/// Fraction of the chain force that the ramps of the force limiter let through.
 double ramp_of(const DeviceLimits& limits, const ForceLimiterState& guard) noexcept {
   if (guard.force_state == ForceState::stopped || guard.force_state == ForceState::off) return 0;
   return guard.late_ticks > limits.max_late_ticks ? guard.ramp_factor * guard.hold_factor : guard.ramp_factor;
 }
 
-// What acted since the last tick: sent in it, or a delay before.
+// The force that acted since the last tick: the one sent in the last tick, or `delay_s` before (interpolated).
 PassivityState::SentForce acted(const PassivityState& state, double delay_s, double dt_s) noexcept {
   using Sent = PassivityState::SentForce;
   constexpr std::uint32_t size = PassivityState::kHistoryLength;
@@ -40,9 +40,10 @@ PassivityState::SentForce acted(const PassivityState& state, double delay_s, dou
           mix(older.damping_n, newer.damping_n)};
 }
 
-constexpr double kReleaseS = 0.03;  // in which added damping goes: one that comes and goes by the tick would be felt as a buzz
+// release time constant of the added damping; damping that changes from tick to tick would be perceived as a buzz
+constexpr double kReleaseS = 0.03;
 
-// The damping that takes `need_j` from a hand that goes on by `move_m` in the next tick: at once up, slowly down.
+// Damping that dissipates `need_j` if the probe moves by `move_m` in the next tick: rises at once, falls slowly.
 double step_damping(const DeviceLimits& limits, const Vec3& move_m, double dt_s, double need_j, double last) noexcept {
   const double kept = dt_s < kReleaseS ? last * (1 - dt_s / kReleaseS) : 0;
   const double squared = dot(move_m, move_m);
@@ -51,7 +52,7 @@ double step_damping(const DeviceLimits& limits, const Vec3& move_m, double dt_s,
   return damping > kLeastDamping && std::isfinite(damping) ? damping : 0;
 }
 
-// -d v, as far as the hand goes on as it does.
+// Damping force -d v, for a probe that keeps its velocity.
 Vec3 brake(double damping_ns_per_m, const Vec3& move_m, double dt_s) noexcept {
   const Vec3 force = dt_s > 0 ? move_m * (-damping_ns_per_m / dt_s) : Vec3(0.0);
   return is_finite(force) ? force : Vec3(0.0);
@@ -67,16 +68,16 @@ void step_passivity(const HapticProgram& program, const std::array<LinkState, kM
   const bool conservative = weighs && program.coupling.force == CouplingForce::conservative;
   const std::size_t count = program.links.size();
 
-  // what the last tick's force has done since
+  // work done by the last force
   const PassivityState::SentForce did = acted(state, limits.delay_s, tick.dt_s);
   const double work_j = dot(did.force_n, move_m), taken_j = -dot(did.damping_n, move_m);
-  // what is ramped is granted as far as there is something left of what springs that came or went had
+  // the work of the ramped force is exempt up to the energy that springs held when they were switched, released or engaged
   const bool fades = max_abs(did.ramped_n) > 0 || max_abs(tick.ramped_n) > 0;
   const double faded_j = std::fmin(dot(did.ramped_n, move_m), state.released_j);
   state.released_j = fades ? state.released_j - faded_j : 0;
   const double free_j = dot(did.exempt_n, move_m) + faded_j;
 
-  // what of the chain's force is sent, and what its springs can give back through the limits
+  // fraction of the chain force that is sent, and the fraction of spring energy that can be returned through the limits
   const double asked = dot(tick.total_force_n, tick.total_force_n);
   const double sent = asked > 0 && std::isfinite(asked) ? dot(guard.force_n, tick.total_force_n) / asked : 0;
   const double ramp = ramp_of(limits, guard);
@@ -85,7 +86,7 @@ void step_passivity(const HapticProgram& program, const std::array<LinkState, kM
   const double most_n = std::fmin(program.coupling.max_force_n, ramp > 0 ? limits.max_force_n / ramp : 0);
   const double share = 0.5 * program.meters_per_unit * ramp * through_limit(norm(springs_n), most_n);
 
-  // by link: the ledger, and what weights that rise put in
+  // per link: energy account, and the energy added by weights that rose
   bool anew = state.rebase_pending || !(tick.order == state.order);
   double storage_j = 0, raised_j = 0;
   Vec3 granted_n = tick.cues_n;
@@ -124,7 +125,7 @@ void step_passivity(const HapticProgram& program, const std::array<LinkState, kM
   state.dissipated_j += taken_j;
   state.storage_j = storage_j;
   if (!std::isfinite(state.balance_j + state.exempt_j + state.dissipated_j + state.storage_j)) {
-    // forces or places too large for a double: the account begins again
+    // forces or positions too large for a double: reset the account
     state.balance_j = state.exempt_j = state.dissipated_j = state.storage_j = state.released_j = 0;
     state.work_j.fill(0);
     state.stored_j.fill(0);

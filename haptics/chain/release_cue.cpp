@@ -7,10 +7,10 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kRoundOff = 1e-9;  // a proxy that slips at its limit has reached it
-constexpr double kBack = 0.95;      // m below which the link is no longer left
+constexpr double kRoundOff = 1e-9;  // relative; a proxy that slips at its limit counts as having reached it
+constexpr double kBack = 0.95;      // release ratio below which the link is engaged again (hysteresis)
 
-/// A wave of period 1 between -1 and 1, zero at 0 and rising.
+/// Triangle wave of period 1 between -1 and 1, zero at 0 and rising.
 double triangle(double phase) noexcept {
   if (!std::isfinite(phase)) return 0;
   const double f = phase + 0.25 - std::floor(phase + 0.25);
@@ -27,7 +27,7 @@ Vec3 update_release_cue(const ReleaseCue& indication, const LinkState& link, con
   report.released = link.switched_on && (m >= 1 - kRoundOff || (state.released && m >= kBack));
   if (max_abs(gap) > 0) state.direction = direction(gap);
 
-  // a detent on the way out and on the way back
+  // a detent at release and at re-engagement
   const bool passes = state.initialized && report.released != state.released;
   state.released = report.released;
   state.initialized = link.switched_on;
@@ -43,7 +43,7 @@ Vec3 update_release_cue(const ReleaseCue& indication, const LinkState& link, con
     return state.direction * (link.weight * indication.amplitude_n * state.pulse_level);
   }
 
-  // a vibration while it is near leaving
+  // a vibration near release
   if (link.released || report.release_ratio < indication.onset) return Vec3(0.0);
   return state.direction * (link.weight * indication.amplitude_n * triangle(indication.frequency_hz * t_s));
 }

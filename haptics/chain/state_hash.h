@@ -1,5 +1,5 @@
-/// Checks of plain data that came from outside, such as the state in a log: a bool or an enumerator that is none of its values is
-/// undefined behaviour to read, so that their bytes are looked at. Off the tick.
+/// Checks of plain data that comes from a file, and the hash of the ticks' results.
+/// Reading a bool or an enumerator that has none of its values is undefined behavior, so the checks inspect the bytes. Off the tick.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace catena::haptics {
 
-/// Each byte is 0 or 1.
+/// Returns whether every flag has the byte 0 or 1.
 template <class... Flags>
 bool are_valid_bools(const Flags&... flags) noexcept {
   static_assert((std::is_same_v<Flags, bool> && ...));
@@ -23,7 +23,7 @@ bool are_valid_bools(const Flags&... flags) noexcept {
   return (is_one(flags) && ...);
 }
 
-/// The same of an array.
+/// Returns whether every element of an array has the byte 0 or 1.
 template <std::size_t n>
 bool are_valid_bools(const std::array<bool, n>& flags) noexcept {
   for (std::size_t i = 0; i < n; ++i)
@@ -31,7 +31,7 @@ bool are_valid_bools(const std::array<bool, n>& flags) noexcept {
   return true;
 }
 
-/// The number is one of the enumerators from 0 to `last`.
+/// Returns whether the value is one of the enumerators from 0 to `last`.
 template <class Enum>
 bool is_valid_enum(const Enum& word, Enum last) noexcept {
   std::underlying_type_t<Enum> value;
@@ -39,11 +39,11 @@ bool is_valid_enum(const Enum& word, Enum last) noexcept {
   return value >= 0 && value <= static_cast<std::underlying_type_t<Enum>>(last);
 }
 
-/// `state_hash`: FNV-1a-64 over the bytes of proxies, force, active, status of every tick (no timings), and where there are widgets of
-/// their points, orientation, value, mode, handle and held. Equal hashes mean equal behaviour to the bit.
+/// Computes `state_hash`: FNV-1a-64 over the bytes of proxies, force, active and status of every tick (no timings), and of the points,
+/// orientation, value, mode, handle and active_planes of every widget. Equal hashes mean bit-identical behavior.
 class StateHash {
  public:
-  /// Adds one tick.
+  /// Adds the result of one tick.
   void add(const HapticState& state) noexcept {
     const auto vector = [&](const Vec3& v) {
       fnv_.add(v.x);
@@ -62,7 +62,7 @@ class StateHash {
         fnv_.add(static_cast<std::uint8_t>(v));
     }
   }
-  /// The hash of the ticks so far.
+  /// Returns the hash of the ticks so far.
   std::uint64_t value() const noexcept { return fnv_.value; }
 
  private:

@@ -1,37 +1,37 @@
-/// Which links run in this tick, and in which order: switches by button or by force, and the modes of operation (section 6.2).
+/// Selects the links that run in a tick and their order: switches by button or by force, and the modes of operation (paper, section 6.2).
 /// Haptic thread: no allocation, lock or throw.
 #pragma once
 #include "haptics/chain/program.h"
 
 namespace catena::haptics {
 
-/// What the switches remember.
+/// State of all switches between ticks.
 struct SwitchState {
-  std::uint32_t buttons = 0;              ///< of the last tick
-  std::array<bool, kMaxLinks> link_on{};  ///< by link
-  std::array<bool, kMaxModes> mode_on{};  ///< by mode
+  std::uint32_t buttons = 0;              ///< buttons of the last tick; bit n - 1: button n is down
+  std::array<bool, kMaxLinks> link_on{};  ///< state of each link's switch
+  std::array<bool, kMaxModes> mode_on{};  ///< state of each mode's switch
 };
 
-/// The links that run, in order; the others pass their probe through.
+/// Links that run in a tick, in order. The proxy of every other link equals its probe.
 struct LinkOrder {
-  std::array<std::int8_t, kMaxLinks> links{};  ///< indices into HapticProgram::links
-  std::array<std::uint8_t, kMaxLinks>
-      shape_revisions{};  ///< of a widget's link: counts the shapes that it was put on; another one is another link
-  std::int8_t count = 0;  ///< how many run
-  std::int8_t mode = -1;  ///< the mode that orders them; -1: none
+  std::array<std::int8_t, kMaxLinks> links{};  ///< indices into HapticProgram::links; the first `count` are used
+  /// Links of widgets: number of shapes that the link has been given. Another revision counts as another link.
+  std::array<std::uint8_t, kMaxLinks> shape_revisions{};
+  std::int8_t count = 0;  ///< number of links that run
+  std::int8_t mode = -1;  ///< index of the mode that sets the order; -1: none
   bool operator==(const LinkOrder&) const = default;
-  /// Puts a link behind those that are there.
+  /// Appends a link.
   void add(std::size_t link, std::uint8_t take = 0) noexcept {
     shape_revisions[static_cast<std::size_t>(count)] = take;
     links[static_cast<std::size_t>(count++)] = static_cast<std::int8_t>(link);
   }
-  /// Whether the link runs.
+  /// Returns whether the link runs.
   bool contains(std::size_t link) const noexcept {
     for (int k = 0; k < count; ++k)
       if (links[static_cast<std::size_t>(k)] == static_cast<int>(link)) return true;
     return false;
   }
-  /// The same, on this shape.
+  /// Returns whether the link runs with the shape of revision `take`.
   bool contains(std::size_t link, std::uint8_t take) const noexcept {
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
       if (links[k] == static_cast<int>(link) && shape_revisions[k] == take) return true;
@@ -39,7 +39,8 @@ struct LinkOrder {
   }
 };
 
-/// Steps all switches by the buttons now and the last tick's force; returns the order of the links that are switched on.
+/// Steps all switches from the present buttons and the magnitude of the last tick's chain force; returns the order of the scene's links
+/// that are on.
 LinkOrder step_switches(const HapticProgram& program, std::uint32_t buttons, double last_force_n, SwitchState& state) noexcept;
 
 }  // namespace catena::haptics

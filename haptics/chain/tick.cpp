@@ -9,16 +9,16 @@ namespace catena::haptics {
 
 namespace {
 
-/// What the links give, by link and in all.
+/// Forces of the links, per link and in total.
 struct Coupled {
   std::array<Vec3, kMaxLinks> gaps{};      ///< p_i - p_(i-1), world units
-  std::array<Vec3, kMaxLinks> shares_n{};  ///< of the force
+  std::array<Vec3, kMaxLinks> shares_n{};  ///< contribution of each link to the force
   Vec3 force_n{0.0};
-  Vec3 left_out_n{0.0};                  ///< of a conservative force: what bounds leave out
-  double energy_j = 0;                   ///< likewise: of the springs
+  Vec3 left_out_n{0.0};                  ///< conservative force: the part truncated by the bound of the pull-back
+  double energy_j = 0;                   ///< conservative force: total spring energy
   std::array<Vec3, kMaxLinks> probes{};  ///< p_(i-1), world units
   Vec3 reach{0.0};                       ///< from the probe to the last proxy, world units
-  double newtons_per_unit = 0;           ///< K S: of the links that run, together
+  double newtons_per_unit = 0;           ///< K S: total stiffness of the active links, N per world unit
 };
 
 bool is_single(const HapticProgram& program) noexcept { return program.coupling.method != CouplingMethod::chain; }
@@ -34,7 +34,7 @@ double capped(double stiffness, const DeviceLimits& limits) noexcept {
   return stiffness > limits.max_stiffness_n_per_m ? limits.max_stiffness_n_per_m : stiffness;
 }
 
-// What a constraint of a plug-in may break: a proxy that is not finite, a status or reason that there is not.
+// Sanitizes what a plug-in constraint may return: a proxy that is not finite, or a status or reason outside its enumeration.
 void keep_sane(const Vec3& incoming, LinkState& link) noexcept {
   if (is_finite(link.proxy) && is_valid_enum(link.status, LinkStatus::bad_probe) && is_valid_enum(link.reason, SampleStatus::parallel))
     return;
@@ -42,7 +42,7 @@ void keep_sane(const Vec3& incoming, LinkState& link) noexcept {
   set_link_status(link, LinkStatus::critical, SampleStatus::not_finite);
 }
 
-// One link that is on: its start, its advance, its weight (the ramp after a switch).
+// Advances one active link: starts it, advances its proxy and its weight (the ramp after a switch).
 void advance_link(const HapticProgram& program, std::size_t i, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
                   LinkState& link, LinkScratch& scratch) noexcept {
   const Link& spec = program.links[i];
@@ -63,7 +63,8 @@ void advance_link(const HapticProgram& program, std::size_t i, const Vec3& incom
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
 
-// Links that are off pass their probe through: the proxy before them in the scene's order, where no mode orders the chain.
+// Links that are off pass their probe through: their proxy is that of the link before them in the scene, or the probe itself if a mode
+// orders the chain.
 void pass_through(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, ChainState& state) noexcept {
   Vec3 before = probe;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
@@ -76,7 +77,7 @@ Vec3 last_proxy(const LinkOrder& order, const Vec3& probe, const ChainState& sta
   return order.count > 0 ? state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(order.count - 1)])].proxy : probe;
 }
 
-// A baseline's tick: one proxy for all links. Returns K S (p - x).
+// Tick of a baseline method: one proxy for all links. Returns the force K S (p - x).
 Coupled one_proxy(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double dt, ChainState& state,
                   ChainScratch& scratch) noexcept {
   SingleProxyTick single{program, order, probe, dt, !state.has_probe, state.single_proxy, state.links, scratch.links};
@@ -96,7 +97,7 @@ Coupled one_proxy(const HapticProgram& program, const LinkOrder& order, const Ve
   return out;
 }
 
-// The chain: each proxy is the next link's probe.
+// Tick of the chain: each proxy is the next link's probe.
 Coupled chain(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double dt, double ramp_step, ChainState& state,
               ChainScratch& scratch) noexcept {
   Coupled out;
@@ -127,8 +128,8 @@ Coupled chain(const HapticProgram& program, const LinkOrder& order, const Vec3& 
   return out;
 }
 
-// The direction of the links' force, and of `braking` times the move, where they are too large for a double: every term scaled down before
-// it is formed.
+// Direction of the total link force plus `braking` times the move, for values too large for a double: every term is scaled down before it
+// is formed.
 Vec3 huge_direction(const HapticProgram& program, const LinkOrder& order, const Vec3& probe, double braking,
                     const ChainState& state) noexcept {
   constexpr double small = 1e-160;
@@ -146,13 +147,13 @@ Vec3 huge_direction(const HapticProgram& program, const LinkOrder& order, const 
   return direction(force);
 }
 
-// A report is finite: the largest double for what is larger, 0 for what is not a number (a huge gap that weighs nothing).
+// Keeps reports finite: clamps to the largest double; NaN (a huge gap of weight 0) becomes 0.
 double bounded(double v) noexcept {
   constexpr double most = std::numeric_limits<double>::max();
   return v > most ? most : v < -most ? -most : v == v ? v : 0;
 }
 
-/// The state's reason is of the last time that it was set: it counts only beside the statuses that have one.
+/// Reason for the link's status. LinkState::reason keeps its last value, so it is reported only with a status that has a reason.
 SampleStatus reason_of(const LinkState& link) noexcept {
   if (link.status == LinkStatus::bad_probe) return SampleStatus::not_finite;
   return link.status == LinkStatus::critical || link.status == LinkStatus::boundary ? link.reason : SampleStatus::ok;
@@ -199,7 +200,7 @@ void hold_all(const HapticProgram& program, double t_s, ChainState& state, Hapti
   state.chain_force_n = state.requested_force_n = Vec3(0.0);
   state.ramp = Ramp{};
   state.unaccounted.has_previous = false;
-  // no pose, no force: whatever the clock says
+  // no pose: no force, even if the tick is in time
   limit_force(program.limits, {Vec3(0.0), Vec3(0.0), TickCondition::no_device, false, 0}, state.force_limiter);
   pause_passivity(state.passivity);
   pause_widgets(state.widgets);
@@ -221,7 +222,7 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
     return hold_all(program, probe.t_s, state, out);
 
   const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_probe_t_s) : 0;
-  // a ramp counts from the last tick, even one without a probe
+  // ramps count from the last tick, even if it had no probe
   const double ramp_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.last_tick_t_s));
   const double ramp_step = program.coupling.ramp_s > 0 ? ramp_dt / program.coupling.ramp_s : 1;
   const double s = program.meters_per_unit;
@@ -237,7 +238,7 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
 
   if (!program.widgets.empty()) move_widgets(program, last_proxy(order, probe.position, state), state.widgets);
 
-  // what the links tell of the hand
+  // release cues and link reports
   Vec3 cues(0.0);
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const Vec3& share = coupled.shares_n[i];
@@ -247,7 +248,7 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
                                out.links[i]);
   }
 
-  // their force, without a step
+  // chain force without a step
   const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
   const double most = program.coupling.max_force_n;
   const bool huge = !std::isfinite(norm(coupled.force_n));
@@ -258,7 +259,7 @@ void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& st
   const Vec3 told = coupled.force_n + ramped + cues;
   state.requested_force_n = {bounded(told.x), bounded(told.y), bounded(told.z)};
 
-  // the coupling's damping, then the limit with the direction kept
+  // the coupling's damping, then the force limit (direction kept)
   const double braking = dt > 0 ? program.coupling.damping_ns_per_m * s / dt : 0;
   const Vec3 braked = state.has_probe ? move * braking : Vec3(0.0), sum = told - braked;
   const Vec3 whole = max_abs(ramped) > 0 ? pull + ramped + cues - braked : sum;
@@ -311,7 +312,7 @@ void rebind_program(const HapticProgram& from, const HapticProgram& to, ChainSta
       state.release_cues[i] = old.release_cues[k];
       if (from.coupling.method == to.coupling.method) state.single_proxy.release_states[i] = old.single_proxy.release_states[k];
       state.switches.link_on[i] = old.switches.link_on[k];
-      // the ledger of a link goes on; what links that are gone have given stays in the observer
+      // the energy account of a link is kept; the contribution of removed links stays in the observer
       state.passivity.work_j[i] = old.passivity.work_j[k];
       state.passivity.stored_j[i] = old.passivity.stored_j[k];
       state.passivity.weights[i] = old.passivity.weights[k];

@@ -1,15 +1,16 @@
-/// One tick: a pure function of (program, state, probe). The servo thread, `replay`, the tests and the benchmarks run this.
+/// One haptic tick: a pure function of (program, state, probe), run by the servo thread, `replay`, the tests and the benchmarks.
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
-///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_s_(k-1));  |F| <= max_force
-///   or by virtual work (virtual_work.h), where the coupling asks for a conservative force;
-///   plus the cues of links that the hand leaves (indication.h), if any. While a step of the links' force is ramped (ramp.h), the sum over
-///   the links is cut to max_force by itself, and what the ramp holds back is added
-///   torque: of links that align the tool (alignment.h), if any
+///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
+///   With CouplingForce::conservative the sum is replaced by the force by virtual work (virtual_work.h).
+///   The release cues of the links (release_cue.h) are added. While a step of the links' force is ramped (ramp.h), the sum over the links
+///   is limited to max_force by itself, and the ramp offset is added.
+///   torque: that of the links that align the tool (alignment.h)
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
-/// then the guard (guard.h): what the device's limits and the tick's condition leave of it, and the ledger (passivity.h).
-/// Widgets (widgets.h) add their links to the chain, or run alone while one is grabbed, and follow the last proxy.
-/// No k_i, and no K of a baseline's force, is above the device's cap (constraint.h).
-/// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
+/// The force limiter (force_limiter.h) then applies the device's limits and the tick's condition, and the energy account (passivity.h)
+/// follows. Widgets (widgets.h) add their links to the chain, or run alone while one is grabbed, and follow the last proxy.
+/// Every k_i, and the K of a baseline's force, is capped by the device's limit (constraint.h).
+/// A probe or time that is not finite, and a tick without device or stopped by the watchdog, hold all proxies and give zero force and
+/// BAD_PROBE. A clock that goes backward counts as dt = 0.
 #pragma once
 #include "haptics/chain/alignment.h"
 #include "haptics/chain/baseline.h"
@@ -23,49 +24,49 @@
 
 namespace catena::haptics {
 
-/// What a tick gets of the hand.
+/// Input of one tick.
 struct ProbeSample {
-  double t_s = 0;                                   ///< rises from tick to tick, seconds
-  Vec3 position{0.0};                               ///< world units
-  std::uint32_t buttons = 0;                        ///< bit n - 1: button n is held
-  Quat orientation{kIdentityRotation};              ///< of the tool, world axes
-  TickCondition condition = TickCondition::normal;  ///< what the servo knows of this tick
-  bool forces_on = true;                            ///< the hand's own switch
+  double t_s = 0;                                   ///< time, increases from tick to tick, seconds
+  Vec3 position{0.0};                               ///< position of the probe, world units
+  std::uint32_t buttons = 0;                        ///< bit n - 1: button n is down
+  Quat orientation{kIdentityRotation};              ///< rotation from tool axes to world axes
+  TickCondition condition = TickCondition::normal;  ///< condition of the tick, set by the servo
+  bool forces_on = true;                            ///< the user's force switch and the device's own switch are both on
 };
 
-/// All that the chain remembers from tick to tick: plain data, allocated before the loop. One thread at a time.
+/// Complete state of the chain between ticks: plain data, allocated before the loop. Used by one thread at a time.
 struct ChainState {
-  std::array<LinkState, kMaxLinks> links{};               ///< by link
-  std::array<ReleaseCueState, kMaxLinks> release_cues{};  ///< by link
-  SwitchState switches;                                   ///< which links are on
-  LinkOrder order;                                        ///< of the last tick
-  Ramp ramp;                                              ///< of the force
-  UnaccountedEnergy unaccounted;                          ///< of a conservative force
-  AlignmentState alignment;                               ///< the rotational chain
-  WidgetsState widgets;                                   ///< the widgets
-  SingleProxyState single_proxy;                          ///< baselines
-  Vec3 last_probe{0.0};                                   ///< of the last tick that had one, world units
-  double last_probe_t_s = 0;                              ///< of the last tick with a probe
-  double last_tick_t_s = 0;         ///< of the last tick: what a ramp of the guard counts, however long there was no probe
-  Vec3 chain_force_n{0.0};          ///< that the chain asks for
-  Vec3 requested_force_n{0.0};      ///< of links and their cues, before the hand's damping and any limit (DeviceOutput::requested_force_n)
-  ForceLimiterState force_limiter;  ///< what the hand gets
-  PassivityState passivity;         ///< the energy account
-  std::uint64_t ticks = 0;          ///< so far
-  bool has_probe = false;           ///< there was a probe
+  std::array<LinkState, kMaxLinks> links{};               ///< state of each link
+  std::array<ReleaseCueState, kMaxLinks> release_cues{};  ///< state of each link's release cue
+  SwitchState switches;                                   ///< switches of links and modes
+  LinkOrder order;                                        ///< link order of the last tick
+  Ramp ramp;                                              ///< ramp of the force
+  UnaccountedEnergy unaccounted;                          ///< energy that a conservative force does not account for
+  AlignmentState alignment;                               ///< rotational chain
+  WidgetsState widgets;                                   ///< widgets
+  SingleProxyState single_proxy;                          ///< single proxy of the baselines
+  Vec3 last_probe{0.0};                                   ///< probe of the last tick that had one, world units
+  double last_probe_t_s = 0;                              ///< time of the last tick with a probe, seconds
+  double last_tick_t_s = 0;                               ///< time of the last tick, with or without a probe, seconds; ramps count from it
+  Vec3 chain_force_n{0.0};                                ///< chain force, before the force limiter
+  Vec3 requested_force_n{0.0};      ///< links, ramp offset and cues, before damping and any limit (DeviceOutput::requested_force_n)
+  ForceLimiterState force_limiter;  ///< force limiter, with the commanded force
+  PassivityState passivity;         ///< energy account
+  std::uint64_t ticks = 0;          ///< number of ticks so far
+  bool has_probe = false;           ///< at least one tick had a probe
 };
 static_assert(std::is_trivially_copyable_v<ChainState>);
 
-/// Caches beside the state that never change a result. Zero at first; one a state.
+/// Caches that never change a result. Zero at first; one per ChainState.
 struct ChainScratch {
-  std::array<LinkScratch, kMaxLinks> links{};  ///< by link
+  std::array<LinkScratch, kMaxLinks> links{};  ///< caches of each link
 };
 
-/// Advances `state` and fills `out` (everything but what the servo writes).
+/// Runs one tick: advances `state` and sets all of `out` but what the servo writes. Haptic thread: no allocation, lock, throw.
 void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, HapticState& out) noexcept;
 
-/// A new program takes over: links of the same name and the same recipe (or constraint object) keep their state, all others start anew
-/// in the next tick. Widgets: widgets.h. Haptic thread: no allocation.
+/// Adapts the state to a new program: links of the same name and spec_hash (or the same constraint object) keep their state, all others are
+/// re-initialized in the next tick. Widgets: widgets.h. Haptic thread: no allocation.
 void rebind_program(const HapticProgram& from, const HapticProgram& to, ChainState& state, ChainScratch& scratch) noexcept;
 
 }  // namespace catena::haptics

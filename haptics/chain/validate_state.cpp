@@ -8,7 +8,7 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr std::int32_t kMaxCounted = 1 << 20;  // of what is counted up within a few ticks
+constexpr std::int32_t kMaxCounted = 1 << 20;  // upper bound of counters that grow only within a few ticks
 
 bool is_sane(const LinkOrder& order) {
   if (order.count < 0 || order.count > kMaxLinks || order.mode < -1 || order.mode >= kMaxModes) return false;

@@ -4,7 +4,7 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kDifference = 1e-6;  // of L: for the gradient of a stiffness
+constexpr double kDifference = 1e-6;  // of L; step of the finite difference for a stiffness gradient
 
 }  // namespace
 
@@ -15,7 +15,7 @@ PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder
   for (int k = order.count - 1; k >= 0; --k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     const Link& spec = program.links[i];
-    // a stiffness that follows a field pulls towards where it is less
+    // a stiffness that follows a field pulls toward lower stiffness
     if (!spec.stiffness_n_per_m.is_constant()) {
       const Vec3 slope = spec.stiffness_n_per_m.gradient(links[i].proxy, kDifference * spec.constraint->domain_length(),
                                                          scratch[i].stiffness_cursor, links[i].evaluations);

@@ -8,7 +8,7 @@ std::size_t count_of(const HapticProgram& program) noexcept {
   return std::min(program.widgets.size(), static_cast<std::size_t>(kMaxWidgets));
 }
 
-// The links of the scene that a ruler's end keeps to, as far as they are switched on.
+// Adds the scene links that constrain a ruler's end, as far as they are switched on.
 void add_along(const widget::Spec& spec, const HapticProgram& program, const SwitchState& switches, LinkOrder& order) noexcept {
   for (const int link : spec.along_links) {
     const auto i = static_cast<std::size_t>(link);

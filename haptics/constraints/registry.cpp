@@ -51,13 +51,13 @@ std::vector<ConstraintType>& list_of_types() {
   return list;
 }
 
-/// For a person: what it does, and where it comes from.
+/// Help text for the user: what the constraint does, its paper and its origin.
 std::string described(const ConstraintType& type) {
   return type.help + (type.paper.empty() ? "" : " Paper: " + type.paper + ".") +
          (type.plugin.empty() ? "" : " Of the plug-in " + type.plugin + ".");
 }
 
-/// What a plug-in builds: its exceptions, and what is nothing, are errors of the link.
+/// Builds a constraint of a plug-in. Exceptions and null results become errors of the link.
 Result<std::shared_ptr<const Constraint>> build_of_plugin(const ConstraintType& type, const json::Node& link, const BuildContext& context) {
   const auto failed = [&](const std::string& why) {
     return json::error_at(link, fmt::format("the plug-in {} {}; a constraint of type \"{}\" was expected", type.plugin, why, type.type));
@@ -67,7 +67,7 @@ Result<std::shared_ptr<const Constraint>> build_of_plugin(const ConstraintType& 
     if (built && *built == nullptr) return failed("built nothing");
     return built;
   } catch (const std::bad_alloc&) {
-    throw;  // the machine's
+    throw;  // system errors are not the plug-in's: passed on
   } catch (const std::system_error&) {
     throw;
   } catch (const std::exception& error) {

@@ -1,4 +1,4 @@
-/// The list of all constraints. A new one is one file with one ConstraintType and one line in registry.cpp.
+/// Registry of all constraint types. A new built-in type is one file with one ConstraintType and one line in registry.cpp.
 #pragma once
 #include <functional>
 #include <memory>
@@ -15,62 +15,64 @@
 
 namespace catena::haptics {
 
-/// What a constraint may ask for while it is built (off the tick). Errors come back with the node's file and line.
+/// Scene data that a constraint may look up while it is built (off the tick). Errors name the file and line of the node `where`.
 struct BuildContext {
-  std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;  ///< the field of that name, loaded
-  /// The one curve object of (field, flow, seed): the same that is drawn.
+  /// Returns the loaded field of that name.
+  std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;
+  /// Returns the traced curve of (field, flow, seed): the same object that is rendered.
   std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)>
       curve;
-  /// The one mesh object of that name: the same that is drawn.
+  /// Returns the mesh of that name: the same object that is rendered.
   std::function<Result<mesh::MeshPtr>(const json::Node& where, const std::string& name)> mesh;
-  /// The same of curves from a file.
+  /// Returns the curve set (curves from a file) of that name: the same object that is rendered.
   std::function<Result<curves::CurveSetPtr>(const json::Node& where, const std::string& name)> curves;
-  /// The same of points from a table.
+  /// Returns the point set (points from a table) of that name: the same object that is rendered.
   std::function<Result<curves::PointSetPtr>(const json::Node& where, const std::string& name)> points;
-  double proxy_tolerance = 1e-8;  ///< of L: an iteration ends at the closest point when its step is shorter
+  double proxy_tolerance = 1e-8;  ///< fraction of L: a closest-point iteration has converged when its step is shorter
 };
 
-/// A type of constraint, as scenes name it and documents describe it.
+/// A constraint type: its name and keys in scenes, its documentation, and its factory.
 struct ConstraintType {
-  std::string type;   ///< the word in the scene file
+  std::string type;   ///< value of "type" in the scene file
   std::string help;   ///< one sentence for docs/scene.md
-  std::string paper;  ///< equations and sections it comes from
-  schema::Keys keys;  ///< its own keys, beside common_keys()
-  /// Makes the constraint of a link whose keys have been checked. Off the tick; an error names the link's line.
+  std::string paper;  ///< equations and sections of the paper that it implements
+  schema::Keys keys;  ///< its own keys, besides common_keys()
+  /// Builds the constraint of a link whose keys have been checked. Off the tick; an Error names the link's line.
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
-  bool has_own_release = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
-  bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
-  std::string scene_section{};   ///< the part of a scene whose items a link of this type lies on, "isosurfaces"; empty: none
-  std::string plugin{};          ///< the file of the plug-in that brought it (haptics/plugin/plugin.h), as loading it sets it; empty: none
+  bool has_own_release = false;  ///< applies its own `release` rule (unless the link has `snap`); other types are wrapped by snap.h
+  bool has_axis = true;          ///< has a normal or a tangent, onto which "align" may turn the tool; false for a point
+  std::string scene_section{};   ///< section of a scene whose elements a link of this type lies on, "isosurfaces"; empty: none
+  std::string plugin{};  ///< file of the plug-in that registered it (haptics/plugin/plugin.h), set while it is loaded; empty: built in
 };
 
-/// All types, in the order of the documents. Any thread once programs have added theirs.
+/// Returns all types, in the order of the documentation. Any thread, provided that all types are registered.
 const std::vector<ConstraintType>& constraint_types();
-/// The type of that word; null: none.
+/// Returns the type of that name; null: none.
 const ConstraintType* find_constraint_type(std::string_view type);
-/// One more type, of a program that brings its own constraint. At start-up, before anything reads a scene.
+/// Adds a type, of a program that brings its own constraint. At start-up, before any scene is read.
 void register_constraint(ConstraintType type);
 
-/// The keys that every link takes: name, type, stiffness, on, enabled, indicate, align, snap, release.
+/// Returns the keys that every link accepts: name, type, stiffness, on, enabled, indicate, align, snap, release.
 const schema::Keys& common_keys();
-/// What the scene's "chain" may say: all types and the ready-made modes (modes.h).
+/// Returns the schema of the scene's "chain": all types and the mode presets (presets/mode_presets.h).
 schema::Section chain_component();
 
 // keys that several types have
-/// A key that names a scalar field, required.
+/// Returns a required key that names a scalar field.
 schema::Key scalar_field_key(const std::string& name);
-/// A key that names a vector field, required.
+/// Returns a required key that names a vector field.
 schema::Key vector_field_key(const std::string& name);
-/// A value of the field, or the isolevel widget that states it.
+/// Returns the key `level`: a value of the field, or the isolevel widget that sets it.
 schema::Key level_key(const std::string& help);
-/// A length of zero or more, in world units, that may follow a field.
+/// Returns a key for a length >= 0, in world units, that may follow a field.
 schema::Key length_key(const std::string& name, const std::string& help);
-/// "free"; `above` says where that side is.
+/// Returns the key `free`; `above` is the help text that names the side above.
 schema::Key free_key(const std::string& above);
-/// "law" of modulated friction.
+/// Returns the key `law` of modulated friction.
 schema::Key law_key(const std::string& help);
 
-/// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build, wraps it where it snaps or releases.
+/// Builds one link's constraint: looks up the type, rejects unknown keys, calls its build, wraps it where it snaps or releases. Off the
+/// tick; an Error names the line in the scene.
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);
 
 }  // namespace catena::haptics

@@ -45,7 +45,7 @@ class WidgetLink final : public Constraint {
     const SideMemory none{};
     return SphereSurface({shape.origin, shape.radius, false}, memory_as<SphereSurface::Memory>(state), none).pull_back(probe, f);
   }
-  /// It remembers a normal.
+  /// The memory holds a normal, any value of which is valid.
   bool is_sane(const LinkState&) const noexcept override { return true; }
 };
 

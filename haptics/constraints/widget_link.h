@@ -1,6 +1,6 @@
-/// A link of the widgets: its feature is not of the scene but of the tick (LinkState::shape, put there by haptics/chain/widgets.h):
-/// a plane, a sphere or a point, held from both sides, never released. None, or one that is not finite: the probe is passed through,
-/// FREE. Closed form, no field fetch. Not for scene files. World units. Haptic thread: no allocation, lock, or throw.
+/// Link of the widgets: its feature is set in every tick (LinkState::shape, filled by haptics/chain/widgets.h) instead of by the scene:
+/// a plane, a sphere or a point, held from both sides, never released. Without a shape, or with one that is not finite, the probe passes
+/// through, FREE. Closed form, no field sample. Not for scene files. World units. Haptic thread: no allocation, lock, or throw.
 #pragma once
 #include <memory>
 
@@ -9,9 +9,10 @@
 
 namespace catena::haptics {
 
+/// Returns the constraint of a widget link; all its data is in LinkState.
 std::shared_ptr<const Constraint> widget_constraint();
 
-/// Appends the four links that widgets share, with the coupling's stiffness, and says so in first_widget_link.
+/// Appends the four links that all widgets share, with the coupling's stiffness, and sets program.first_widget_link to the first of them.
 void add_widget_links(HapticProgram& program);
 
 }  // namespace catena::haptics

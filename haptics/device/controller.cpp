@@ -5,10 +5,10 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kBehind = 1.1;                    // of the longest interval
-constexpr int kIntervals = 3;                      // of which it is the longest
-constexpr double kSettle_ns = 1e8;                 // how fast a wrong lag goes
-constexpr double kSlowest = 0.8, kFastest = 1.25;  // of the time that passes
+constexpr double kBehind = 1.1;                    // playback delay, relative to the longest interval
+constexpr int kIntervals = 3;                      // number of intervals of which the longest is taken
+constexpr double kSettle_ns = 1e8;                 // time constant with which the playback lag is corrected
+constexpr double kSlowest = 0.8, kFastest = 1.25;  // limits of the playback rate, relative to real time
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void TrackedController::push_pose(const ControllerPose& pose) {
   shared_.publish(history_);
 }
 
-// One tick of the clock that is behind the samples, and the place at it.
+// Advances the playback clock, which lags behind the samples, by one tick, and interpolates the pose at it.
 void TrackedController::advance_playback(const PoseHistory& past, std::int64_t now_ns) noexcept {
   std::int64_t longest = 0;
   for (int i = 0; i + 1 < past.count && i < kIntervals; ++i) longest = std::max(longest, past.poses[i].t_ns - past.poses[i + 1].t_ns);

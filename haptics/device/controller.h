@@ -1,14 +1,14 @@
-/// A tracked controller in the hand: poses with times in, vibration out. No force: what the tick would push with goes to PeakDetector
-/// (haptics/vibration), whence a sender takes it. Its poses come from the thread that has the tracker, some 60 to 1000 a second; `read`
-/// makes of them one a tick, without jumps.
-///   play      a clock that runs behind the samples by the longest of the last intervals between them and a tenth, so that there is nearly
-///             always a sample after it; between two samples the place moves evenly, and turns the shorter way
-///   pace      dP/dt = 1 + (lag - wanted lag) / 0.1 s, within 0.8 to 1.25; it stands still at the newest sample. So a sample that is late
-///             makes the hand wait and then catch up at most a quarter faster than it moved: a place never jumps, whatever the tracker does
-///   corners   what remains, a change of speed at each sample, is eased over `smoothing_s` (eased_pose.h)
-/// Lost: the tracker says so, or says nothing for `lost_timeout_s`. Then the status is lost, so that the servo sends no force; found again
-/// the hand is where it is, at once, and the force rises from zero (limits_for.h: the ramp in). Before the first pose it is starting.
-/// Metres, the tracker's axes; buttons: bit 0 select, bit 1 grab.
+/// A tracked hand controller: time-stamped poses in, vibration out. It has no force output: the chain force goes to a PeakDetector
+/// (haptics/vibration), from which a sender thread takes it. The tracker's thread pushes some 60 to 1000 poses per second; `read` resamples
+/// them to one per tick, without jumps.
+///   playback  a clock that lags behind the samples by 1.1 times the longest of the last intervals between them, so that there is nearly
+///             always a later sample; between two samples the position is interpolated linearly, the orientation along the shorter arc
+///   rate      dP/dt = 1 + (lag - target lag) / 0.1 s, within 0.8 to 1.25; the clock stops at the newest sample. So a late sample makes
+///             the probe stop and then catch up at most a quarter faster than the controller moved: the position never jumps
+///   corners   the remaining change of speed at each sample is low-pass filtered over `smoothing_s` (pose_filter.h)
+/// Lost: the tracker reports it, or no pose arrives for `lost_timeout_s`. Then the status is lost, so that the servo sends no force; when
+/// tracking resumes, the pose is the new one at once, and the force ramps in (haptics/servo/device_limits.h). Before the first pose the
+/// status is starting. Meters, the tracker's axes; buttons: bit 0 select, bit 1 grab.
 #pragma once
 #include <array>
 #include <string>
@@ -20,31 +20,34 @@
 
 namespace catena::haptics {
 
+/// Parameters of a TrackedController.
 struct ControllerParameters {
-  double rate_hz = 1000;             ///< of the servo that reads it
-  double smoothing_s = 0.004;        ///< of the corners
-  double lost_timeout_s = 0.1;       ///< without a pose
-  std::int64_t (*clock)() = now_ns;  ///< the clock that the poses' times are of; returns at once
+  double rate_hz = 1000;             ///< tick rate of the servo that reads it
+  double smoothing_s = 0.004;        ///< time constant of the low-pass filter; 0: none
+  double lost_timeout_s = 0.1;       ///< time without a pose after which the status is lost
+  std::int64_t (*clock)() = now_ns;  ///< clock of the poses' time stamps; must return at once
 };
 
-/// Where the controller was at that time.
+/// Pose of the controller at one time, meters, the tracker's axes.
 struct ControllerPose {
   std::int64_t t_ns = 0;
   Vec3 position_m{0.0};
   Quat orientation{kIdentityRotation};
   std::uint32_t buttons = 0;
-  bool tracked = true;  ///< false: the place is not known
+  bool tracked = true;  ///< false: the pose is unknown
 };
 
+/// The device. push_pose: the tracker's thread; read and write: the haptic thread.
 class TrackedController final : public Device {
  public:
+  /// Bits of ControllerPose::buttons.
   static constexpr std::uint32_t kSelect = 1, kGrab = 2;
 
   explicit TrackedController(const ControllerParameters& parameters = {});
 
-  /// The tracker's thread, times rising. A pose that is not finite, or not later than the one before, is ignored.
+  /// Adds a pose. The tracker's thread, times increasing. A pose that is not finite, or not later than the last one, is ignored.
   void push_pose(const ControllerPose& pose);
-  /// What is felt, for the thread that asks the controller to vibrate.
+  /// Returns the change and friction peaks of the force, for the thread that sends vibrations to the controller.
   PeakDetector& peaks() { return peaks_; }
 
   // haptic thread
@@ -55,13 +58,13 @@ class TrackedController final : public Device {
   static DeviceCapabilities nominal_capabilities();
 
  private:
-  /// The newest poses of one stay, the newest first; what the tracker's thread keeps. All of lost_timeout_s at 1000 a second: after a pause
-  /// of the tracker the clock is as far behind, and goes on from where it is.
+  /// The newest poses since tracking began, newest first; written by the tracker's thread. Covers lost_timeout_s at 1000 poses a second:
+  /// after a pause of the tracker the playback clock lags by as much, and continues from there.
   struct PoseHistory {
     static constexpr int kMaxPoses = 128;
     std::array<ControllerPose, kMaxPoses> poses{};
-    int count = 0;                 ///< 0: not tracked
-    std::uint32_t session_id = 0;  ///< counted: another one after each loss
+    int count = 0;                 ///< number of valid poses; 0: not tracked
+    std::uint32_t session_id = 0;  ///< incremented each time tracking begins after a loss
   };
   void advance_playback(const PoseHistory& past, std::int64_t now_ns) noexcept;
 

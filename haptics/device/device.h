@@ -1,4 +1,4 @@
-/// What the servo needs of a haptic device: the pose in, force and torque out. Metres, newtons, the device's own axes.
+/// Interface between the servo and a haptic device: the pose in, force and torque out. Meters, newtons, the device's own axes.
 /// `read` and `write` run on the haptic thread: no allocation, lock or throw, and they return at once (a device that must wait
 /// for its bus does so in a thread of its own). `stop` may be called from any thread, at any time.
 #pragma once
@@ -10,92 +10,95 @@
 
 namespace catena::haptics {
 
-/// Whether the device can be used in this tick.
+/// State of the device in this tick.
 enum class DeviceStatus : std::uint8_t {
-  ready,     ///< the pose is good
-  starting,  ///< not there yet: firmware, homing; the servo sends zero
-  lost       ///< unplugged or silent; the servo sends zero in that tick. It may come back
+  ready,     ///< the pose is valid
+  starting,  ///< not operational yet: loading firmware, homing; the servo sends zero
+  lost       ///< disconnected or unresponsive; the servo sends zero in that tick; it may become ready later
 };
 
-/// What a device says of the hand.
+/// Input of one tick from the device.
 struct DeviceInput {
-  Vec3 position_m{0.0};                       ///< where the hand is; of a recorded path: world units
-  Quat orientation{kIdentityRotation};        ///< of the grip; the identity where the device has none
+  Vec3 position_m{0.0};                       ///< position of the probe, device axes; of a recorded path: world units
+  Quat orientation{kIdentityRotation};        ///< of the grip; the identity where the device does not measure it
   std::uint32_t buttons = 0;                  ///< bit n - 1: button n is held
-  DeviceStatus status = DeviceStatus::ready;  ///< whether the pose is good
-  bool forces_on = true;                      ///< the hand's own switch; false also while it clutches
-  double age_s = 0;                           ///< of the pose
-  bool is_recorded = false;                   ///< a recorded path brings its own time, and its position is in world units already
-  double t_s = 0;                             ///< seconds; of a recorded path
+  DeviceStatus status = DeviceStatus::ready;  ///< whether the pose is valid
+  bool forces_on = true;                      ///< the user's force switch; false also while the clutch is held
+  double age_s = 0;                           ///< age of the pose, seconds
+  bool is_recorded = false;                   ///< from a recorded path: it provides its own time, and its position is in world units
+  double t_s = 0;                             ///< time of the sample, seconds; of a recorded path only
 };
 
-/// What the hand gets.
+/// Output of one tick to the device: the commanded force, after the force limiter.
 struct DeviceOutput {
   Vec3 force_n{0.0};          ///< newtons, the device's axes
   Vec3 torque_nm{0.0};        ///< N m, the device's axes
-  bool forces_active = true;  ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
-  double accounted_j = 0;  ///< of all links: given to the hand and ready for it (haptics/chain/passivity.h); falls by what friction takes
-  Vec3 requested_force_n{
-      0.0};  ///< what the links push with, before damping of the hand, limits and ramps: for what tells of force in other ways
+  bool forces_active = true;  ///< false: the forces are off or stopped, and nothing (such as gravity compensation) may be added to the zero
+  /// Energy of all links, joules: delivered to the user and still stored (haptics/chain/passivity.h); decreases by what friction
+  /// dissipates.
+  double accounted_j = 0;
+  /// Force that the links request, before damping, limits and ramps: for output by other means, such as vibration.
+  Vec3 requested_force_n{0.0};
 };
 
-/// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.
+/// Parameters of the mechanism that bound the stiffness that the device can render stably.
 struct Mechanics {
-  double mass_kg = 0.15;  ///< that a hand moves with it
-  /// Viscous, of the device alone. 0: not known. Then no spring is safe, compute_device_limits() allows a stiffness of 0, and nothing is
-  /// felt until it is stated, or a stiffness_cap.
+  double mass_kg = 0.15;  ///< effective mass at the probe
+  /// Viscous damping of the device alone. 0: unknown; then no spring is safe, compute_device_limits() allows a stiffness of 0, and there is
+  /// no force until this value or a stiffness_cap is stated.
   double damping_ns_per_m = 0;
-  double friction_n = 0;                      ///< Coulomb; where there is an encoder step, 0 means not known here too
-  double encoder_step_m = 0;                  ///< 0: continuous
-  double delay_s = 0;                         ///< from the pose to the force, beside the tick's own period
-  double rotational_damping_nms_per_rad = 0;  ///< viscous, about any axis; where the device has torque
+  double friction_n = 0;                      ///< Coulomb friction; with an encoder step, 0 means unknown here too
+  double encoder_step_m = 0;                  ///< position resolution; 0: continuous
+  double delay_s = 0;                         ///< from the pose to the force, in addition to the period of the tick
+  double rotational_damping_nms_per_rad = 0;  ///< viscous, about any axis; for devices with torque output
 };
 
 /// What a device can do. Constant while it is open.
 struct DeviceCapabilities {
-  std::string name;              ///< for people
-  double workspace_m = 0.2;      ///< edge of a cube that the hand reaches
-  Vec3 workspace_center_m{0.0};  ///< middle of that cube
+  std::string name;              ///< display name
+  double workspace_m = 0.2;      ///< edge of the cube of reachable positions, device axes
+  Vec3 workspace_center_m{0.0};  ///< center of that cube
   bool has_orientation = false;  ///< the grip's orientation is measured
-  int button_count = 1;          ///< how many
-  bool has_vibration = false;    ///< what it has in place of force: a person feels how the force changes
-  double max_force_n = 0;        ///< 0: no force output (pseudo-haptics only)
-  double max_torque_nm = 0;      ///< 0: no torque output
-  Mechanics mechanics{};         ///< what bounds the stiffness that it can show
+  int button_count = 1;
+  bool has_vibration = false;  ///< vibrates in place of force output: changes of the force become vibration
+  double max_force_n = 0;      ///< 0: no force output (pseudo-haptics only)
+  double max_torque_nm = 0;    ///< 0: no torque output
+  Mechanics mechanics{};       ///< bounds of the stiffness
 };
 
-/// A device. The program owns it; it outlives the servo.
+/// A haptic device. Owned by the program; it outlives the servo.
 class Device {
  public:
   virtual ~Device() = default;
-  /// What a person must know or do now, one line ("Falcon: pull the grip fully out, then push it in"); empty: nothing. Frame thread.
+  /// Returns what the user must know or do, in one line ("Falcon: pull the grip fully out, then push it in"); empty: nothing. Frame thread.
   virtual std::string status_text() const { return {}; }
-  /// What it can do. Any thread.
+  /// Returns what the device can do. Any thread.
   virtual const DeviceCapabilities& capabilities() const = 0;
-  /// The newest pose. Haptic thread.
+  /// Returns the newest pose. Haptic thread.
   virtual DeviceInput read() noexcept = 0;
-  /// The force of this tick. Haptic thread.
+  /// Outputs the force of this tick. Haptic thread.
   virtual void write(const DeviceOutput& output) noexcept = 0;
-  /// Zero force now and until resume(), whatever is written. Any thread (the servo's watchdog; the servo at its end).
+  /// Sets zero force until resume(), whatever is written. Any thread (the servo's watchdog; the servo at its end).
   virtual void stop() noexcept {}
-  /// After stop(): the hand has been told to hold no force, and has confirmed it. Safe in a signal handler.
+  /// Returns true after stop() when the zero force was sent to the device and the device has confirmed it. Safe in a signal handler.
   virtual bool zero_force_confirmed() const noexcept { return true; }
-  /// What is written counts again. Haptic thread: before the servo's first tick, and in the first normal tick after a stop; the
-  /// guard starts that tick's force at zero.
+  /// Ends stop(): written forces take effect. Haptic thread: before the servo's first tick, and in the first normal tick after a stop; the
+  /// force limiter starts that tick's force at zero.
   virtual void resume() noexcept {}
-  /// Whether a file that the device itself writes is whole so far; an error says what is lost and why. Any thread but the haptic one.
+  /// Returns whether a file that the device itself writes is complete so far; an Error names what is lost and why. Any thread but the
+  /// haptic thread.
   virtual Outcome check_output_files() const { return Done{}; }
 };
 
-/// No device: the probe rests at the origin, forces go nowhere. Haptic thread.
+/// No device: the probe rests at the origin, forces are discarded. Haptic thread.
 class NullDevice final : public Device {
  public:
   NullDevice() { capabilities_.name = "null"; }
-  /// No force.
+  /// Returns capabilities without force output.
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
-  /// The origin.
+  /// Returns the pose at the origin.
   DeviceInput read() noexcept override { return {}; }
-  /// Nothing happens.
+  /// Discards the output.
   void write(const DeviceOutput&) noexcept override {}
 
  private:

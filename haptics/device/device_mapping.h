@@ -1,16 +1,16 @@
-/// The way from the device to the hand: any device, with what its settings say of encoders, axes, scale, clutch, gravity and switch.
-///   in:   x_d without the dither of a hand that rests (still_pose.h);  x = s A x_d + o,   q = q_o A q_d      A: hand axes from device
-///   axes;  s: metres of hand per metre of device out:  F_d = A^T F + g,   torque_d = A^T q_o^-1 torque      g: carries the grip, device
-///   axes
-/// Clutch: while its button is held the probe rests and the forces are off; on release o and q_o keep the difference, and the guard
-/// ramps the forces in. Force switch: off at the start and after a loss of the device; each press that is seen turns it over. Both
-/// buttons are masked: the scene does not see them.
-/// The force is not scaled, so that newtons of the scene are newtons of the hand; a spring K of the scene is then s K at the device.
-/// For that reason limits are made of the mechanism as the hand's metres have it (resolve_mechanics in haptics/servo/device_limits.h), so
-/// that K <= 2 b / T holds at the device. Energy of the hand's metres is s times the device's: passive stays passive. g rises over 0.1 s
-/// where the forces are on, and is gone at once where they are off (clutch, switch, fault, device not ready) and without a read before the
-/// write: the last zero on the way out stays zero. A recorded path keeps its own pose. What the settings leave alone passes to the bit.
-/// Threads as the device's own.
+/// Mapping between any device and the workspace, by the device settings: encoder dither, axes, scale, clutch, gravity and force switch.
+///   in:   x_d after the dither filter (dither_filter.h);  x = s A x_d + o,   q = q_o A q_d
+///         A: workspace axes from device axes;  s: meters of probe travel per meter of device travel;  o, q_o: clutch offset
+///   out:  F_d = A^T F + g,   torque_d = A^T q_o^-1 torque      g: compensates the weight of the grip, device axes
+/// Clutch: while its button is held the probe rests and the forces are off; on release o and q_o keep the difference, and the force limiter
+/// ramps the forces in. Force switch: off at the start and after a loss of the device; each press toggles it. Both buttons are masked
+/// out of the buttons that the scene gets.
+/// The force is not scaled, so that a newton of the scene is a newton at the device; a spring K of the scene is then s K at the device.
+/// Therefore the limits are computed from the mechanism in meters of probe travel, device scale applied (resolve_mechanics in
+/// haptics/servo/device_limits.h), so that K <= 2 b / T holds at the device. Energy in meters of probe travel is s times that of the
+/// device: passive stays passive. g ramps in over 0.1 s while the forces are on, and is zero at once where they are off (clutch, switch,
+/// fault, device not ready) and where no read precedes the write: the last zero at the end stays zero. A recorded path keeps its own pose.
+/// Whatever the settings do not change passes through bit for bit. Threads: as the device's own.
 #pragma once
 #include <memory>
 
@@ -19,9 +19,10 @@
 
 namespace catena::haptics {
 
-/// True where a device needs no map.
+/// Returns true if the device needs no mapping: no encoder step, and all mapping settings at their defaults.
 bool is_identity_mapping(const DeviceCapabilities& device, const DeviceSettings& settings);
 
+/// A device with the mapping applied; owns the device.
 class MappedDevice final : public Device {
  public:
   MappedDevice(std::unique_ptr<Device> device, const DeviceSettings& settings);
@@ -46,7 +47,7 @@ class MappedDevice final : public Device {
   DitherFilter dither_filter_;
   std::uint32_t clutch_mask_, force_mask_;
   Vec3 gravity_n_;
-  double gravity_step_;  ///< of its weight, a tick
+  double gravity_step_;  ///< increase of gravity_weight_ per tick
   bool has_rotation_;
 
   // haptic thread
@@ -55,12 +56,12 @@ class MappedDevice final : public Device {
   bool has_offset_ = false;
   std::uint32_t last_buttons_ = 0;
   bool has_read_ = false, has_buttons_ = false, switched_on_ = false;
-  bool has_fresh_pose_ = false;  ///< a good pose was read since the last write
+  bool has_fresh_pose_ = false;  ///< a valid pose was read since the last write
   bool forces_on_ = false;
   double gravity_weight_ = 0;
 };
 
-/// The device itself where the settings change nothing.
+/// Returns the device itself if the settings change nothing, else a MappedDevice around it.
 std::unique_ptr<Device> with_device_mapping(std::unique_ptr<Device> device, const DeviceSettings& settings);
 
 }  // namespace catena::haptics

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMostRoom_m = 1000;
 
-// ["x", "-z", "y"]: row i of workspace_from_device is the device axis that hand axis i is
+// For example ["x", "-z", "y"]: row i of workspace_from_device is the device axis that workspace axis i follows.
 Result<Mat3> read_axes(const json::Node& node) {
   const char* expected = "three different ones of x, -x, y, -y, z, -z, right-handed, were expected, such as [\"x\", \"-z\", \"y\"]";
   if (node.kind != json::Kind::array || node.items.size() != 3)
@@ -31,7 +31,7 @@ Result<Mat3> read_axes(const json::Node& node) {
 }
 
 using Settings = DeviceSettings;
-/// What reading needs besides: the scene's path.
+/// The context is the path of the scene.
 using SettingsTable = schema::StructSchema<Settings, const std::string>;
 
 Outcome read_type(const std::string&, const json::Node& node, Settings& s) {

@@ -13,7 +13,7 @@ PoseFilter::PoseFilter(const Vec3& start_m, double smoothing_s, double rate_hz) 
 
 void PoseFilter::step_toward(const Vec3& target_m, const Quat& target) noexcept {
   const Vec3 left = target_m - position_m_;
-  // the last nanometre at once: the hand comes to rest, bit for bit
+  // skip the last nanometer: the filtered position comes to rest exactly
   position_m_ = gain_ < 1 && max_abs(left) > 1e-9 ? position_m_ + gain_ * left : target_m;
   if (orientation_ == target) return;
   const Vec3 turn = rotation_vector(normalized(target * glm::conjugate(orientation_)));

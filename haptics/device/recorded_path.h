@@ -1,4 +1,4 @@
-/// A device that plays a recorded probe path, one sample a tick, in world units and with its own time. After the last sample
+/// A device that plays a recorded probe path, one sample per tick, in world units and with its own time. After the last sample
 /// it stays there. The forces written to it are only counted. Haptic thread.
 #pragma once
 #include <memory>
@@ -9,8 +9,10 @@
 
 namespace catena::haptics {
 
+/// The device of a recorded path.
 class RecordedPath final : public Device {
  public:
+  /// One sample of the path; position in world units.
   struct Sample {
     double t_s = 0;
     Vec3 position{0.0};
@@ -18,7 +20,7 @@ class RecordedPath final : public Device {
     Quat orientation{kIdentityRotation};
   };
   explicit RecordedPath(std::vector<Sample> samples, bool has_orientation = false);
-  /// `t,x,y,z[,buttons][,qw,qx,qy,qz]`; the error names file and line.
+  /// Reads a file of rows `t,x,y,z[,buttons][,qw,qx,qy,qz]`; an Error names file and line.
   static Result<std::unique_ptr<Device>> open(const std::string& path);
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }

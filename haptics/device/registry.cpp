@@ -17,7 +17,7 @@
 namespace catena::haptics {
 namespace {
 
-/// One type of device: how its name is listed, what it can do, how it is opened.
+/// A type of device: how its name is listed, its capabilities, how it is opened.
 struct DeviceType {
   const char* name;
   DeviceCapabilities (*nominal)();
@@ -30,7 +30,7 @@ Result<std::unique_ptr<Device>> open_null(const std::string& detail, const Devic
   return std::unique_ptr<Device>(std::make_unique<NullDevice>());
 }
 
-// "simulated": the hand rests at 0; "simulated:PATH.csv" (t,x,y,z[,buttons], metres of hand): it follows that path
+// "simulated": the simulated user rests at 0; "simulated:PATH.csv" (t,x,y,z[,buttons], meters in the workspace): follows that path
 Result<std::unique_ptr<Device>> open_simulated(const std::string& detail, const DeviceSettings& settings) {
   SimulatedDeviceParameters p = desktop_device_parameters();
   p.period_s = 1 / settings.rate_hz;

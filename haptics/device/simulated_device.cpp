@@ -55,7 +55,7 @@ void SimulatedTool::write(const DeviceOutput& output) noexcept {
 
 namespace {
 
-constexpr int kSteps = 8;  // a period, where friction or a grip ask for more than one
+constexpr int kSteps = 8;  // substeps per period, where friction or a grip need more than one
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kTremorHz[] = {8.3, 9.1, 10.2, 11.6};
 
@@ -98,7 +98,7 @@ SimulatedDevice::SimulatedDevice(std::vector<Waypoint> path, const SimulatedDevi
                                  .encoder_step_m = p.encoder_step_m,
                                  .delay_s = p.delay_s}};
   start_s_ = path_.front().t_s;
-  path_.reserve(2);  // for want()
+  path_.reserve(2);  // for set_target()
   mass_ = {path_.front().position_m, p.velocity_m_per_s};
   const double periods = p.delay_s / p.period_s + 1e-9;
   delay_ticks_ = static_cast<std::uint64_t>(periods);
@@ -108,7 +108,7 @@ SimulatedDevice::SimulatedDevice(std::vector<Waypoint> path, const SimulatedDevi
 }
 
 void SimulatedDevice::set_target(const Vec3& position_m) noexcept {
-  // a path of two: where it wanted to be at the tick that was read last, and at the next
+  // a path of two points: the target positions at the tick that was read last and at the next one
   path_.resize(2, path_.front());
   const double next_s = start_s_ + static_cast<double>(ticks_) * parameters_.period_s;
   path_.front() = {next_s - parameters_.period_s, path_.back().position_m, path_.back().buttons};
@@ -174,7 +174,7 @@ DeviceInput SimulatedDevice::read() noexcept {
   return input;
 }
 
-// acts from the tick that was read last
+// Takes effect from the tick that was read last.
 void SimulatedDevice::write(const DeviceOutput& output) noexcept {
   if (ticks_ == 0) return;
   const double length = norm(output.force_n), most = parameters_.max_force_n;

@@ -1,8 +1,8 @@
-/// A device with orientation and torque, without hardware: any device for the position, with a rigid grip that a hand holds and turns.
-///   J w' = k_h log(q_wish q^-1) + b_h (w_wish - w) - b w + torque,   q' = w q;   semi-implicit Euler in `substeps` of the period, the
-///   torque held between two ticks: what a mechanism does, whence the limit of a stiffness that it shows is close to 2 b / T
-/// Between waypoints the wish turns evenly, the shorter way; after the last it rests. One inertia about every axis. Deterministic.
-/// N m, radians, the device's axes. Haptic thread.
+/// A device with orientation and torque, without hardware: any device for the position, with a rigid grip that a simulated user turns.
+///   J w' = k_h log(q_target q^-1) + b_h (w_target - w) - b w + torque,   q' = w q;   semi-implicit Euler in `substeps` of the period, the
+///   torque held between two ticks as in a real mechanism, so that the maximum stable stiffness is close to 2 b / T
+/// Between waypoints the target orientation is interpolated along the shorter arc; after the last it rests. One inertia about every axis.
+/// Deterministic. N m, radians, the device's axes. Haptic thread.
 #pragma once
 #include <array>
 #include <memory>
@@ -13,23 +13,26 @@
 
 namespace catena::haptics {
 
+/// Parameters of a SimulatedTool.
 struct SimulatedToolParameters {
   double inertia_kg_m2 = 1e-4;
   double damping_nms_per_rad = 5e-4;       ///< b, of the mechanism
-  double grip_stiffness_nm_per_rad = 0.5;  ///< k_h, of the hand
-  double grip_damping_nms_per_rad = 5e-3;  ///< b_h
-  double max_torque_nm = 0.5;              ///< it cannot give more
+  double grip_stiffness_nm_per_rad = 0.5;  ///< k_h, of the user's grip
+  double grip_damping_nms_per_rad = 5e-3;  ///< b_h, of the user's grip
+  double max_torque_nm = 0.5;              ///< saturation of the motors
   double period_s = 1e-3;
   int substeps = 20;
 };
 
+/// The device: position and buttons from the given device, orientation and torque simulated.
 class SimulatedTool final : public Device {
  public:
+  /// Target orientation of the user at a time.
   struct Waypoint {
     double t_s = 0;
     Quat orientation{kIdentityRotation};
   };
-  /// `path` has at least one waypoint, t rising.
+  /// `path` has at least one waypoint, times increasing.
   SimulatedTool(std::unique_ptr<Device> position, std::vector<Waypoint> path, const SimulatedToolParameters& parameters);
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
@@ -43,7 +46,7 @@ class SimulatedTool final : public Device {
 
   const Quat& orientation() const { return orientation_; }
   const Vec3& rate_rad_per_s() const { return rate_; }
-  void set_rate(const Vec3& rad_per_s) { rate_ = rad_per_s; }  ///< a kick, for tests
+  void set_rate(const Vec3& rad_per_s) { rate_ = rad_per_s; }  ///< sets the angular velocity, for tests
 
  private:
   Quat target_at(double t_s, Vec3& rate) noexcept;
@@ -58,48 +61,52 @@ class SimulatedTool final : public Device {
   Vec3 rate_{0.0}, torque_nm_{0.0};
 };
 
-/// A device without hardware: a mechanism (mass, damping, Coulomb friction, encoders, delay, motors that saturate) in a hand
-/// that holds on to it (spring, damper and mass toward a scripted path, with tremor). mechanism.h has the model and its steps.
-///   pose      the position at the tick, rounded to the encoder's step
-///   force     what was written at tick k acts from t_k + delay until the next one does: whole periods and parts of one;
+/// A device without hardware: a mechanism (mass, damping, Coulomb friction, encoders, delay, motors that saturate) held by a simulated user
+/// (spring, damper and mass toward a target position on a scripted path, with tremor). mass_model.h has the model and its integration.
+///   pose      the position at the tick, rounded to the encoder step
+///   force     what was written at tick k acts from t_k + delay until the next one does: whole periods and fractions of one;
 ///             |F| at most max_force, direction kept
-///   tremor    on the wish, per axis: four sines between 8 and 12 Hz, phases fixed, of the stated root mean square
-/// Deterministic: the same path and forces give the same bits. Metres, device axes. Haptic thread.
+///   tremor    added to the target, per axis: four sines between 8 and 12 Hz, phases fixed, of the stated root mean square
+/// Deterministic: the same path and forces give the same bits. Meters, device axes. Haptic thread.
 
-/// Ideal but for mass and grip; see desktop_device_parameters() for a real one.
+/// Parameters of a SimulatedDevice. Defaults: ideal but for mass and grip; see desktop_device_parameters() for a real device.
 struct SimulatedDeviceParameters {
-  double mass_kg = 0.15;                ///< of the mechanism
-  double grip_stiffness_n_per_m = 500;  ///< of the grip, toward where the hand wants to be; 0 with damping 0: let go
-  double grip_damping_ns_per_m = 5;     ///< of the grip
+  double mass_kg = 0.15;  ///< of the mechanism
+  /// Stiffness of the grip, toward the user's target position; 0 with damping 0: the user does not hold the device.
+  double grip_stiffness_n_per_m = 500;
+  double grip_damping_ns_per_m = 5;  ///< of the grip
   double period_s = 1e-3;
-  double hand_mass_kg = 0;  ///< of the hand, that moves with it
+  double hand_mass_kg = 0;  ///< effective mass of the user's hand, added to that of the mechanism
   double tremor_m = 0;      ///< root mean square, each axis
   double device_damping_ns_per_m = 0;
   double friction_n = 0;
-  double encoder_step_m = 0;  ///< 0: continuous
-  double delay_s = 0;         ///< at most kMaxDelayPeriods periods
-  double max_force_n = 100;
-  Vec3 velocity_m_per_s{0.0};  ///< at the start
+  double encoder_step_m = 0;   ///< 0: continuous
+  double delay_s = 0;          ///< maximum kMaxDelayPeriods periods
+  double max_force_n = 100;    ///< saturation of the motors
+  Vec3 velocity_m_per_s{0.0};  ///< initial velocity
 
   static constexpr int kMaxDelayPeriods = 62;
 };
 
-/// A desktop mechanism of the kind that the linear limits of the literature are worked out for: 0.159 kg, 0.5 N s/m, 0.1 N,
-/// steps of 0.04 mm, no delay, 10 N. At 1 kHz it shows 1000 N/m safely (mechanism.h).
+/// Returns a desktop mechanism of the kind that the linear limits of the literature are worked out for: 0.159 kg, 0.5 N s/m, 0.1 N,
+/// encoder steps of 0.04 mm, no delay, 10 N. At 1 kHz its safe stiffness is 1000 N/m (mass_model.h).
 SimulatedDeviceParameters desktop_device_parameters();
 
+/// The simulated mechanism with its simulated user, as a Device.
 class SimulatedDevice final : public Device {
  public:
+  /// Target position of the user at a time, meters.
   struct Waypoint {
     double t_s = 0;
     Vec3 position_m{0.0};
     std::uint32_t buttons = 0;
   };
-  /// `path` has at least one waypoint, t rising; it starts there. Between them the wish moves linearly, after the last it rests.
+  /// `path` has at least one waypoint, times increasing; the mass starts at the first. Between waypoints the target moves linearly, after
+  /// the last it rests.
   SimulatedDevice(std::vector<Waypoint> path, const SimulatedDeviceParameters& parameters);
 
-  /// The hand wants to be there at the next tick, and gets there evenly from where it wanted to be at the last: instead of a path, once a
-  /// tick from the first one on. Haptic thread.
+  /// Sets the target position of the user for the next tick; it moves linearly from the last target. Replaces the path: to be called once
+  /// per tick from the first tick on. Haptic thread.
   void set_target(const Vec3& position_m) noexcept;
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
@@ -123,12 +130,12 @@ class SimulatedDevice final : public Device {
   double start_s_ = 0;
   SimulatedDeviceParameters parameters_;
   DeviceCapabilities capabilities_;
-  std::uint64_t delay_ticks_ = 0;           ///< whole ones
-  PartialStep before_delay_, after_delay_;  ///< the delay's part of a period, and the rest
+  std::uint64_t delay_ticks_ = 0;           ///< whole periods of the delay
+  PartialStep before_delay_, after_delay_;  ///< fraction of a period before the delayed force changes, and the rest
   std::size_t segment_ = 0;
   std::uint64_t ticks_ = 0;
   MassState mass_;
-  std::array<Vec3, 64> force_history_{};  ///< forces, by tick
+  std::array<Vec3, 64> force_history_{};  ///< written forces, by tick
 };
 
 }  // namespace catena::haptics

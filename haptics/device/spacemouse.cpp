@@ -19,9 +19,9 @@ namespace {
 
 constexpr double kFullCounts = 350;
 constexpr int kPacketBytes = 8 * sizeof(std::int32_t);
-constexpr int kWait_ms = 20;      // how fast the thread sees that it shall end
-constexpr int kLookAgain = 25;    // waits between two looks for a daemon
-std::atomic<bool> in_use{false};  // libspnav's connection is a global
+constexpr int kWait_ms = 20;      // longest delay until the thread notices that it must end
+constexpr int kLookAgain = 25;    // number of waits between two checks for a daemon
+std::atomic<bool> in_use{false};  // libspnav's connection is global
 
 double share(std::int32_t counts, double dead_zone) noexcept {
   const double c = static_cast<double>(counts), size = std::fabs(c);
@@ -30,7 +30,7 @@ double share(std::int32_t counts, double dead_zone) noexcept {
   return c < 0 ? -r : r;
 }
 
-// A daemon that hangs up while libspnav greets it must not end the program.
+// A daemon that hangs up during libspnav's greeting must not end the program (SIGPIPE).
 bool connect_daemon() {
   sigset_t pipe, before;
   sigemptyset(&pipe);
@@ -64,7 +64,7 @@ DeviceCapabilities SpaceMouse::nominal_capabilities() {
   return out;
 }
 
-// Where libspnav looks: its environment variable, a path in /etc/spnavrc, the daemon's own.
+// Checks where libspnav looks: its environment variable, a path in /etc/spnavrc, the daemon's default path.
 bool SpaceMouse::is_daemon_available() {
   struct stat about {};
   return is_socket(std::getenv("SPNAV_SOCKET")) || is_socket("/var/run/spnav.sock") || stat("/etc/spnavrc", &about) == 0;
@@ -120,7 +120,7 @@ void SpaceMouse::publish(bool connected) {
   counts_.publish(current_counts_);
 }
 
-// Whole packets only: libspnav takes a part of one for the whole, and the end of the connection for silence.
+// Reads whole packets only: libspnav takes a partial packet for a whole one, and does not report the end of the connection.
 bool SpaceMouse::receive_events() {
   char packet[kPacketBytes];
   while (!stop_) {
@@ -139,7 +139,7 @@ bool SpaceMouse::receive_events() {
       const auto bit = event.button.bnum >= 0 && event.button.bnum < 32 ? 1u << event.button.bnum : 0u;
       current_counts_.buttons = event.button.press != 0 ? current_counts_.buttons | bit : current_counts_.buttons & ~bit;
     } else if (type == SPNAV_EVENT_DEV) {
-      current_counts_.axes = {};  // plugged or unplugged behind the daemon: it no longer says what is held
+      current_counts_.axes = {};  // plugged or unplugged while the daemon runs: it no longer reports what is deflected
       current_counts_.buttons = 0;
     } else {
       continue;

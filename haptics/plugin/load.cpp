@@ -29,15 +29,15 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
 constexpr unsigned kTrialSeconds = 10;
-constexpr int kThrew = 100;  // exit code of a trial
+constexpr int kThrew = 100;  // exit code of a trial that threw
 
 std::vector<LoadedPlugin>& list_of_loaded() {
   static std::vector<LoadedPlugin> list;
   return list;
 }
 
-/// Who else than this user and root may change what is at a path; empty: nobody. A group counts as somebody else unless it is the owner's
-/// own, which has the owner's number; of a folder with the sticky bit nobody removes what is another's.
+/// Who besides this user and root may change what is at a path; empty if nobody. A group counts as others unless it is the owner's private
+/// group, which has the owner's number; in a folder with the sticky bit nobody removes the files of others.
 std::string changed_by_others(const fs::path& path) {
   struct stat about {};
   if (::stat(path.c_str(), &about) != 0) return "cannot be looked at";
@@ -63,7 +63,7 @@ bool is_word(const std::string& text) {
          text[0] >= 'a';
 }
 
-/// Of a type beside those that are known, the plug-in's own before it among them.
+/// Checks a new type against the known ones, including the plug-in's own types before it.
 Outcome check_type(const ConstraintType& type, const std::vector<std::string>& before) {
   if (!is_word(type.type))
     return Error{"gives a type the name " + in_quotes(type.type) + "; small letters, digits and _ were expected, a letter first"};
@@ -84,7 +84,7 @@ Outcome check_type(const ConstraintType& type, const std::vector<std::string>& b
   return Done{};
 }
 
-/// Its types, all of them or none.
+/// The plug-in's types, all or none.
 Result<std::vector<ConstraintType>> types_of(const PluginEntry& entry) {
   std::vector<ConstraintType> types;
   try {
@@ -103,7 +103,7 @@ Result<std::vector<ConstraintType>> types_of(const PluginEntry& entry) {
   return types;
 }
 
-/// Runs the library's own initialisers in a process of their own first: they may throw, crash or hang.
+/// Runs the library's static initializers in a child process first: they may throw, crash or hang.
 Outcome try_library(const std::string& path) {
   const pid_t child = ::fork();
   if (child < 0) return system_error("a process to try the plug-in in", errno);
@@ -111,9 +111,10 @@ Outcome try_library(const std::string& path) {
     const rlimit none{0, 0};
     ::setrlimit(RLIMIT_CORE, &none);
     ::alarm(kTrialSeconds);
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);  // the dynamic linker has words of its own
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);  // the dynamic linker prints messages of its own
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
-    void* (*volatile const open)(const char*, int) = ::dlopen;  // which throws nothing as it is declared
+    void* (*volatile const open)(const char*, int) =
+        ::dlopen;  // dlopen is declared as not throwing; the call through a volatile pointer lets exceptions propagate
     try {
       open(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     } catch (...) {
@@ -131,9 +132,9 @@ Outcome try_library(const std::string& path) {
   return Error{how + " as it is loaded; a library that can be loaded was expected"};
 }
 
-/// Runs the library's own initialisers.
+/// Loads the library, which runs its static initializers.
 Result<const PluginEntry*> open_library(const std::string& path, const AbiStamp& stated) {
-  std::fenv_t rounding;  // a library that was linked with -ffast-math turns small numbers to 0 in the whole thread
+  std::fenv_t rounding;  // a library linked with -ffast-math sets flush-to-zero for the whole thread
   std::fegetenv(&rounding);
   void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   std::fesetenv(&rounding);
@@ -195,7 +196,7 @@ std::string refusal_reason() {
 Outcome load(const std::string& path) {
   if (const std::string why = refusal_reason(); !why.empty()) return Error{one_line(path + ": " + why)};
   std::error_code code;
-  const fs::path whole = fs::canonical(path, code);  // an absolute name, so that no library's search path has a say
+  const fs::path whole = fs::canonical(path, code);  // an absolute name, so that no library search path applies
   return load_checked(code ? fs::path(path) : whole);
 }
 

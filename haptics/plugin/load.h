@@ -1,5 +1,5 @@
-/// Loads plug-ins: shared libraries with constraints of a user's own (haptics/plugin/plugin.h). Which ones, the program decides
-/// (engine/app/cli/plugins.h). At start-up, in the first thread, before anything reads a scene.
+/// Loads plug-ins: shared libraries with constraint types by users (haptics/plugin/plugin.h). The program decides which ones are loaded
+/// (engine/app/cli/plugins.h). At start-up, in the main thread, before any scene is read.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,24 +9,26 @@
 
 namespace catena::haptics::plugin {
 
-/// One that is loaded.
+/// Plug-in that has been loaded.
 struct LoadedPlugin {
-  std::string file;                ///< its name, without its folder
-  std::uint64_t hash = 0;          ///< of the file (engine/base/hash.h): tells builds apart, and is no proof against intent
-  std::vector<std::string> types;  ///< the words that it gave to scenes
+  std::string file;                ///< file name, without the folder
+  std::uint64_t hash = 0;          ///< hash of the file (engine/base/hash.h): distinguishes builds, but is no protection against tampering
+  std::vector<std::string> types;  ///< names of the constraint types that it added
 };
 
-/// Those that are loaded, in their order.
+/// Returns the loaded plug-ins, in the order of loading.
 const std::vector<LoadedPlugin>& loaded_plugins();
 
-/// Why this process may load none, as a clause; empty: it may. None is loaded as root, or by a program that has rights which its caller
-/// lacks (set-id, file capabilities): its caller would run code with them.
+/// Returns why this process may not load plug-ins, as a clause; empty: it may. Plug-ins are not loaded as root, nor by a program with
+/// rights that its user lacks (set-id, file capabilities), since the user could then run code with these rights.
 std::string refusal_reason();
 
-/// Loads a file, and adds its types to the registry. It stays loaded to the end. The same file again is not loaded twice.
-/// One sentence otherwise, and no type is added: no regular file; a file, or its folder, that others may write or that is somebody else's;
-/// no plug-in; built for other headers or by another compiler; libcatena.so with it; a word or a key that is taken; nothing that a registry
-/// could use; an exception. None of its code has run unless the last three are what is wrong.
+/// Loads a plug-in and adds its types to the registry. It stays loaded until the program exits. A file with the same contents as a loaded
+/// one is not loaded twice.
+/// Else the Error is one sentence and no type is added: no regular file; a file or folder that others may write or that belongs to another
+/// user; no plug-in; built for other headers or by another compiler; linked with libcatena.so; initialization that throws, crashes or
+/// hangs (tried in a child process first); the name of a type or key is taken; types that the registry cannot use; an exception. None of
+/// its code has run unless it is one of the last four.
 Outcome load(const std::string& path);
 
 }  // namespace catena::haptics::plugin

@@ -1,15 +1,15 @@
-/// A constraint of one's own in a shared library, a plug-in, which the program `catena` loads by `--plugin ring.so`, CATENA_PLUGINS or the
-/// user's folder (docs/library.md). Scenes, the window, recordings and the schema then know it like any other.
+/// Plug-in interface: constraint types in a shared library, which the program `catena` loads by `--plugin ring.so`, CATENA_PLUGINS or from
+/// the user's folder (docs/library.md). Scenes, the window, recordings and the schema then support the types like built-in ones.
 ///
 ///   ConstraintType ring();                    // haptics/constraints/registry.h
-///   CATENA_CONSTRAINT_PLUGIN(ring)            // once in a plug-in, outside of every namespace; several functions: ring, knot
+///   CATENA_CONSTRAINT_PLUGIN(ring)            // once per plug-in, outside all namespaces; several functions: ring, knot
 ///
-/// Build it as a MODULE library that links the target catena::plugin. That target has the headers and no library: what a plug-in calls is
-/// in the program that loads it, and a plug-in that links libcatena.so is refused. The functions run once, at start-up, in the first
-/// thread; what they give is checked (haptics/plugin/load.h).
+/// Build it as a MODULE library that links the target catena::plugin. That target provides the headers and no library: the functions that a
+/// plug-in calls are in the program that loads it, and a plug-in that links libcatena.so is rejected. The functions run once, at start-up,
+/// in the main thread; the types that they return are checked (haptics/plugin/load.h).
 ///
-/// The macro makes the one entry, `catena_plugin`. It states the headers and the compiler that the plug-in was built with; the program
-/// reads that from the file, before any code of the plug-in runs, and loads only what states the same as itself.
+/// The macro defines the entry `catena_plugin`. Its ABI stamp names the headers and the compiler with which the plug-in was built; the
+/// program reads it from the file before any code of the plug-in runs, and loads only plug-ins with its own ABI stamp.
 #pragma once
 #include <cstddef>
 #include <string_view>
@@ -19,14 +19,15 @@
 
 namespace catena::haptics::plugin {
 
-/// What must be the same in a plug-in and in the program, as text that ends with zeros: plain bytes, of which no loader changes any.
+/// ABI stamp: properties that must be the same in a plug-in and in the program, as zero-terminated texts. Plain bytes, so that no loader
+/// relocates any of them.
 struct AbiStamp {
-  char magic[16] = "Catena plug-in";  ///< tells it from other data
-  char headers[64] = {};              ///< Catena's version, and a hash of all public headers
-  char compiler[192] = {};            ///< the compiler, its library and the sizes of what crosses, as the options of the build leave them
+  char magic[16] = "Catena plug-in";  ///< identifies the stamp
+  char headers[64] = {};              ///< version of Catena and a hash of all public headers
+  char compiler[192] = {};            ///< compiler, standard library and sizes of the shared types, as the build options determine them
 };
 
-/// Appends words to a text of a AbiStamp. One that does not fit does not compile.
+/// Appends text to a text of an AbiStamp. A text that does not fit fails to compile.
 template <std::size_t N>
 constexpr void append(char (&text)[N], std::string_view words) {
   std::size_t end = std::string_view(text).size();
@@ -34,7 +35,7 @@ constexpr void append(char (&text)[N], std::string_view words) {
   text[end] = '\0';
 }
 
-/// The same of a blank and a number.
+/// Appends a space and a number.
 template <std::size_t N>
 constexpr void append(char (&text)[N], unsigned long number) {
   char digits[24] = {};
@@ -44,7 +45,7 @@ constexpr void append(char (&text)[N], unsigned long number) {
   append(text, std::string_view(digits + first));
 }
 
-/// The statement of what is being compiled. `headers`: CATENA_PLUGIN_INTERFACE, which the build of Catena defines.
+/// Returns the ABI stamp of the present compilation. `headers`: CATENA_PLUGIN_INTERFACE, which Catena's build defines.
 consteval AbiStamp make_abi_stamp(std::string_view headers) {
   AbiStamp out;
   append(out.headers, headers);
@@ -80,20 +81,20 @@ consteval AbiStamp make_abi_stamp(std::string_view headers) {
   return out;
 }
 
-/// The entry: the statement, and where the types come from.
+/// Entry of a plug-in: its ABI stamp and the function that adds its types.
 struct PluginEntry {
-  AbiStamp abi_stamp;                                     ///< read from the file first
+  AbiStamp abi_stamp;                                     ///< read from the file before any code runs
   void (*add_types)(std::vector<ConstraintType>& types);  ///< appends the plug-in's types; may throw
 };
 
 }  // namespace catena::haptics::plugin
 
 extern "C" {
-/// The entry of a plug-in, defined by CATENA_CONSTRAINT_PLUGIN, in a section of its own, where the program finds it.
+/// Entry of a plug-in, defined by CATENA_CONSTRAINT_PLUGIN, in a section of its own where the program finds it.
 [[gnu::visibility("default"), gnu::section(".catena.plugin")]] extern const catena::haptics::plugin::PluginEntry catena_plugin;
 }
 
-/// Makes a shared library a plug-in, of one or several functions that return a ConstraintType.
+/// Defines the entry of a plug-in from one or several functions that return a ConstraintType.
 #define CATENA_CONSTRAINT_PLUGIN(...)                                                                                                      \
   static void catena_plugin_add(std::vector<::catena::haptics::ConstraintType>& types) {                                                   \
     for (::catena::haptics::ConstraintType(*const make)() : {__VA_ARGS__}) types.push_back(make());                                        \

@@ -16,12 +16,12 @@ constexpr Elf64_Half kMachine = EM_AARCH64;
 #elif defined(__riscv)
 constexpr Elf64_Half kMachine = EM_RISCV;
 #else
-constexpr Elf64_Half kMachine = EM_NONE;  // the dynamic linker refuses another one's
+constexpr Elf64_Half kMachine = EM_NONE;  // the dynamic linker rejects other machines
 #endif
 
 static_assert(std::endian::native == std::endian::little && sizeof(void*) == 8, "ELF as this machine has it");
 
-/// The T at an offset; nothing where it does not lie in the bytes.
+/// The T at an offset; nullopt if it does not lie within the bytes.
 template <class T>
 std::optional<T> at(std::string_view bytes, std::uint64_t offset) {
   if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) return {};
@@ -36,7 +36,7 @@ std::string_view part(std::string_view bytes, const Elf64_Shdr& section) {
   return bytes.substr(section.sh_offset, section.sh_size);
 }
 
-/// Whether a text begins so at an offset of a section of texts.
+/// Whether the string at an offset of a string section starts with `words`.
 bool says(std::string_view texts, std::uint64_t offset, std::string_view words) {
   return offset < texts.size() && texts.substr(offset).starts_with(words);
 }
@@ -68,7 +68,7 @@ Result<PluginFile> read_file(std::string_view bytes) {
   PluginFile file;
   std::optional<AbiStamp> found;
   bool has_entries = false;                                // a library has one dynamic section
-  constexpr std::string_view kName(".catena.plugin", 15);  // with its zero
+  constexpr std::string_view kName(".catena.plugin", 15);  // including its terminating zero
   for (std::uint64_t i = 0; i < head->e_shnum; ++i) {
     const auto one = section(i);
     if (!one) return Error{"is cut off; a whole shared library was expected"};

@@ -1,4 +1,4 @@
-/// What a plug-in's file says of itself, read from its bytes: none of its code runs, and no byte is trusted.
+/// Reads the properties of a plug-in from the bytes of its file: none of its code runs, and no byte is trusted.
 #pragma once
 #include <string_view>
 
@@ -7,13 +7,14 @@
 
 namespace catena::haptics::plugin {
 
-/// Of a shared library (ELF).
+/// Properties of a plug-in's shared library (ELF).
 struct PluginFile {
-  AbiStamp abi_stamp;         ///< of the section .catena.plugin; its texts end with a zero
-  bool links_catena = false;  ///< the system's loader would bring a libcatena.so with it
+  AbiStamp abi_stamp;         ///< from the section .catena.plugin; its texts are zero-terminated
+  bool links_catena = false;  ///< the library depends on libcatena.so, which the dynamic linker would load
 };
 
-/// The error says what the bytes are not. Time: at most one step for each of the file's sections and dynamic entries.
+/// Parses a file. An Error if it is no shared library of this machine, truncated, or without an ABI stamp. Time: linear in the number of
+/// sections and dynamic entries.
 Result<PluginFile> read_file(std::string_view bytes);
 
 }  // namespace catena::haptics::plugin

@@ -1,11 +1,11 @@
-/// The grid of absolute deadlines t_n = first + n T that a paced servo wakes at, as plain arithmetic on nanoseconds.
-///   A tick belongs to the newest deadline that has passed when it begins. Deadlines that get no tick are missed: at the begin of
-///   every tick, ticks + missed = deadlines so far.
-///   A tick's time is its deadline, or the moment at which it began if that is more than T/4 later: the velocity's dt is honest
-///   after a miss too. It is late if its time is more than 2 T after the last tick's.
-///   The next deadline is after the end of the tick and at least T/2 after its begin, so that dt never gets small.
-///   There was a stall before a tick if more than `stall` passed from the end of the last tick to its beginning: the thread did not run.
-///   Perhaps the whole program did not, with its watchdog (SIGSTOP).
+/// Deadline clock: the grid of absolute deadlines t_n = first + n T at which a paced servo wakes, as plain arithmetic on nanoseconds.
+///   A tick belongs to the newest deadline that has passed when it starts. Deadlines without a tick are missed: at the start of every tick,
+///   ticks + missed = deadlines so far.
+///   The time of a tick is its deadline, or the moment at which it started if that is more than T/4 later, so that the dt of the
+///   velocity is correct after a miss too. The tick is late if its time is more than 2 T after that of the last tick.
+///   The next deadline is after the end of the tick and about T/2 or more after the time of the tick, so that dt never gets small.
+///   A tick was stalled if more than `stall_ns` passed between the end of the last tick and its start: the thread did not run. Possibly
+///   the whole program did not run, including its watchdog (SIGSTOP).
 /// Haptic thread.
 #pragma once
 #include <algorithm>
@@ -14,27 +14,28 @@
 
 namespace catena::haptics {
 
-/// How a tick stands to the grid.
+/// Timing of a tick relative to the deadlines.
 struct TickTiming {
-  std::int64_t time_ns = 0;  ///< of the tick, since the first deadline
-  std::int64_t missed = 0;   ///< deadlines between the last tick's and its own
-  bool late = false;         ///< its time is more than two periods after the last tick's
-  bool stalled = false;      ///< the thread did not run for longer than `stall`
+  std::int64_t time_ns = 0;  ///< time of the tick since the first deadline, nanoseconds
+  std::int64_t missed = 0;   ///< number of deadlines between that of the last tick and its own
+  bool late = false;         ///< the time of the tick is more than two periods after that of the last tick
+  bool stalled = false;      ///< the thread did not run for longer than `stall_ns` before the tick
 };
 
-/// The grid. One thread.
+/// Deadline clock. One thread.
 class DeadlineClock {
  public:
-  static constexpr std::int64_t kNeverStalls = std::numeric_limits<std::int64_t>::max();  ///< As `stall_ns`: stalls are not looked for.
+  /// Value of `stall_ns` that disables the detection of stalls.
+  static constexpr std::int64_t kNeverStalls = std::numeric_limits<std::int64_t>::max();
 
-  /// A grid of this period from `first_ns` on, all of now_ns().
+  /// Creates a grid of this period that starts at `first_ns`; times are those of now_ns(), nanoseconds.
   DeadlineClock(std::int64_t period_ns, std::int64_t first_ns, std::int64_t stall_ns = kNeverStalls)
       : period_ns_(period_ns), first_ns_(first_ns), stall_ns_(stall_ns), last_end_ns_(first_ns) {}
 
-  /// The deadline to sleep until, of now_ns().
+  /// Returns the deadline until which to sleep, on the clock of now_ns().
   std::int64_t next_wake_ns() const noexcept { return first_ns_ + next_ * period_ns_; }
 
-  /// A tick begins now.
+  /// Starts a tick at `now_ns`; returns its timing.
   TickTiming begin_tick(std::int64_t now_ns) noexcept {
     const std::int64_t since = std::max<std::int64_t>(0, now_ns - first_ns_), deadline = std::max(next_, since / period_ns_);
     TickTiming beat;
@@ -48,7 +49,7 @@ class DeadlineClock {
     return beat;
   }
 
-  /// It ends now.
+  /// Ends the tick at `now_ns`.
   void end_tick(std::int64_t now_ns) noexcept {
     const std::int64_t since = std::max(now_ns - first_ns_, last_time_ns_ + (period_ns_ - 1) / 2);
     next_ = std::max(last_, since / period_ns_) + 1;

@@ -19,7 +19,7 @@ Mechanics resolve_mechanics(const DeviceCapabilities& device, const DeviceSettin
   m.friction_n = settings.friction_n.value_or(m.friction_n);
   m.encoder_step_m = settings.encoder_step_m.value_or(m.encoder_step_m);
   m.delay_s = settings.delay_s.value_or(m.delay_s);
-  // a force passes the map unscaled, a length does not (haptics/device/device_mapping.h)
+  // the device mapping passes a force unscaled, but scales lengths (haptics/device/device_mapping.h)
   m.mass_kg /= settings.scale;
   m.damping_ns_per_m /= settings.scale;
   m.encoder_step_m *= settings.scale;
@@ -35,7 +35,7 @@ DeviceLimits compute_device_limits(const DeviceCapabilities& device, const Devic
   limits.damping_ns_per_m = m.damping_ns_per_m;
   limits.delay_s = m.delay_s;
 
-  // the defaults of a device that can push
+  // defaults of a device that outputs force
   if (device.max_force_n > 0) {
     limits.max_force_n = device.max_force_n;
     limits.slew_n_per_s = std::min(device.max_force_n / kFullForceIn_s, kMaxSlew);
@@ -53,7 +53,7 @@ DeviceLimits compute_device_limits(const DeviceCapabilities& device, const Devic
 
   if (device.has_vibration) limits.ramp_in_s = kRampIn_s;
 
-  // what the person says
+  // settings of the user
   if (settings.stiffness_cap == DeviceSettings::StiffnessCap::value) limits.max_stiffness_n_per_m = settings.stiffness_cap_n_per_m;
   limits.max_force_n = settings.max_force_n.value_or(limits.max_force_n);
   limits.max_torque_nm = settings.max_torque_nm.value_or(limits.max_torque_nm);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kStackBytes = 256 * 1024;  // more than a tick ever uses
 
-// Pages of the stack below this frame, touched so that no tick faults on them.
+// Touches the pages of the stack below this frame, so that no tick faults on them.
 [[gnu::noinline]] void touch_stack() {
   [[maybe_unused]] volatile unsigned char pages[kStackBytes];
   for (std::size_t i = 0; i < kStackBytes; i += 4096) pages[i] = 0;
@@ -27,13 +27,13 @@ constexpr std::size_t kStackBytes = 256 * 1024;  // more than a tick ever uses
 
 std::string reason() { return std::strerror(errno); }
 
-/// How a person gets what was refused: `limit` is its name in limits.d.
+/// How the user can obtain a permission that was denied; `limit` is its name in limits.d.
 std::string remedy(const char* limit) {
   return std::string("join the group catena and log in again (`adduser YOU catena`, where the Debian package is installed), or raise ") +
          limit + " in /etc/security/limits.d";
 }
 
-/// A process that locks future memory under a limit would see allocations fail.
+/// Whether all future memory may be locked: under a limit, allocations of the process would fail.
 bool may_lock_everything() {
   rlimit limit{};
   if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
@@ -43,7 +43,7 @@ bool may_lock_everything() {
   return (data[CAP_TO_INDEX(CAP_IPC_LOCK)].effective & CAP_TO_MASK(CAP_IPC_LOCK)) != 0;
 }
 
-// The lock on all memory belongs to the process: the last servo to end gives it back.
+// The lock on all memory belongs to the process: the last servo to end releases it.
 std::mutex everything_mutex;
 int everything_users = 0;
 
@@ -83,7 +83,7 @@ void release_fifo_priority() noexcept {
 }
 
 void reset_cpu_affinity() noexcept {
-  cpu_set_t cores;  // the first thread's, which no servo binds
+  cpu_set_t cores;  // affinity of the first thread, which no servo binds
   if (sched_getaffinity(getpid(), sizeof cores, &cores) == 0) sched_setaffinity(0, sizeof cores, &cores);
 }
 
@@ -129,7 +129,7 @@ void RealtimeThread::lock(const void* own, std::size_t own_bytes) {
   touch_stack();
   report_.locked = everything;
   if (everything) return;
-  const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // it grows downwards
+  const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // the stack grows downward
   for (const LockedRange& part : {LockedRange{stack, kStackBytes}, LockedRange{own, own_bytes}})
     if (mlock(part.at, part.bytes) == 0) locked_ranges_.push_back(part);
   report_.notes.push_back(std::string("not all memory could be locked (") +

@@ -1,5 +1,5 @@
-/// What makes a thread a hard-real-time one, as far as the machine permits: fixed priority, memory that is never paged out, a
-/// core of its own. Whatever is not permitted becomes one plain sentence, and the thread goes on without it.
+/// Real-time properties of a thread, as far as the machine permits: fixed priority, memory that is never paged out, a CPU core of its own.
+/// Each property that is not permitted becomes a note of one sentence, and the thread runs without it.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -7,49 +7,51 @@
 
 namespace catena::haptics {
 
-/// What a servo's thread asks for.
+/// Real-time properties that a servo's thread requests.
 struct RealtimeOptions {
-  bool fifo = true;                        ///< ask for a fixed priority
-  int priority = 80;                       ///< 1..98; the watchdog has one more
-  bool lock_memory = true;                 ///< ask for memory that is never paged out
-  int cpu = kAnyWithFifo;                  ///< the core to stay on, or one of these:
-  static constexpr int kAnyWithFifo = -1;  ///< the last allowed core, if there is more than one and the priority was granted
-  static constexpr int kUnbound = -2;      ///< wherever the system likes
+  bool fifo = true;                        ///< request a fixed priority (SCHED_FIFO)
+  int priority = 80;                       ///< fixed priority, 1..98; the watchdog has one more
+  bool lock_memory = true;                 ///< request memory that is never paged out
+  int cpu = kAnyWithFifo;                  ///< core to bind to, or one of the following constants
+  static constexpr int kAnyWithFifo = -1;  ///< last allowed core, if there is more than one and the fixed priority was granted
+  static constexpr int kUnbound = -2;      ///< not bound to a core
 };
 
-/// What it got.
+/// Real-time properties that were granted.
 struct RealtimeReport {
-  bool fifo = false;               ///< a fixed priority
-  bool locked = false;             ///< all of the process's memory
-  int cpu = -1;                    ///< -1: not bound to a core
-  std::vector<std::string> notes;  ///< what was not permitted, a sentence each
+  bool fifo = false;               ///< fixed priority
+  bool locked = false;             ///< all memory of the process is locked
+  int cpu = -1;                    ///< core to which the thread is bound; -1: none
+  std::vector<std::string> notes;  ///< properties that were not permitted, one sentence each
 };
 
-/// Fixed priority (SCHED_FIFO, not inherited by children) for the calling thread. On failure one sentence in `notes`.
+/// Gives the calling thread a fixed priority (SCHED_FIFO, not inherited by children). Returns false if not permitted, with a sentence added
+/// to `notes`.
 bool acquire_fifo_priority(int priority, std::vector<std::string>& notes);
-/// How long this process may run at a fixed priority without a pause: beyond `soft_s` SIGXCPU, beyond `hard_s` SIGKILL, so that a tick that
-/// never ends gives the machine back. Only ever lowers a limit. A servo that is merely too slow has left the priority before (servo.h).
+/// Limits how long this process may run at a fixed priority without blocking: after `soft_s` SIGXCPU, after `hard_s` SIGKILL, so that a
+/// tick that never ends does not lock up the machine. Never raises a limit. A servo that is merely too slow releases its priority earlier
+/// (servo.h).
 void limit_realtime_run(double soft_s, double hard_s) noexcept;
-inline constexpr double kRealtimeSoftLimit_s = 2, kRealtimeHardLimit_s = 3;  ///< what a servo sets for its process, seconds
+inline constexpr double kRealtimeSoftLimit_s = 2, kRealtimeHardLimit_s = 3;  ///< limits that a servo sets for its process, seconds
 
-/// Back to normal priority.
+/// Returns the calling thread to normal priority.
 void release_fifo_priority() noexcept;
 
-/// The calling thread may run wherever the process may, though the thread that made it is bound to a core.
+/// Lets the calling thread run on all cores allowed to the process, although the thread that created it is bound to one.
 void reset_cpu_affinity() noexcept;
 
-/// Prepares the calling thread before its first tick: touches its stack, then priority, core, memory. The whole process is locked
-/// (as pages are touched) where that is unlimited; otherwise only the stack and `own`, as far as the limit goes: a lock on all
-/// memory would make later allocations fail. Undone by the destructor, on the same thread.
+/// Prepares the calling thread before its first tick: fixed priority, core, locked memory with the stack touched. All memory of the process
+/// is locked (as pages are touched) if locking is unlimited; otherwise only the stack and `own`, as far as the limit allows, because a lock
+/// on all memory would make later allocations fail. The destructor undoes it, on the same thread.
 class RealtimeThread {
  public:
-  /// Of the calling thread; `own` is memory to lock where not all can be.
+  /// Prepares the calling thread; `own` is memory to lock if not all of it can be.
   RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes);
   ~RealtimeThread();
   RealtimeThread(const RealtimeThread&) = delete;
   RealtimeThread& operator=(const RealtimeThread&) = delete;
 
-  /// What it got.
+  /// Returns the properties that were granted.
   const RealtimeReport& report() const { return report_; }
 
  private:

@@ -1,4 +1,4 @@
-/// Drives the tick from a recorded probe path: deterministic, no thread.
+/// Runs the tick over a recorded probe path: deterministic, without a thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,22 +10,23 @@
 
 namespace catena::haptics {
 
-/// What a replay took and did.
+/// Statistics of a replay.
 struct ReplayStats {
-  std::uint64_t ticks = 0;                                                     ///< how many ran
-  double tick_ns_p50 = 0, tick_ns_p99 = 0, tick_ns_p999 = 0, tick_ns_max = 0;  ///< quantiles of a tick's time, nanoseconds
-  std::int64_t evaluations_p50 = 0, evaluations_max = 0;                       ///< summed over links
-  std::uint64_t state_hash = 0;                                                ///< of all ticks (StateHash)
+  std::uint64_t ticks = 0;                                                     ///< number of ticks
+  double tick_ns_p50 = 0, tick_ns_p99 = 0, tick_ns_p999 = 0, tick_ns_max = 0;  ///< quantiles, maximum of a tick's duration, ns
+  std::int64_t evaluations_p50 = 0, evaluations_max = 0;                       ///< field samples per tick, summed over links
+  std::uint64_t state_hash = 0;                                                ///< hash of all ticks (StateHash)
 };
 
-/// Collects the figures of a replay, tick by tick.
+/// Collects the statistics of a replay, tick by tick.
 class ReplayMeter {
  public:
-  /// Takes the memory for so many ticks.
+  /// Reserves memory for this number of ticks.
   void reserve(std::size_t ticks);
-  /// Adds a tick and how long it took.
+  /// Adds the result of a tick and its duration.
   void add(double nanoseconds, const HapticState& state);
-  ReplayStats stats();  ///< reorders what it has collected: call it last
+  /// Returns the statistics. It reorders the collected values, so call it last.
+  ReplayStats stats();
 
  private:
   std::vector<double> nanoseconds_;
@@ -33,7 +34,8 @@ class ReplayMeter {
   StateHash hash_;
 };
 
-/// Calls `on_tick` after every tick, outside the timed part. False from it stops the replay.
+/// Runs the program over the path from a fresh state. `on_tick` is called after every tick, outside the timed part; if it returns false the
+/// replay ends.
 ReplayStats replay(const HapticProgram& program, std::span<const ProbeSample> path, const std::function<bool(const HapticState&)>& on_tick);
 
 }  // namespace catena::haptics

@@ -14,7 +14,7 @@ namespace catena::haptics {
 
 namespace {
 
-// so many ticks in a row, or for so long every tick, that missed a deadline: a fixed priority is given back
+// after this many consecutive late ticks, or this long with every tick late, SCHED_FIFO priority is released
 constexpr int kMissesUntilNormal = 1000;
 constexpr std::int64_t kMissesUntilNormalNs = 1'000'000'000;
 
@@ -30,7 +30,7 @@ void sleep_until(std::int64_t ns, const std::atomic<bool>& stop) noexcept {
   }
 }
 
-/// Unpaced runs must not take the machine, and gain nothing from locked memory.
+/// Unpaced runs must not occupy the machine, and do not benefit from locked memory.
 RealtimeOptions realtime_options(const ServoOptions& options) {
   if (options.paced) return options.realtime;
   return {.fifo = false, .lock_memory = false, .cpu = RealtimeOptions::kUnbound};
@@ -105,7 +105,7 @@ bool Servo::set_sink(TickSink* sink, double patience_s) {
 bool Servo::receive(HapticState& state) {
   if (!published_.acquire()) return false;
   state = published_.front();
-  // a published epoch proves that no later tick can name an older program
+  // a published epoch proves that no later tick can refer to an older program
   std::size_t newest = 0;
   for (std::size_t i = 0; i < programs_.size(); ++i)
     if (programs_[i]->epoch == state.program_epoch) newest = i;
@@ -137,7 +137,7 @@ ServoStats Servo::stats() const {
 }
 
 void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexcept {
-  // before the program: a sink that is taken up knows every program that was handed over before it
+  // before the program: a sink that is taken up has been given every program handed over before it
   TickSink* wanted = requested_sink_.load(std::memory_order_acquire);
   const bool takes_up = wanted != sink_;
 
@@ -159,7 +159,7 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
   ProbeSample probe = make_probe_sample(*program_, input, t_s);
   probe.forces_on = input.forces_on && forces_enabled();
 
-  // the tick that finds the watchdog's flag is without force; the one after it may drive the device again
+  // the tick that finds the watchdog's flag outputs no force; the next one may drive the device again
   const bool stalled = watchdog_ && (beat.stalled || stalled_in_tick_);
   if (watchdog_ && beat.stalled) watchdog_->report_stall();
   const bool tripped = (watchdog_ && watchdog_->consume_trip()) || stalled;
@@ -190,7 +190,7 @@ void Servo::run_tick(double t_s, const TickTiming& beat, HapticState& out) noexc
   if (sink_ != nullptr) sink_->put(probe, out);
 }
 
-/// A fixed priority is for ticks that fit into their period: a second of misses gives it back.
+/// SCHED_FIFO priority is for ticks that fit into their period: it is released after a second of misses.
 void Servo::release_priority_if_overloaded(bool missed, std::int64_t now_ns) noexcept {
   if (!missed) misses_in_row_ = 0;
   if (!missed || !realtime_.fifo || counters_.released_fifo.load(std::memory_order_relaxed)) return;
@@ -208,7 +208,7 @@ void Servo::loop() noexcept {
   device_.resume();
   stopped_ = stalled_in_tick_ = false;
   misses_in_row_ = 0;
-  state_.force_limiter = {};  // whatever an earlier run sent, this one begins at zero
+  state_.force_limiter = {};  // every run starts at zero force, whatever an earlier run sent
   pause_passivity(state_.passivity);
 
   const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
@@ -242,7 +242,7 @@ void Servo::loop() noexcept {
 
     const std::int64_t ended = now_ns();
     pace.end_tick(ended);
-    // the thread may have stood still after the force was computed, too: in the device, or on the way here
+    // the thread may also have stalled after the force was computed: in the device, or on the way here
     if (watchdog_ && !stalled_in_tick_ && ended - began > watchdog_->limit_ns()) {
       stalled_in_tick_ = true;
       watchdog_->report_stall();

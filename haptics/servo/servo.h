@@ -1,4 +1,4 @@
-/// The servo, which is the haptic thread around the tick, and the sink that gets every tick.
+/// The servo, which runs the ticks in the haptic thread, and the sink that receives every tick.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -15,78 +15,86 @@
 
 namespace catena::haptics {
 
-/// What gets every tick, such as a recording (haptics/servo/log/). Called on the haptic thread after each tick, before it is published: no
-/// allocation, lock or throw, and it returns at once. `begin` comes before the first `put` of a sink that is taken up.
+/// Receiver of every tick, such as a recording (haptics/servo/log/). Called on the haptic thread after each tick, before the state is
+/// published: no allocation, lock or throw, no waiting. `begin` is called before the first `put` of a sink that is set while the servo
+/// runs.
 class TickSink {
  public:
   virtual ~TickSink() = default;
-  /// A sink that a running servo takes up: the state before the tick that `put` gets next.
+  /// Receives the state before the tick of the next `put`, when a running servo starts to use the sink.
   virtual void begin(const ChainState& state) noexcept { static_cast<void>(state); }
-  /// `input` and `output` as the tick had them; the servo's timings are in `output`.
+  /// Receives input and output of a tick; the servo's timings are in `output`.
   virtual void put(const ProbeSample& input, const HapticState& output) noexcept = 0;
 };
 
 class Watchdog;
 
-/// How a servo runs.
+/// Options of a servo.
 struct ServoOptions {
-  static constexpr double kMinRateHz = 100, kMaxRateHz = 10000;  ///< rates that it takes
+  static constexpr double kMinRateHz = 100, kMaxRateHz = 10000;  ///< allowed rates
 
-  double rate_hz = 1000;          ///< kMinRateHz..kMaxRateHz
-  bool paced = true;              ///< false: as fast as it goes (soaks, determinism); never late, no watchdog, normal priority
-  std::uint64_t max_ticks = 0;    ///< 0: until stop()
-  TickSink* sink = nullptr;       ///< gets every tick; outlives the servo, or is taken away by set_sink
-  bool forces_enabled = true;     ///< at the start; set_forces_enabled() later
-  double watchdog_s = 0.05;       ///< at least four periods; 0: none
-  RealtimeOptions realtime = {};  ///< of a paced servo
+  double rate_hz = 1000;          ///< ticks per second, kMinRateHz..kMaxRateHz
+  bool paced = true;              ///< false: as fast as possible (soak tests, determinism); never late, no watchdog, normal priority
+  std::uint64_t max_ticks = 0;    ///< number of ticks to run; 0: until stop()
+  TickSink* sink = nullptr;       ///< receives every tick; must outlive the servo or be removed by set_sink; null: none
+  bool forces_enabled = true;     ///< initial state of the user's force switch; later set_forces_enabled()
+  double watchdog_s = 0.05;       ///< time without a finished tick after which the watchdog acts, raised to at least four periods; 0: none
+  RealtimeOptions realtime = {};  ///< real-time properties of a paced servo's thread
 };
 
-/// A servo: one device, one haptic thread, one program at a time. It is a thin shell around the tick: it wakes at absolute deadlines
-/// (pace.h), reads the device, takes the newest program (never waits), runs the tick, writes the force and publishes one HapticState.
-/// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop; a third one, the watchdog,
-/// looks at a time stamp. They share two triple buffers, flags, counters and two pointers, all lock-free. The haptic thread never frees:
-/// programs are kept by the frame side until a published epoch shows that a newer one has run.
+/// Servo: one device, one haptic thread, one program at a time. Each cycle wakes at an absolute deadline (deadline_clock.h), reads the
+/// device, takes the newest program without waiting, runs the tick, writes the force and publishes one HapticState.
+/// Two threads use a Servo: the frame thread calls the public functions, the haptic thread runs the loop; a third one, the watchdog, reads
+/// a time stamp. They share two triple buffers, flags, counters and two pointers, all lock-free. The haptic thread never frees memory: the
+/// frame thread keeps each program until a published epoch shows that a newer one has run.
 ///
-/// The condition of a tick:
-///   WATCHDOG   no tick had ended for watchdog_s. The watchdog saw it or, where the whole program stood still (SIGSTOP), the haptic thread
-///              itself. The device has been stopped; the next tick resumes it. A tick that itself takes longer than watchdog_s stops the
-///              device before it writes, and the next one has this condition.
+/// Condition of a tick:
+///   WATCHDOG   no tick ended for watchdog_s, as detected by the watchdog or, if the whole program was stopped (SIGSTOP), by the haptic
+///              thread. The device has been stopped; the next tick resumes it. A tick that itself takes longer than watchdog_s stops the
+///              device before it writes the force, and the next tick has this condition.
 ///   NO_DEVICE  the device is not ready
-///   LATE       the tick's time is more than two periods after the last tick's
+///   LATE       the time of the tick is more than two periods after that of the last tick
 ///   NORMAL     else
+/// A paced servo whose ticks miss deadlines 1000 times in a row, or in every tick for 1 s, releases its fixed priority.
 class Servo {
  public:
-  /// The device must outlive the servo. Nothing runs before start().
+  /// Creates a servo. The device must outlive it. Nothing runs before start().
   Servo(Device& device, std::shared_ptr<const HapticProgram> program, const ServoOptions& options = {});
   ~Servo();
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
-  // frame side
-  /// Before start(): what the chain remembers comes from a servo that has been stopped (another device takes over). The force begins at
-  /// zero, as it always does. ProgramLookup need epochs of their own over both.
+  // frame thread
+  /// Copies the state of the chain from a stopped servo, when another device replaces its device; call it before start(). The force starts
+  /// at zero, as always. Epochs of programs must be unique over both servos.
   void resume_from(const Servo& other);
-  /// Returns when the thread is prepared, just before its first tick. Where this machine gives no thread: an error, and nothing runs.
+  /// Starts the haptic thread; returns when it is prepared, just before its first tick. An Error if no thread can be created; then nothing
+  /// runs.
   Outcome start();
-  void stop();                                                     ///< joins; the device has had a last zero force and is stopped
-  void set_program(std::shared_ptr<const HapticProgram> program);  ///< of an epoch of its own: by it the older ones are freed
-  bool receive(HapticState& state);                                ///< true if there was something newer
-  /// Another sink from one of the next ticks on, or none. True: the old one is not used any more. The tick takes it up by itself; the
-  /// caller waits for that, a tick or two, and at most `patience_s`: then false, and the old one must live on (until stop(), or a true).
+  /// Stops and joins the haptic thread; the device has received a last zero force and is stopped.
+  void stop();
+  /// Passes a new program to the haptic thread. Its epoch must be unique: older programs are freed when it is published.
+  void set_program(std::shared_ptr<const HapticProgram> program);
+  /// Gets the newest published state and frees older programs. Returns false, with `state` unchanged, if there is no newer one.
+  bool receive(HapticState& state);
+  /// Sets another sink, or none, from one of the next ticks on. Waits a tick or two, at most `patience_s`, until the haptic thread uses it.
+  /// Returns true if the old sink is not in use; on false it must stay alive until stop() or until a call returns true.
   bool set_sink(TickSink* sink, double patience_s = 1);
-  std::uint64_t state_hash() const { return hash_.value(); }  ///< after stop()
-  /// ProgramLookup that it keeps: the one that runs and those that a tick may still name.
+  /// Returns the hash of all ticks (StateHash); after stop().
+  std::uint64_t state_hash() const { return hash_.value(); }
+  /// Returns the number of programs that are kept: the one that runs and those that a tick may still use.
   std::size_t live_program_count() const { return programs_.size(); }
 
   // any thread
-  /// From the start until max_ticks, stop(), or an end of its own.
+  /// Returns whether the haptic thread runs: from start() until max_ticks or stop().
   bool running() const { return running_.load(std::memory_order_acquire); }
-  /// The person's switch, from the next tick on. While it or the device's own switch is off the hand gets no force; the force goes to zero
-  /// over DeviceLimits::ramp_out_s (guard.h).
+  /// Sets the user's force switch, from the next tick on. While it or the device's own switch is off there is no force; the force goes to
+  /// zero over DeviceLimits::ramp_out_s (force_limiter.h).
   void set_forces_enabled(bool on) { forces_enabled_.store(on, std::memory_order_relaxed); }
-  /// Whether the person's switch is on; it does not tell whether the device's own is.
+  /// Returns whether the user's force switch is on; the device's own switch may be off.
   bool forces_enabled() const { return forces_enabled_.load(std::memory_order_relaxed); }
-  ServoStats stats() const;  ///< after start(), also while it runs
+  /// Returns the statistics; after start(), also while it runs.
+  ServoStats stats() const;
 
  private:
   void loop() noexcept;
@@ -103,21 +111,21 @@ class Servo {
   std::atomic<TickSink*> requested_sink_, active_sink_;
   ServoCounters counters_;
 
-  // haptic thread only, once started
+  // used by the haptic thread only, after start()
   const HapticProgram* program_ = nullptr;
   TickSink* sink_ = nullptr;
   ChainState state_;
   ChainScratch scratch_;
   StateHash hash_;
   bool stopped_ = false;          ///< the watchdog has stopped the device
-  bool stalled_in_tick_ = false;  ///< the last tick did
+  bool stalled_in_tick_ = false;  ///< the last tick took longer than the watchdog's limit
   int misses_in_row_ = 0;
   std::int64_t missing_since_ns_ = 0;
 
-  // frame side only; realtime_ is written before prepared_
+  // used by the frame thread only; realtime_ is written by the haptic thread before it sets prepared_
   RealtimeReport realtime_;
   std::vector<std::shared_ptr<const HapticProgram>> programs_;
-  std::unique_ptr<Watchdog> watchdog_;  ///< null: none
+  std::unique_ptr<Watchdog> watchdog_;  ///< null: no watchdog
   std::thread thread_;
 };
 

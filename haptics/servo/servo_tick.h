@@ -1,6 +1,6 @@
-/// A servo's tick without its thread and its clock: read the device, run the tick, write the force. And how the hand's metres lie in a
-/// program's world, for both.
-///   world = origin + R device / S,   device = R^T (world - origin) S,   S metres per unit
+/// Tick of a servo without its thread and clock: reads the device, runs the tick, writes the force. Also the conversions between the
+/// device's axes and the program's world, which the servo uses too.
+///   world = origin + R device / S,   device = R^T (world - origin) S,   S in meters per unit
 /// Haptic thread: no allocation, lock or throw.
 #pragma once
 #include <memory>
@@ -11,24 +11,27 @@
 
 namespace catena::haptics {
 
-/// The place in the program's world of the device's metres.
+/// Returns the position in the program's world, world units, of a position of the device, meters.
 Vec3 world_from_device(const HapticProgram& program, const Vec3& device_m) noexcept;
-/// The device's metres of a place in the program's world.
+/// Returns the position of the device, meters, of a position in the program's world, world units.
 Vec3 device_from_world(const HapticProgram& program, const Vec3& world) noexcept;
-/// What the device says, in the program's world. The condition is the caller's.
+/// Returns the input of the tick from the device's input, in the program's world. `t_s` is ignored for a recorded path, which has its own
+/// time. The caller sets the condition.
 ProbeSample make_probe_sample(const HapticProgram& program, const DeviceInput& input, double t_s) noexcept;
-/// What the tick answers, in the device's axes.
+/// Returns the device's output from the result of the tick, in the device's axes.
 DeviceOutput make_device_output(const HapticProgram& program, const HapticState& state, const ChainState& chain) noexcept;
 
-/// Ticks one after the other, as fast as they are asked for, at even times from 0: the same device and program give the same bits.
+/// Runs ticks one by one when the caller requests them, with equally spaced times from 0: the same device input and program give
+/// bit-identical results. One thread.
 class ServoStepper {
  public:
-  /// All outlive it. `sink` gets every tick.
+  /// Creates a stepper. All arguments must outlive it. `sink` receives every tick; null: none.
   ServoStepper(Device& device, const HapticProgram& program, double rate_hz, TickSink* sink = nullptr);
 
-  /// One tick; what it says stays until the next.
+  /// Runs one tick. The result is valid until the next call.
   const HapticState& step() noexcept;
-  double t_s() const noexcept { return static_cast<double>(ticks_) / rate_hz_; }  ///< of the next tick
+  /// Returns the time of the next tick, seconds.
+  double t_s() const noexcept { return static_cast<double>(ticks_) / rate_hz_; }
 
  private:
   Device& device_;

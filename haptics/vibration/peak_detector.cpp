@@ -8,9 +8,9 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kLeastSpeed = 1e-3;  // m/s: below it a hand stands still, and energy per way says nothing
+constexpr double kLeastSpeed = 1e-3;  // m/s; below it the probe counts as at rest, and energy per distance is meaningless
 
-// Not negative and finite as floats: then their bits are ordered as they are, the first one first.
+// Packs two non-negative, finite floats; the packed values are ordered like the pairs, the first number first.
 std::uint64_t packed(double first, double second) noexcept {
   const auto bits = [](double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(std::min(v, 1e30))); };
   return std::uint64_t{bits(first)} << 32 | bits(second);
@@ -19,7 +19,7 @@ std::uint64_t packed(double first, double second) noexcept {
 double first_of(std::uint64_t word) noexcept { return std::bit_cast<float>(static_cast<std::uint32_t>(word >> 32)); }
 double second_of(std::uint64_t word) noexcept { return std::bit_cast<float>(static_cast<std::uint32_t>(word)); }
 
-// The other thread only ever writes zero: where the first try fails there is zero, and the second one finds it.
+// Raises the peak. The other thread only ever writes zero, so if the first exchange fails, the value is zero and the second one succeeds.
 void raise(std::atomic<std::uint64_t>& peak, std::uint64_t to) noexcept {
   std::uint64_t before = peak.load(std::memory_order_relaxed);
   for (int tries = 0; tries < 2 && to > before; ++tries)

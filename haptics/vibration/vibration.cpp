@@ -7,7 +7,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kShortestCallS = 1e-3, kLongestCallS = 0.1;
-constexpr double kFrictionCalls = 1.5;  // a call that is a little late leaves no gap
+constexpr double kFrictionCalls = 1.5;  // in calls: a call that is a little late leaves no gap
 
 std::int64_t nanoseconds(double s) noexcept { return static_cast<std::int64_t>(1e9 * s); }
 
@@ -33,7 +33,7 @@ VibrationSender::Command VibrationSender::next(PeakDetector& peaks, std::int64_t
   const bool began = !was_allowed_;
   was_allowed_ = true;
   const double since_s = 1e-9 * static_cast<double>(now_ns - std::exchange(last_ns_, now_ns));
-  if (began) return {};  // what was felt before it was allowed
+  if (began) return {};  // discard what accumulated before vibration was allowed
   const Vibration wish = compute_vibration(felt, std::clamp(since_s, kShortestCallS, kLongestCallS), map_);
   const bool pulse_lasts = current_.is_pulse && now_ns < ends_ns_;
   if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < current_.amplitude)) return {};

@@ -1,5 +1,6 @@
-// The program `catena-watchdog`: started by the driver of a USB device, which gives it the device's node (descriptor 3), the page
-// (descriptor 4) and the lifeline (descriptor 5). It has a session of its own, hears no signal that can be blocked, and keeps its memory.
+// The program `catena-watchdog`: started by the driver of a USB device, which passes it the device's node (descriptor 3), the shared memory
+// page (descriptor 4) and the lifeline (descriptor 5). It has a session of its own, blocks all signals that can be blocked, and locks its
+// memory.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -16,14 +17,14 @@
 namespace {
 
 constexpr int kUsb = 3, kPage = 4, kLifeline = 5;
-constexpr int kPriority = 85;  // before all of the program's threads: it hardly ever runs
+constexpr int kPriority = 85;  // above all of the program's threads: it rarely runs
 
 int usage() {
   std::fputs("catena-watchdog: is started by catena for a USB device, and is of no use alone\n", stderr);
   return 2;
 }
 
-// What is not permitted is done without.
+// Raises priority and locks memory, as far as permitted.
 void prefer() {
   sched_param parameter{};
   parameter.sched_priority = kPriority;

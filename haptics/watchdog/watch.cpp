@@ -15,7 +15,7 @@ namespace catena::haptics::watchdog {
 namespace {
 
 constexpr int kLookMs = 5, kWriteMs = 20;
-constexpr int kOffsForTheGone = 2;  // should the first be cut by what was under way
+constexpr int kOffsForTheGone = 2;  // zero-force packets after the program has exited: the first may be corrupted by a packet under way
 
 std::int64_t now_ms() noexcept {
   timespec now{};
@@ -52,7 +52,7 @@ Sent send_off(SharedPage& page, int usb) noexcept {
   return Sent::not_yet;
 }
 
-/// A number that has to change.
+/// A counter that must keep changing, and the time of its last change.
 struct Beat {
   std::uint32_t last = 0;
   std::int64_t since_ms = 0;
@@ -105,7 +105,7 @@ EndReason run_watchdog(SharedPage& page, int usb, int lifeline, int messages) no
     const std::int64_t silent = std::max(ticks.silent_ms(page.ticks.load(std::memory_order_acquire), now),
                                          cycles.silent_ms(page.cycles.load(std::memory_order_acquire), now));
     if (!holds) {
-      // nothing at the device: nothing to be silent about
+      // no force at the device: silence is allowed
       if (page.force_active.load(std::memory_order_acquire) == 0) ticks.since_ms = cycles.since_ms = now;
       Holder expected = Holder::program;
       if (silent < silence_ms || page.force_active.load(std::memory_order_acquire) == 0 ||

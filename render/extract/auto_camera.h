@@ -1,13 +1,13 @@
-/// Private to this room: what can be seen of volumes and isosurfaces, for the camera of a scene that states none. Frame thread.
-///   isosurface   where neighbours lie on two sides of the level
-///   volume       values that are at least 2 % opaque over a 25th of the domain's length
-/// On a lattice of at most about 2^18 voxels, in rows along x; of each row its first and its last place, of a surface along every axis.
-/// Kept in scene.made beside the thing.
+/// Module-internal: automatic camera of a scene without one, fitted to the visible parts of volumes and isosurfaces. Frame thread.
+///   isosurface   positions whose neighbors lie on both sides of the level
+///   volume       values with an opacity of at least 2 % over a 25th of the domain's length
+/// Sampled on at most about 2^18 voxels, in rows along x; of each row the first and the last position are used, for a surface along every
+/// axis. The results are cached beside the entity (scene.cache).
 ///
-/// The view: from the front, 80 % of the picture's height or 90 % of its width filled, less where a scalar bar, a title or axes take room;
-/// beside the names of a legend a little from the middle.
-///   patient   (engine/io/volume/units.h) from +y, a little from the side and above
-///   flat      one edge of all that is drawn is under 0.4 of the middle one: from where that edge points
+/// The view: from the front, filling 80 % of the image's height or 90 % of its width, less where a scalar bar, a title or axes take up
+/// space; beside the labels of a legend slightly off-center.
+///   patient   data in a patient's coordinates (engine/io/volume/units.h): from +y, slightly from the side and from above
+///   flat      one edge of the bounds is shorter than 0.4 of the middle one: along that edge
 ///   others    default_view_direction()
 #pragma once
 #include "engine/base/result.h"
@@ -17,14 +17,14 @@
 
 namespace catena::render {
 
-/// World places of the surface at the level.
+/// Returns world positions on the surface at the level.
 std::vector<Vec3> find_visible_points(const field::ScalarGrid& grid, double level);
-/// World places of the values that the table shows.
+/// Returns world positions of the values that are visible under the transfer function.
 std::vector<Vec3> find_visible_points(const field::ScalarGrid& grid, const TransferTable& transfer);
 
-/// Looks at what is new since the last time; nothing where the scene states a camera.
+/// Analyzes the entities that changed since the last call; does nothing if the scene has a camera.
 void prepare_auto_camera(scene::Scene& scene);
-/// After everything that is drawn and written.
+/// Returns the automatic view; to be called after all other items are in the packet.
 View make_auto_view(const scene::Scene& scene, const FramePacket& packet);
 
 }  // namespace catena::render

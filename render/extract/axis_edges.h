@@ -1,12 +1,12 @@
-/// The edges of a box that carry the axes' ticks and numbers: those of its outline in the picture, so that nothing of them lies over what
-/// is in the box. Pure, any thread.
-///   outline   an edge one of whose two faces is turned to the eye; an axis without one (a face seen straight on, an eye in the box) takes
-///             any of its four
-///   of those  the axis nearest to the view's up takes the leftmost, the others the lowest
-///   out       of the two faces' normals the one that leads further away from the edge in the picture. A face's normal at an edge of the
+/// Choice of the box edges that carry the axes' ticks and numbers: edges on the outline of the box in the image, so that the ticks do not
+/// cover the box's content. Pure functions, any thread.
+///   outline   edges of which one of the two faces faces the camera; an axis without one (face seen straight on, camera inside the box) may
+///             use any of its four edges
+///   of those  the axis nearest to the view's up uses the leftmost one, the others the lowest one
+///   outward   of the two faces' normals the one that leads further away from the edge in the image. A face's normal at an edge of the
 ///             outline leads out of the outline
-/// It depends on the view's place and direction alone: both eyes of a pair and all tiles of a picture have the same edges, and a view
-/// always has the same.
+/// The choice depends on the view's position and direction only: both eyes of a pair and all tiles of an image get the same edges, and so
+/// does the same view at any time.
 #pragma once
 #include <array>
 
@@ -15,12 +15,13 @@
 
 namespace catena::render {
 
+/// Box edge that carries an axis.
 struct AxisEdge {
-  Vec3 from{0.0}, to{0.0};  ///< the coordinate rises
-  Vec3 outward{0.0};        ///< unit, along an axis
+  Vec3 from{0.0}, to{0.0};  ///< world units; the coordinate rises
+  Vec3 outward{0.0};        ///< unit vector along an axis, away from the box
 };
 
-/// Of x, y, z.
+/// Returns the edges of the x, y and z axis.
 std::array<AxisEdge, 3> find_axis_edges(const Bounds& box, const View& view);
 
 }  // namespace catena::render

@@ -1,4 +1,4 @@
-/// Private to this room: what every part of the extraction asks of the scene.
+/// Module-internal: helpers shared by all parts of the extraction. Frame thread unless stated otherwise.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,12 +14,12 @@
 
 namespace catena::render {
 
-/// "?" where it has none.
+/// Returns the entity's name, "?" if it has none.
 inline std::string entity_name(const scene::Scene& scene, scene::Entity entity) {
   return scene.entities.has<scene::Name>(entity) ? scene.entities.get<scene::Name>(entity).value : std::string("?");
 }
 
-/// In order of insertion; a copy, so that components may be added meanwhile.
+/// Returns the entities that have the component, in order of insertion; a copy, so that components may be added meanwhile.
 template <class T>
 std::vector<scene::Entity> entities_with(const scene::EntityStore& world) {
   std::vector<scene::Entity> owners;
@@ -29,13 +29,13 @@ std::vector<scene::Entity> entities_with(const scene::EntityStore& world) {
 
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
-/// Of scene.made: the table `colors` of what this room keeps beside an entity; none where that is empty.
+/// Returns the color table of the data cached beside an entity (scene.cache); null if there is none or it is empty.
 template <class Kept>
 const ColorTable* cached_colors(const scene::EntityStore& made, scene::Entity e) {
   return made.has<Kept>(e) && !made.get<Kept>(e).colors.empty() ? &made.get<Kept>(e).colors : nullptr;
 }
 
-/// Makes what this room keeps beside visible curves or points, where it was not made of what is loaded now (`of`).
+/// Rebuilds the cached data beside visible curves or points unless it was made from the source loaded at present (`of`).
 template <class Kept, class Drawn, class Make>
 Outcome prepare_cached(scene::Scene& scene, const Make& make) {
   for (const scene::Entity e : entities_with<Drawn>(scene.entities)) {
@@ -49,134 +49,148 @@ Outcome prepare_cached(scene::Scene& scene, const Make& make) {
   return Done{};
 }
 
-/// Private to this room: bounding box, axes, ground, fog and lights into the packet. Frame thread.
-///   bounding box   the twelve edges of a field's domain, true to rotated and sheared grids; else of the box of all that is drawn
-///   axes           three edges of that box with ticks at round numbers (along the world's axes), on its outline in the picture
-///   ground         a checkerboard across z, just below all that is drawn
-///   fog            from the nearest to the farthest view depth of all that is drawn
+/// Bounding box, axes, ground, fog and lights. Frame thread.
+///   bounding box   the twelve edges of a field's domain, also for rotated and sheared grids; else of the bounds of all rendered items
+///   axes           three edges of that box with ticks at round numbers (along the world's axes), on its outline in the image
+///   ground         a checkerboard perpendicular to z, just below all rendered items
+///   fog            from the nearest to the farthest view depth of all rendered items
 
-/// The height of the ground below what is drawn: stated, or a little lower than all of it.
+/// Returns the height of the ground: as specified, or slightly below `drawn`.
 double ground_height(const scene::Ground& ground, const Bounds& drawn);
 
-/// After everything else that is drawn, and after the view: `drawn` is its box.
+/// Adds the environment; to be called after all other items and the view are in the packet. `drawn`: bounds of these items.
 void extract_environment(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
-/// The bounding box and the axes alone: which edges the axes lie on follows the packet's view.
+/// Updates only the bounding box and the axes, whose edges depend on the packet's view.
 void update_box_lines(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
-/// The fog alone: its range follows the packet's view.
+/// Updates only the fog, whose range depends on the packet's view.
 void update_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 
-/// Private to this room: streamline sets and the local indicator into the packet. Frame thread.
-///   tubes       every line of a set is flattened once; with "color_by" each point has a colour: the value there, by the table
-///   arrows      cones on the line, "arrows" apart, the seed's in the middle of the first gap
-///   pulse       brightness runs along the line: a cosine of period `pulse` in arc length, moved by the scene's phase
-///   indicator   the exact tracer's line through the probe, half the length to either side; nothing where the flow has no line
+/// Streamline sets and the local flow indicator. Frame thread.
+///   tubes       every line of a set is flattened once; with "color_by" each point is colored by the value there, using the table
+///   arrows      cones on the line, at distances of "arrows", the seed's in the middle of the first gap
+///   pulse       brightness travels along the line: a cosine of period `pulse` in arc length, moved by the scene's phase
+///   indicator   the exact tracer's line through the probe, half the length to either side; none if the flow has no line there
 
-/// Flattens the lines.
+/// Flattens the lines of all visible sets that changed.
 Outcome prepare_streamlines(scene::Scene& scene);
+/// Adds tubes and arrows of the visible sets to the packet.
 void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
-/// After the cursors.
+/// Adds the indicators; to be called after the cursors.
 Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 
-/// An arrowhead, by the radius of what it sits on.
+/// Radius and length of an arrowhead, relative to the radius of its tube.
 inline constexpr double kArrowRadius = 2.4, kArrowLength = 6;
 
-/// Curves from files as tubes, each line's points as they are, coloured by values, by one colour or by the line's direction. Above
-/// kMaxCurvePoints points an even choice of the lines, and packet.left_out says so. Errors: values that the file does not have, more
-/// memory than is allowed.
+/// Curves from files as tubes, with each line's points unchanged, colored by values, by a single color or by the line's direction. Of more
+/// than kMaxCurvePoints points an even selection of the lines is rendered, as reported in packet.omitted. An Error for values that the file
+/// does not have, or if more memory is needed than permitted.
 inline constexpr std::size_t kMaxCurvePoints = 2'000'000;
+/// Builds the tubes of visible curves that changed.
 Outcome prepare_curves(scene::Scene& scene);
+/// Adds the tubes to the packet.
 void extract_curves(const scene::Scene& scene, FramePacket& packet);
+/// Returns the color table of curves; null if there is none.
 const ColorTable* find_curve_colors(const scene::EntityStore& made, scene::Entity curves);
 
-/// Points from tables as balls: coloured by a column, by a field's values or by one colour; grey for no number. Of more than kMaxSpheres an
-/// even choice, and packet.left_out says so. Errors: a column that the table does not have, more memory than is allowed.
+/// Points from tables as spheres: colored by a column, by a field's values or by a single color; gray for NaN. Of more than kMaxSpheres an
+/// even selection is rendered, as reported in packet.omitted. An Error for a column that the table does not have, or if more memory is
+/// needed than permitted.
 inline constexpr std::size_t kMaxSpheres = 4'000'000;
+/// Builds the spheres of visible points that changed.
 Outcome prepare_points(scene::Scene& scene);
+/// Adds the spheres to the packet.
 void extract_points(const scene::Scene& scene, FramePacket& packet);
+/// Returns the color table of points; null if there is none.
 const ColorTable* find_point_colors(const scene::EntityStore& made, scene::Entity points);
 
-/// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
+/// Returns the color table of a prepared set with "color_by": its own, or the one over the range of rendered values. Null without
 /// "color_by".
 const ColorTable* find_streamline_colors(const scene::EntityStore& made, scene::Entity set);
 
-/// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
+/// Returns the color of a value by a table with rising values; the end colors beyond them; gray for NaN.
 Color sample_color_table(const ColorTable& table, double value);
 
-/// Private to this room: arrows at evenly spaced places (engine/scene/uniform_sampling.h) into the packet. Frame thread.
-///   length   of the longest: stated, or the spacing; of the others in proportion to their speeds, or all alike
-///   none     where the field is not valid, where it is zero or not faster than "min_speed", and outside what is seen of a slice
+/// Glyphs: arrows at evenly spaced positions (engine/scene/uniform_sampling.h). Frame thread.
+///   length   of the longest: as specified, or the spacing; others proportional to their magnitude, or all equal
+///   none     where the field is not valid, is zero or not larger than "min_speed", and outside the visible part of a slice
 
-/// Makes them, and again when the plane, the level or the data that they stand on have changed. More than scene::kMaxGlyphs of a set are an
-/// error, and where they follow a widget a wider spacing.
+/// Builds the glyphs, and rebuilds them when the plane, the level or the data they are placed on have changed. More than scene::kMaxGlyphs
+/// in a set are an Error; if the set follows a widget, the spacing is increased instead.
 Outcome prepare_glyphs(scene::Scene& scene);
+/// Adds the glyphs to the packet.
 void extract_glyphs(const scene::Scene& scene, FramePacket& packet);
-/// As find_streamline_colors.
+/// Returns the color table of a prepared glyph set, like find_streamline_colors().
 const ColorTable* find_glyph_colors(const scene::EntityStore& made, scene::Entity set);
 
-/// Private to this room: the scene's annotations into the packet's overlay. After everything else: bars show the colours that volumes
-/// and streamlines have got. Frame thread.
+/// Adds the scene's annotations to the packet's overlay. To be called after everything else: scalar bars show the final colors of volumes
+/// and streamlines. Frame thread.
 void extract_overlay(const scene::Scene& scene, FramePacket& packet);
 
-/// From a scene's stereo mode to the eyes of a packet. Called by extract_frame; again by who moves the packet's view afterwards.
+/// Returns the packing for the scene's stereo mode. Called by extract_frame(), and by callers that change the packet's view afterwards.
 Packing stereo_packing(const scene::Stereo& stereo);
-/// How many pictures are packed; 1 where one eye or the view itself is shown.
+/// Returns the number of packed views; 1 if a single eye or the view itself is shown.
 std::size_t stereo_view_count(const scene::Stereo& stereo);
-/// Eyes that no picture has both of, for they are too far apart: one sentence.
+/// Returns a one-line Error if the eyes are too far apart to see a common scene.
 Outcome check_eye_separation(const FramePacket& packet, const scene::Stereo& stereo);
-/// The view from the same place through the screen that the picture is of; as it is where it is of none, or the place is not before it.
+/// Returns the view from the same position through the display screen of the image; unchanged if there is no screen or the position is not
+/// in front of it.
 View make_screen_window_view(const View& view, const scene::Stereo& stereo);
-/// Sets `eyes` and `packing` from the packet's view, width and height. Through a screen the eyes stand beside each other along it, and see
-/// one frame there.
+/// Sets `eyes` and `packing` from the packet's view, width and height. With a display screen, the eyes are placed side by side along it and
+/// share its frame.
 void update_eyes(FramePacket& packet, const scene::Stereo& stereo);
 
-/// Meshes and slices of the scene as plain data. A vector field is shown by its magnitude: on slices by a grid of the magnitudes at the
-/// voxels, made once and interpolated between them; on meshes at each vertex.
+/// Meshes and slices as plain data. A vector field is shown by its magnitude: on slices by a grid of the magnitudes at the voxels, built
+/// once and interpolated; on meshes at each vertex.
 
-/// The drawn mesh is the felt one: the same object of the scene. Colours by a field are those of its values at the vertices;
-/// grey outside its domain.
-/// Makes plain triangles of the meshes.
+/// Builds the triangles of the meshes. The rendered mesh is the haptic one: the same object of the scene. Colors by a field are those of
+/// its values at the vertices; gray outside its domain.
 Outcome prepare_meshes(scene::Scene& scene);
+/// Adds the meshes to the packet.
 void extract_meshes(const scene::Scene& scene, FramePacket& packet);
 
-/// Errors: a plane that misses the field, a spacing that gives more than scene::kMaxContours lines, a vector grid too large for
-/// its magnitudes.
+/// Builds what the slices need. An Error for a plane that misses the field, a spacing that gives more than scene::kMaxContours lines, or a
+/// vector grid too large for its magnitudes.
 Outcome prepare_slices(scene::Scene& scene);
+/// Adds the slices to the packet. An Error for contour levels as described at prepare_slices().
 Outcome extract_slices(const scene::Scene& scene, FramePacket& packet);
 
-/// ResolutionLevels within lo..hi: those listed, `count` of them at equal distances with the ends left out, or all multiples of `spacing`.
+/// Returns the contour levels within lo..hi: those listed, or `count` of them at equal distances excluding the ends, or all multiples of
+/// `spacing`.
 Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contours, double lo, double hi);
 
-/// Private to this room: the scene's widgets (engine/widget/widget.h; paper, Figure 6a) as tubes and arrows. Frame thread.
-///   cutting plane  where its plane cuts the box of what is drawn (a square of edge L where it cuts nothing); the sphere as three great
-///                  circles, each across one axis and in that axis' colour: x red, y green, z blue; an arrow along the normal
-///                    explore     the plane's border is thick and bright
-///                    translate   a double arrow along every axis that is free, a square across every axis that is held
-///                    rotate      the circles are thick; turn: the more so. The circle that is held is bright
-///   seed           a ball in a ring that faces the eye
-///   rake, ruler    a tube with balls at its ends and its middle; the ruler's length is written beside it, and the way that it measures
-///                  along a curve or a surface is drawn beside its straight line
-///   isolevel       a ball, and an arrow along the field's gradient
-///   box            twelve edges, a ball on every face and one in the middle
-/// A handle that is hovered over is larger and brighter, one that is dragged brighter still; the axes along which it is free show as
-/// double arrows. No tube is thinner than about a pixel of the packet's view, no ball smaller than a few. Clip planes do not touch
-/// widgets, and the camera is not fitted to them.
+/// Widgets (engine/widget/widget.h; paper, Figure 6a) as tubes and arrows. Frame thread.
+///   cutting plane  outline of the plane in the bounds of the data (a square of edge L if they do not intersect); the sphere as three great
+///                  circles, each perpendicular to one axis and in its color: x red, y green, z blue; an arrow along the normal
+///                    explore     the border of the plane is thick and bright
+///                    translate   a double arrow along every free axis, a square perpendicular to every locked axis
+///                    rotate      the circles are thick; turn: even thicker. The locked circle is bright
+///   seed           a sphere in a ring that faces the camera
+///   rake, ruler    a tube with spheres at its ends and its center; the ruler's length is written beside it, and the path that it measures
+///                  along a curve or a surface is shown beside its straight line
+///   isolevel       a sphere, and an arrow along the field's gradient
+///   box            twelve edges, a sphere on every face and one in the center
+/// A hovered handle is larger and brighter, a dragged one brighter still; the axes along which it can move are shown as double arrows. No
+/// tube is thinner than about a pixel of the packet's view, no sphere smaller than a few. Clip planes do not cut widgets, and the camera is
+/// not fitted to them.
 
-/// Measures the rulers (engine/scene/ruler.h). After scene::propagate_widgets.
+/// Computes the ruler measurements (engine/scene/ruler.h). To be called after scene::propagate_widgets().
 Outcome prepare_widgets(scene::Scene& scene);
-/// After the view is known. `drawn` is the box of the data, which outlines a cutting plane.
+/// Adds the widgets; to be called when the view is known. `drawn`: bounds of the data, which limit a cutting plane's outline.
 void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
-/// What of it follows the view, made anew.
+/// Rebuilds the parts that depend on the view.
 void update_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 
-/// Private to this room: nice values along a scalar bar and how they are written. Pure, any thread.
-///   values   of engine/base/numbers.h, about `count` of them; on a scale that is not linear 0 and powers of ten, with their doubles and
-///            fivefolds where there are few
-///   texts    with the decimals that the step needs; where numbers are very large or small a common factor "x 10^n" is taken out.
-///            A format of the user's ("%.2f") is taken as it is, without a factor.
+/// Ticks of a scalar bar: round values and their texts. Pure functions, any thread.
+///   values   of engine/base/numbers.h, about `count` of them; on a symlog scale 0 and powers of ten, with their multiples by two and five
+///            if there are few
+///   texts    with the decimals that the step requires; very large or small numbers get a common factor "x 10^n". A user-defined format
+///            ("%.2f") is used as it is, without a factor.
 struct ScalarBarTicks {
   std::vector<BarTick> ticks;
   std::string factor;
 };
+/// Returns about `count` ticks for the values lo..hi. `format`: printf format of the user, empty: automatic; `linear_below`: threshold of
+/// the symlog scale, 0: linear.
 ScalarBarTicks make_scalar_bar_ticks(double lo, double hi, int count, const std::string& format, double linear_below = 0);
 
 }  // namespace catena::render

@@ -1,5 +1,5 @@
-/// A set of streamlines as polylines with colours. Lines are traced block by block and flattened on all cores; of a large set only the
-/// polylines stay. Frame thread.
+/// Flattening of a streamline set to colored polylines. Lines are traced in blocks and flattened on all cores; for a large set only the
+/// polylines are kept. Frame thread.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,24 +10,25 @@
 
 namespace catena::render {
 
-/// What is kept beside a StreamlineSet.
+/// Data cached beside a StreamlineSet.
 struct FlattenedStreamlines {
-  std::uint64_t version = 0;  ///< of the lines (scene::lines_version)
+  std::uint64_t version = 0;  ///< version of the lines (scene::lines_version)
   double radius = 0;
   std::vector<TubeItem> tubes;
-  std::vector<std::vector<double>> arc_lengths;  ///< by point, of a set with a pulse
+  std::vector<std::vector<double>> arc_lengths;  ///< one per tube and point; only for a set with a pulse
   std::vector<ArrowItem> arrows;
-  ColorTable colors;  ///< of "color_by"
+  ColorTable colors;  ///< table of "color_by"
 };
 
-/// Points of all tubes of a set, by the line, from which on errors are allowed to grow from 2 % of the radius up to 20 %. A set of few
-/// lines counts as `kFewLines`. No error needs to be less than 1e-6 of the domain's length.
+/// Number of points per line of a set above which the tolerance is increased from 2 % of the radius to at most 20 %. A set of few lines
+/// counts as `kFewLines`. The tolerance is at least 1e-6 of the domain's length.
 inline constexpr double kPointsPerLine = 150, kFewLines = 10000;
 
-/// Errors carry the scene's file and line: those of the tracer, arrows too close, more memory than is allowed.
+/// Flattens the set. An Error gives the scene file's name and line: errors of the tracer, arrows too close together, more memory than
+/// permitted.
 Result<FlattenedStreamlines> flatten_streamlines(scene::Scene& scene, scene::Entity set);
 
-/// The diagonal of a field's box.
+/// Returns the diagonal of a field's bounding box.
 double domain_diagonal(const field::Field& field);
 
 }  // namespace catena::render

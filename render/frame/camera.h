@@ -1,10 +1,10 @@
-/// The camera of one picture: a View, the size in pixels and what there is to see, worked out in double precision.
+/// Camera of one image: a View resolved to axes, a window, near and far for one image size and scene extent, in double precision.
 ///   view axes: right-handed, x right, y up, z towards the viewer (the camera looks along -z = -back)
 ///   clip axes: Vulkan's, x right, y *down*, depth 0 at near and 1 at far
-///   pixels: x right, y down, row 0 at the top; the centre of pixel (i, j) is at (i + 0.5, j + 0.5)
-/// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top.
-/// The view's window is a part of the symmetric frustum of that angle or height; pixels are square unless the view states an aspect.
-/// Near and far enclose the bounds that are given (what lies behind the eye is not seen). Pure functions, any thread.
+///   pixels: x right, y down, row 0 at the top; the center of pixel (i, j) is at (i + 0.5, j + 0.5)
+/// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top. The view's window is a part of the symmetric
+/// frustum of that angle or height; pixels are square unless the view states an aspect. Near and far enclose the given bounds, as far as
+/// they lie in front of the camera. Pure functions, any thread.
 #pragma once
 #include <glm/mat4x4.hpp>
 #include <limits>
@@ -16,93 +16,95 @@
 
 namespace catena::render {
 
-/// Four by four doubles, columns first.
+/// 4 x 4 matrix of doubles, column-major.
 using Mat4 = glm::dmat4;
 
-/// A camera as pictures need it.
+/// Position, axes, window and depth range of a camera, as the renderer uses them.
 struct Camera {
-  Vec3 position{0.0};                                                 ///< the eye, world units
-  Vec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, back{0.0, 0.0, 1.0};  ///< unit, orthogonal
-  bool orthographic = false;                                          ///< no perspective
-  // the window, at the distance 1 (perspective) or everywhere (orthographic), world units
-  double half_height = 1, half_width = 1;  ///< of the window
-  double center_x = 0, center_y = 0;       ///< of the window, from the axis, right and up
-  double near = 1, far = 2;                ///< along the axis, world units
-  double width = 1, height = 1;            ///< pixels
+  Vec3 position{0.0};                                                 ///< camera position, world units
+  Vec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, back{0.0, 0.0, 1.0};  ///< unit vectors of the view axes in world axes, mutually orthogonal
+  bool orthographic = false;                                          ///< orthographic projection instead of perspective
+  // Window: measured at view depth 1 (perspective) or at any depth (orthographic), world units.
+  double half_height = 1, half_width = 1;  ///< half extents of the window
+  double center_x = 0, center_y = 0;       ///< center of the window relative to the view axis, to the right and up
+  double near = 1, far = 2;                ///< view depths of the near and far planes, world units
+  double width = 1, height = 1;            ///< image size, pixels
 };
 
-/// A half line; `direction` is unit.
+/// Half line in world space; `direction` is a unit vector.
 struct Ray {
-  Vec3 origin{0.0}, direction{0.0};  ///< where it begins, world units; where it goes
+  Vec3 origin{0.0}, direction{0.0};  ///< start point, world units; unit direction
 };
 
-/// Width by height of the view's symmetric frustum: as stated, or by square pixels.
+/// Returns width / height of the view's symmetric frustum: View::aspect if it is set, else the aspect at which pixels are square.
 double frustum_aspect(const View& view, double width_px, double height_px);
 
-/// A degenerate up (along the axis) is replaced by another; a target at the position looks along +y.
+/// Returns the camera of `view` for an image of width_px x height_px (at least 1 x 1) with near and far enclosing `bounds`. If `up` is
+/// parallel to the view direction, another up is chosen; if the target coincides with the position, the camera looks along +y.
 Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
 
-/// View axes from the world.
+/// Returns the transform from world to view axes.
 Mat4 view_from_world(const Camera& camera);
-/// Vulkan's clip axes from view axes.
+/// Returns the projection from view axes to Vulkan clip axes.
 Mat4 clip_from_view(const Camera& camera);
-/// Vulkan's clip axes from the world.
+/// Returns the transform from world to Vulkan clip axes.
 Mat4 clip_from_world(const Camera& camera);
-/// The world from Vulkan's clip axes: the inverse of clip_from_world(), from the closed form (not by elimination). A place (x, y, depth) in
-/// clip axes lies in the world at the product with (x, y, depth, 1), divided by its last component.
+/// Returns the inverse of clip_from_world(), in closed form (not by elimination). The point (x, y, depth) in clip axes is at the product
+/// with (x, y, depth, 1), divided by its last component, in the world.
 Mat4 world_from_clip(const Camera& camera);
 
-/// Through a place in the picture, in pixels. From the eye (perspective) or the plane of the eye (orthographic).
+/// Returns the ray through a pixel coordinate; it starts at the camera position (perspective) or in the camera plane (orthographic).
 Ray pixel_ray(const Camera& camera, double x_px, double y_px);
-/// Pixels x, y and the distance along the axis (view depth, world units); nothing at or behind the eye (perspective).
+/// Returns the pixel coordinates x, y and the view depth (distance along the view axis, world units) of a world point; nullopt at or behind
+/// the camera plane (perspective only).
 std::optional<Vec3> project(const Camera& camera, const Vec3& world);
-/// The inverse: the point at view depth `depth` in the pixel place.
+/// Inverse of project(): returns the world point at view depth `depth` behind the pixel coordinate.
 Vec3 unproject(const Camera& camera, double x_px, double y_px, double depth);
-/// World units that one pixel covers at the view depth.
+/// Returns the size of one pixel at the view depth, world units.
 double pixel_size(const Camera& camera, double depth);
-/// The same where a box is nearest to the eye; 0 where it reaches behind the eye of a perspective.
+/// Returns pixel_size() at the nearest corner of the box; corners in front of the near plane count as on it (perspective).
 double min_pixel_size(const Camera& camera, const Bounds& box);
-/// Whether any part of a ball may be in the window, however far away.
+/// Returns false only if no part of the sphere (world units) can be in the window, at any distance.
 bool may_be_visible(const Camera& camera, const Vec3& centre, double radius);
 
-/// From the scene towards the eye: oblique, +z up.
+/// Returns the unit direction from the scene towards the camera of the default view: oblique, with +z up.
 Vec3 default_view_direction();
-/// A view that frames the box: all its corners inside the picture with a margin of 5 % of the distance.
-/// An empty box counts as -1..1. `direction_to_camera` and `up` need not be unit.
+/// Returns a perspective view that fits the box: all its corners are inside the image, with a margin of 5 % of the distance. An empty box
+/// counts as -1..1. `towards_eye` (from the scene to the camera) and `up` need not be unit vectors.
 View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30,
               const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
-/// Places to fit a picture to. `ignored`: the share of them that may lie outside, for specks.
+/// Point cloud to fit a view to.
 struct FitPoints {
-  std::vector<Vec3> points;  ///< world units
-  double outlier_share = 0;  ///< share from 0 to 1
+  std::vector<Vec3> points;  ///< positions, world units
+  double outlier_share = 0;  ///< share of the points that may lie outside the image (outliers), 0 to 1
 };
-/// A view whose middle is the middle of the places as it shows them, and in which they take `width` and `height` of the picture: one of
-/// the two exactly, the other at most. Shares from 0 to 1. In perspective every place p = (x, y, z) in the axes of the eye (z towards it)
-/// lies between two planes through the eye e, and so for y:
+/// Returns a view centered on the points as seen in the image, in which they fill at most the shares `width` and `height` (0 to 1) of the
+/// image, one of the two exactly. In perspective, every point p = (x, y, z) in view axes (z towards the camera) lies between two planes
+/// through the camera position e, and so for y:
 ///   p_y - e_y <= t (e_z - p_z),  e_y - p_y <= t (e_z - p_z),   t = share tan(fovy / 2)
-/// whose sums over the farthest places to either side give e_y, and the least e_z. No places count as the box -1..1.
+/// The sums of these over the extreme points on either side give e_y and the minimum e_z. Without points, the box -1..1 is fitted.
 View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height,
               const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30, const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
-/// Moves of a camera: turned about what it looks at, closer, along an axis, fitted. Angles in degrees. Pure functions, any thread.
+/// Camera moves: orbit, zoom, view along an axis, refit. Angles in degrees. Pure functions, any thread.
 
-/// Turns the camera by `azimuth` about the axis `up` through its target (counter-clockwise seen from above), after raising it by
-/// `elevation` about the picture's horizontal. It takes its own up along: the picture never flips at a pole.
+/// Raises the camera by `elevation` about the horizontal axis of the image, then turns it by `azimuth` about the axis `up` through its
+/// target (counter-clockwise seen from above). `up` turns with the camera, so the image never flips at a pole.
 View orbit_view(const View& view, double azimuth_deg, double elevation_deg);
 
-/// Enlarges the middle of the picture: the same eye and perspective, a smaller field of view (or height).
+/// Magnifies the center of the image: same camera position and projection, smaller field of view (or height).
 ///   tan(fovy' / 2) = tan(fovy / 2) / factor
 View zoom_view(const View& view, double factor);
 
-/// "+x", "-x", "+y", "-y", "+z", "-z": the way the camera looks (from the other side of the scene); up is +z, for +-z it is +y.
-/// "iso": from +x, -y, +z at equal angles. What comes back points from the scene towards the eye.
+/// Returns the unit direction from the scene towards the camera for the name of a view direction: "+x", "-x", "+y", "-y", "+z" or "-z" (the
+/// direction in which the camera looks), or "iso" (camera at +x, -y, +z at equal angles). nullopt for any other text.
 std::optional<Vec3> axis_direction(std::string_view words);
 
-/// fit_view() along such an axis.
+/// Returns fit_view() along axis_direction(words), up +z (+y if the camera looks along z); nullopt for an unknown name.
 std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view words, double fovy_deg = 30);
 
-/// The same direction, up, angle and projection, with all of the box in the picture.
+/// Returns a view with the same direction, up, field of view and projection that fits the box.
 View refit_view(const View& view, const Bounds& bounds, double aspect);
 
 }  // namespace catena::render

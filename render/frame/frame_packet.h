@@ -1,5 +1,5 @@
-/// The frame packet: everything one picture needs, as plain data. Copied by render/extract; the ECS is not read after it.
-/// Fields are held by shared pointer (kept alive while the frame uses them) and never looked into here.
+/// Frame packet: everything one image needs, as plain data. render/extract copies it from the scene; the ECS is not read afterwards. Fields
+/// are held by shared pointer (kept alive while the frame uses them); their values are not read in this header.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -22,47 +22,48 @@ class ScalarGrid;
 
 namespace catena::render {
 
-/// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
+/// Rectangle in the image plane of a view, relative to its symmetric frustum and possibly beyond it, in units of the frustum's half
+/// extents: for off-axis (stereo) projection or for a tile of a large image.
 struct FrustumWindow {
   double left = -1, right = 1, bottom = -1, top = 1;  ///< -1 and 1 are the edges of the symmetric frustum
   bool operator==(const FrustumWindow&) const = default;
 };
 
-/// Where the eye is and what it sees. World units.
+/// Viewpoint and projection of a camera. World units.
 struct View {
-  Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< the eye, what it looks at, what is up
-  double fovy_deg = 30;                                ///< vertical angle of view, degrees
-  bool orthographic = false;                           ///< no perspective
-  double height = 1;                                   ///< orthographic: world units from bottom to top
-  FrustumWindow window{};                              ///< the part of it that is drawn
-  double aspect = 0;                                   ///< width by height of the symmetric frustum; 0: as pixels are square
+  Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};  ///< camera position; point it looks at; up direction
+  double fovy_deg = 30;                                ///< vertical field of view, degrees
+  bool orthographic = false;                           ///< orthographic projection instead of perspective
+  double height = 1;                                   ///< orthographic: world units from bottom to top of the image
+  FrustumWindow window{};                              ///< rendered part of the frustum
+  double aspect = 0;                                   ///< width / height of the symmetric frustum; 0: such that pixels are square
   bool operator==(const View&) const = default;
 };
 
-/// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
+/// Directional light (infinitely far away), in world axes or in view axes: right, up, towards the camera.
 struct LightItem {
-  Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light
-  Color color{1, 1, 1};           ///< times the intensity
-  bool camera_relative = false;   ///< the axes are the view's
+  Vec3 direction{0.0, 0.0, 1.0};  ///< direction towards the light
+  Color color{1, 1, 1};           ///< color times intensity
+  bool camera_relative = false;   ///< `direction` is in view axes
   bool operator==(const LightItem&) const = default;
 };
 
-/// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
+/// Depth fog: its opacity is 0 up to the view depth `near` and max_opacity from `far` on.
 struct FogItem {
-  Color color;                                  ///< the fog's
-  double near = 0, far = 1, max_opacity = 0.8;  ///< view depths in world units; share at `end`
+  Color color;                                  ///< fog color
+  double near = 0, far = 1, max_opacity = 0.8;  ///< view depths where the fog begins and where it is densest, world units; opacity at `far`
   bool operator==(const FogItem&) const = default;
 };
 
-/// What an id of the picture stands for.
+/// Scene object that an id in the id image stands for.
 struct ObjectName {
-  std::uint32_t id = 0;      ///< as in the id picture, from 1 on
-  std::string kind, name;    ///< "isosurface" and the like; the name in the scene
-  std::string scene_path{};  ///< where it stands in the scene, "isosurfaces[1]"; empty: it is no item of a list
+  std::uint32_t id = 0;      ///< value in the id image, 1 or greater
+  std::string kind, name;    ///< kind of object, for instance "isosurface"; name in the scene
+  std::string scene_path{};  ///< path in the scene file, for instance "isosurfaces[1]"; empty: not an item of a list
 };
 
-/// Linear between points (value, columns..) that rise, constant beyond them; 0 without any. Of two at one value the later counts from
-/// there.
+/// Returns column `column` of `points` (rows of value, columns.., values not falling) at `value`: linear between the points, constant
+/// beyond them, 0 without points. Of two points at the same value, the later one holds from that value on.
 template <class Points>
 double interpolate_piecewise(const Points& points, double value, std::size_t column) {
   if (points.empty()) return 0;
@@ -75,78 +76,79 @@ double interpolate_piecewise(const Points& points, double value, std::size_t col
   return a[column] + f * (b[column] - a[column]);
 }
 
-/// Piecewise-linear over field values; sigma is extinction per world unit.
+/// Transfer function, piecewise linear over field values: color and extinction coefficient sigma (per world unit).
 struct TransferTable {
   std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
-  /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
+  /// Gradient magnitude (field units per world unit) and factor 0..1 that multiplies sigma; empty: factor 1 everywhere.
   std::vector<std::array<double, 2>> gradient_factors;
-  double opacity_length = 0;    ///< the length whose opacity a projection takes, world units; 0: the smallest voxel edge
-  bool is_categorical = false;  ///< values are whole numbers, each with a look of its own
-  /// The scale (engine/base/symlog_scale.h) on which tables made of it are even: where the points lie close on it, they suffice.
+  double opacity_length = 0;    ///< opacity reference length of projections, world units; 0: smallest voxel edge
+  bool is_categorical = false;  ///< values are whole numbers (labels), each with its own appearance
+  /// Linear threshold of the symlog scale (engine/base/symlog_scale.h) on which lookup tables of this function are sampled evenly: the
+  /// points must lie close together on that scale. 0: linear scale.
   double linear_below = 0;
   bool operator==(const TransferTable&) const = default;
 };
 
-/// How a ray makes one colour of its values.
+/// How a ray combines the values along it into one color.
 ///   composite   emission and absorption
-///   maximum     colour and opacity, over the table's opacity_length, of the greatest value that the ray meets; minimum alike
-///   average     the same of the mean of its values
+///   maximum     color and opacity, over the table's opacity_length, of the maximum value along the ray; minimum likewise
+///   average     the same of the mean value
 enum class Projection { composite, maximum, minimum, average };
 
-/// Colours by another field at the same world place. Where that field has no value the item's own colour holds.
+/// Coloring by another field, sampled at the same world position. Where that field has no value, the item's own color is used.
 struct ColorSource {
-  std::shared_ptr<const field::ScalarGrid> grid;  ///< whose values give the colours
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< field that gives the colors
   std::vector<std::array<double, 4>> colors;      ///< value, r, g, b
-  bool is_categorical = false;                    ///< values are whole numbers, each with a colour of its own; 0 is no label and has none
-  bool spread_labels = false;  ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
-  double linear_below = 0;     ///< as of a TransferTable
+  bool is_categorical = false;  ///< values are whole numbers (labels), each with its own color; 0 is no label and has no color
+  bool spread_labels = false;   ///< where the nearest voxel has no label: use the color of the nearest voxel of the cell that has one
+  double linear_below = 0;      ///< as in TransferTable
   bool operator==(const ColorSource&) const = default;
 };
 
-/// A volume that rays go through.
+/// Volume to be rendered by ray casting.
 struct VolumeItem {
-  std::shared_ptr<const field::ScalarGrid> grid;  ///< the values
-  TransferTable transfer;                         ///< colours and extinctions
-  bool is_shaded = false;                         ///< lit by the gradient
-  std::uint32_t id = 0;                           ///< in the id picture; 0: none
-  bool is_clipped = true;                         ///< the clip planes cut it
-  Projection projection = Projection::composite;  ///< what a ray makes of its values
-  std::optional<ColorSource> color_by{};          ///< composite only
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< scalar field
+  TransferTable transfer;                         ///< colors and extinctions
+  bool is_shaded = false;                         ///< shaded by the gradient
+  std::uint32_t id = 0;                           ///< id in the id image; 0: none
+  bool is_clipped = true;                         ///< cut by the clip planes
+  Projection projection = Projection::composite;  ///< how a ray combines the values
+  std::optional<ColorSource> color_by{};          ///< color by another field; composite only
   bool operator==(const VolumeItem&) const = default;
 };
 
-/// An isosurface that rays meet.
+/// Isosurface to be rendered by ray casting.
 struct IsosurfaceItem {
-  std::shared_ptr<const field::ScalarGrid> grid;  ///< the values
-  double level = 0;                               ///< the value on the surface
-  Color color;                                    ///< where nothing else gives one
-  float opacity = 1;                              ///< 0 to 1, of one side
-  std::uint32_t id = 0;                           ///< in the id picture; 0: none
-  bool is_clipped = true;                         ///< the clip planes cut it
-  std::optional<ColorSource> color_by{};          ///< none: `color` everywhere
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< scalar field
+  double level = 0;                               ///< isovalue
+  Color color;                                    ///< color where color_by gives none
+  float opacity = 1;                              ///< opacity of one crossing of the surface, 0 to 1
+  std::uint32_t id = 0;                           ///< id in the id image; 0: none
+  bool is_clipped = true;                         ///< cut by the clip planes
+  std::optional<ColorSource> color_by{};          ///< color by another field; nullopt: `color` everywhere
   bool operator==(const IsosurfaceItem&) const = default;
 };
 
-/// Triangles as they are: what the hand feels. Made once a mesh, shared by frames.
+/// Triangle mesh, as the haptic proxies touch it. Built once per mesh and shared by frames.
 struct MeshGeometry {
-  std::vector<Vec3> vertices;            ///< places, world units
+  std::vector<Vec3> vertices;            ///< positions, world units
   std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
-  std::vector<Vec3> normals{};           ///< by vertex, for smooth shading; may be empty without it
-  std::vector<Color> colors{};           ///< by vertex; empty: the item's everywhere
+  std::vector<Vec3> normals{};           ///< one per vertex, for smooth shading; may be empty if smooth shading is not used
+  std::vector<Color> colors{};           ///< one per vertex; empty: color of the item everywhere
   bool operator==(const MeshGeometry&) const = default;
 };
 
-/// Triangles that are drawn.
+/// Triangle mesh to be rendered.
 struct MeshItem {
   std::shared_ptr<const MeshGeometry> geometry;  ///< shared by frames
-  Color color;                                   ///< where nothing else gives one
-  std::uint32_t id = 0;                          ///< in the id picture; 0: none
-  bool is_clipped = true;                        ///< the clip planes cut it
-  float opacity = 1;                             ///< of one side; < 1: drawn in the layers
-  bool smooth = false;                           ///< lit by the vertices' normals, not by each triangle's own
-  bool show_edges = false;                       ///< the triangles' edges as lines
-  /// Equal triangles are equal, wherever they are kept.
+  Color color;                                   ///< color of vertices without a color of their own
+  std::uint32_t id = 0;                          ///< id in the id image; 0: none
+  bool is_clipped = true;                        ///< cut by the clip planes
+  float opacity = 1;                             ///< opacity of one side; < 1: rendered in the translucent layers
+  bool smooth = false;                           ///< shaded by vertex normals instead of flat triangle normals
+  bool show_edges = false;                       ///< show the triangle edges as lines
+  /// Compares the triangles by value, even if they are stored in different objects.
   bool operator==(const MeshItem& other) const {
     const bool alike = geometry == other.geometry || (geometry && other.geometry && *geometry == *other.geometry);
     return alike && color == other.color && id == other.id && is_clipped == other.is_clipped && opacity == other.opacity &&
@@ -154,153 +156,153 @@ struct MeshItem {
   }
 };
 
-/// A plane through a grid, coloured by its values. Lines of constant value lie over it, opaque whatever the slice is.
+/// Slice plane through a grid, colored by its values. Contour lines are drawn on it, opaque even if the slice is translucent.
 struct SliceItem {
-  std::shared_ptr<const field::ScalarGrid> grid;  ///< the values
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};         ///< world; normal need not be unit
+  std::shared_ptr<const field::ScalarGrid> grid;  ///< scalar field
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};         ///< point on the plane and its normal, world axes; the normal need not be a unit vector
   std::vector<std::array<double, 4>> colors;      ///< value, r, g, b; piecewise linear
-  float opacity = 1;                              ///< < 1: drawn in the layers
-  bool lit = false;                               ///< lit, or the plain colours of the values
-  std::vector<double> contour_levels{};           ///< of the lines, rising
-  Color line_color{0, 0, 0};                      ///< of the lines
-  float line_width = 1;                           ///< pixels
-  std::uint32_t id = 0;                           ///< in the id picture; 0: none
-  bool is_clipped = true;                         ///< the clip planes cut it
-  int stack_order = 0;                            ///< so many slices before it lie in the same plane: it lies over them
-  std::optional<double> hidden_label{};           ///< nothing is drawn within a half of this value
+  float opacity = 1;                              ///< < 1: rendered in the translucent layers
+  bool lit = false;                               ///< shaded; false: the unshaded colors of the values
+  std::vector<double> contour_levels{};           ///< values of the contour lines, rising
+  Color line_color{0, 0, 0};                      ///< color of the contour lines
+  float line_width = 1;                           ///< width of the contour lines, pixels
+  std::uint32_t id = 0;                           ///< id in the id image; 0: none
+  bool is_clipped = true;                         ///< cut by the clip planes
+  int stack_order = 0;                            ///< number of earlier slices in the same plane; this slice is drawn over them
+  std::optional<double> hidden_label{};           ///< label that is transparent: values within 0.5 of it are not drawn
   bool operator==(const SliceItem&) const = default;
 };
 
-/// A tube around a polyline, already flattened from the curve finely enough for its radius.
+/// Tube around a polyline, which is flattened from the curve finely enough for the radius.
 struct TubeItem {
-  SharedList<Vec3> points;     ///< corners of the polyline, world units; one: a ball
+  SharedList<Vec3> points;     ///< vertices of the polyline, world units; a single point gives a sphere
   double radius = 0;           ///< world units
-  Color color;                 ///< where nothing else gives one
-  SharedList<Color> colors{};  ///< by point; empty: `color` everywhere
-  std::uint32_t id = 0;        ///< in the id picture; 0: none
-  bool is_clipped = true;      ///< the clip planes cut it
+  Color color;                 ///< color of points without a color of their own
+  SharedList<Color> colors{};  ///< one per point; empty: `color` everywhere
+  std::uint32_t id = 0;        ///< id in the id image; 0: none
+  bool is_clipped = true;      ///< cut by the clip planes
   bool operator==(const TubeItem&) const = default;
 };
 
-/// An arrowhead: a cone.
+/// Arrowhead: a cone.
 struct ArrowItem {
-  Vec3 base{0.0}, tip{0.0};  ///< middle of the cone's base; its tip; world units
-  double radius = 0;         ///< of the base, world units
-  Color color;               ///< where nothing else gives one
-  std::uint32_t id = 0;      ///< in the id picture; 0: none
-  bool is_clipped = true;    ///< the clip planes cut it
+  Vec3 base{0.0}, tip{0.0};  ///< center of the base; apex; world units
+  double radius = 0;         ///< radius of the base, world units
+  Color color;               ///< color of the cone
+  std::uint32_t id = 0;      ///< id in the id image; 0: none
+  bool is_clipped = true;    ///< cut by the clip planes
   bool operator==(const ArrowItem&) const = default;
 };
 
-/// An arrow of a vector.
+/// One arrow of a vector field.
 struct Glyph {
-  Vec3 tail{0.0}, tip{0.0};  ///< its two ends, world units
-  Color color;               ///< where nothing else gives one
+  Vec3 tail{0.0}, tip{0.0};  ///< start and end, world units
+  Color color;               ///< color of the arrow
   bool operator==(const Glyph&) const = default;
 };
 
-/// Arrows of one shape: a cylinder and a cone, whose sizes follow each one's length.
+/// Arrows of one shape: a cylinder and a cone, whose sizes are proportional to the length of each arrow.
 struct GlyphItem {
-  SharedList<Glyph> glyphs;    ///< of this shape
-  double shaft_radius = 0.06;  ///< its radius
-  double head_length = 0.36;   ///< the cone's length; 0: none, the cylinder goes to the tip
-  double head_radius = 0.144;  ///< of the cone's base
-  std::uint32_t id = 0;        ///< in the id picture; 0: none
-  bool is_clipped = true;      ///< the clip planes cut it
+  SharedList<Glyph> glyphs;    ///< arrows of this shape
+  double shaft_radius = 0.06;  ///< radius of the cylinder, as a fraction of the arrow's length
+  double head_length = 0.36;   ///< length of the cone, as a fraction of the arrow's length; 0: no cone, the cylinder reaches the tip
+  double head_radius = 0.144;  ///< radius of the cone's base, as a fraction of the arrow's length
+  std::uint32_t id = 0;        ///< id in the id image; 0: none
+  bool is_clipped = true;      ///< cut by the clip planes
   bool operator==(const GlyphItem&) const = default;
 };
 
-/// The local indicator: a short piece of the streamline through the cursor, with an arrowhead downstream.
+/// Local flow indicator: a short segment of the streamline through the cursor, with an arrowhead downstream.
 struct IndicatorItem {
-  TubeItem tube;    ///< the piece
-  ArrowItem arrow;  ///< its arrowhead
+  TubeItem tube;    ///< streamline segment
+  ArrowItem arrow;  ///< arrowhead downstream
   bool operator==(const IndicatorItem&) const = default;
 };
 
-/// The cursor: probe, the proxy of every link, the links between them, the force. Clip planes do not touch it.
+/// Haptic cursor: the probe, the proxy of every link, the links between them, and the force. Not cut by clip planes.
 struct CursorItem {
-  Vec3 probe{0.0};                     ///< the hand, world units
-  std::vector<Vec3> proxies;           ///< by link, world units
-  std::vector<bool> link_active;       ///< by link: it holds
-  Vec3 force_n{0.0};                   ///< world axes, newtons
-  double radius = 0;                   ///< radius of the probe's ball, world units
-  std::vector<double> release_ratios;  ///< by link: 0 on its feature .. 1 where the hand has left it; empty: all 0
-  std::uint32_t id = 0;                ///< in the id picture; 0: none
-  /// Where nothing can push back (a mouse), the picture does: the cursor is the last proxy, the probe a small ball on a tether whose
-  /// colour and width say the force, 0..1 of the largest. None: as it is.
+  Vec3 probe{0.0};                     ///< probe position, world units
+  std::vector<Vec3> proxies;           ///< one per link, world units
+  std::vector<bool> link_active;       ///< one per link: the link is active
+  Vec3 force_n{0.0};                   ///< force in world axes, newtons
+  double radius = 0;                   ///< radius of the probe sphere, world units
+  std::vector<double> release_ratios;  ///< one per link: 0 on its feature .. 1 where it is released; empty: all 0
+  std::uint32_t id = 0;                ///< id in the id image; 0: none
+  /// Force as a fraction of the maximum, 0..1, for devices without force output (a mouse), where the image conveys the force: the cursor is
+  /// the last proxy, the probe is a small sphere on a tether whose color and width show the force. nullopt: normal cursor.
   std::optional<double> force_ratio{};
-  bool show_occluded = true;         ///< it shines through what hides it
-  bool is_crosshair = false;         ///< three rods along the axes, twice `size` long; no proxies, no force
-  std::optional<Vec3> foot_point{};  ///< a thin line leads from the probe to here, to a cross at right angles to it
+  bool show_occluded = true;         ///< x-ray overlay: occluded parts shine through
+  bool is_crosshair = false;         ///< crosshair of three bars along the axes, each 2 * radius long; no proxies, no force
+  std::optional<Vec3> foot_point{};  ///< foot point: a thin line leads from the probe to it and ends in a cross perpendicular to the line
   bool operator==(const CursorItem&) const = default;
 };
 
-/// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
+/// Environment of the data: bounding boxes, axes, the ground. The camera is not fitted to them; clip planes do not cut them.
 struct EnvironmentItems {
   std::vector<TubeItem> tubes;   ///< edges
   std::vector<MeshItem> meshes;  ///< faces
-  /// Whether there is nothing.
+  /// Returns whether there are no items.
   bool empty() const { return tubes.empty() && meshes.empty(); }
   bool operator==(const EnvironmentItems&) const = default;
 };
 
-/// What the hand takes hold of (paper, Figure 6). A tube of a single point is a ball. The camera is not fitted to them.
+/// Interactive widgets (paper, Figure 6). A tube of a single point is a sphere. The camera is not fitted to them.
 struct WidgetItems {
   std::vector<TubeItem> tubes;    ///< edges and handles
   std::vector<ArrowItem> arrows;  ///< arrowheads
   std::vector<MeshItem> meshes;   ///< faces
-  /// Whether there is nothing.
+  /// Returns whether there are no items.
   bool empty() const { return tubes.empty() && arrows.empty() && meshes.empty(); }
   bool operator==(const WidgetItems&) const = default;
 };
 
-/// SphereSet at points, made once a set, shared by frames.
+/// Set of spheres at points. Built once per set and shared by frames.
 struct SphereSet {
-  Vec3 origin{0.0};                                                         ///< of the places
-  std::vector<glm::vec3> offsets;                                           ///< less `origin`
-  std::vector<float> radii;                                                 ///< one a place
-  std::vector<Color> colors;                                                ///< one a place
-  Bounds robust_bounds{};                                                   ///< what a first view shows of them; empty: all
-  Vec3 position(std::size_t i) const { return origin + Vec3(offsets[i]); }  ///< in the world
+  Vec3 origin{0.0};                ///< origin of the offsets, world units
+  std::vector<glm::vec3> offsets;  ///< positions minus `origin`
+  std::vector<float> radii;        ///< one per sphere, world units
+  std::vector<Color> colors;       ///< one per sphere
+  Bounds robust_bounds{};          ///< bounds without outliers, to which the automatic camera is fitted; empty: use all positions
+  Vec3 position(std::size_t i) const { return origin + Vec3(offsets[i]); }  ///< world position of sphere i
 };
 
-/// SphereSet at points.
+/// Set of spheres to be rendered.
 struct SpheresItem {
   std::shared_ptr<const SphereSet> spheres;  ///< shared by frames
-  std::uint32_t id = 0;                      ///< in the id picture; 0: none
-  bool is_clipped = true;                    ///< the clip planes cut it
+  std::uint32_t id = 0;                      ///< id in the id image; 0: none
+  bool is_clipped = true;                    ///< cut by the clip planes
   bool operator==(const SpheresItem&) const = default;
 };
 
-/// All that one picture shows, how large, and from where.
+/// Everything one image shows, its size and its viewpoint.
 struct FramePacket {
-  View view;                                    ///< the eye
-  std::vector<View> eyes{};                     ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
-  Packing packing = Packing::single;            ///< how the eyes' pictures make one
-  std::uint32_t width = 1024, height = 768;     ///< pixels, of each eye
+  View view;                 ///< camera
+  std::vector<View> eyes{};  ///< views rendered one by one, each at the packet's size, then packed into one image; empty: only `view`
+  Packing packing = Packing::single;            ///< how the images of `eyes` are packed into one
+  std::uint32_t width = 1024, height = 768;     ///< size of each view, pixels
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
-  std::vector<VolumeItem> volumes;              ///< what rays go through
-  std::vector<IsosurfaceItem> isosurfaces;      ///< surfaces that rays meet
-  std::vector<MeshItem> meshes;                 ///< triangles
-  std::vector<SliceItem> slices;                ///< planes through grids
+  std::vector<VolumeItem> volumes;              ///< rendered by ray casting
+  std::vector<IsosurfaceItem> isosurfaces;      ///< rendered by ray casting
+  std::vector<MeshItem> meshes;                 ///< triangle meshes
+  std::vector<SliceItem> slices;                ///< slice planes through grids
   std::vector<TubeItem> tubes;                  ///< streamlines and curves
-  std::vector<ArrowItem> arrows;                ///< their arrowheads
-  std::vector<GlyphItem> glyphs;                ///< arrows at places
-  std::vector<SpheresItem> spheres;             ///< points
-  std::vector<CursorItem> cursors;              ///< hands
-  std::vector<IndicatorItem> indicators;        ///< what the flow does at a hand
-  Overlay overlay;                              ///< what is written over it
-  std::vector<Plane> clip_planes;               ///< what all planes keep is drawn; at most kMaxClipPlanes
-  std::vector<LightItem> lights;                ///< none: a headlight; at most kMaxLights
+  std::vector<ArrowItem> arrows;                ///< arrowheads of streamlines and curves
+  std::vector<GlyphItem> glyphs;                ///< arrows of vector fields
+  std::vector<SpheresItem> spheres;             ///< point sets
+  std::vector<CursorItem> cursors;              ///< haptic cursors
+  std::vector<IndicatorItem> indicators;        ///< local flow indicators at the cursors
+  Overlay overlay;                              ///< text and marks over the image
+  std::vector<Plane> clip_planes;               ///< a point is visible if it is inside all of them; at most kMaxClipPlanes
+  std::vector<LightItem> lights;                ///< empty: a headlight; at most kMaxLights
   std::optional<FogItem> fog;                   ///< none: no fog
-  double vignette = 0;                          ///< 0..1: how far the picture narrows while the world moves around a person; 0: not at all
-  EnvironmentItems environment;                 ///< boxes, axes, the ground
-  WidgetItems widgets;                          ///< what the hand takes hold of
-  std::optional<bool> jitter;                   ///< of rays; overrides RenderSettings::jitter
-  std::vector<ObjectName> objects;              ///< what the ids stand for
-  std::string omitted;                          ///< what of curves and points is not drawn, in words; empty: nothing
+  double vignette = 0;  ///< strength of the vignette that reduces the peripheral view while the view moves around the user, 0..1; 0: off
+  EnvironmentItems environment;     ///< bounding boxes, axes, the ground
+  WidgetItems widgets;              ///< interactive widgets
+  std::optional<bool> jitter;       ///< jitter of the ray starts; overrides RenderSettings::jitter; nullopt: the settings apply
+  std::vector<ObjectName> objects;  ///< objects by id
+  std::string omitted;              ///< message about curves and points that are not rendered; empty: all are
 
-  /// The next id, from 1 on.
+  /// Appends an object and returns its id (1 for the first one). `item` is the path in the scene.
   std::uint32_t add_object(std::string kind, std::string name, std::string item = {}) {
     objects.push_back({std::uint32_t(objects.size() + 1), std::move(kind), std::move(name), std::move(item)});
     return objects.back().id;

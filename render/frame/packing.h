@@ -1,4 +1,5 @@
-/// How the pictures of several views make one. Every view is drawn with the packet's width and height W x H; with n views:
+/// Stereo composition: how the images of several views are packed into one. Every view is rendered at the packet's width and height W x H;
+/// with n views:
 ///   single             the first view                                W x H
 ///   side_by_side       from left to right                            n W x H
 ///   side_by_side_half  the same, n pixels of a row averaged to one   n (W / n) x H      (pixels beyond n (W / n) are dropped)
@@ -6,7 +7,7 @@
 ///   top_bottom_half    n pixels of a column averaged to one          W x n (H / n)
 ///   anaglyph           two views; red from the first eye, cyan from the second, by Dubois' matrices for LCD screens, in linear light
 ///   anaglyph_gray      the same of the luminance
-///   rows, columns, checkerboard   pixel (x, y) from view y, x, x + y modulo n
+///   rows, columns, checkerboard   pixel (x, y) is taken from view y, x or x + y, modulo n
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -19,7 +20,7 @@
 
 namespace catena::render {
 
-/// The ways to pack.
+/// Packed layouts of the views; see the table above.
 enum class Packing {
   single,
   side_by_side,
@@ -33,12 +34,13 @@ enum class Packing {
   checkerboard
 };
 
-/// Pixels of a picture.
+/// Image size.
 struct PackedSize {
   std::uint64_t width = 0, height = 0;  ///< pixels
 };
 
-/// Of the finished picture; 0 where a view has fewer pixels than there are views.
+/// Returns the size of the packed image of `views` views of width x height; 0 in a direction in which a view has fewer pixels than there
+/// are views.
 inline PackedSize packed_size(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height) {
   CATENA_ASSERT(views > 0);
   PackedSize size{width, height};
@@ -61,7 +63,7 @@ inline PackedSize packed_size(Packing packing, std::size_t views, std::uint32_t 
   return size;
 }
 
-/// Of each view, so that the packed picture fills W x H: the inverse, at least 1 x 1.
+/// Inverse of packed_size(): returns the size of each view, at least 1 x 1, so that the packed image fills width x height.
 inline PackedSize view_size(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height) {
   PackedSize size{width, height};
   if (packing == Packing::side_by_side) size.width = std::max<std::uint64_t>(1, width / views);
@@ -69,49 +71,49 @@ inline PackedSize view_size(Packing packing, std::size_t views, std::uint32_t wi
   return size;
 }
 
-/// Each eye has a part of the picture for itself.
+/// Returns whether each view has its own part of the packed image.
 inline bool has_separate_views(Packing packing) { return packing >= Packing::side_by_side && packing <= Packing::top_bottom_half; }
 
-/// Whether a finished picture has to be shown pixel by pixel.
+/// Returns whether the packed image must be displayed without scaling, pixel by pixel.
 inline bool is_interlaced(Packing packing) {
   return packing == Packing::rows || packing == Packing::columns || packing == Packing::checkerboard;
 }
 
-/// A list that copies share until one of them changes it: frame packets and passes keep long lines without holding them twice. Elements are
-/// read only; a list changes by being assigned, or grown by its one owner. Reading is safe on any thread.
+/// Copy-on-write list: copies share one vector until one of them changes, so that frame packets and passes hold long lists only once.
+/// Elements are read-only; a list changes only by assignment or push_back(). Concurrent reading is safe on any thread.
 template <class T>
 class SharedList {
  public:
-  /// What it holds.
+  /// Element type.
   using value_type = T;
   SharedList() = default;
-  /// Of these items.
+  /// Constructs the list from these items.
   SharedList(std::initializer_list<T> items) : SharedList(std::vector<T>(items)) {}
-  /// Of these items, without a copy.
+  /// Constructs the list from these items, without a copy if they are moved in.
   SharedList(std::vector<T> items) : items_(items.empty() ? nullptr : std::make_shared<std::vector<T>>(std::move(items))) {}
 
-  /// The items.
+  /// Returns the items.
   const std::vector<T>& list() const {
     static const std::vector<T> none;
     return items_ ? *items_ : none;
   }
-  /// As std::vector has it.
+  /// As in std::vector.
   auto begin() const { return list().begin(); }
-  /// As std::vector has it.
+  /// As in std::vector.
   auto end() const { return list().end(); }
-  /// As std::vector has it.
+  /// As in std::vector.
   std::size_t size() const { return list().size(); }
-  /// As std::vector has it.
+  /// As in std::vector.
   bool empty() const { return list().empty(); }
-  /// As std::vector has it; `i` below size().
+  /// As in std::vector; `i` must be less than size().
   const T& operator[](std::size_t i) const { return list()[i]; }
-  /// As std::vector has it; the list is not empty.
+  /// As in std::vector; the list must not be empty.
   const T& front() const { return list().front(); }
-  /// As std::vector has it; the list is not empty.
+  /// As in std::vector; the list must not be empty.
   const T& back() const { return list().back(); }
-  /// Appends; a list that is shared is copied first.
+  /// Appends an item; a shared list is copied first.
   void push_back(const T& item) { mutable_list().push_back(item); }
-  /// One list in memory: nothing has to be compared.
+  /// Returns whether both lists share one vector in memory, which makes a comparison of the items unnecessary.
   bool shares_storage(const SharedList& other) const { return items_ == other.items_; }
   friend bool operator==(const SharedList& a, const SharedList& b) { return a.shares_storage(b) || a.list() == b.list(); }
 

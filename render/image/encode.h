@@ -1,7 +1,8 @@
-/// Pictures as bytes in memory, for who sends them elsewhere: without alpha, as they are seen over their background. Any thread.
-///   JPEG  2 ms and 0.15 MB a million pixels: for what moves (quality 1 to 100, 85 cannot be told from the original in motion)
-///   PNG   20 ms and 0.4 MB: every pixel as it is
-/// Errors: no memory.
+/// Image compression in memory, for transmission: without alpha, as composited over the background. Any thread.
+///   JPEG  2 ms and 0.15 MB per million pixels: for moving images (quality 1 to 100, 85 cannot be distinguished from the original in
+///         motion)
+///   PNG   20 ms and 0.4 MB: lossless
+/// An Error if there is no memory.
 #pragma once
 #include <string>
 
@@ -10,7 +11,9 @@
 
 namespace catena::render {
 
+/// Encodes a JPEG; `quality` 1 to 100.
 Result<std::string> encode_jpeg(const Image8& picture, int quality);
+/// Encodes a PNG.
 Result<std::string> encode_png(const Image8& picture);
 
 }  // namespace catena::render

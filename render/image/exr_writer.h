@@ -1,5 +1,5 @@
-/// An OpenEXR file of 32-bit floats, written row by row (scan lines, ZIP). OpenEXR holds colours as linear light, premultiplied by
-/// alpha: see premultiplied_linear(). Without a commit nothing stays behind (engine/base/output_file.h). One thread.
+/// Writes an OpenEXR file of 32-bit floats row by row (scan lines, ZIP). OpenEXR stores colors as linear light, premultiplied by alpha: see
+/// premultiplied_linear(). Without commit() no file is left behind (engine/base/output_file.h). One thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,24 +12,27 @@
 
 namespace catena::render {
 
+/// Size, channels and comment of the file.
 struct ExrFormat {
   std::uint32_t width = 0, height = 0;
   std::vector<std::string> channels;  ///< in the order of the values: "R", "G", "B", "A" or "Z"
   std::string comments{};
 };
 
+/// Writer of one file.
 class ExrWriter {
  public:
+  /// Begins a temporary file. An Error gives the path.
   static Result<ExrWriter> open(const std::string& path, const ExrFormat& format);
   ~ExrWriter();
   ExrWriter(ExrWriter&&) noexcept;
   ExrWriter& operator=(ExrWriter&&) = delete;
 
-  /// The next rows, whole ones, from the top; the channels of a pixel lie together.
+  /// Writes the next rows, from the top; whole rows only, with the channels of a pixel interleaved.
   Outcome write_rows(std::span<const float> values);
-  /// After the last row: all of it is on its way to the disk.
+  /// Completes the file after the last row: all data has been handed to the disk.
   Outcome finish();
-  /// The rename to the final name.
+  /// Renames the file to its final name.
   Outcome commit();
 
  private:
@@ -38,9 +41,9 @@ class ExrWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The standard's transfer function of a display (sRGB) value: linear below 0.04045, a power of 2.4 above.
+/// Returns linear light for an sRGB display value: linear below 0.04045, a power of 2.4 above.
 float linear_from_display(float display);
-/// Of a display colour with straight alpha.
+/// Returns the premultiplied linear color of a display color with straight alpha.
 std::array<float, 4> premultiplied_linear(const float* rgba);
 
 }  // namespace catena::render

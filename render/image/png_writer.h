@@ -1,5 +1,5 @@
-/// A PNG file written row by row, so that a large picture never lies in memory: 8 or 16 bits, grey, RGB or RGBA (straight alpha).
-/// Values are stored as they come. Without a commit nothing stays behind (engine/base/output_file.h). One thread.
+/// Writes a PNG file row by row, so that a large image is never in memory: 8 or 16 bits, gray, RGB or RGBA (straight alpha). Values are
+/// stored unchanged. Without commit() no file is left behind (engine/base/output_file.h). One thread.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -10,31 +10,31 @@
 
 namespace catena::render {
 
-/// What the file will be.
+/// Format of the file.
 struct PngFormat {
   std::uint32_t width = 0, height = 0;  ///< pixels
   int bits = 8;                         ///< 8 or 16
   int channels = 4;                     ///< 1, 3 or 4
-  /// A text chunk, if the key is not empty: what the numbers of the picture mean.
-  std::string text_key{}, text{};  ///< no line ends in the key
+  /// Text chunk, if the key is not empty: meaning of the image's values.
+  std::string text_key{}, text{};  ///< no line breaks in the key
 };
 
-/// The writer.
+/// Writer of one file.
 class PngWriter {
  public:
-  /// Begins the file beside its place. An error names it.
+  /// Begins a temporary file. An Error gives the path.
   static Result<PngWriter> open(const std::string& path, const PngFormat& format);
   ~PngWriter();
-  /// Takes the file over; `other` has none then.
+  /// Moves the writer; `other` is empty afterwards.
   PngWriter(PngWriter&&) noexcept;
   PngWriter& operator=(PngWriter&&) = delete;
 
-  /// The next rows, whole ones, from the top.
+  /// Writes the next rows, from the top; whole rows only.
   Outcome write_rows(std::span<const std::uint8_t> values);   ///< 8 bits
   Outcome write_rows(std::span<const std::uint16_t> values);  ///< 16 bits
-  /// After the last row: all of it is on its way to the disk.
+  /// Completes the file after the last row: all data has been handed to the disk.
   Outcome finish();
-  /// The rename to the final name.
+  /// Renames the file to its final name.
   Outcome commit();
 
  private:
@@ -44,7 +44,7 @@ class PngWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// round(65535 x) of a display value; the same for 255. OutwardSide 0 .. 1 and not a number: clamped, 0.
+/// Returns round(most x) of a display value, with `most` 65535 or 255. Values outside 0 .. 1 are clamped; NaN gives 0.
 constexpr std::uint32_t quantize(float x, std::uint32_t most) {
   return x > 0 ? x < 1 ? std::uint32_t(double(most) * double(x) + 0.5) : most : 0;
 }

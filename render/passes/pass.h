@@ -1,4 +1,4 @@
-/// The shaders of the program by name, "compose.frag": what a viewer needs in order to put others in their place. Any thread.
+/// Interface of the renderer's passes, the targets they share, and the embedded shaders.
 #pragma once
 #include <array>
 #include <memory>
@@ -17,145 +17,158 @@
 
 namespace catena::render {
 
+/// Shader embedded in the program, by file name (for instance "compose.frag"), so that it can be replaced. Any thread.
 struct EmbeddedShader {
   std::string_view name;
   vk::Spirv words;
 };
 
-/// One for every file of shaders/passes, in the order of their names.
+/// Returns one entry for every file of shaders/passes, sorted by name. Any thread.
 std::span<const EmbeddedShader> embedded_shaders();
 
-/// How the grid is mirrored for this packet where exact rays, surfaces or slices need it.
+/// Returns how the grid is stored on the device for this packet, for exact rays, surfaces and slices.
 ResidencyOptions residency_options(const FramePacket& packet, const RenderSettings& settings, const field::ScalarGrid& grid);
 
-/// A pass: one kind of thing that a picture can hold. It declares which targets it reads and writes; the renderer (renderer.cpp) holds
-/// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
-/// it; a scene without streamlines has no streamline pass.
-///   wanted -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
+/// A pass renders one kind of item. It declares which targets it reads and writes; the renderer (renderer.cpp) holds the passes in order
+/// and derives clears, barriers and groups from the declarations. A pass is created when a packet first needs it; a scene without
+/// streamlines has no streamline pass.
+///   is_needed -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
 /// Frame thread only. To add one: a class here beside its shader, a line in passes.h and one in the list of renderer.cpp.
 
-/// A set of targets, by bits.
+/// Set of targets, as bits.
 using TargetSet = unsigned;
 namespace target {
 inline constexpr TargetSet opaque_color = 1, opaque_depth = 2, opaque_id = 4, depth_buffer = 8, volume = 16, output = 32,
                            occluded_overlay = 64;
-/// Everything that solid things draw into.
+/// All targets that opaque geometry is rendered into.
 inline constexpr TargetSet opaque = opaque_color | opaque_depth | opaque_id | depth_buffer;
 }  // namespace target
 
 inline constexpr VkFormat kOpaqueFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kDepthValueFormat = VK_FORMAT_R32_SFLOAT;  ///< depth t of shared/frame.h
-inline constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;            ///< the object's id, 0: none
+inline constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;            ///< object id, 0: none
 inline constexpr VkFormat kDepthBufferFormat = VK_FORMAT_D32_SFLOAT;
-/// What of the hand shines through, premultiplied. Its alpha is negative where nothing opaque hides it: the volume's alpha counts there.
+/// Format of the x-ray overlay, premultiplied. A negative alpha marks pixels where the cursor is the nearest opaque object: there it is
+/// multiplied by the alpha of the volume.
 inline constexpr VkFormat kOccludedOverlayFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kOutputFormat = VK_FORMAT_R8G8B8A8_UNORM;            ///< straight alpha
-inline constexpr VkFormat kFloatOutputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same, not rounded
+inline constexpr VkFormat kFloatOutputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same without rounding
 
-/// The formats of a pipeline that draws into target::opaque, in the order of its outputs.
+/// Returns the color formats of a pipeline that renders into target::opaque, in the order of its outputs.
 std::vector<VkFormat> opaque_formats();
 
-/// The images that passes hand to each other, created when a pass first needs them and again when the size changes.
+/// Images shared by the passes, created when first needed and re-created when the size changes.
 struct Targets {
   vk::Image opaque_color, opaque_depth, opaque_id, depth_buffer, volume, output, occluded_overlay;
-  VkFormat output_format = kOutputFormat;  ///< or kFloatOutputFormat; pipelines that draw into the picture follow it
-  vk::Image placeholder;                   ///< one texel, bound where a pass has no input
+  VkFormat output_format = kOutputFormat;  ///< kOutputFormat or kFloatOutputFormat; pipelines that write the output use it
+  vk::Image placeholder;                   ///< image of one texel, bound where a pass has no input
 
+  /// Creates the missing images of `needed` and the placeholder. An Error if there is no memory.
   Outcome ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed);
-  /// Bytes that ensure() would have to add for these.
+  /// Returns the bytes that ensure() would have to allocate for these.
   std::uint64_t missing_bytes(std::uint32_t width, std::uint32_t height, TargetSet needed) const;
+  /// Returns the image of a single target.
   vk::Image& image(TargetSet one);
-  /// Begins rendering into `writes`, within `area` if there is one; what `cleared` names starts empty, the rest keeps what is there.
+  /// Begins rendering into `writes`, within `area` if it is set; targets in `cleared` are cleared, the others keep their content.
   void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared, const std::optional<VkRect2D>& area = {});
 };
 
 class Triangles;
 
-/// One picture while it is made: what its passes share.
+/// State of one image while it is rendered, shared by its passes.
 struct Frame {
   vk::Device& device;
   ResidencyManager& residency;
   Targets& targets;
   const FramePacket& packet;
   const RenderSettings& settings;
-  CameraRays rays;                              ///< from record() on
-  TargetSet written_targets = 0;                ///< by the passes before this one, or to be (prepare: of all passes)
-  vk::Image* half_resolution_volume = nullptr;  ///< the volume on every 2nd pixel, instead of target::volume
+  CameraRays rays;                              ///< valid in record()
+  TargetSet written_targets = 0;                ///< written by the passes before this one; in use(): by all passes
+  vk::Image* half_resolution_volume = nullptr;  ///< set: volume rendered at every 2nd pixel, used instead of target::volume
+  /// Pixels that half_resolution_volume may cover.
   VkRect2D half_resolution_area{};
-  /// The nearest first at every pixel, at most MAX_LAYERS. A pass before the raycast appends them in prepare() and draws them in
-  /// record(); the raycast blends them, also where there is no volume.
+  /// Translucent layers, nearest first at every pixel, at most MAX_LAYERS. A pass before the raycast appends them in prepare() and renders
+  /// them in record(); the raycast blends them, even if there is no volume.
   std::vector<Layer> layers{};
-  std::uint64_t layers_version = 0;          ///< RayScene::layers_version
-  std::size_t eye_index = 0, eye_count = 1;  ///< which of the packet's: what is kept from picture to picture is an eye's own
+  std::uint64_t layers_version = 0;          ///< see RayScene::layers_version
+  std::size_t eye_index = 0, eye_count = 1;  ///< index and number of the packet's eyes: data reused from image to image is stored per eye
 
-  /// The hands that shine through what hides them: the first indices of the cursor's triangles. The cursor's pass states them in prepare().
+  /// Triangles of the cursors shown through occluders (x-ray overlay): the first indices of these. Set by the cursor pass in prepare().
   Triangles* occluded_triangles = nullptr;
   std::uint32_t occluded_index_count = 0;
-  VkRect2D occluded_area{};  ///< the pixels of target::ghost that hold anything; the others were never cleared
+  VkRect2D occluded_area{};  ///< pixels of target::occluded_overlay that are valid; the others were never cleared
 
+  /// Returns whether any of the targets has been written.
   bool has(TargetSet targets_) const { return (written_targets & targets_) != 0; }
-  /// The grid on the device, in the texel format that this packet asks for. Kept while packets name it.
+  /// Returns the resident grid (GPU copy) in the texel format for this packet. It is cached while packets refer to the grid.
   Result<std::shared_ptr<const ResidentGrid>> resident_grid(const field::ScalarGrid& grid) const;
 };
 
+/// Targets that a pass reads and writes.
 struct PassUse {
   TargetSet reads = 0, writes = 0;
-  bool owns_rendering = false;  ///< begins and ends its rendering itself; else the renderer does, for all neighbours with equal targets
+  /// True: the pass begins and ends its rendering itself; false: the renderer does, for all adjacent passes with equal targets together.
+  bool owns_rendering = false;
 };
 
-/// Rays of a pass, some of them alone: what the error of a picture is measured with.
+/// Access to the rays of a pass for error measurement and depth images: sparse ray samples and information about the last image.
 class RaySampler {
  public:
-  /// The rays of every `spacing`-th pixel, into `target` (kVolumeFormat).
+  /// Renders the rays of every `spacing`-th pixel in each direction into `target` (kVolumeFormat).
   virtual Outcome record_ray_samples(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
-  /// Such rays again: the depth t (shaders/shared/frame.h) at which their alpha passes 0.5, into the red of `target` (kVolumeFormat);
-  /// NO_DEPTH where it never does. After the picture.
+  /// Renders the depth t (shaders/shared/frame.h) at which the alpha of these rays exceeds 0.5 into the red channel of `target`
+  /// (kVolumeFormat); NO_DEPTH where it never does. To be called after the image is rendered.
   virtual Outcome record_half_opacity_depth(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
+  /// Returns whether record_half_opacity_depth() can be used with the prepared items.
   virtual bool has_half_opacity_depth() const = 0;
-  /// The fast raycast was prepared last, and its rays leap over what is empty.
+  /// Returns whether the fast raycast was prepared last and its rays skip empty space.
   virtual bool skips_empty_space() const = 0;
-  /// The fast raycast was tried with this packet's volume and had no memory for it.
+  /// Returns whether the fast raycast failed to allocate memory for this packet's volume.
   virtual bool was_out_of_memory(const FramePacket& packet) const = 0;
-  /// Of the last picture only the tiles were marched that something opaque had come to or left.
+  /// Returns whether in the last image only the tiles where opaque objects changed were re-marched.
   virtual bool reused_previous() const = 0;
-  /// Those tiles, R8_UINT; null: there are none, or all of the picture was marched.
+  /// Returns the mask of these tiles, R8_UINT; null: there are none, or the whole image was marched.
   virtual vk::Image* dirty_tiles() = 0;
-  /// Of the fast raycast's last picture: FastVolumeRaycast::marked_blocks.
+  /// Returns FastVolumeRaycast::marked_blocks of the fast raycast's last image.
   virtual std::array<vk::Image*, 2> marked_blocks() = 0;
 
  protected:
   ~RaySampler() = default;
 };
 
+/// Interface of a pass. Owned by the renderer. Frame thread.
 class Pass {
  public:
   virtual ~Pass() = default;
+  /// Returns the targets that the pass reads and writes.
   virtual PassUse use(const Frame& frame) const = 0;
-  /// Uploads what changed since the last frame.
+  /// Uploads what changed since the last frame. An Error if there is no memory or the items cannot be rendered.
   virtual Outcome prepare(Frame& frame) = 0;
-  /// Of what prepare() found to draw.
+  /// Returns the world bounds of the items found by prepare().
   virtual Bounds bounds() const { return {}; }
+  /// Records the rendering commands.
   virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
-  /// Milliseconds spent so far on images made from grids, beside the mirrors.
+  /// Returns the total milliseconds spent on building images from grids, excluding resident grids.
   virtual double build_ms() const { return 0; }
-  /// Of images of grids' voxels, beside the mirrors.
+  /// Returns the bytes of device images of grid voxels, excluding resident grids.
   virtual std::uint64_t grid_bytes() const { return 0; }
-  /// The last picture's part was taken from the one before (RenderSettings::keep).
+  /// Returns whether this pass's part of the last image was reused from the one before (RenderSettings::reuse_rays).
   virtual bool reused_previous() const { return false; }
-  /// Its rays end on surfaces of grids: depths count from these where nothing else casts rays.
+  /// Returns whether its rays end on surfaces of grids: they define the reference depth if no ray sampler does.
   virtual bool casts_surface_rays() const { return false; }
-  /// Null: it casts no rays that others are blended with.
+  /// Returns the ray sampler; null: the pass casts no rays that are blended with other items.
   virtual RaySampler* ray_sampler() { return nullptr; }
-  /// What the last picture lacks, or was drawn otherwise than asked, and why, one sentence; empty: nothing.
+  /// Returns a one-line message about items of the last image that are missing or were rendered in another way than requested, and why;
+  /// empty: none.
   virtual std::string warning() const { return {}; }
 };
 
-/// How the renderer knows a pass.
+/// Entry of a pass in the renderer's list.
 struct PassEntry {
   const char* name;
   bool (*is_needed)(const Frame& frame);
   Result<std::unique_ptr<Pass>> (*create)(vk::Device& device);
-  // what the mirrors of grids leave room for, where it is wanted
+  // Memory that the budget for resident grids must leave free while the pass is needed.
   TargetSet reserved_targets = target::opaque;
   std::uint64_t reserved_pixel_bytes = 0;  ///< for images of its own
 };

@@ -1,11 +1,12 @@
-/// The renderer: a frame packet in, a finished colour image out. It holds the list of passes (pass.h), in order:
-///   aids, widgets, meshes, streamlines, glyphs, cursor, isosurfaces, slices -> layers -> raycast -> compose
-/// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
-/// format) and dropped when a packet no longer names the grid. A packet with eyes is drawn once an eye and packed (pack.h); depth and
-/// ids are the first eye's. Frame thread only.
-/// All device memory keeps within vk::DeviceOptions::memory_budget_bytes; a grid that does not fit is drawn coarser and the stats
-/// say so. A call that fails leaves nothing of its frame behind: after VK_ERROR_OUT_OF_DEVICE_MEMORY a smaller packet can be drawn;
-/// after VK_ERROR_DEVICE_LOST (device().lost()) a new renderer draws the same packets.
+/// Renderer: renders a frame packet into a finished color image. It holds the list of passes (pass.h), in order:
+///   environment, widgets, meshes, streamlines, glyphs, points, cursor, isosurfaces, surface colors, slices -> layers -> raycast
+///   -> x-ray overlay -> compose -> vignette -> overlay
+/// A pass is created when a packet first needs it and destroyed when a packet does not; resident grids are cached by (grid version, texel
+/// format) and dropped when a packet does not refer to the grid. A packet with eyes is rendered eye by eye and packed (packing.h); depth
+/// and ids are those of the first eye. Frame thread only. All device memory stays within vk::DeviceOptions::memory_budget_bytes; a grid
+/// that does not fit is downsampled, which the stats report. A call that fails discards everything of its frame: after
+/// VK_ERROR_OUT_OF_DEVICE_MEMORY a smaller packet can be rendered; after VK_ERROR_DEVICE_LOST (device().is_lost()) a new renderer can
+/// render the same packets.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,35 +31,37 @@ class Image;
 class Swapchain;
 }  // namespace vk
 
-/// What a renderer tells of itself. Plain data.
+/// Statistics of a renderer. Plain data. Counts are totals since its creation unless stated otherwise.
 struct RenderStats {
-  std::string device, driver;                       ///< the device's name; its driver's
-  std::uint64_t gpu_bytes = 0;                      ///< held now
-  std::uint64_t uploads = 0;                        ///< copies to the device so far
+  std::string device, driver;                       ///< name of the device; name of its driver
+  std::uint64_t gpu_bytes = 0;                      ///< device memory in use
+  std::uint64_t uploads = 0;                        ///< number of copies to the device
   std::uint64_t upload_bytes = 0;                   ///< bytes of these copies
-  std::uint64_t pipelines = 0;                      ///< created so far
-  std::vector<std::string> passes;                  ///< of the last picture, in order
-  std::uint64_t resident_grids = 0;                 ///< grids mirrored now
-  std::vector<GridDownsampling> downsampled_grids;  ///< of the grids that do not fit into the memory budget
-  std::uint64_t gpu_budget = 0;                     ///< bytes that may be held
-  std::uint64_t resident_bytes = 0;                 ///< of images of grids' voxels, held now
-  double residency_ms = 0;                          ///< spent on building and uploading mirrors so far
-  bool rays_reused = false;                         ///< RenderSettings::keep has spared the last picture most of its rays
-  bool surfaces_reused = false;                     ///< the same of all opaque isosurfaces
-  std::vector<std::string> warnings;      ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
-  std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
+  std::uint64_t pipelines = 0;                      ///< number of pipelines created
+  std::vector<std::string> passes;                  ///< names of the passes of the last image, in order
+  std::uint64_t resident_grids = 0;                 ///< number of resident grids
+  std::vector<GridDownsampling> downsampled_grids;  ///< grids that are downsampled to fit into the memory budget
+  std::uint64_t gpu_budget = 0;                     ///< memory budget, bytes
+  std::uint64_t resident_bytes = 0;                 ///< bytes of device images of grid voxels in use
+  double residency_ms = 0;                          ///< time spent on building and uploading resident grids
+  bool rays_reused = false;                         ///< RenderSettings::reuse_rays avoided most rays of the last image
+  bool surfaces_reused = false;                     ///< the same for all opaque isosurfaces
+  /// One-line messages about items of the last image that are missing or were rendered in another way than requested, and why.
+  std::vector<std::string> warnings;
+  std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer
 };
 
-/// Whether anything of the packet is drawn by rays, so that it matters how finely they are marched.
+/// Returns whether any item of the packet is rendered by rays, so that the ray step matters.
 bool uses_raycast(const FramePacket& packet);
 
-/// An error where the packet holds what rays cannot draw together: the sentence that draw() would fail with. It needs no device.
+/// Returns the Error that draw() would fail with if the packet has items that rays cannot render together. Needs no device.
 Outcome check_ray_items(const FramePacket& packet);
 
-/// Whether rays meet the same in both, and what they have met can be kept: what is opaque may differ (RenderSettings::keep).
+/// Returns whether rays sample the same in both packets, so that their results can be reused; opaque items may differ
+/// (RenderSettings::reuse_rays).
 bool rays_match(const FramePacket& a, const FramePacket& b);
 
-/// The nearest opaque object of every pixel, 0: none.
+/// Id of the nearest opaque object at every pixel, 0: none.
 struct IdImage {
   std::uint32_t width = 0, height = 0;  ///< pixels
   std::vector<std::uint32_t> ids;       ///< rows from the top
@@ -70,119 +73,123 @@ struct DepthImage {
   std::vector<float> depth;             ///< rows from the top
 };
 
-/// What was marched.
+/// Number of tiles whose rays were marched.
 struct MarchedTiles {
   std::uint32_t marched = 0, total = 0;  ///< tiles of 16 x 16 pixels
 };
 
-/// What one pixel shows, of the first eye: the id of the nearest opaque object (0: none) and its view depth (infinite: none).
+/// Content of one pixel of the first eye's image: id of the nearest opaque object (0: none) and its view depth (infinite: none).
 struct PickResult {
   std::uint32_t id = 0;  ///< as in IdImage
   double depth = 0;      ///< as in DepthImage
 };
 
-/// The last picture where it lies on the device: straight alpha, display values. Good until the next call of the renderer.
-/// `layout` is the image's now, TRANSFER_SRC_OPTIMAL unless a window was painted since; who moves it to another one moves it back. Its
-/// usage allows copies from it. All writes to it are done and visible once `timeline`, a timeline semaphore of the device, has reached
-/// `value`; draw() has waited for that, so that other queues of the same family need wait for nothing.
+/// Last image in device memory: straight alpha, display values. Valid until the next call of the renderer. `layout` is the current layout
+/// of the image: TRANSFER_SRC_OPTIMAL unless a window was painted afterwards; whoever changes it must change it back. The image's usage
+/// allows copies from it. All writes to it are complete and visible when `timeline`, a timeline semaphore of the device, has reached
+/// `timeline_value`; draw() has waited for that, so that other queues of the same family need not wait.
 struct RenderedImage {
-  VkImage image = VK_NULL_HANDLE;                    ///< it belongs to the renderer
-  VkFormat format = VK_FORMAT_UNDEFINED;             ///< of the texels
+  VkImage image = VK_NULL_HANDLE;                    ///< owned by the renderer
+  VkFormat format = VK_FORMAT_UNDEFINED;             ///< texel format
   VkExtent2D extent{};                               ///< pixels
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< the image's now
-  VkSemaphore timeline = VK_NULL_HANDLE;             ///< it belongs to the device
-  std::uint64_t timeline_value = 0;                  ///< that the semaphore has to reach
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< current layout
+  VkSemaphore timeline = VK_NULL_HANDLE;             ///< owned by the device
+  std::uint64_t timeline_value = 0;                  ///< value at which the image is complete
 };
 
-/// Draws frame packets on one device. A draw() that succeeds makes the last picture; it is there until the next draw(), probe(),
-/// replace_shader() or restore_shaders(), or until reading something back fails. To read, show or paint it while there is none is a bug
-/// and aborts.
+/// Renders frame packets on one device. A successful draw() produces the last image; it is valid until the next draw(), sample_rays(),
+/// replace_shader() or restore_shaders(), or until a read-back fails. Reading, presenting or painting without a last image is a bug of the
+/// caller and aborts.
 class Renderer {
  public:
-  /// Makes the device and what all pictures need. An error where there is no device, or it lacks something: one sentence.
+  /// Creates the device and the resources that all images need. A one-line Error if there is no suitable device.
   static Result<std::unique_ptr<Renderer>> create(const vk::DeviceOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws and waits for the fence of the finished colour image.
+  /// Renders the packet and waits until the image is finished. An Error if the packet cannot be rendered, memory is short or the device is
+  /// lost.
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
-  /// The last picture on the device, for a program that draws with the same device (vk::VulkanProvider).
+  /// Returns the last image in device memory, for a program that uses the same device (vk::VulkanProvider).
   RenderedImage rendered_image() const;
-  /// The last picture, 8 bits a channel, straight alpha. A bug where it was drawn with `float_image`.
+  /// Reads back the last image, 8 bits per channel, straight alpha. Must not be called if it was rendered with `float_image`.
   Result<Image8> read_back();
-  /// The image of the last picture, to copy it on the device: in the layout TRANSFER_SRC_OPTIMAL, there as long as the picture is.
+  /// Returns the last image, for copies on the device: in the layout TRANSFER_SRC_OPTIMAL, valid as long as the last image is.
   vk::Image& output_image();
-  /// The opaque depth of the last picture in world units along the axis, less `reference`; NO_DEPTH (shaders/shared/frame.h) where nothing
-  /// is. Nothing at all where there is nothing opaque.
+  /// Opaque depth of the last image: view depth in world units minus `reference_depth`; NO_DEPTH (shaders/shared/frame.h) where there is no
+  /// opaque surface.
   struct OpaqueDepth {
-    vk::Image* image;        ///< R32_SFLOAT, on the device
+    vk::Image* image;        ///< R32_SFLOAT, in device memory
     double reference_depth;  ///< world units
   };
-  /// Nothing where nothing opaque was drawn.
+  /// Returns the opaque depth; nullopt if nothing opaque was rendered.
   std::optional<OpaqueDepth> opaque_depth();
-  /// What stands for the depth of volumes and translucent surfaces in the last picture: where a ray's alpha passes 0.5, in the red of a
-  /// texel for every `spacing`-th pixel each way, counted as the opaque depth; NO_DEPTH where it never does before something opaque.
-  /// Nothing at all where nothing is drawn by rays, of a projection, or without RenderSettings::ray_depth_spacing.
+  /// Depth of volumes and translucent surfaces in the last image: the half-opacity depth, at which a ray's alpha exceeds 0.5, in the red
+  /// channel of one texel for every `spacing`-th pixel in each direction, relative to the same reference as the opaque depth; NO_DEPTH
+  /// where alpha stays below in front of the first opaque surface.
   struct RayDepth {
-    vk::Image* image;        ///< the renderer's, until the next picture
-    double reference_depth;  ///< world units along the view axis: what its depths count from
-    std::uint32_t spacing;   ///< pixels from one texel to the next
+    vk::Image* image;        ///< owned by the renderer, valid until the next image is rendered
+    double reference_depth;  ///< view depth from which the depths are counted, world units
+    std::uint32_t spacing;   ///< distance of the sampled pixels
   };
-  /// That of the last picture.
+  /// Returns the half-opacity depth of the last image; nullopt if no item is rendered by rays, for projections other than composite, and
+  /// without RenderSettings::ray_depth_spacing.
   std::optional<RayDepth> ray_depth();
-  /// A texel that is bound where there is no image.
+  /// Returns the image of one texel to bind where there is no image.
   vk::Image& placeholder_image();
-  /// The last picture in floats. A bug where it was drawn without `float_image`.
+  /// Reads back the last image as floats. Must not be called if it was rendered without `float_image`.
   Result<ImageF32> read_back_float();
-  /// Pixels that a picture can have, each way, on this device.
+  /// Returns the maximum image side on this device, pixels.
   std::uint32_t max_image_side() const;
-  /// Whether the packet holds what RenderSettings::fast can draw. False also for a volume that the last try had no memory to draw so.
+  /// Returns whether the packet can be rendered with RenderSettings::fast. Also false for a volume for which the last attempt ran out of
+  /// memory.
   bool can_draw_fast(const FramePacket& packet) const;
-  /// Whether the last picture's or probe's rays were the fast raycast's and leapt over what is empty.
+  /// Returns whether the rays of the last draw() or sample_rays() were those of the fast raycast and skipped empty space.
   bool skips_empty_space() const;
-  /// The rays of every `spacing`-th pixel each way alone, as a small picture: what `settings` make of them before anything is interpolated.
-  /// What quality.h measures errors with. Red, green and blue over the packet's background (its alpha does not count), alpha that of
-  /// what is drawn.
+  /// Renders only the rays of every `spacing`-th pixel in each direction, as a small image: the result of `settings` before interpolation.
+  /// Used by quality.h to measure errors. Red, green and blue are composited over the packet's background (whose alpha is ignored); alpha
+  /// is that of the rendered items.
   Result<Image8> sample_rays(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing);
-  /// The opaque depth of the last picture.
+  /// Reads back the opaque depth of the last image.
   Result<DepthImage> read_depth();
-  /// The ids of the last picture.
+  /// Reads back the ids of the last image.
   Result<IdImage> read_ids();
-  /// Of the last picture's tiles of 16 x 16 pixels the number whose rays were marched, and of all: with RenderSettings::keep those that
-  /// something opaque has come to or left.
+  /// Returns the number of marched tiles of 16 x 16 pixels in the last image, and of all tiles. With RenderSettings::reuse_rays only the
+  /// tiles where opaque objects changed are marched.
   Result<MarchedTiles> marched_tiles();
-  /// Of the fast raycast's last picture: the rays that were marched where interpolation would not have served, of every 2nd pixel and of
-  /// every pixel, in whole blocks of 16.
+  /// Returns the number of rays that the fast raycast marched in the last image where interpolation would not suffice, at every 2nd pixel
+  /// and at every pixel, in whole blocks of 16 rays.
   Result<std::array<std::uint64_t, 2>> refined_ray_counts();
-  /// Depth and id of one pixel of the last picture: two texels come back, not the images. A pixel beyond the picture is a bug.
+  /// Reads back depth and id of one pixel of the last image: transfers two texels only. The pixel must be inside the image.
   Result<PickResult> pick(std::uint32_t x, std::uint32_t y);
-  /// Pixels of one view of the last picture; 0 before the first.
+  /// Returns the size of one view of the last image, pixels; 0 before the first image.
   std::array<std::uint32_t, 2> view_size() const;
-  /// Shows the last picture in a window (scaled to it), with the user interface over it at the window's own pixels (ui.h). Again with
-  /// another `ui`: the picture is not drawn again. False: the swapchain no longer fits, resize it; nothing was shown then.
+  /// Presents the last image in a window (scaled to it), with the user interface over it in window pixels (ui.h). May be called repeatedly
+  /// with different `ui`: the image is not rendered again. Returns false if the swapchain does not match the window and must be resized;
+  /// nothing is shown then.
   Result<bool> present(vk::Swapchain& swapchain, const UiItems* ui = nullptr);
-  /// The same without a window: what present() with this `ui` would show in a window of this size.
+  /// Paints what present() would show with this `ui` in a window of this size, without a window.
   Outcome paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui);
-  /// The image that was painted, to copy it on the device: in the layout TRANSFER_SRC_OPTIMAL, until it is painted again or a call fails.
-  /// Null where there is none.
+  /// Returns the painted window image, for copies on the device: in the layout TRANSFER_SRC_OPTIMAL, valid until the next paint or a failed
+  /// call. Null if there is none.
   vk::Image* window_image();
-  /// What paint_window(), or present() with a user interface, painted last: the window's pixels, alpha 255. A bug where window_image() is
-  /// null.
+  /// Reads back the window image painted last by paint_window() or by present() with a user interface: window pixels, alpha 255.
+  /// window_image() must not be null.
   Result<Image8> read_back_window();
 
-  /// Pictures from now on are drawn with `words` in the place of the embedded shader "compose.frag" (or another of pass.h).
-  /// An error where there is no such shader, or where it uses a binding that the program does not bind; nothing has changed then.
-  /// False: these words are in use already.
+  /// Replaces the embedded shader `name`, for instance "compose.frag" (pass.h), by the SPIR-V code `words` for all following images.
+  /// Returns false if this code is already in use. An Error if there is no such shader or the code uses a binding that the program does not
+  /// bind; the shader is unchanged then.
   Result<bool> replace_shader(std::string_view name, std::vector<std::uint32_t> words);
-  /// The embedded shaders again.
+  /// Restores the embedded shaders.
   void restore_shaders();
 
-  /// As of now.
+  /// Returns the current statistics.
   RenderStats stats() const;
-  /// Texts of the validation layer's messages, the first 64.
+  /// Returns the first 64 messages of the validation layer.
   std::vector<std::string> validation_texts() const;
-  /// The device that it draws with.
+  /// Returns the device of the renderer.
   vk::Device& device();
 
  private:

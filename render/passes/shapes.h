@@ -1,8 +1,8 @@
-/// Triangle meshes of the packet's shapes: tubes around polylines and the cursor's glyph. Plain CPU code, frame thread.
-///   tube: rings of `tube_sides` vertices around the points, in a parallel-transport frame (no twist of its own; on a closed
-///         line the frame's holonomy is spread over the length), mitred at the corners so that the walls keep the radius,
-///         with round caps (half spheres) at open ends
-///   ball, cylinder, cone: for the probe, the proxies, the links between them, the force
+/// Triangle meshes of the packet's shapes: tubes around polylines and the haptic cursor. CPU code, frame thread.
+///   tube: rings of `tube_sides` vertices around the points, in a parallel-transport frame (without twist; on a closed line the frame's
+///         holonomy is distributed over the length), mitered at the corners so that the walls keep the radius, with round caps (half
+///         spheres) at open ends
+///   sphere, cylinder, cone: for the probe, the proxies, the links between them, the force
 /// All are closed surfaces with outward normals, counter-clockwise seen from outside. World units.
 #pragma once
 #include <cstdint>
@@ -12,62 +12,70 @@
 
 namespace catena::render {
 
+/// Vertex of a shape mesh.
 struct MeshVertex {
   Vec3 position{0.0};
-  Vec3 normal{0.0};  ///< unit, outward
+  Vec3 normal{0.0};  ///< unit vector, outward
   Color color;
-  std::uint32_t id = 0;  ///< of the object; UNCLIPPED in it: the clip planes do not touch it; its corner of a triangle with edges
+  /// Object id, combined with flags: UNCLIPPED (not cut by clip planes) and the corner number in a triangle with visible edges.
+  std::uint32_t id = 0;
 };
 
-/// Indexed triangles in double precision; the uploader makes floats of them, relative to an origin of its choice.
+/// Indexed triangles in double precision; converted to floats relative to an origin on upload.
 struct ShapeMesh {
   std::vector<MeshVertex> vertices;
-  std::vector<std::uint32_t> triangles;  ///< three indices each
+  std::vector<std::uint32_t> triangles;  ///< three indices per triangle
 };
 
-/// Gives the vertices from `first` on to an object.
+/// Assigns the vertices from index `first` on to an object.
 void assign_object(ShapeMesh& shape, std::size_t first, std::uint32_t id, bool clipped);
 
-/// Of a tube where a pixel has that size in the world (0: unknown): 12 or 16; 0 of one so thin that a ribbon shows it.
+/// Returns the number of sides of a tube at a pixel size of `pixel` world units (0: unknown): 12 or 16; 0 if the tube is so thin that it is
+/// rendered as a ribbon.
 int tube_sides(double radius, double pixel);
 
-/// A circle of a tube's surface: its vertices at centre + radius out, with the normals sqrt(1 - lean^2) out + lean tangent.
+/// Cross section of a tube's surface: its vertices lie at center + radius out, with the normals sqrt(1 - normal_tilt^2) out + normal_tilt
+/// tangent, where `out` is a unit vector perpendicular to the tangent.
 struct TubeRing {
-  Vec3 center{0.0}, tangent{0.0}, normal{0.0};  ///< normal: to the first vertex
+  Vec3 center{0.0}, tangent{0.0}, normal{0.0};  ///< unit vectors; normal: direction to the first vertex
   Color color{};
   double radius = 0, normal_tilt = 0;
 };
-/// A tube as rings: walls from each to the next are its surface. Of an open one the first and the last have no radius: they are the tips of
-/// the caps; a closed one ends with its first ring. Points as add_tube takes them.
+/// Returns the rings of a tube; the walls between consecutive rings are its surface. For an open tube the first and the last ring have
+/// radius 0 (tips of the caps); a closed one ends with its first ring. Same requirements on the points as add_tube().
 std::vector<TubeRing> tube_rings(const TubeItem& tube, bool& closed);
 
-/// Appends a tube. Points that are not further apart than 1e-9 of the radius are one; a single point gives a ball, none nothing.
-/// Colours by point run linearly between them. Closed: the last point repeats the first. Non-finite points are a bug of the caller.
+/// Appends a tube. Points not further apart than 1e-9 of the radius are merged; a single point gives a sphere, no point gives nothing.
+/// Colors are interpolated linearly between points. Closed: the last point repeats the first. Points must be finite.
 void add_tube(ShapeMesh& shape, const TubeItem& tube, int sides);
 
-/// Appends a mesh: three vertices a triangle, with its normal or their own, and marked. Triangles without an area are left out.
+/// Appends a mesh: three vertices per triangle, with the triangle's normal or vertex normals, and corner numbers if edges are shown.
+/// Triangles without area are left out.
 void add_mesh(ShapeMesh& shape, const MeshItem& mesh);
 
+/// Appends a sphere.
 void add_sphere(ShapeMesh& shape, const Vec3& centre, double radius, const Color& color, int sides = 20);
-/// With flat ends. Nothing if a and b coincide.
+/// Appends a cylinder with flat ends; nothing if a and b coincide.
 void add_cylinder(ShapeMesh& shape, const Vec3& a, const Vec3& b, double radius, const Color& color, int sides = 12);
+/// Appends a cone with a closed base.
 void add_cone(ShapeMesh& shape, const Vec3& base, const Vec3& tip, double radius, const Color& color, int sides = 16);
 
-/// The colour of link i's proxy: a colour-blind-safe sequence (Okabe and Ito); dim while the link is not active.
+/// Returns the color of link i's proxy: a color-blind-safe sequence (Okabe and Ito); dimmed while the link is not active.
 Color link_color(std::size_t i, bool active);
 
-/// The link between a proxy and its probe: grey on the feature, over amber to red where the hand is about to leave it (Okabe
-/// and Ito's, told apart by the colour-blind).
+/// Returns the color of the link between a proxy and the probe for a release ratio of 0 (gray: on the feature) over amber to 1 (red: about
+/// to release); distinguishable for the color-blind (Okabe and Ito).
 Color release_color(double leaving);
 
-/// Probe ball, a ball a proxy (larger than a tube of the fitted radius: it covers the line it sits on), cylinders
-/// probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length, along F, from the probe, or
-/// from where the hand is held where the picture stands for a device (CursorItem::strain).
-/// A link that the hand is leaving: its cylinder takes release_color and gets thicker; one that has let go: three rings of
-/// release_color(1) around the place where it would hold. With a foot: a grey line of 0.15 size from the probe to there, and a cross of
-/// 1.5 size to each side, in the plane across the line. A crosshair is three rods and nothing else.
+/// Appends the cursor: the probe sphere, one sphere per proxy (larger than a tube of the fitted radius, so that it covers the line it is
+/// on), cylinders probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length() long, along F, from the probe, or from the last
+/// active proxy if CursorItem::force_ratio is set. The cylinder of a link close to release gets release_color() and is thicker; a released
+/// link is shown by three rings of release_color(1) around its proxy. With a foot point: a gray line of 0.15 size from the probe to it, and
+/// a cross of 1.5 size to each side, perpendicular to the line. A crosshair is three bars and nothing else, apart from the line to the foot
+/// point.
 void add_cursor(ShapeMesh& shape, const CursorItem& cursor);
-/// 2.5 glyph radii a newton, between 2 (anything felt can be seen) and 16 radii; 0 without a force.
+/// Returns the length of the force arrow: 2.5 cursor radii (`size`) per newton, between 2 (so that any perceptible force is visible) and 16
+/// radii; 0 without a force.
 double cursor_arrow_length(double force_n, double size);
 
 }  // namespace catena::render

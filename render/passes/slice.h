@@ -1,9 +1,9 @@
-/// Slices: a plane through a grid, coloured by the trilinear values that it cuts, with lines of constant value on it. No polygon
-/// is made: each pixel's ray is cut with the plane, so that depth and value are exact, also with the eye within the grid.
-///   colour: the table, piecewise linear, at full precision
-///   line of a level: |value - level| / |gradient a pixel| pixels away, measured a second time at the foot of that distance;
-///                    drawn by coverage over `line_width` pixels
-/// CellCache that are masked or not finite are transparent. Opaque slices are drawn by SlicePass, others in the layers (passes.h).
+/// Slices: a plane through a grid, colored by the trilinear values in the plane, with contour lines. No polygon is generated: each pixel's
+/// ray is intersected with the plane, so that depth and value are exact, also with the camera inside the grid.
+///   color: the color table, piecewise linear, at full precision
+///   contour line of a level: |value - level| / |gradient per pixel| is the distance in pixels, measured a second time at the foot point of
+///                    that distance; drawn by coverage over `line_width` pixels
+/// Cells that are masked or not finite are transparent. Opaque slices are rendered by the pass kSlicePass, others in the layers (passes.h).
 #pragma once
 #include <map>
 
@@ -12,10 +12,10 @@
 
 namespace catena::render {
 
-/// A slice on the device.
+/// Device resources of one slice.
 class Slice {
  public:
-  /// Uploads what changed; false: its grid cannot be drawn (thinner than a cell).
+  /// Uploads what changed; returns false if the grid cannot be rendered (thinner than a cell).
   Result<bool> prepare(Frame& frame, const SliceItem& item);
   const field::ScalarGrid& grid() const { return *item_.grid; }
   std::uint32_t id() const { return item_.id; }
@@ -28,12 +28,13 @@ class Slice {
   vk::Buffer colors_, levels_, frame_data_, slice_data_, layer_data_;
 };
 
+/// Renders slices; caches the pipelines.
 class SliceDrawer {
  public:
   static Result<SliceDrawer> create(vk::Device& device);
-  /// CellFinder a pass over target::opaque, or a layer's.
+  /// Records the slice in a render pass over target::opaque or over a layer.
   Outcome draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const PeelState& peel);
-  /// One texel, bound where there is no id to be read.
+  /// Returns an image of one texel, bound where there is no id image.
   const vk::Image& placeholder_id() const { return placeholder_id_; }
 
  private:
@@ -45,9 +46,10 @@ class SliceDrawer {
   std::map<std::array<std::uint32_t, 3>, vk::Pipeline> pipelines_;
 };
 
-/// A list of slices that follows the packet's.
+/// Updates `slices` to the items of the packet for which `chosen` is true.
 Outcome prepare_slices(Frame& frame, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&));
 
+/// Returns whether the slice is rendered in the layers: opacity < 1, and not completely invisible.
 bool is_translucent(const SliceItem& item);
 
 }  // namespace catena::render

@@ -1,6 +1,6 @@
-/// Isosurfaces that are kept from picture to picture (RenderSettings::keep): while they, the eye and the lights stay as they are, no ray
-/// looks for them again, whatever else moves before or behind them. Holds their colours, depths and ids, 20 bytes a pixel, from the first
-/// picture that asks for it on. The picture is the same to the bit. Frame thread only.
+/// Cache of rendered isosurfaces (RenderSettings::reuse_rays): while the surfaces, the camera and the lights are unchanged, their rays are
+/// not marched, whatever else moves in front of or behind them. Holds their colors, depths and ids, 20 bytes per pixel, from the first
+/// image that requests reuse. The resulting image is identical to the bit. Frame thread only.
 #pragma once
 #include <functional>
 #include <optional>
@@ -12,28 +12,30 @@
 
 namespace catena::render {
 
+/// Color, depth and id images of the opaque isosurfaces.
 class SurfaceCache {
  public:
-  /// What pictures of surfaces follow from: the data of each as its shader gets them, and a count of all else.
+  /// Everything the images of the surfaces depend on: the shader data of each surface, and a version counter of all else.
   struct Key {
     std::vector<shared::FrameData> surfaces;
     std::uint64_t version = 0;
+    /// Returns whether images of both keys are identical.
     bool matches(const Key& other) const;
   };
 
-  /// Room for a picture; an error where there is no memory for it, nothing is kept then.
+  /// Allocates the images for the given size. An Error if there is no memory; the cache is empty then.
   Outcome ensure(vk::Device& device, const VkExtent3D& picture);
-  /// After fit(), not within a pass. `draw` draws the surfaces into opaque targets that hold nothing else; it is asked only where `look` is
-  /// new.
+  /// To be called after ensure(), outside a render pass. `draw` renders the surfaces into opaque targets that contain nothing else; it is
+  /// called only if `look` differs from the cached key.
   Outcome update(vk::Commands& commands, Key look, const std::function<Outcome()>& draw);
-  /// CellFinder a pass over the picture's opaque targets. `frame`: of the picture.
+  /// Copies the cached surfaces into the image's opaque targets, within a render pass over them. `frame`: frame data of the image.
   Outcome draw(vk::Device& device, vk::Commands& commands, const shared::FrameData& frame);
-  /// Whether the last update() had nothing to do.
+  /// Returns whether the last update() found the cache valid.
   bool reused_previous() const { return reused_previous_; }
 
  private:
   vk::Image color_, depth_, id_, depth_buffer_;
-  std::optional<Key> key_;  ///< of what the images hold
+  std::optional<Key> key_;  ///< key of the cached images
   bool reused_previous_ = false;
   vk::Pipeline pipeline_;
   vk::Buffer uniform_;

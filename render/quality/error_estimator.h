@@ -1,5 +1,5 @@
-/// How far settings are off in one picture, measured on a sparse lattice of its pixels against converged rays through them (quality.h has
-/// the numbers). Frame thread.
+/// Error estimation for render settings: measured on a sparse pixel sample grid of one image against converged rays through these pixels
+/// (quality.h defines the measures). Frame thread.
 #pragma once
 #include <array>
 #include <vector>
@@ -9,57 +9,64 @@
 
 namespace catena::render {
 
-inline constexpr double kMaxP999Ratio = 8;       ///< the 99.9 percentile, in errors
-inline constexpr double kCoarseErrorGoal = 1.5;  ///< 1/255: from it on the error of step 0.25 does not count
+inline constexpr double kMaxP999Ratio = 8;       ///< upper limit of the 99.9 percentile, as a multiple of the error goal
+inline constexpr double kCoarseErrorGoal = 1.5;  ///< 1/255: for goals from here on, the error of a reference of step 0.25 is negligible
 
-/// Errors on the lattice, 1/255.
+/// Error on the pixel sample grid, 1/255.
 struct ErrorEstimate {
-  double rmse = 0;         ///< over the covered pixels
-  double upper_bound = 0;  ///< the true one is at most so, whatever chance makes of the lattice
-  double p999 = 0;         ///< of the largest of a pixel's differences
+  double rmse = 0;         ///< RMSE over the covered pixels
+  double upper_bound = 0;  ///< upper bound of the RMSE of the whole image: three standard deviations above the estimate
+  double p999 = 0;         ///< 99.9 percentile of a pixel's largest channel difference
+  /// Returns whether the error meets the goal `e`.
   bool meets(double e) const { return upper_bound <= e && p999 <= kMaxP999Ratio * e; }
 };
 
-/// How many covered pixels it has: about 6000, about 800.
+/// Number of covered pixels in the sample grid: full about 6000, reduced about 800.
 enum class EstimatorSize { full, reduced };
 
+/// Estimates errors of render settings for one packet. The renderer must outlive it.
 class ErrorEstimator {
  public:
-  /// The picture is drawn without a background, so that it says what it covers, and without what is written over it, which rays lack. What
-  /// is to have none may come to lie over anything: then errors are the larger ones of over black and over white, between which all others
-  /// are.
+  /// The image is rendered without a background, so that alpha shows the coverage, and without the overlay, which ray samples lack. If the
+  /// packet's background is transparent, the image may be composited over anything: then errors are the larger ones of over black and over
+  /// white, which bound all others.
   ErrorEstimator(Renderer& renderer, const FramePacket& packet, EstimatorSize size = EstimatorSize::full);
 
-  /// Before all that follows. `goal`: the least error that matters, 1/255. `moves`: the error is wanted to be steady, too.
+  /// Chooses the sample grid and renders the reference; to be called first. `goal`: smallest error of interest, 1/255. `moves`: temporal
+  /// stability will be tested, too.
   Outcome begin(double goal, bool moves = false);
-  /// Whether the fast raycast draws the picture: it brings the grid to the device in its form. begin() has done so, unless the lattice is
-  /// small.
+  /// Returns whether the fast raycast can render the image; packs the grid on the device. begin() includes this unless the size is reduced.
   Result<bool> prepare_fast();
 
   Renderer& renderer() const { return renderer_; }
   const FramePacket& packet() const { return packet_; }
-  bool uses_fast_raycast() const { return uses_fast_raycast_; }  ///< the fast raycast draws the picture
-  double reference_step() const { return reference_step_; }      ///< of the converged rays, voxels
+  bool uses_fast_raycast() const { return uses_fast_raycast_; }  ///< the fast raycast can render the image
+  double reference_step() const { return reference_step_; }      ///< ray step of the reference, voxels
+  /// Estimated remaining error of the reference, 1/255.
   double reference_error() const { return reference_error_; }
-  double covered_pixels() const { return covered_pixels_; }  ///< pixels
-  bool is_shaded() const;                                    ///< a volume of it is
-  bool empty() const;                                        ///< every pixel was looked at, and nothing is in any
-  int images_rendered() const { return images_rendered_; }   ///< drawn so far
+  double covered_pixels() const { return covered_pixels_; }  ///< number of covered pixels in the whole image
+  bool is_shaded() const;                                    ///< any volume is shaded
+  bool empty() const;                                        ///< every pixel was sampled, and all are transparent
+  int images_rendered() const { return images_rendered_; }   ///< number of images rendered so far
 
-  /// By how much rays of half the step differ, on a lattice of its own; begin() is not needed.
+  /// Returns the RMSE between rays of this step and of half the step, 1/255, on a separate sample grid; does not require begin().
   Result<double> half_step_difference(const RenderSettings& settings) const;
 
-  /// Of the rays alone; of the finished picture.
+  /// Returns the error of the rays alone.
   Result<ErrorEstimate> estimate_rays(const RenderSettings& settings);
+  /// Renders the image and returns its error, including interpolation.
   Result<ErrorEstimate> estimate_image(const RenderSettings& settings);
 
-  /// Of the picture that was drawn last: the rays of every 2nd pixel and of every pixel that were refined, by all such that show something.
+  /// Returns, for the image rendered last, the rays refined at every 2nd pixel and at every pixel, as shares of all covered rays of that
+  /// spacing.
   Result<std::array<double, 2>> refined_shares() const;
-  /// Whether what is thin is in the picture that was drawn last, and its tail of errors is short, beside every ray of a short step.
+  /// Returns whether the image rendered last preserves thin features and has few outlier pixels (99.9 percentile), for the error goal `e`,
+  /// compared with full-resolution reference rays of the fast raycast (step 0.25).
   Result<bool> preserves_thin_features(double e);
-  /// The same of the lattice of what was measured last, beside the converged rays.
+  /// Returns whether the samples measured last preserve thin features, compared with the converged rays.
   bool samples_preserve_thin_features(double e) const;
-  /// Whether the error of the rays, of the picture, that were measured last stays much the same where the camera goes on.
+  /// Return whether the error of the rays, or of the image, that were measured last is temporally stable: it changes little while the
+  /// camera moves.
   Result<bool> are_rays_stable(const RenderSettings& settings);
   Result<bool> is_image_stable(const RenderSettings& settings);
 
@@ -67,20 +74,20 @@ class ErrorEstimator {
   Outcome find_reference(double goal);
   Result<Image8> render_samples();
   ErrorEstimate compare(const Image8& a, const Image8& b) const;
-  /// Over each ground.
+  /// Returns the flicker over each background.
   std::vector<double> flicker(const Image8& last, const Image8& last_truth, const Image8& now, const Image8& truth) const;
   ErrorEstimate compare_to_reference() const;
   bool is_stable(const Image8& after) const;
 
   Renderer& renderer_;
   FramePacket packet_;
-  std::vector<std::array<float, 3>> backgrounds_;    ///< that the picture may lie over; pictures here lie over the first
-  Image8 reference_, next_reference_;                ///< the rays of the lattice; and from where the camera goes
-  std::vector<double> max_flicker_;                  ///< that is steady enough, over each ground
+  std::vector<std::array<float, 3>> backgrounds_;    ///< backgrounds to evaluate; images here are composited over the first
+  Image8 reference_, next_reference_;                ///< reference samples; the same for the moved camera
+  std::vector<double> max_flicker_;                  ///< limit of the flicker for each background
   double covered_pixels_ = 1;                        ///< pixels
-  Image8 last_samples_;                              ///< the lattice of the rays or the picture that were measured last
-  double reference_step_ = 0, reference_error_ = 0;  ///< and what is left of it
-  Image8 fast_reference_;                            ///< the fast raycast's every ray of a short step
+  Image8 last_samples_;                              ///< samples of the rays or of the image measured last
+  double reference_step_ = 0, reference_error_ = 0;  ///< step of the reference, voxels, and its remaining error
+  Image8 fast_reference_;                            ///< full-resolution reference rays of the fast raycast at a short step
   EstimatorSize size_;
   std::uint32_t spacing_ = 1;
   bool uses_fast_raycast_ = false;

@@ -1,6 +1,7 @@
-/// The cheapest settings of the fast raycast whose picture is as good as stated (quality.h has the model): ray steps are tried on the
-/// lattice, with either light; those that are good enough there become pictures with every plan of interpolation, the cheapest first, until
-/// none is left that would cost less than the best. A lattice that has begun, and lives longer. Frame thread.
+/// Search for the cheapest settings of the fast raycast that meet an error goal (quality.h describes the model): ray steps are tested on
+/// the sample grid, with both kinds of gradients; those that meet the goal there are rendered with every interpolation plan, the cheapest
+/// first, until none is left that would cost less than the best. Requires an ErrorEstimator on which begin() was called and that outlives
+/// this object. Frame thread.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,33 +11,36 @@
 
 namespace catena::render {
 
+/// Search for settings of the fast raycast by error.
 class FastSettingsSearch {
  public:
-  /// `error`: covered RMSE, 1/255.
+  /// `error`: goal for the covered RMSE, 1/255.
   FastSettingsSearch(ErrorEstimator& lattice, double error, const SearchProgress& progress);
-  /// Nothing where none is good enough.
+  /// Returns the best choice; nullopt if no settings meet the goal.
   Result<std::optional<QualityChoice>> find();
 
  private:
-  /// How rays become a picture. Thresholds of refinement in shares of the error.
+  /// Ray grid spacing and refinement. Refinement thresholds are fractions of the error goal.
   struct InterpolationPlan {
     std::uint32_t spacing;
     double refine_half, refine_full;
-    std::array<double, 2> refined_shares;  ///< rays of every 2nd pixel, of every pixel, by all such that show something: a guess
+    /// Initial guess of the rays refined at every 2nd pixel and at every pixel, as shares of all covered rays of that spacing.
+    std::array<double, 2> refined_shares;
   };
   static constexpr InterpolationPlan kPlans[] = {{4, -1, -1, {0, 0}},    {4, 1.3, -1, {0.4, 0}}, {2, 0, -1, {0, 0}},
                                                  {4, 1, 3, {0.45, 0.1}}, {2, 0, 2, {0, 0.15}},   {2, 0, 1.5, {0, 0.22}},
                                                  {2, 0, 0.8, {0, 0.37}}, {1, 0, -1, {0, 0}}};
 
+  /// Settings to be tried as an image.
   struct Candidate {
     RenderSettings settings;
-    double ray_rmse, rmse_upper_bound;  ///< of the rays alone: ErrorEstimate
+    double ray_rmse, rmse_upper_bound;  ///< error of the rays alone (ErrorEstimate)
     std::size_t plan;
   };
-  /// What the pictures of a plan were, with one light: by the gradient of the cell, by central differences.
+  /// Results of the images of a plan, for one kind of gradients: of the cell, or central differences.
   struct Attempts {
-    std::optional<double> interpolation_rmse;  ///< the error that it added, the last time that it was too much
-    int failures = 0;                          ///< pictures that lost what is thin, or had a few pixels far off, at so many steps
+    std::optional<double> interpolation_rmse;  ///< error added by interpolation when it was last too large
+    int failures = 0;                          ///< number of images, each at another step, that missed thin features or had outlier pixels
   };
 
   RenderSettings make_settings(const InterpolationPlan& plan, double step, bool smooth) const;
@@ -54,7 +58,7 @@ class FastSettingsSearch {
   const double error_;
   const SearchProgress& progress_;
   std::vector<Candidate> candidates_;
-  bool skips_empty_space_ = false;  ///< unlit rays that leap over what is empty
+  bool skips_empty_space_ = false;  ///< unshaded rays skip empty space
   std::array<std::array<double, 2>, std::size(kPlans)> refined_shares_;
   Attempts attempts_[2][std::size(kPlans)];
   std::optional<QualityChoice> best_;

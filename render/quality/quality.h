@@ -1,14 +1,16 @@
-/// Settings for a stated error or time, from measured residuals. The error of a setting is measured on this very picture: the pixels
-/// of a sparse lattice (every 13th each way, or more, until about 6000 of them are covered) against converged rays through them.
-///   RMSE: 8-bit RGB over the background (of a transparent one: over black or white, the larger), in 1/255, of the covered pixels: where
-///   the picture's or the converged one's alpha, without a background, is at least 1/255 (measure.h). The estimate is three standard
-///   deviations of the lattice's mean above it, and counts what is left of the converged rays' own error.
-/// error=E: every ray step, lit by either gradient, whose rays alone stay below E and steady (tried on the lattice: cheap) with every plan
-/// of interpolation, in the order of their expected cost; the cheapest, by the rays that it marches, whose finished picture stays below E,
-/// keeps what is thin, and whose error changes by at most half of E, or of what the picture itself changes by, while the camera turns by
-/// 0.2 degrees. time=MS: the ladder of refinement.h from the cheapest on, until a picture takes longer than MS; the least error among those
-/// that did not; where that leaves much of it unused, every pixel's rays of longer steps, too. More time therefore never makes the error
-/// worse. What the fast raycast cannot draw or cannot reach is left to the exact one. Frame thread.
+/// Search for render settings by error or by time, from measured errors. The error of a setting is measured on the image itself: at the
+/// pixels of a sparse sample grid (every 13th pixel in each direction, or more, until about 6000 of them are covered) against converged
+/// rays.
+///   RMSE: 8-bit RGB over the background (transparent: over black or white, the larger), in 1/255, of the covered pixels: where the alpha
+///         of the image or of the reference, without background, is at least 1/255 (image_error.h). The estimate is an upper bound, three
+///         standard deviations above the sample mean, and includes the remaining error of the reference itself.
+/// error=E: every ray step, with both kinds of gradients, whose rays alone stay below E and temporally stable (tested on the sample grid,
+/// which is cheap) is combined with every interpolation plan, in the order of expected cost. The result is the cheapest, by the number of
+/// marched rays, whose finished image stays below E, preserves thin features, and whose error changes by at most half of E, or of the
+/// change of the image itself, while the camera turns by 0.2 degrees. time=MS: the quality levels of refinement.h from the cheapest on,
+/// until an image takes longer than MS; the smallest error among those that did not. If that leaves much of the time unused, rays at every
+/// pixel with longer steps are tried, too. More time therefore never increases the error. What the fast raycast does not support or cannot
+/// reach is left to the exact one. Frame thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -20,62 +22,66 @@
 
 namespace catena::render {
 
+/// Goal of the search.
 struct QualityGoal {
   enum class Kind { error, time } kind = Kind::error;
-  double value = 0;           ///< 1/255, or ms
-  bool single_image = false;  ///< of an error: one picture is drawn, once (one_picture.h)
+  double value = 0;           ///< 1/255, or milliseconds
+  bool single_image = false;  ///< error goals only: the image is rendered only once (single_image_search.h)
 };
 
+/// Result of the search.
 struct QualityChoice {
   RenderSettings settings;
-  double estimated_rmse = 0;  ///< 1/255
-  double expected_ms = 0;     ///< time=MS: what the picture takes: the quicker of two, by what the processor's cores do where they draw
-  bool goal_reached = true;   ///< false: nothing was good (or quick) enough; the nearest was taken
-  int images_rendered = 0;    ///< drawn on the way
-  bool is_empty = false;      ///< nothing of the scene is in the picture
+  double estimated_rmse = 0;  ///< upper bound, 1/255
+  /// time goals only: expected time of the image: the shorter of two, from processor time if a CPU driver renders.
+  double expected_ms = 0;
+  bool goal_reached = true;  ///< false: no settings met the goal; the closest ones were chosen
+  int images_rendered = 0;   ///< number of images rendered during the search
+  bool is_empty = false;     ///< no item of the scene is visible in the image
 };
 
-/// The milliseconds of drawing a packet with these settings, once they are warm; the tests put their own in its place.
+/// Returns the milliseconds of rendering a packet with these settings after warm-up; replaceable in tests.
 using RenderTimeFn = std::function<Result<double>(const RenderSettings&)>;
 
-/// Told from time to time how much of the search is done, 0 to 1; it may end before.
+/// Called from time to time with the completed fraction of the search, 0 to 1; the search may end before it reaches 1.
 using SearchProgress = std::function<void(double done)>;
 
-/// Stereo: the first eye's picture is measured; the eyes share a time.
-/// Draws several pictures; the caller draws the chosen one.
+/// Chooses settings for the goal. Renders several images; the caller renders the final one. Stereo: the image of the first eye is measured;
+/// a time goal applies to all eyes together. An Error is one of the renderer's.
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal,
                                      const SearchProgress& progress = nullptr, const RenderTimeFn& timer = nullptr);
 
-/// One setting that was tried.
+/// Time and error of settings that were tried.
 struct SettingsTrial {
   double ms = 0, rmse = 0;
 };
-/// The least error among those that took at most `ms`; where none did, the quickest.
+/// Returns the index of the trial with the smallest error among those that took at most `ms`; if there is none, the fastest.
 std::size_t best_within(const std::vector<SettingsTrial>& tried, double ms);
 
-/// The error of the picture that `settings` draw, measured the same way.
+/// Returns the error of the image rendered with `settings`, measured in the same way.
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
-/// What half the step of exact rays changes on about 4000 pixels of the picture, 1/255: about as much they are off. Cheap beside the
-/// picture.
+/// Returns the RMSE between exact rays of this step and of half the step on about 4000 pixels of the image, 1/255: about the error of the
+/// rays. Cheap compared with rendering the image.
 Result<double> half_step_difference(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
-/// Errors below it are what rounding to 8 bits makes of nothing, 1/255.
+/// Errors below this are caused by rounding to 8 bits alone, 1/255.
 inline constexpr double kMinReportedRmse = 0.4;
 
-/// Several settings of one picture, measured the same way against one converged picture.
+/// Errors of several settings for one image, all measured against the same reference.
 struct MeasuredSettings {
-  std::vector<double> rmse;   ///< one a setting, as it was found: not the estimate above it
-  double reference_rmse = 0;  ///< what is left of the error of the converged picture itself
+  std::vector<double> rmse;   ///< one per setting: the estimate itself, not its upper bound
+  double reference_rmse = 0;  ///< remaining error of the reference
 };
-/// `advance` is asked before each setting with the error of the one before (of the first with 0); false: the rest is left out.
+/// Measures the settings one by one. `go_on` is called before each of them with the error of the previous one (0 for the first); if it
+/// returns false, the remaining settings are left out.
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
                                       const std::function<bool(double last)>& go_on);
 
-/// The same of one.
+/// Returns the error of a single setting.
 Result<double> measure_single_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
-/// "fast, step 3, every 4th pixel, every 2nd above 0.5"; "exact, step 1, 32 bits a voxel" where that is stated.
+/// Returns a description such as "fast, step 3, every 4th pixel, every 2nd above 0.5" or "exact, step 1, 32 bits a voxel" (if set).
 std::string describe(const RenderSettings& settings);
 
 }  // namespace catena::render

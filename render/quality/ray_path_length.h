@@ -1,19 +1,20 @@
-/// How far exact rays march in a picture: the cost of a step length before anything is drawn. Some hundred pixels' rays are followed on the
-/// processor through the grids' own values, every few voxels, as the exact raycast goes: over what is empty it leaps, but for the bricks
-/// beside what is seen, and where next to no light is left it ends. A sample counts where any of the rays that are marched together takes
-/// it: those of 4 x 2 pixels. Of several volumes each is followed by itself. Colours by a gradient and what is opaque before a volume are
-/// not looked at. Any thread.
+/// Path length of exact rays in an image, which determines the cost of a step length before anything is rendered. The rays of some hundred
+/// pixels are traced on the CPU through the grids' own values, every few voxels, like the exact raycast: it skips empty space, except for
+/// bricks next to visible ones, and ends where almost no light is left. A sample counts if any of the rays that are marched together, those
+/// of 4 x 2 pixels, takes it. Several volumes are traced separately. Coloring by gradient and opaque objects in front of a volume are
+/// ignored. Any thread.
 #pragma once
 #include "render/frame/frame_packet.h"
 
 namespace catena::render {
 
-/// Of all pixels together, in smallest voxel edges.
+/// Sum over all pixels, in smallest voxel edges.
 struct RayPathLength {
-  double marched = 0;  ///< where samples are taken
-  double visible = 0;  ///< the part of it with an extinction, where light is worked out
+  double marched = 0;  ///< length on which samples are taken
+  double visible = 0;  ///< part of it with extinction > 0, where shading is computed
 };
 
+/// Estimates the path length of all rays of the packet.
 RayPathLength measure_ray_path_length(const FramePacket& packet);
 
 }  // namespace catena::render

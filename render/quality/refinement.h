@@ -1,7 +1,8 @@
-/// What to draw next so that a picture comes in time and becomes good while nothing moves. Pure logic: no device, no window, no clock.
-///   moving: the best rung of a ladder of settings whose expected time fits the budget
-///   still:  quarter -> half -> every pixel, then finished; anything that moves starts anew
-/// Times are expected from measured ones (TimeModel). Frame thread.
+/// Choice of the next image's settings, so that moving images are on schedule and static ones become good. Pure logic: no device, no
+/// window, no clock.
+///   moving: the best of the quality levels whose expected time fits the budget
+///   static: quarter -> half -> every pixel, then finished; any change starts over
+/// Times are predicted from measured ones (TimeModel). Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,40 +12,45 @@
 
 namespace catena::render {
 
-/// What is known of what will be drawn.
+/// Properties of the scene that determine the quality levels.
 struct QualityLevelOptions {
   bool can_draw_fast = true;  ///< Renderer::can_draw_fast
+  /// Some volume is shaded.
   bool is_shaded = false;
   bool operator==(const QualityLevelOptions&) const = default;
 };
 
-/// Every `spacing`-th pixel at that step by the fast raycast, refined where interpolation errs by more than `half` and `full` (1/255; < 0:
-/// nowhere); `smooth`: shaded by central differences. The farther the rays are apart, the sooner they end.
+/// Returns settings of the fast raycast: every `spacing`-th pixel at that step, refined where the expected interpolation error exceeds
+/// `half` and `full` (1/255; < 0: nowhere); `smooth`: shaded by central differences. The larger the spacing, the sooner rays are
+/// terminated.
 RenderSettings fast_level(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false);
-/// By the exact raycast.
+/// Returns settings of the exact raycast at that step.
 RenderSettings exact_level(double step_voxels);
-/// The same for what others are measured against: rays end only where a ten-thousandth gets through.
+/// Returns the same for reference images: rays end at a transmittance of 1e-4.
 RenderSettings converged_level(double step_voxels);
 
-/// Of what a ray costs at step 1: its way to what is seen, whatever the step.
+/// Share of a ray's cost at step 1 that does not depend on the step: the path to the visible part.
 inline constexpr double kFixedRayCost = 0.3;
-/// Of a ray whose light goes by central differences, by one whose light goes by the gradient of the cell.
+/// Cost of a ray shaded by central differences, relative to one shaded by the gradient of the cell.
 inline constexpr double kSmoothGradientCost = 1.65;
 
-/// Of drawing, in units of marching every pixel at step 1 unshaded by the fast raycast, as a CPU driver has it: good for an order and for
-/// first guesses.
+/// Returns the cost of rendering, relative to marching every pixel at step 1 unshaded by the fast raycast, as measured with a CPU driver:
+/// for ordering and for initial guesses.
 double relative_cost(const RenderSettings& settings, bool shaded);
 
-/// From the cheapest settings to the best, in the order of their cost.
+/// Returns the settings from the cheapest to the best, in the order of their cost.
 std::vector<RenderSettings> quality_levels(const QualityLevelOptions& kind);
 
-/// expected(rung) = unit cost(rung) factor(rung): the unit follows the view and the machine, the factor what a rung's cost got wrong.
-/// A picture that took r times what was expected moves both by sqrt(r). A rung's first picture pays for its pipelines too: it
-/// counts only if it was quicker than expected. A rung that was never drawn has the factor of the nearest that was, of two the greater.
+/// Prediction of render times: expected(level) = unit cost(level) factor(level): the unit depends on the view and the machine, the factor
+/// corrects the cost of a level. An image that took r times the expected time changes both by sqrt(r). The first image of a level includes
+/// the creation of its pipelines: it counts only if it was faster than expected. A level that was never rendered has the factor of the
+/// nearest measured one, of two the greater.
 class TimeModel {
  public:
   TimeModel(std::vector<double> costs, double first_guess_ms);
+  /// Updates the prediction with the measured time of an image of that level.
   void add_measurement(std::size_t rung, double ms);
+  /// Returns the expected time of an image of that level.
   double expected_ms(std::size_t rung) const { return unit_ms_ * levels_[rung].cost * correction_factor(rung); }
 
  private:
@@ -58,44 +64,46 @@ class TimeModel {
   double unit_ms_;
 };
 
-/// Where even the cheapest picture of every pixel takes longer than the budget: every so many pixels each way, 1 to kMaxPixelScale.
-/// `before`: the last choice; more pixels again only with some room, or their number would come and go.
+/// Resolution reduction where even the cheapest image at every pixel exceeds the budget: returns n for every n-th pixel in each direction,
+/// a power of two from 1 to kMaxPixelScale. `before`: previous choice; the resolution rises only with some headroom, to avoid oscillation.
 inline constexpr std::uint32_t kMaxPixelScale = 4;
 std::uint32_t choose_pixel_scale(double expected_ms, std::uint32_t before, double budget_ms);
 
+/// Next image to render.
 struct RefinementStep {
   RenderSettings settings;
   double expected_ms = 0;
-  bool is_final = false;  ///< nothing better comes while nothing moves
+  bool is_final = false;  ///< nothing better follows while nothing moves
 };
 
+/// Progressive refinement within a time budget, milliseconds per image.
 class Refinement {
  public:
   Refinement(double budget_ms, const QualityLevelOptions& kind);
-  /// From the next picture on.
+  /// Changes the budget, for the next image on.
   void set_budget(double ms) { budget_ms_ = ms; }
-  /// The picture to draw now; nothing where the last one is finished and nothing has `changed` (camera, scene, size) since.
+  /// Returns the image to render; nullopt if the last one was final and nothing has `changed` (camera, scene, size) since then.
   std::optional<RefinementStep> next(bool changed);
-  /// What next(false) would take; nothing where it has nothing.
+  /// Returns the expected time of next(false); nullopt if that returns nullopt.
   std::optional<double> expected_next_ms() const;
-  /// What the coarsest picture would take.
+  /// Returns the expected time of an image of the lowest level.
   double expected_coarsest_ms() const { return times_.expected_ms(0); }
-  /// What that picture took.
+  /// Reports the time of the image returned by next().
   void record_render_ms(double ms);
 
  private:
   std::size_t best_within_budget() const;
-  /// The next better stop on the way to the last rung, or the last rung itself.
+  /// Returns the next better stop on the way to the last level, or the last level itself.
   std::size_t next_stop(std::size_t rung) const;
   RefinementStep make_step(std::size_t rung);
 
   double budget_ms_;
   std::vector<RenderSettings> levels_;
-  std::vector<std::size_t> stops_;  ///< rungs that a still picture goes through
+  std::vector<std::size_t> stops_;  ///< levels that a static image goes through
   TimeModel times_;
-  std::size_t moving_level_ = 0;           ///< the rung of moving pictures
-  std::optional<std::size_t> last_level_;  ///< drawn last
-  bool is_pending_ = false;                ///< a picture was asked for and its time has not come
+  std::size_t moving_level_ = 0;           ///< level of moving images
+  std::optional<std::size_t> last_level_;  ///< level rendered last
+  bool is_pending_ = false;                ///< an image was requested and its time is not yet reported
 };
 
 }  // namespace catena::render

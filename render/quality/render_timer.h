@@ -1,16 +1,17 @@
-/// What drawing takes, such that other programs on the machine do not count: of a GPU by its own clock (render/vk/timestamp_query.h); of a
-/// driver that draws with the processor what its cores had to do; of a GPU without a clock wall time. Frame thread.
+/// Render time, excluding other programs on the machine: on a GPU by its own clock (render/vk/timestamp_query.h); with a CPU driver from
+/// the processor time of the process; on a GPU without a clock wall time. Frame thread.
 #pragma once
 #include "render/passes/renderer.h"
 
 namespace catena::render {
 
-/// Of any work, from its making to ms(); the renderer outlives it.
+/// Measures work from construction to elapsed_ms(). The renderer must outlive it.
 class RenderTimer {
  public:
   enum class ClockSource { cpu, gpu, wall };
   explicit RenderTimer(Renderer& renderer);
   RenderTimer(Renderer& renderer, ClockSource by);  ///< for tests
+  /// Returns the milliseconds since construction by this clock.
   double elapsed_ms() const;
 
  private:
@@ -20,7 +21,7 @@ class RenderTimer {
   double start_ns_;
 };
 
-/// Milliseconds of drawing a packet.
+/// Renders the packet and returns the milliseconds it took.
 Result<double> measure_render_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
 }  // namespace catena::render

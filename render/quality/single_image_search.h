@@ -1,16 +1,16 @@
-/// Settings for one picture that is drawn once, found at little cost beside it (quality.h has the errors). Rays are measured on a small
-/// lattice; a finished picture is drawn only where it may become the one that is asked for.
-///   1  exact rays, unless even their longest steps are more work than 2: the longest step whose rays are good enough
-///   2  fast rays, where exact ones are more work than to bring the grid to the device in the form of fast ones and to march these: the
-///      longest step whose rays are good enough, lit by central differences (light by the gradient of the cell saves a third of the rays'
-///      time, and to find out whether it is good enough costs more)
-///   3  every 4th pixel, refined where it is needed, with rays of that step: drawn, where every pixel is much work. Where that is not good
-///      enough, it is refined further, and if that is not enough either, every pixel is marched
-/// Steps are tried from a middle one on, to longer ones while they are good enough, or to shorter ones until one is.
-/// Work is counted in samples of unlit exact rays, not timed, so that the choice is the same in every run:
-///   rays     voxels on the way (ray_way.h), those that are lit counted more, x (0.3 + 1 / step)
-///   packing  so many samples a voxel that is kept, more with its gradient, as measured
-/// The steadiness of the error while the camera moves is not measured. The lattice must have begun, and must outlive this. Frame thread.
+/// Search for settings of an image that is rendered only once, at a small cost compared with the image (quality.h defines the errors). Rays
+/// are measured on a small sample grid; a finished image is rendered only if it may become the result.
+///   1  exact rays, unless even their longest steps take more work than 2: the longest step whose rays meet the error goal
+///   2  fast rays, where exact ones take more work than packing the grid for fast ones and marching these: the longest step whose rays meet
+///      the goal, shaded by central differences (shading by the gradient of the cell saves a third of the rays' time, but testing whether
+///      it meets the goal costs more)
+///   3  every 4th pixel, refined where needed, with rays of that step: rendered where every pixel is much work. If that does not
+///      meet the goal, it is refined further, and if that is not enough either, every pixel is marched
+/// Steps are tried from a middle one on, to longer ones while they meet the goal, or to shorter ones until one does. Work is counted in
+/// samples of unshaded exact rays, not timed, so that the choice is reproducible:
+///   rays     path length in voxels (ray_path_length.h), shaded ones weighted higher, x (0.3 + 1 / step)
+///   packing  a number of samples per stored voxel, more with its gradient, as measured
+/// Temporal stability is not tested. begin() must have been called on the estimator, which must outlive this object. Frame thread.
 #pragma once
 #include <optional>
 #include <span>
@@ -21,33 +21,37 @@
 
 namespace catena::render {
 
+/// Search for settings of a single image by error.
 class SingleImageSearch {
  public:
-  /// `error`: covered RMSE, 1/255.
+  /// `error`: goal for the covered RMSE, 1/255.
   SingleImageSearch(ErrorEstimator& lattice, double error) : estimator_(lattice), error_(error) {}
-  /// Nothing where no rays are good enough.
+  /// Returns the choice; nullopt if no rays meet the goal.
   Result<std::optional<QualityChoice>> find();
 
  private:
+  /// Ray settings that meet the goal.
   struct RayCandidate {
     RenderSettings settings;
-    double rmse_upper_bound;  ///< of the rays alone: ErrorEstimate
+    double rmse_upper_bound;  ///< upper bound of the error of the rays alone (ErrorEstimate)
   };
-  /// The longest of the steps (they fall) whose rays are good enough; `share` of the error is for the rays. Nothing: none is.
+  /// Returns the longest of the steps (in falling order) whose rays meet `share` of the error goal; nullopt if none does. `first`: step to
+  /// begin with.
   template <class MakeSettings>
   Result<std::optional<RayCandidate>> find_longest_step(std::span<const double> steps, double first, double share,
                                                         MakeSettings&& settings_of) const;
   Result<std::optional<RayCandidate>> find_exact() const;
-  /// Of every pixel.
+  /// Searches at every pixel, without interpolation.
   Result<std::optional<RayCandidate>> find_fast() const;
-  /// Nothing where it is not good enough.
+  /// Returns nullopt if interpolation does not meet the goal.
   Result<std::optional<QualityChoice>> find_interpolated(const RayCandidate& rays) const;
-  /// Samples of a picture of exact rays.
+  /// Returns the number of samples of an image of exact rays.
   double ray_work(double step) const;
+  /// Returns the cost of packing the grid, in samples.
   double packing_work() const;
 
   ErrorEstimator& estimator_;
-  RayPathLength path_length_;  ///< where there is a choice
+  RayPathLength path_length_;  ///< measured only if there is a choice
   const double error_;
 };
 

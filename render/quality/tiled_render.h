@@ -1,7 +1,7 @@
-/// A picture of any size as bands of whole rows, from the top: tile by tile (render/frame/tiles.h), supersampled if asked, so that
-/// memory is bounded by one row of tiles.
+/// Rendering of an image of any size in bands of whole rows, from the top: tile by tile (render/frame/tiles.h), supersampled if requested,
+/// so that memory is bounded by one row of tiles.
 ///   antialias N: a pixel is the mean of its N x N samples, premultiplied display values (a box filter)
-///   several eyes that are packed into one picture: in one piece and one band, without antialiasing, depth or ids
+///   stereo composition: in one piece and one band, without antialiasing, depth or ids
 ///   depth: the nearest of the samples; id: that of the nearest sample
 /// Frame thread.
 #pragma once
@@ -12,31 +12,31 @@
 
 namespace catena::render {
 
-/// What the bands hold.
+/// Channels of the bands.
 struct BandChannels {
-  bool bytes = true;    ///< 8 bits a value
+  bool bytes = true;    ///< 8 bits per value
   bool floats = false;  ///< display values before rounding
+  /// Depth and ids of the nearest opaque surface.
   bool depth = false, ids = false;
 };
 
-/// `height` rows from row `y` on. LineSegment alpha.
+/// `height` rows from row `y` on. Straight alpha. Channels that were not requested are empty.
 struct Band {
   std::uint32_t width = 0, y = 0, height = 0;
   std::vector<std::uint8_t> bytes;  ///< RGBA
   std::vector<float> floats;        ///< RGBA
-  std::vector<float> depth;         ///< along the view axis, world units; infinite where nothing opaque is seen
-  std::vector<std::uint32_t> ids;   ///< 0: nothing opaque
+  std::vector<float> depth;         ///< distance along the view axis, world units; infinite where there is no opaque surface
+  std::vector<std::uint32_t> ids;   ///< 0: no opaque object
 };
 
-/// Milliseconds of drawing all of them, without read-back.
+/// Milliseconds of rendering all tiles, without read-back.
 struct RenderTimes {
-  double wall_ms = 0;    ///< start to fence
-  double render_ms = 0;  ///< as RenderTimer counts
+  double wall_ms = 0;    ///< from start to fence
+  double render_ms = 0;  ///< time measured by RenderTimer
 };
 
-/// An error is the renderer's, or the one that `take` returned; `take`
-/// is also asked, with a band of height 0, after every tile: an error ends the work. Without `take`
-/// nothing is read back.
+/// Renders the image and passes it to `take` band by band. An Error is the renderer's or the one returned by `take`, which is also called
+/// with a band of height 0 after every tile: returning an Error ends the work. Without `take` nothing is read back.
 Result<RenderTimes> render_tiled(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, const TilePlan& plan,
                                  const BandChannels& wants, const std::function<Outcome(const Band&)>& take);
 

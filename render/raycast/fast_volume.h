@@ -1,8 +1,8 @@
-/// One volume, fast, with an error that is measured and not assumed (render/quality/quality.h): packed words, pre-integrated
-/// table, Hermite midpoints, leaps over plain bricks; rays on a lattice of every 4th, 2nd or every pixel, refined where the fourth
-/// difference of the picture says that interpolation would err.   lattice -> marks -> finer lattice -> .. -> every pixel
-/// A grid of many voxels is packed as the bricks that its transfer function asks for. What cannot be drawn so (several volumes at once, too
-/// many bricks) belongs to VolumeRaycast. Frame thread only.
+/// Fast raycast of one volume, with a measured error (render/quality/quality.h): packed codes, pre-integrated transfer function, Hermite
+/// midpoints, skipping of homogeneous bricks; rays on a ray grid of every 4th, 2nd or every pixel, refined where the fourth difference of
+/// the image predicts an interpolation error.   ray grid -> marks -> finer ray grid -> .. -> every pixel A large grid is packed as the
+/// bricks that are visible under its transfer function. What is not supported (several volumes, too many bricks) is rendered by
+/// VolumeRaycast. Frame thread only.
 #pragma once
 #include <array>
 #include <map>
@@ -18,61 +18,65 @@
 
 namespace catena::render {
 
+/// Fast raycast: resources of one volume and the ray grids of every eye.
 class FastVolumeRaycast {
  public:
   static Result<FastVolumeRaycast> create(vk::Device& device);
-  /// Packs the volume, if it is new. `left`: bytes of the device that it may take beside what it has.
+  /// Packs the volume if it changed. `left`: device bytes that it may allocate in addition to what it holds. An Error if that does not
+  /// suffice.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
     return resources_.prepare(item, settings, left);
   }
-  /// What follows is one of so many eyes' pictures: each keeps its own from picture to picture.
+  /// Selects the eye (of `eyes`) of the following calls: images reused from frame to frame are kept per eye.
   void select_eye(std::size_t eye, std::size_t eyes) {
     eye_states_.resize(eyes);
     eye_index_ = eye;
   }
-  /// What is packed is too large to be held beside a mirror of its grid.
+  /// Returns whether the volume is packed as bricks: it is too large to be kept together with a resident grid.
   bool is_bricked() const { return resources_.is_bricked(); }
-  /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
-  /// not within a pass. `opaque_depth` null: nothing opaque, `none` is bound instead; else pixels near it are always marched and
-  /// `target` is needed. `keep`: what `target` and the lattices hold since the last call stays where it would come out the same, to the
-  /// bit.
+  /// Renders into `target` (cleared first; of the image's size), or into half_resolution() if the settings end there and `target` is null;
+  /// not inside a render pass. `opaque_depth` null: nothing opaque, `none` is bound instead; otherwise pixels near opaque objects are
+  /// always marched and `target` is required. `keep`: content of `target` and of the ray grids from the last call is reused where the
+  /// result would be identical to the bit.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none, bool keep = false);
-  /// Whether the last call left most of it as it was.
+  /// Returns whether the last call reused most of its previous result.
   bool reused_previous() const { return reused_previous_; }
-  /// The tiles that the last call has marched again, where it has kept the others; null: it has not, or nothing was opaque.
+  /// Returns the mask of the tiles that the last call re-marched, if it reused the others; null: nothing was reused, or there was nothing
+  /// opaque.
   vk::Image* dirty_tiles() {
     return reused_previous_ && eye_state().reuse->state.has_opaque ? &eye_state().opaque_tiles->dirty_tiles() : nullptr;
   }
-  /// What the last call has marched beside its first lattice, of every 2nd pixel and of every pixel: blocks of 4 x 4 rays, R8_UINT, 1:
-  /// marched. Null: none of that lattice.
+  /// Returns the masks of the blocks of 4 x 4 rays (R8_UINT, 1: marched) that the last call marched in addition to the first ray grid, at
+  /// every 2nd pixel and at every pixel. Null: none at that spacing.
   std::array<vk::Image*, 2> marked_blocks() {
     return {marched_half_ ? &eye_state().half.marks : nullptr, marched_full_ ? &eye_state().full.marks : nullptr};
   }
-  /// Something else has drawn into the eye's target.
+  /// Invalidates the reused content: the eye's target was overwritten by others.
   void invalidate_target() { eye_state().reuse.reset(); }
-  /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
+  /// Renders the rays of every `spacing`-th pixel only into `target` (kVolumeFormat).
   Outcome record_ray_samples(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                              vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
-  /// The same rays; instead of colours the depth t at which alpha passes 0.5 (red), NO_DEPTH where it never does.
+  /// Renders, for the same rays, the depth t at which alpha exceeds 0.5 into the red channel; NO_DEPTH where it never does.
   Outcome record_half_opacity_depth(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                                     vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
-  /// Every 2nd pixel, for Upsampler.
+  /// Returns the volume at every 2nd pixel, the input of Upsampler.
   vk::Image& half_resolution() { return eye_state().half.color; }
-  /// Rays leap over what is empty.
+  /// Returns whether enough of the volume is homogeneous that rays skip it.
   bool skips_empty_space() const;
+  /// Returns the device bytes of packed codes and gradients.
   std::uint64_t grid_bytes() const { return resources_.words().bytes() + resources_.gradients().bytes(); }
   double build_ms() const { return resources_.build_ms(); }
 
  private:
-  /// A lattice of rays: what it needs to be drawn.
+  /// Ray grid: rays of every n-th pixel, with its image, refinement marks and shader data.
   struct RayGrid {
     vk::Image color, marks;
     vk::Buffer data;
   };
   explicit FastVolumeRaycast(vk::Device& device) : device_(&device), resources_(device) {}
   Outcome ensure(RayGrid& level, std::uint32_t spacing, const VkExtent3D& target);
-  /// Which tiles of a lattice are drawn: the others stay as they are.
+  /// Tiles of a ray grid that are rendered; the others keep their content.
   enum class Tiles { all, marked, dirty };
   using Constants = std::array<std::uint32_t, 8>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
@@ -81,7 +85,7 @@ class FastVolumeRaycast {
   }
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, RayGrid& level, vk::Image& coarser, bool opaque);
-  /// What draws a level: its target, the coarser one (or null) and whether rays are marched.
+  /// Parameters of rendering a ray grid: its target, the coarser grid to interpolate (or null) and whether rays are marched.
   struct DrawParams {
     vk::Image* target = nullptr;
     const vk::Image* coarser = nullptr;
@@ -102,7 +106,7 @@ class FastVolumeRaycast {
     FastSettings settings;
     RayImageState state;
   };
-  /// What stays of an eye's picture.
+  /// Images of one eye that are reused from frame to frame.
   struct EyeState {
     RayGrid quarter, half, full;
     std::optional<DirtyTiles> opaque_tiles;
@@ -112,41 +116,42 @@ class FastVolumeRaycast {
 
   vk::Device* device_;
   FastVolumeResources resources_;
-  vk::Image placeholder_gradients_;  ///< one voxel, bound where shading does not ask for them
+  vk::Image placeholder_gradients_;  ///< one voxel, bound if the shading needs no gradients
   vk::Sampler linear_;
   vk::Buffer frame_;
   std::vector<EyeState> eye_states_{1};
   std::size_t eye_index_ = 0;
   RayGrid sample_grid_;
   std::map<std::pair<Constants, bool>, vk::Pipeline> pipelines_;
-  std::array<vk::Pipeline, 2> mark_pipelines_;         // without and with something opaque
-  std::array<vk::Pipeline, 2> interpolate_pipelines_;  // of all, of what has changed
+  std::array<vk::Pipeline, 2> mark_pipelines_;         // without and with an opaque depth
+  std::array<vk::Pipeline, 2> interpolate_pipelines_;  // all pixels, dirty tiles only
   vk::Buffer interpolate_data_;
   vk::Image placeholder_tiles_;
   bool reused_previous_ = false;
-  bool marched_half_ = false, marched_full_ = false;  ///< blocks of the last call
+  bool marched_half_ = false, marched_full_ = false;  ///< blocks were marched in the last call
 };
 
-/// One invocation a lattice point: what upsample.comp and interpolate.comp need for the pixels of an area.
+/// Compute dispatch with one invocation per ray grid point, for the pixels of an area: parameters of upsample.comp and interpolate.comp.
 struct UpsampleDispatch {
   shared::UpsampleData data{};
   std::uint32_t x = 0, y = 0;
 };
+/// Returns the dispatch that covers `area`.
 UpsampleDispatch make_upsample_dispatch(const VkRect2D& area, const VkExtent3D& picture);
 
-/// From a volume on every 2nd pixel to the finished picture, over opaque over background: what the pass `compose` does for the fast
-/// raycast.
+/// Interpolates a volume at every 2nd pixel to the finished image and composites it over the opaque objects and the background: replaces
+/// the pass `compose` for the fast raycast.
 class Upsampler {
  public:
   explicit Upsampler(vk::Device& device) : device_(&device) {}
-  /// Into `picture`. `opaque` null: there is nothing opaque, `none` is bound instead. `area`: the pixels that the volume may cover. Moves
+  /// Renders into `picture`. `opaque` null: nothing opaque, `none` is bound instead. `area`: pixels that the volume may cover. Transitions
   /// the images to their layouts.
   Outcome record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
                  const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture);
 
  private:
   vk::Device* device_;
-  std::array<vk::Pipeline, 2> pipelines_;  // without and with something opaque
+  std::array<vk::Pipeline, 2> pipelines_;  // without and with an opaque color image
   vk::Buffer uniform_;
 };
 

@@ -1,6 +1,6 @@
-/// What the fast raycast reads of a volume: its codes, whole or as bricks, the pre-integrated table of its transfer function, the map of
-/// what rays leap over, and gradients for light. Packed when the grid, the transfer function or the wish for gradients is new. Frame thread
-/// only.
+/// Device resources of the fast raycast for one volume: its packed codes (dense or as bricks), the pre-integrated table of its transfer
+/// function, the map of bricks that rays skip, and gradients for shading. Rebuilt when the grid, the transfer function or the need for
+/// gradients changes. Frame thread only.
 #pragma once
 #include <optional>
 
@@ -13,30 +13,36 @@
 
 namespace catena::render {
 
+/// Packed form of one volume. Owns its images.
 class FastVolumeResources {
  public:
   explicit FastVolumeResources(vk::Device& device) : device_(&device) {}
-  /// Whether the grid of a volume can be packed in one of the two ways.
+  /// Returns whether the grid can be packed, dense or as bricks.
   static bool can_pack(const vk::Device& device, const field::ScalarGrid& grid);
-  /// Whether 256 codes of the values take all that there is in the transfer function, and show the values that there are. Remembers the
-  /// last answer of the thread.
+  /// Returns whether 256 codes resolve all features of the transfer function and represent the values with a small error. Caches the last
+  /// result per thread.
   static bool can_quantize(const VolumeItem& item);
-  /// An error where it takes more than `settings.max_bytes`, or than `left` bytes beside what it has; nothing here counts then.
+  /// Packs what changed. An Error if it takes more than `settings.max_bytes`, or more than `left` bytes in addition to what it holds; the
+  /// content is not usable then.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left);
 
   const VolumeItem& item() const { return item_; }
-  /// Counts what is packed and how it looks.
+  /// Returns a counter of changes to the packed data or the appearance.
   std::uint64_t version() const { return appearance_version_; }
   bool is_bricked() const { return bricks_.has_value(); }
   bool is_masked() const { return !bricks_ && packed_.codes.has_mask; }
-  /// Share of bricks that rays may leap over; of what is packed as bricks, all that are not kept.
+  /// Returns the share of bricks that rays may skip (0 to 1); 1 if packed as bricks.
   double skippable_share() const { return bricks_ ? 1 : map_.skippable_share; }
+  /// Returns the image of packed codes: PackedAtlas::words or PackedVolume::words.
   const vk::Image& words() const { return bricks_ ? bricks_->atlas.words : packed_.words; }
+  /// Returns the pre-integrated table.
   const vk::Image& table() const { return table_; }
+  /// Returns the map of bricks that rays skip: PackedAtlas::map or HomogeneousMap::image.
   const vk::Image& map() const { return bricks_ ? bricks_->atlas.map : map_.image; }
+  /// Returns the gradients; empty without smooth gradients.
   const vk::Image& gradients() const { return bricks_ ? bricks_->atlas.gradients : gradients_; }
-  float gradient_nodes() const;  ///< of a brick, an axis; 0: of the whole volume, one a voxel
-  /// Where its local positions are, as of a mirror without images.
+  float gradient_nodes() const;  ///< gradient samples per brick and axis; 0: one gradient per voxel of the whole volume
+  /// Returns the local coordinates as those of a resident grid without images.
   ResidentGrid local_geometry() const;
   double build_ms() const { return build_ms_; }
 
@@ -49,11 +55,11 @@ class FastVolumeResources {
   VolumeItem item_;
   ValueInterval active_;
   std::uint64_t version_ = 0, appearance_version_ = 0;
-  // either whole
+  // Dense packing.
   PackedVolume packed_;
   HomogeneousMap map_;
   vk::Image gradients_;
-  // or as bricks
+  // Packing as bricks.
   struct Bricks {
     BrickScan scan;
     PackedAtlas atlas;

@@ -1,5 +1,5 @@
-/// ResidentItem grids as the shaders of rays get them: how one is bound (shaders/lib/grids.glsl: value image, brick map and mask at three
-/// bindings, flag bits), one with a level, and one that colours what another one shapes.
+/// Bindings of resident grids in ray shaders (shaders/lib/grids.glsl: value image, brick map and mask at three bindings, flag bits); state
+/// of a grid rendered as an isosurface, and of a grid that colors another item.
 #pragma once
 #include <memory>
 #include <span>
@@ -14,56 +14,60 @@
 
 namespace catena::render {
 
+/// One grid as it is bound to a shader.
 struct GridBinding {
   std::shared_ptr<const ResidentGrid> resident;
   const BrickMap* map = nullptr;
-  bool is_shaded = false;    ///< of a volume
-  bool skips_empty = false;  ///< of a volume
+  bool is_shaded = false;    ///< volumes only
+  bool skips_empty = false;  ///< volumes only: rays skip empty space
 };
 
-/// The constant GRID_FLAGS; volumes are the first grids.
+/// Returns the specialization constant GRID_FLAGS; volumes come first in `grids`.
 std::uint32_t grid_flags(std::span<const GridBinding> grids);
+/// Returns whether any grid uses cubic interpolation.
 bool has_cubic_grid(std::uint32_t grid_flags);
 
-/// The pipeline's slots for `count` grids, and what to push for them: grid i, or the first one where there are fewer.
+/// Appends the binding slots of a pipeline for `count` grids.
 void add_grid_layout(std::vector<vk::LayoutBinding>& slots, std::uint32_t count);
+/// Appends the bindings of `count` grids: grid i, or the first one if there are fewer.
 void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const GridBinding> grids, std::uint32_t count,
                        const vk::Sampler& linear);
 
-/// A level of a mirrored grid, ready to be bound: bricks without the level are inactive. Of a cubic grid the map is that of its cells
-/// (render/residency/cell_map.h): its corners do not tell which of them hold the level.
+/// Isosurface of a resident grid, ready to be bound: bricks that do not contain the level are inactive. For a cubic grid, the map is built
+/// from the map of its cells (render/residency/cell_map.h), because its corner values do not bound the level.
 struct SurfaceState {
   std::shared_ptr<const ResidentGrid> resident;
   float level = 0;
   BrickMap map;
-  CellMap cells;  ///< of a cubic grid, without texels: they are in the map
-  /// Rebuilds the map when the mirror or the level is another one. `grid`: that was mirrored.
+  CellMap cells;  ///< cubic grids only, without texels: they are merged into `map`
+  /// Rebuilds the map if the resident grid or the level changed. `grid`: source of the resident grid.
   Outcome update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const ResidentGrid> next_mirror, double next_level);
   GridBinding binding() const { return {resident, &map, true, true}; }
 };
-/// The ray's numbers, level, colour and opacity.
+/// Returns the shader data: ray mapping, level, color and opacity.
 shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state, const IsosurfaceItem& item);
 
-/// A grid that colours what another one shapes: its mirror, the table of its colours, and a map by which any of its bricks is found.
+/// Grid that colors another item: its GPU copy, the table of its colors, and a map in which all bricks are active.
 struct ColorGrid {
   std::shared_ptr<const ResidentGrid> resident;
   ColorSource source;
   TransferLut lut;
   BrickMap map;
 
-  /// Whether anything was new.
+  /// Updates to a grid and source; returns whether anything changed.
   Result<bool> update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_mirror, const ColorSource& next);
   GridBinding binding() const { return {resident, &map, false, false}; }
 };
-/// The ray's numbers and the table, which begins at `start`.
+/// Returns the shader data; the color table begins at entry `start` of the table buffer.
 shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std::uint32_t start);
 
-/// The least and the greatest value of a mirrored grid.
+/// Returns the minimum and maximum of all valid cells of a resident grid; 0, 0 if there is none.
 BrickRange value_range(const ResidentGrid& mirror);
-/// The constant TABLES (shaders/lib/tables.glsl) of one table; of several, all bits. To the constants of a pipeline with one table.
+/// Returns the specialization constant TABLES (shaders/lib/tables.glsl) for one table; for several tables, combine the bits.
 std::uint32_t table_flags(const TransferLut& lut);
+/// Appends TABLES to the specialization constants of a pipeline with one table.
 void add_table_flags(std::vector<std::uint32_t>& constants, const TransferLut& lut);
-/// Where in the buffer of tables one begins, and how it is read.
+/// Returns where the table begins in the table buffer (`start`) and how it is read.
 shared::TableData table_data(const TransferLut& lut, std::uint32_t start);
 
 }  // namespace catena::render

@@ -1,4 +1,4 @@
-/// TransferEditor functions for the fast raycast, whose volumes hold codes of 8 bits: integrated over pairs of codes. Plain CPU code.
+/// Transfer functions for the fast raycast, whose volumes hold 8-bit codes: pre-integrated over pairs of codes. CPU code.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,29 +10,29 @@
 
 namespace catena::render {
 
-/// Where the picture depends on the value: the transfer function is one colour and density (or nothing) below and above.
-/// CellFinder `values`. `shaded`: what is visible depends on the gradient too, so that only what is invisible
-/// is left out, and no two codes look alike unless they are.
+/// Returns the sub-interval of `values` in which the image depends on the value: below and above it the transfer function has a constant
+/// color and extinction (or is zero). `shaded`: visible values also depend on the gradient, so that only invisible values are left out, and
+/// two codes are classified alike only if they are equal.
 ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded);
 
-/// A transfer function, integrated beforehand over pairs of codes of a packed volume (a at one end of a segment, b at the other):
-///   sigma(a, b) = mean over values from a to b of sigma(v)      colour(a, b) = mean of sigma(v) colour(v) / sigma(a, b)
-/// so that a segment of length L has the optical depth sigma L: the table does not depend on the step. Engel et al. 2001, without
-/// the attenuation within a segment; the means are exact, however narrow the function's parts. 256 x 256 entries: sigma as float bits |
+/// Transfer function, pre-integrated over pairs of codes of a packed volume (a at one end of a segment, b at the other):
+///   sigma(a, b) = mean over values from a to b of sigma(v)      color(a, b) = mean of sigma(v) color(v) / sigma(a, b)
+/// so that a segment of length L has the optical depth sigma L: the table does not depend on the step. Engel et al. 2001, without the
+/// attenuation within a segment; the means are exact, however narrow the features of the function. 256 x 256 entries: sigma as float bits |
 /// red 11 bits, green 11, blue 10.
 struct PreintegratedTable {
-  std::vector<std::array<std::uint32_t, 2>> entries;  ///< a + 256 b
+  std::vector<std::array<std::uint32_t, 2>> entries;  ///< index a + 256 b
   CodeAppearance appearance;
   double max_sigma = 0;
 };
 
-/// What rounding `values` to codes from one end to the other of `active` changes, 0 to 1: the mean change of what a ray of `length` through
-/// one value would show, opacity or colour.
+/// Returns the mean change of what a ray of `length` through a constant value shows (the larger of opacity and color, 0 to 1) if the values
+/// are rounded to 256 codes spanning `active`.
 double quantization_change(const TransferTable& table, const ValueInterval& active, std::span<const float> values, double length);
-/// Whether codes that lie from one end to the other of `active` show the function: each of its points that is a peak or a gap is met, to a
-/// tenth, within a sixteenth of a code.
+/// Returns whether 256 codes spanning `active` resolve the function: each of its points that is a peak or a gap is reproduced, to a tenth,
+/// within a sixteenth of a code.
 bool resolves_transfer_function(const TransferTable& table, const ValueInterval& active);
-/// `lo`, `per_code`: of the packed volume.
+/// Builds the table. `lo`, `per_code`: value scale of the packed volume (CodeScale).
 PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded);
 
 }  // namespace catena::render

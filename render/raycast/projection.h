@@ -1,8 +1,8 @@
-/// One volume by its greatest, its least or its mean value along each ray (Projection in frame_packet.h), in front of the opaque depth.
-///   maximum, minimum   exact for the trilinear field of the texels, whatever the step: the extremes of each cell's cubic
+/// Raycast of one volume by its maximum, minimum or mean value along each ray (Projection in frame_packet.h), in front of the opaque depth.
+///   maximum, minimum   exact for the trilinear field of the texels, independent of the step: the extrema of each cell's cubic polynomial
 ///   average            midpoints of segments of the step; invalid cells do not count
-/// Colour and opacity come from the transfer function at that value; the opacity is 1 - exp(-sigma u) with the table's opacity_length u
-/// (where the scene gave opacities, these at its points), as VTK takes it. Not shaded, as in VTK; fog leaves it as it is. Frame thread.
+/// Color and opacity are those of the transfer function at that value; the opacity is 1 - exp(-sigma u) with the table's opacity_length u
+/// (where the scene gave opacities, these at its points), as in VTK. Not shaded, as in VTK; fog does not affect it. Frame thread.
 #pragma once
 #include <array>
 #include <map>
@@ -11,11 +11,13 @@
 
 namespace catena::render {
 
+/// Renders one volume by projection.
 class ProjectionRaycast {
  public:
   static Result<ProjectionRaycast> create(vk::Device& device);
+  /// Uploads what changed. `mirror`: GPU copy of the item's grid.
   Outcome prepare(const VolumeItem& item, std::shared_ptr<const ResidentGrid> mirror);
-  /// CellFinder a pass over the volume target.
+  /// Records the rays within a render pass over the volume target.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
 
  private:
@@ -27,7 +29,7 @@ class ProjectionRaycast {
   VolumeItem item_;
   TransferLut lut_;
   double opacity_length_ = 0;
-  BrickRange signed_range_;  ///< of signed values
+  BrickRange signed_range_;  ///< range of the values, negated for a minimum projection
   BrickMap map_;
   vk::Buffer table_, uniform_;
 };

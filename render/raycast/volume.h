@@ -1,6 +1,6 @@
-/// Volumes, translucent isosurfaces and layers, one raycast for all of them (at most MAX_VOLUMES, MAX_SURFACES and MAX_LAYERS, MAX_GRIDS
-/// grids together with those that colour them, MAX_GRIDS_WITH_LAYERS where there are layers), in front of the opaque depth. Tables and
-/// brick maps are rebuilt only when a transfer function, a level or a grid changes.
+/// Exact raycast of volumes, translucent isosurfaces and layers together (at most MAX_VOLUMES, MAX_SURFACES and MAX_LAYERS; at most
+/// MAX_GRIDS grids including coloring grids, MAX_GRIDS_WITH_LAYERS if there are layers), in front of the opaque depth. Tables and brick
+/// maps are rebuilt only when a transfer function, a level or a grid changes. Frame thread.
 #pragma once
 #include <compare>
 #include <map>
@@ -12,31 +12,35 @@
 
 namespace catena::render {
 
+/// Exact raycast: device state of its volumes, surfaces and coloring grids, and reusable images per eye.
 class VolumeRaycast {
  public:
   static Result<VolumeRaycast> create(vk::Device& device);
+  /// Uploads what changed.
   Outcome prepare(std::span<const ResidentItem<VolumeItem>> volumes, std::span<const ResidentItem<IsosurfaceItem>> surfaces);
-  /// CellFinder a pass over a target of any size: a picture's rays, or some of them.
+  /// Records the rays within a render pass over a target of any size: all rays of an image, or a sparse sample.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
-  /// What follows is one of so many eyes' pictures: each keeps its own from picture to picture.
+  /// Selects the eye (of `eyes`) of the following calls: images reused from frame to frame are kept per eye.
   void select_eye(std::size_t eye, std::size_t eyes) {
     eye_states_.resize(eyes);
     eye_index_ = eye;
   }
-  /// Into `target` of the picture's size, not within a pass. `keep`: what it holds since the last call stays where it would come out the
-  /// same, to the bit (still_tiles.h).
+  /// Renders into `target` of the image's size, not inside a render pass. `keep`: its content from the last call is reused where the result
+  /// would be identical to the bit (dirty_tiles.h).
   Outcome record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
                       const RayScene& scene, vk::Image& target, bool keep);
-  /// As record(), of settings that end at half of the light: instead of colours the depth t at which alpha passes 0.5 (red), NO_DEPTH where
-  /// it never does. Not of layers alone.
+  /// Like record(), but writes the depth t at which alpha exceeds 0.5 into the red channel, NO_DEPTH where it never does; the settings must
+  /// terminate rays at a transmittance of 0.5. Not for layers alone.
   Outcome record_half_opacity_depth(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
                                     const RayScene& scene);
+  /// Returns whether record_half_opacity_depth() can be used.
   bool has_half_opacity_depth() const { return !volumes_.empty() || !surfaces_.empty(); }
-  /// Whether the last record_into() left most of it as it was.
+  /// Returns whether the last record_into() reused most of its previous result.
   bool reused_previous() const { return reused_previous_; }
-  /// Something else has drawn into the eye's target.
+  /// Invalidates the reused content: the eye's target was overwritten by others.
   void invalidate_target() { eye_state().reuse.reset(); }
-  /// Tiles that record_into() has marched again, where it has kept the others; null: it has not, or nothing was opaque.
+  /// Returns the mask of the tiles that record_into() re-marched, if it reused the others; null: nothing was reused, or there was nothing
+  /// opaque.
   vk::Image* dirty_tiles() {
     return reused_previous_ && eye_state().reuse->state.has_opaque ? &eye_state().opaque_tiles->dirty_tiles() : nullptr;
   }
@@ -56,14 +60,14 @@ class VolumeRaycast {
   };
   struct ColorGridUse {
     ColorGrid grid;
-    std::size_t owner = 0;  ///< a volume, or behind those a surface
+    std::size_t owner = 0;  ///< index of a volume, or number of volumes plus index of a surface
     std::uint32_t table_start = 0;
   };
-  /// What a pipeline is made for.
+  /// Parameters that a pipeline is specialized for.
   struct PipelineKey {
     std::uint32_t flags = 0, has_opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0,
                   fog = 0, tables = 0;
-    bool dirty_only = false;  ///< only those that have changed
+    bool dirty_only = false;  ///< only dirty tiles are rendered
     bool half_opacity_depth = false;
     auto operator<=>(const PipelineKey&) const = default;
     bool is_single_volume() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
@@ -72,7 +76,7 @@ class VolumeRaycast {
       return is_layers_only() ? 0 : is_single_volume() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS;
     }
   };
-  /// What is to be drawn, and how.
+  /// Input of a draw: pipeline, frame data and grids.
   struct DrawState {
     PipelineKey key;
     shared::FrameData frame;
@@ -82,7 +86,7 @@ class VolumeRaycast {
     PipelineKey key;
     RayImageState state;
   };
-  /// What stays of an eye's picture.
+  /// Images of one eye that are reused from frame to frame.
   struct EyeState {
     std::optional<DirtyTiles> opaque_tiles;
     std::optional<ReuseState> reuse;
@@ -105,7 +109,7 @@ class VolumeRaycast {
   std::vector<Surface> surfaces_;
   std::vector<ColorGridUse> colors_;
   vk::Buffer tables_, uniform_;
-  std::uint64_t appearance_version_ = 0;  ///< counts what prepare() has found new
+  std::uint64_t appearance_version_ = 0;  ///< counts changes found by prepare()
   std::vector<EyeState> eye_states_{1};
   std::size_t eye_index_ = 0;
   bool reused_previous_ = false;

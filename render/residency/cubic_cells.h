@@ -1,5 +1,5 @@
-/// The cells of a brick in which a cubic (engine/field/cubic.h) may take a value: those whose control points (the tensor product's
-/// Bernstein coefficients, between the least and greatest of which the cubic stays) lie on both sides of it.
+/// Finds the cells of a brick in which a cubic interpolant (engine/field/cubic.h) may take a value: those whose control points (Bernstein
+/// coefficients of the tensor product, whose minimum and maximum bound the cubic) lie on both sides of it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace catena::render {
 
-inline constexpr int kCubicSamples = kBrickSize + 3;  ///< samples an axis that the cubics of a brick of 8^3 cells ask
+inline constexpr int kCubicSamples = kBrickSize + 3;  ///< samples per axis that the cubics of a brick of 8^3 cells depend on
 
-/// `samples`: kCubicSamples^3, x fastest, from the one before the brick's first. Eight bits a row of cells, y + 8 z; `slack` widens the
-/// value.
+/// Returns 8 bits per row of cells, at index y + 8 z. `samples`: kCubicSamples^3, x fastest, from the voxel before the brick's first one
+/// on; `slack`: tolerance of the value.
 std::array<std::uint8_t, kBrickSize * kBrickSize> find_cubic_cells(std::span<const float> samples, float value, float slack);
 
 }  // namespace catena::render

@@ -1,11 +1,11 @@
-/// Half floats, rounded to nearest even, as a texture of R16F holds them.
+/// Conversion of half floats, rounded to nearest even, as in R16F textures.
 #pragma once
 #include <bit>
 #include <cstdint>
 
 namespace catena::render {
 
-/// For finite values within +-65504 (beyond: infinity). Subnormals are kept.
+/// Returns the half float of a finite value within +-65504 (beyond: infinity). Subnormals are preserved.
 inline std::uint16_t half_from_float(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
   const std::uint32_t sign = bits >> 16 & 0x8000u;
@@ -20,6 +20,7 @@ inline std::uint16_t half_from_float(float value) {
   return std::uint16_t(sign | (rounded - 0x38000000u) >> 13);
 }
 
+/// Returns the value of a half float.
 inline float float_from_half(std::uint16_t half) {
   const std::uint32_t sign = std::uint32_t(half & 0x8000u) << 16, magnitude = half & 0x7fffu;
   if (magnitude >= 0x7c00u) return std::bit_cast<float>(sign | 0x7f800000u | (magnitude & 0x3ffu) << 13);

@@ -1,6 +1,6 @@
-/// The mirrors that frames use, keyed by (grid version, texel format, layout), dropped when a frame no longer names them.
-/// They keep within what is left of the device's memory budget: a grid that does not fit is mirrored at 1/2, 1/4 or 1/8 of its
-/// resolution, and again as a whole once there is room.
+/// Cache of the resident grids that frames use, keyed by (grid version, texel format, layout); entries are dropped when a frame does not
+/// refer to them. They stay within the remaining memory budget of the device: a grid that does not fit is downsampled to 1/2, 1/4 or 1/8 of
+/// its resolution, and rebuilt at full resolution when there is enough memory.
 #pragma once
 #include <map>
 #include <memory>
@@ -12,40 +12,40 @@
 
 namespace catena::render {
 
-/// A grid that is drawn at less than its resolution because the whole does not fit into the memory budget.
+/// Report on a grid that is rendered at reduced resolution because it does not fit into the memory budget.
 struct GridDownsampling {
-  std::string grid;                                     ///< its name
-  int factor = 1;                                       ///< 2, 4, 8
-  std::string size;                                     ///< of the grid: "256^3", "512 x 512 x 90"
-  std::uint64_t needed_bytes = 0, available_bytes = 0;  ///< of the whole grid; of the budget, when it was mirrored
-  /// "density: 256^3 needs 67 MB of GPU memory, 40 MB are left: drawn at half resolution"
+  std::string grid;                                     ///< name of the grid
+  int factor = 1;                                       ///< downsampling factor: 2, 4 or 8
+  std::string size;                                     ///< size of the full grid: "256^3", "512 x 512 x 90"
+  std::uint64_t needed_bytes = 0, available_bytes = 0;  ///< memory needed at full resolution; memory available when it was built
+  /// Returns, for instance, "density: 256^3 needs 67 MB of GPU memory, 40 MB are left: drawn at half resolution".
   std::string message() const;
 };
 
-/// The mirrors. Frame thread.
+/// Owner of the resident grids. Frame thread.
 class ResidencyManager {
  public:
-  /// On a device that outlives this.
+  /// The device must outlive this object.
   explicit ResidencyManager(vk::Device& device) : device_(device) {}
-  /// Builds it at the first call.
+  /// Returns the resident grid, built on the first call. An Error if there is no memory even at 1/8 resolution.
   Result<std::shared_ptr<const ResidentGrid>> get(const field::ScalarGrid& grid, const ResidencyOptions& options);
-  /// `reserved` bytes of the budget are for others. `sharers` > 1: so many grids are to share the rest.
+  /// Begins a frame. `reserved`: bytes of the budget for other purposes. `sharers` > 1: number of grids that share the rest.
   void begin_frame(std::uint64_t reserved, std::size_t sharers = 1);
-  /// Frees those that the frame has not asked for.
+  /// Frees the resident grids that this frame has not requested.
   void drop_unused();
-  /// Those of a grid that the frame has not asked for so far.
+  /// Frees those of `grid` that this frame has not requested so far.
   void drop_unused(const field::ScalarGrid& grid);
-  /// Frees all.
+  /// Frees all resident grids.
   void clear() { entries_.clear(); }
-  /// ResidencyManager that are kept.
+  /// Returns the number of resident grids.
   std::size_t count() const { return entries_.size(); }
-  /// Of their images.
+  /// Returns the bytes of their images.
   std::uint64_t bytes() const;
-  /// Milliseconds spent on building mirrors so far.
+  /// Returns the total milliseconds spent on building resident grids.
   double build_ms() const { return build_ms_; }
-  /// Bytes of the budget that a grid may take now.
+  /// Returns the bytes of the budget available to one grid.
   std::uint64_t available_bytes() const;
-  /// Of the grids that are mirrored now, older grids first.
+  /// Returns the reports on all downsampled grids, older grids first.
   std::vector<GridDownsampling> downsampled_grids() const;
 
  private:
@@ -60,7 +60,7 @@ class ResidencyManager {
   vk::Device& device_;
   std::map<Key, Entry> entries_;
   std::uint64_t frame_number_ = 0, reserved_bytes_ = 0;
-  std::size_t remaining_sharers_ = 1;  ///< still to come in this frame
+  std::size_t remaining_sharers_ = 1;  ///< sharers whose grids have not been requested yet in this frame
   double build_ms_ = 0;
 };
 

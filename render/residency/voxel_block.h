@@ -1,5 +1,5 @@
-/// Voxels of a box of a scalar grid, with what packing asks of them: their values, which of them belong to a valid cell, and the codes of
-/// 8 bits that stand for values in the fast raycast (render/raycast/fast_volume.h).
+/// Voxels of a box of a scalar grid, as needed for packing: their values, which of them belong to a valid cell, and the 8-bit codes that
+/// represent values in the fast raycast (render/raycast/fast_volume.h).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,26 +10,29 @@
 
 namespace catena::render {
 
+/// Interval of field values.
 struct ValueInterval {
   double min = 0, max = 0;
   bool operator==(const ValueInterval&) const = default;
 };
 
-/// The voxels of a grid's index box, as whole numbers.
+/// Voxels of a grid's index box, as integers.
 struct VoxelExtent {
   field::Index3 lo, size;
 };
+/// Returns the voxel box of a grid.
 VoxelExtent voxel_extent(const field::ScalarGrid& grid);
 
-/// Whether some cells of the grid may be invalid: a mask, values or a background that are not finite.
+/// Returns whether some cells of the grid may be invalid: it has a mask, or values or a background that are not finite.
 bool has_invalid_cells(const field::ScalarGrid& grid);
 
+/// Voxel values of a box.
 struct VoxelBlock {
   field::Index3 size;
   std::vector<float> values;       ///< x fastest; 0 where not finite
-  std::vector<std::uint8_t> used;  ///< a voxel: some valid cell has it as a corner; empty: all of them are used
+  std::vector<std::uint8_t> used;  ///< per voxel: it is a corner of a valid cell; empty: all voxels are
 
-  /// `masked`: has_invalid_cells.
+  /// Reads the voxels of a box from `origin` on. `masked`: result of has_invalid_cells().
   void read(const field::ScalarGrid& grid, const field::Index3& origin, const field::Index3& box, bool masked);
   std::size_t voxel_index(int x, int y, int z) const {
     return (std::size_t(z) * std::size_t(size.y) + std::size_t(y)) * std::size_t(size.x) + std::size_t(x);
@@ -37,30 +40,33 @@ struct VoxelBlock {
   bool is_used(std::size_t i) const { return used.empty() || used[i] != 0; }
 };
 
-/// Values of voxels in use that stand for all: of about 64 blocks of 8^3, spread evenly.
+/// Returns a representative sample of the values of used voxels: from about 64 blocks of 8^3, spread evenly.
 std::vector<float> sample_values(const field::ScalarGrid& grid);
 
-/// Widens `range` so that every cell of the block that `active` touches is whole within it: beyond `active` the picture is of one colour
-/// and density, so that nothing else is lost by codes of `range` than their rounding.
+/// Widens `range` so that it includes all values of every cell of the block that `active` touches: beyond `active` the image has a constant
+/// color and extinction, so that encoding in `range` loses nothing but rounding.
 void widen_to_cells(ValueInterval& range, const VoxelBlock& block, const ValueInterval& active);
-/// The range without what lies beyond both `active` and the grid's display range: codes are not spent on outliers, which are clamped.
+/// Returns the range without the part beyond both `active` and the grid's display range: outliers are clamped instead of taking up codes.
 ValueInterval clip_outliers(ValueInterval range, const field::ScalarGrid& grid, const ValueInterval& active);
 
-/// PlaneConstraints of a grid, kSlabPlanes at a time and in parallel, each time with `before` planes more in front of them and `behind`
-/// behind, where the grid has them: no whole copy of a grid is made.
+/// Slabs of a grid: kSlabPlanes planes at a time, processed in parallel, each with `margin_before` extra planes in front and `margin_after`
+/// behind, as far as the grid has them: the grid is never copied as a whole.
 struct SlabRange {
-  int first = 0, count = 0;  ///< planes
+  int first = 0, count = 0;  ///< first plane and number of planes
   int margin_before = 0, margin_after = 0;
 };
+/// One slab, as passed to the body of for_each_slab().
 struct Slab {
-  int first, planes;  ///< of the grid
-  int offset;         ///< the block's plane that is `first`
+  int first, planes;  ///< planes of the grid
+  int offset;         ///< plane of the block that corresponds to `first`
   const VoxelBlock& block;
 };
 inline constexpr int kSlabPlanes = 8;
+/// Calls `body` for every slab, from several threads at a time.
 void for_each_slab(const field::ScalarGrid& grid, const SlabRange& slabs, const std::function<void(const Slab&)>& body);
 
-/// value = lo + code * per_code. A cell is valid where none of its corners has the code kInvalidCode, which only masked grids use.
+/// Scale of 8-bit codes: value = lo + code * per_code. A cell is valid if none of its corners has the code kInvalidCode, which only masked
+/// grids use.
 struct CodeScale {
   static constexpr std::uint8_t kInvalidCode = 0;
   double lo = 0, per_code = 0;
@@ -69,25 +75,26 @@ struct CodeScale {
   CodeScale() = default;
   CodeScale(const ValueInterval& range, bool is_masked);
   std::uint8_t min_code() const { return has_mask ? 1 : 0; }
-  /// Of `count` voxels of a block from `first` on.
+  /// Encodes `count` voxels of a block from `first` on.
   void encode(const VoxelBlock& block, std::size_t first, std::size_t count, std::uint8_t* out) const;
 };
 
-/// The codes of a brick's voxels that are in use.
+/// Range of the codes of a brick's used voxels.
 struct CodeRange {
-  std::uint8_t min = 255, max = 0;
-  bool has_unused = false;  ///< some voxels are not in use
+  std::uint8_t min = 255, max = 0;  ///< some voxels are not used
+  bool has_unused = false;          ///< some voxels are not in use
 
   bool empty() const { return min > max; }
 };
 
-/// What a transfer function makes of codes (make_preintegrated).
+/// Classification of codes by a transfer function (make_preintegrated).
 struct CodeAppearance {
-  std::array<std::uint16_t, 256> appearance_id{};  ///< codes c and c + 1, and all between, look alike if their numbers are equal
-  std::array<bool, 256> is_invisible{};            ///< and so are those that look like it
+  std::array<std::uint16_t, 256>
+      appearance_id{};  ///< codes c and c + 1, and all values between them, have the same appearance if their numbers are equal
+  std::array<bool, 256> is_invisible{};  ///< invisible; applies to all codes with the same number
 
-  /// 0: colour or density vary over the range; 1: nothing of it is seen; other numbers: it is of one colour and density, alike where they
-  /// are equal.
+  /// Returns 0 if color or extinction vary over the range, 1 if it is completely invisible, else a number that identifies its constant
+  /// color and extinction.
   std::uint16_t classify(const CodeRange& range) const;
 };
 

@@ -1,5 +1,5 @@
-/// GLSL to SPIR-V at run time, by the glslang library, as the build does it (Vulkan 1.3, SPIR-V 1.6). One thread at a time; the first call
-/// in a process takes a few hundred milliseconds, the next ones a few.
+/// Compilation of GLSL to SPIR-V at run time with the glslang library, equivalent to that of the build (Vulkan 1.3, SPIR-V 1.6). One thread
+/// at a time; the first call in a process takes a few hundred milliseconds, the following ones a few.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,31 +13,34 @@
 
 namespace catena::render {
 
+/// Result of a compilation.
 struct CompiledShader {
   std::vector<std::uint32_t> words;
-  std::vector<std::string> files;  ///< the shader and all that it includes, from the folder, sorted
+  std::vector<std::string> files;  ///< the shader and all files it includes, relative to the folder, sorted
 };
 
-/// `folder` stands for `shaders/`: "passes/x.frag" is folder/passes/x.frag, and what it includes as "shaders/lib/y.glsl" is
-/// folder/lib/y.glsl. The last part of the name says the stage: vert, frag, comp. Errors read "folder/passes/x.frag:12: what".
+/// Compiles a shader. `folder` stands for `shaders/`: "passes/x.frag" is folder/passes/x.frag, and a file included as "shaders/lib/y.glsl"
+/// is folder/lib/y.glsl. The file extension determines the stage: vert, frag, comp. Errors read "folder/passes/x.frag:12: what".
 Result<CompiledShader> compile_shader(const std::string& folder, const std::string& name);
 
-/// Watches a folder of shaders and compiles what has changed in it, by itself or by what it includes. Frame thread.
+/// Shader recompiled by ShaderWatcher.
 struct ChangedShader {
-  std::string name;  ///< "compose.frag"
+  std::string name;  ///< for instance "compose.frag"
   std::vector<std::uint32_t> words;
 };
 
+/// Result of ShaderWatcher::poll().
 struct ShaderChanges {
   std::vector<ChangedShader> changed;
-  std::vector<std::string> errors;  ///< of those that do not compile, a line each
+  std::vector<std::string> errors;  ///< one line for each shader that does not compile
 };
 
+/// Watches a folder of shaders and recompiles those that changed, directly or in a file they include. Frame thread.
 class ShaderWatcher {
  public:
-  /// `names`: of the shaders to watch, as files of folder/passes. An error where one of them is not there.
+  /// `names`: shaders to watch, files of folder/passes. An Error if one of them does not exist.
   static Result<ShaderWatcher> open(const std::string& folder, std::vector<std::string> names);
-  /// What has changed since the last call; the first call compiles all.
+  /// Returns the shaders that changed since the last call; the first call compiles all.
   ShaderChanges poll();
 
  private:
@@ -47,7 +50,7 @@ class ShaderWatcher {
   std::string folder_;
   std::vector<std::string> names_;
   std::map<std::string, Timestamp> timestamps_;
-  std::map<std::string, std::set<std::string>> files_;  ///< of every shader, as of its last success
+  std::map<std::string, std::set<std::string>> files_;  ///< files of every shader at its last successful compilation
 };
 
 }  // namespace catena::render

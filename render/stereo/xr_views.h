@@ -1,4 +1,4 @@
-/// The eyes of a person in the room of a headset, and where the world stands in it at first. Pure functions, any thread.
+/// Views of a headset user's eyes, and the initial placement of the world in the local space. Pure functions, any thread.
 #pragma once
 #include "engine/base/placement.h"
 #include "render/frame/frame_packet.h"
@@ -6,19 +6,20 @@
 
 namespace catena::render {
 
-/// How a person whose eyes are at the room's origin finds the world at first: level (the view's up is the room's), what the view looks at
-/// so far away, and seen from as high above as the view sees it: straight ahead and down, as on a desk. A view from steeply above or below
-/// is taken from kMostDown or kMostUp, where looking does not tire.
-inline constexpr double kArmLengthM = 0.7;  ///< an arm's length
-inline constexpr double kMaxDown_deg = 40, kMaxUp_deg = 15;
+inline constexpr double kArmLengthM = 0.7;                   ///< arm's length
+inline constexpr double kMaxDown_deg = 40, kMaxUp_deg = 15;  ///< limits of the initial elevation angle
+/// Returns the initial placement of the world for a user whose eyes are at the origin of the local space: level (the view's up is the
+/// vertical), with the view's target at distance_m, seen at the same elevation as in the view: straight ahead and down, as on a desk. The
+/// elevation of a view from steeply above or below is limited to kMaxDown_deg or kMaxUp_deg, which is comfortable to look at.
 Placement make_initial_placement(const View& view, double distance_m = kArmLengthM);
 
-/// An eye of the headset: in the room, orthonormal axes (columns: right, up, back), tangents of its edges.
+/// Eye of the headset in the local space: position in meters, orthonormal axes (columns: right, up, back), field of view.
 struct XrEye {
   Vec3 position{0.0};
   Mat3 local_from_eye{1.0};
   FovTangents tangents;
 };
+/// Returns the view of an eye in the world. Errors as make_headset_view().
 Result<View> make_xr_eye_view(const Placement& placement, const XrEye& eye);
 
 }  // namespace catena::render

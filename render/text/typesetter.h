@@ -1,4 +1,4 @@
-/// From UTF-8 to glyphs in place and their pictures. Frame thread.
+/// Typesetting: from UTF-8 to positioned glyphs, and the atlas of their bitmaps. Frame thread.
 #pragma once
 #include <map>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace catena::render {
 
-/// UTF-8 to code points. What is no UTF-8 becomes U+FFFD, one for each byte that fits nowhere. Any thread.
+/// Decodes UTF-8 to code points. Invalid input becomes U+FFFD, one for each byte that belongs to no valid sequence. Any thread.
 inline std::vector<char32_t> decode_utf8(std::string_view text) {
   constexpr char32_t bad = 0xfffd;
   std::vector<char32_t> out;
@@ -39,26 +39,27 @@ inline std::vector<char32_t> decode_utf8(std::string_view text) {
   return out;
 }
 
-/// Rasterised glyphs side by side in one coverage image: rows ("shelves") of equal height, growing downwards. A glyph is made once for
-/// its font, size, quarter of a pixel and halo. When the image is full it starts anew: what was placed before is void. Frame thread.
+/// Atlas of rasterized glyphs in one coverage image: rows ("shelves") of equal height, growing downwards. A glyph is rasterized once per
+/// font, size, quarter of a pixel and halo. When the image is full, it is cleared, which invalidates all earlier entries. Frame thread.
 class GlyphAtlas {
  public:
+  /// Position of a glyph in the atlas.
   struct Entry {
-    int x = 0, y = 0, width = 0, height = 0;  ///< in the image
-    int left = 0, top = 0;                    ///< of the bitmap's corner, from the pen
+    int x = 0, y = 0, width = 0, height = 0;  ///< rectangle in the image, pixels
+    int left = 0, top = 0;                    ///< offset of the bitmap's upper left corner from the pen
   };
   static constexpr int kWidth = 1024, kMaxHeight = 4096;
 
-  /// The glyph with its pen at `quarter` / 4 of a pixel. Nothing if it is larger than the whole image.
+  /// Returns the glyph with its pen at `quarter` / 4 of a pixel. Null if it is larger than the whole image.
   const Entry* get(const Font& font, std::uint32_t glyph, double size_px, int quarter, double halo_px);
 
-  /// Starts anew.
+  /// Clears the atlas.
   void clear();
 
   int height() const { return height_; }
-  const std::vector<std::uint8_t>& pixels() const { return pixels_; }  ///< kWidth x height()
-  std::uint64_t version() const { return version_; }                   ///< rises with every new glyph
-  std::uint64_t generation() const { return generation_; }             ///< rises when the image starts anew
+  const std::vector<std::uint8_t>& pixels() const { return pixels_; }  ///< kWidth x height() pixels
+  std::uint64_t version() const { return version_; }                   ///< increases with every new glyph
+  std::uint64_t generation() const { return generation_; }             ///< increases when the image is cleared
 
  private:
   struct Key {
@@ -81,41 +82,45 @@ class GlyphAtlas {
   std::uint64_t version_ = 0, generation_ = 0;
 };
 
+/// Style of a text.
 struct TextStyle {
   double size_px = 16;
   bool bold = false;
-  double align = 0;  ///< of several lines: 0 left, 0.5 centred, 1 right
+  double align = 0;  ///< alignment of several lines: 0 left, 0.5 centered, 1 right
 };
 
+/// Size of a text's box, pixels.
 struct TextExtent {
   double width = 0, height = 0;
-  double descent = 0;  ///< below the box
+  double descent = 0;  ///< depth of descenders below the box
 };
 
-/// A glyph's pen on its baseline, from the box's top left corner.
+/// Glyph with its pen position on the baseline, relative to the box's top left corner.
 struct PlacedGlyph {
   std::uint32_t glyph = 0;
   double x = 0, y = 0;
 };
 
+/// Positioned glyphs of a text.
 struct TextLayout {
   std::vector<PlacedGlyph> glyphs;
   TextExtent extent;
 };
 
-/// UTF-8 text to placed glyphs. A text's box reaches from the capitals' height of its first line to the baseline of its last, and is
-/// as wide as its widest line's advances: what is centred by it looks centred, descenders hang below. Pixels, x right, y down.
-/// Fonts are opened when first used. Without a font everything has no extent and no glyphs, and `fault` says why. Frame thread.
+/// Typesets UTF-8 text. A text's box reaches from the cap height of its first line to the baseline of its last, and is as wide as the
+/// advances of its widest line: text centered by this box looks centered, descenders hang below. Pixels, x right, y down. Fonts are opened
+/// on first use. Without a font, texts have no extent and no glyphs, and error_message() gives the reason. Frame thread.
 class Typesetter {
  public:
-  /// Another family drops the fonts (and so the atlas).
+  /// Sets the font family; another family drops the fonts and clears the atlas.
   void set_family(const std::string& family);
+  /// Returns the glyphs of a text with their positions, and its box.
   TextLayout layout(std::string_view text, const TextStyle& style);
   TextExtent measure(std::string_view text, const TextStyle& style) { return layout(text, style).extent; }
-  /// The font of a style, or none.
+  /// Returns the font of a style; null if there is none.
   const Font* font(bool bold);
   GlyphAtlas& atlas() { return atlas_; }
-  /// One sentence, once a font was asked for that is not there.
+  /// Returns a one-line message if a requested font could not be loaded; empty: none.
   const std::string& error_message() const { return error_message_; }
 
  private:

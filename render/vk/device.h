@@ -1,6 +1,6 @@
-/// One device, one queue, one timeline. A GPU is taken when there is one, a CPU driver (lavapipe) otherwise; the environment
-/// variable CATENA_DEVICE (cpu, gpu, or a part of the device's name) decides otherwise. What is retired is destroyed once the
-/// timeline has passed the last submission that could use it. Frame thread only.
+/// Vulkan device with one queue and one timeline semaphore. A GPU is preferred over a CPU driver (lavapipe); the environment variable
+/// CATENA_DEVICE (cpu, gpu, or a part of the device's name) overrides the choice. Retired objects are destroyed when the timeline has
+/// passed the last submission that could use them. Frame thread only.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -21,136 +21,136 @@
 
 namespace catena::render::vk {
 
-class TimestampQueries;  ///< stopwatch.h
+class TimestampQueries;  ///< timestamp_query.h
 
-/// A shader's words.
+/// SPIR-V words of a shader.
 using Spirv = std::span<const std::uint32_t>;
 
-/// Shaders that stand in for embedded ones, by the embedded words themselves: what creates pipelines need not know of it. Frame thread.
+/// Replacements of embedded shaders, looked up by the embedded words themselves: code that creates pipelines is not affected. Frame thread.
 class ShaderReplacements {
  public:
-  /// Pipelines created from now on have `words` in the place of `embedded` (which outlives this).
+  /// Makes pipelines created from here on use `words` in place of `embedded` (which must outlive this object).
   void replace(Spirv embedded, std::vector<std::uint32_t> words);
-  /// The embedded ones again.
+  /// Removes all replacements.
   void clear() { replacements_.clear(); }
-  /// What stands in for `embedded`: itself, where nothing does.
+  /// Returns the replacement of `embedded`, or `embedded` itself if there is none.
   Spirv resolve(Spirv embedded) const;
 
  private:
   std::vector<std::pair<Spirv, std::vector<std::uint32_t>>> replacements_;
 };
 
-/// The bindings that a shader declares, sorted.
+/// Returns the binding numbers that a shader declares, sorted.
 std::vector<std::uint32_t> declared_bindings(Spirv words);
 
-/// The calls that a driver may refuse at any time: what a test can make fail.
+/// Driver calls that can fail at any time; tests can inject failures into them.
 enum class DriverCall { allocate, submit, wait };
 
-/// How a device is made.
+/// Options for creating a device.
 struct DeviceOptions {
-  bool validation = false;    ///< with the validation layer, where it is installed
-  std::string device_filter;  ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best one
+  bool validation = false;    ///< enable the validation layer, if installed
+  std::string device_filter;  ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best device
   SurfaceFactory surface;     ///< empty: headless
-  VulkanProvider provider{};  ///< empty: Catena makes all of it
-  /// Of device memory, all that Catena allocates on this device. 0: nine tenths of what the driver offers now
-  /// (VK_EXT_memory_budget), or eight tenths of the largest heap where it does not say.
+  VulkanProvider provider{};  ///< empty: Catena creates all Vulkan objects
+  /// Memory budget: limit of the device memory that Catena allocates on this device. 0: nine tenths of what the driver reports as available
+  /// (VK_EXT_memory_budget), or eight tenths of the largest heap if it reports nothing.
   std::uint64_t memory_budget_bytes = 0;
-  /// Tests only: asked before each call; what it returns instead of VK_SUCCESS is taken for the driver's answer.
+  /// Tests only: called before each driver call; a result other than VK_SUCCESS is treated as the result of the driver.
   std::function<VkResult(DriverCall)> inject_failure{};
 };
 
-/// What the device is.
+/// Properties of the device.
 struct DeviceInfo {
-  std::string name, driver;                                   ///< its name; its driver's name and version
+  std::string name, driver;                                   ///< name of the device; name and version of its driver
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;  ///< GPU, CPU ..
-  VkPhysicalDeviceLimits limits{};                            ///< as Vulkan gives them
-  std::uint64_t memory_bytes = 0;                             ///< of the largest device-local heap
-  std::uint64_t memory_budget = 0;                            ///< bytes that Catena may hold
-  /// Whether the processor draws.
+  VkPhysicalDeviceLimits limits{};                            ///< Vulkan limits
+  std::uint64_t memory_bytes = 0;                             ///< size of the largest device-local heap
+  std::uint64_t memory_budget = 0;                            ///< bytes that Catena may allocate
+  /// Returns whether it is a CPU driver.
   bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 };
 
-/// What the device has done so far; tests read it.
+/// Counters of the device's activity, for statistics and tests.
 struct DeviceCounters {
-  std::uint64_t allocated_bytes = 0;      ///< device memory held now
-  std::uint64_t peak_bytes = 0;           ///< the most that was ever held
-  std::uint64_t uploads = 0;              ///< copies from staging memory
+  std::uint64_t allocated_bytes = 0;      ///< device memory allocated at present
+  std::uint64_t peak_bytes = 0;           ///< maximum of allocated_bytes
+  std::uint64_t uploads = 0;              ///< number of copies from staging memory
   std::uint64_t upload_bytes = 0;         ///< bytes of these copies
-  std::uint64_t pipelines = 0;            ///< created
-  std::uint64_t submissions = 0;          ///< of command buffers
-  std::uint64_t allocations = 0;          ///< of device memory
-  std::uint64_t refused_allocations = 0;  ///< allocations that the budget did not hold
-  double gpu_ns = 0;                      ///< of what was submitted and is done, by the device's clock (stopwatch.h)
+  std::uint64_t pipelines = 0;            ///< number of pipelines created
+  std::uint64_t submissions = 0;          ///< number of command buffers submitted
+  std::uint64_t allocations = 0;          ///< number of device memory allocations
+  std::uint64_t refused_allocations = 0;  ///< number of allocations rejected because of the budget
+  double gpu_ns = 0;                      ///< time of the completed submissions by the device's clock (timestamp_query.h)
 };
 
-/// The device. All handles belong to it, or to who lent them (VulkanProvider).
+/// Vulkan device. All handles belong to it or to the provider that lent them (VulkanProvider).
 class Device {
  public:
-  /// Makes or borrows instance, device and queue. An error where no device has what Catena needs: one sentence.
+  /// Creates or borrows instance, device and queue. A one-line Error if no device meets the requirements.
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// Vulkan's handle.
+  /// Returns the Vulkan handle.
   VkDevice handle() const { return device_; }
-  /// Vulkan's handle.
+  /// Returns the Vulkan handle.
   VkPhysicalDevice physical() const { return physical_; }
-  /// Vulkan's handle.
+  /// Returns the Vulkan handle.
   VkInstance instance() const { return instance_->handle(); }
-  /// Its one queue.
+  /// Returns the queue; there is only one.
   VkQueue queue() const { return queue_; }
-  /// The queue's family.
+  /// Returns the queue's family.
   std::uint32_t queue_family() const { return queue_family_; }
-  /// Held while the queue is used: others may use it, too (VulkanProvider).
+  /// Returns a lock to be held while the queue is used, as others may share it (VulkanProvider).
   [[nodiscard]] std::unique_lock<std::mutex> lock_queue() const {
     return provider_.queue_lock != nullptr ? std::unique_lock(*provider_.queue_lock) : std::unique_lock<std::mutex>();
   }
-  /// A command buffer to record, and back with it when its work is done: they are used again and again.
+  /// Returns a command buffer in the initial state; buffers are recycled. An Error if the driver refuses.
   Result<VkCommandBuffer> acquire_command_buffer();
-  /// Of acquire_command_buffer(): empty afterwards.
+  /// Returns a command buffer to the pool when its work is done.
   void release_command_buffer(VkCommandBuffer buffer);
-  /// The window's surface; null without a window.
+  /// Returns the window's surface; null without a window.
   VkSurfaceKHR surface() const { return instance_->surface(); }
-  /// What the device is.
+  /// Returns the properties of the device.
   const DeviceInfo& info() const { return info_; }
-  /// Warnings and errors so far.
+  /// Returns the warnings and errors reported so far.
   const Messages& messages() const { return instance_->messages(); }
-  /// What it has done so far.
+  /// Returns the counters.
   DeviceCounters& counters() { return counters_; }
-  /// What it has done so far.
+  /// Returns the counters.
   const DeviceCounters& counters() const { return counters_; }
-  /// What stands in for embedded shaders.
+  /// Returns the replacements of embedded shaders.
   ShaderReplacements& shaders() { return shaders_; }
-  /// What takes the time of the work that was submitted (stopwatch.h).
+  /// Returns the timestamp queries that measure the submitted work (timestamp_query.h).
   TimestampQueries& timestamps() { return *timestamps_; }
-  /// Bytes that the budget still holds.
+  /// Returns the bytes of the memory budget that are not allocated.
   std::uint64_t memory_available() const {
     return counters_.allocated_bytes < info_.memory_budget ? info_.memory_budget - counters_.allocated_bytes : 0;
   }
-  /// It and its instance are not destroyed: another one's call that uses them never ends.
+  /// Deliberately leaks the device and its instance, because a call of another owner that uses them never returns.
   void abandon();
-  /// The driver gave the device up: nothing can be drawn with it any more. A new one can be made from the same packets.
+  /// Returns whether the device is lost (VK_ERROR_DEVICE_LOST): it cannot render; a new one can render the same packets.
   bool is_lost() const { return is_lost_; }
-  /// What a test pretends that the driver says.
+  /// Returns the result that a test injects for the driver call; VK_SUCCESS: none.
   VkResult injected_failure(DriverCall call) const { return inject_failure_ ? inject_failure_(call) : VK_SUCCESS; }
-  /// VkCmdPushDescriptorSetKHR of this device.
+  /// Returns vkCmdPushDescriptorSetKHR of this device.
   PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
 
-  /// Its one timeline semaphore, and the value that the last submission reaches.
+  /// Returns the timeline semaphore.
   VkSemaphore timeline() const { return timeline_; }
-  /// The value that the last submission reaches.
+  /// Returns the timeline value that the last submission signals.
   std::uint64_t submitted_value() const { return submitted_value_; }
-  /// Submits and returns the timeline value that is reached when the work is done. Optional binary semaphores for a swapchain.
+  /// Submits a command buffer; returns the timeline value reached when its work is done. Optional binary semaphores for a swapchain.
   Result<std::uint64_t> submit(VkCommandBuffer commands, VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
-  /// Waits until the timeline has reached `value`, and destroys what is retired by then. An error where the device is lost.
+  /// Waits until the timeline has reached `value`, then destroys the objects retired by then. An Error if the device is lost.
   Outcome wait(std::uint64_t value);
-  /// Waits for all that was submitted.
+  /// Waits for all submitted work.
   Outcome wait_idle() { return wait(submitted_value_); }
 
-  /// Calls `destroy` once everything submitted so far is done (at a later wait, or when the device goes).
+  /// Schedules `destroy` for when all work submitted so far is done (in a later wait(), or when the device is destroyed).
   void retire(std::function<void()> destroy);
-  /// Things that wait to be destroyed.
+  /// Returns the number of objects waiting to be destroyed.
   std::size_t retired_count() const { return retired_.size(); }
 
  private:
@@ -174,7 +174,7 @@ class Device {
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queue_family_ = 0;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> idle_commands_;  // of the pool
+  std::vector<VkCommandBuffer> idle_commands_;  // recycled command buffers of the pool
   VkSemaphore timeline_ = VK_NULL_HANDLE;
   std::uint64_t submitted_value_ = 0, completed_value_ = 0;
   std::unique_ptr<TimestampQueries> timestamps_;
@@ -187,7 +187,7 @@ class Device {
   PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
 };
 
-/// One line a device: name, type, Vulkan version, driver.
+/// Returns one line per device: name, type, Vulkan version, driver.
 Result<std::vector<std::string>> list_devices();
 
 }  // namespace catena::render::vk

@@ -1,4 +1,4 @@
-/// Every VkResult becomes a Result with one sentence.
+/// Vulkan instance, its messages, and conversion of every VkResult to a Result with a one-line message.
 #pragma once
 #include <vulkan/vulkan.h>
 #include <cstdint>
@@ -13,51 +13,51 @@
 
 namespace catena::render::vk {
 
-/// "VK_ERROR_DEVICE_LOST" and so on.
+/// Returns the name of a result code, for instance "VK_ERROR_DEVICE_LOST".
 const char* result_name(VkResult result);
-/// "Vulkan could not WHAT: VK_ERROR_..."
+/// Returns an error "Vulkan could not WHAT: VK_ERROR_...".
 Error vulkan_error(VkResult result, const std::string& what);
 
 }  // namespace catena::render::vk
 
-/// Returns an error from the function around it unless the call succeeds.
+/// Returns an error from the enclosing function unless the call succeeds.
 #define CATENA_VK(call, what) \
   if (const VkResult vk_result = (call); vk_result != VK_SUCCESS) return ::catena::render::vk::vulkan_error(vk_result, what)
 
 namespace catena::render::vk {
 
-/// Where a window's surface comes from; the viewer passes it, headless programs have none.
+/// Factory of a window's surface, set by the viewer; empty for headless programs.
 struct SurfaceFactory {
-  std::vector<std::string> instance_extensions;               ///< that the surface needs
-  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;  ///< Makes the surface of an instance.
-  /// Whether there is a window.
+  std::vector<std::string> instance_extensions;               ///< instance extensions that the surface requires
+  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;  ///< creates the surface for an instance
+  /// Returns whether there is a window.
   explicit operator bool() const { return static_cast<bool>(create); }
 };
 
-/// Makes Vulkan objects in Catena's place, and says which queue is used: for a headset's runtime, or for a program that draws with a device
-/// of its own. Catena makes what no function is set for. The extensions, layers and features that a function is asked for are needed; it
-/// may add others. What it returns instead of VK_SUCCESS becomes the error. Frame thread.
+/// Provider of Vulkan objects in place of Catena, for an XR runtime or a host application with a device of its own; it also defines the
+/// queue. Catena creates the objects whose function is empty. The extensions, layers and features in `wanted` are required; the provider
+/// may add others. A result other than VK_SUCCESS becomes the Error. Frame thread.
 struct VulkanProvider {
-  /// As vkCreateInstance.
+  /// Creates the instance, like vkCreateInstance.
   std::function<VkResult(const VkInstanceCreateInfo& wanted, VkInstance* made)> instance;
-  /// Of the instance; it still has to have what Catena needs.
+  /// Selects a physical device of the instance; it must still meet Catena's requirements.
   std::function<VkResult(VkInstance instance, VkPhysicalDevice* chosen)> physical_device;
-  /// As vkCreateDevice: one queue that draws and computes.
+  /// Creates the device, like vkCreateDevice, with one queue for graphics and compute.
   std::function<VkResult(VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made)> device;
-  /// Of the queue, its first one is used; none: the first family that draws and computes.
+  /// Queue family whose first queue is used; nullopt: the first family with graphics and compute.
   std::optional<std::uint32_t> queue_family;
-  /// Held around every use of the queue, where others use it too; it outlives the device.
+  /// Mutex held around every use of the queue, if others use it too; must outlive the device. Null: none.
   std::mutex* queue_lock = nullptr;
-  /// Whether instance and device stay theirs: Catena does not destroy them.
+  /// Whether the provider keeps ownership of instance and device: Catena does not destroy them.
   bool keeps_ownership = false;
 };
 
-/// Warnings and errors so far; the driver may report from any thread.
+/// Warnings and errors reported by Vulkan. Thread-safe, as the driver may report from any thread.
 class Messages {
  public:
   /// Adds a message.
   void add(std::string text);
-  /// Messages so far.
+  /// Returns the number of messages.
   std::uint64_t count() const;
   std::vector<std::string> texts() const;  ///< the first 64
 
@@ -67,23 +67,23 @@ class Messages {
   std::vector<std::string> texts_;
 };
 
-/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
-/// the layer and the loader are counted and their texts kept; tests assert that there are none. Frame thread.
+/// Vulkan instance of version 1.3, with the validation layer (including synchronization checks) if requested. Warnings and errors of the
+/// layer and the loader are counted and their texts kept; tests assert that there are none. Frame thread.
 class Instance {
  public:
-  /// Makes or borrows it. An error is one sentence.
+  /// Creates or borrows the instance. A one-line Error on failure.
   static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanProvider& maker = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
 
-  /// Vulkan's handle.
+  /// Returns the Vulkan handle.
   VkInstance handle() const { return instance_; }
-  /// The window's surface; null without a window.
+  /// Returns the window's surface; null without a window.
   VkSurfaceKHR surface() const { return surface_; }
-  /// Warnings and errors so far.
+  /// Returns the warnings and errors reported so far.
   const Messages& messages() const { return messages_; }
-  /// It is not destroyed.
+  /// Deliberately leaks the instance: it is not destroyed.
   void abandon() { owned_ = false; }
 
  private:

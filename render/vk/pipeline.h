@@ -1,5 +1,5 @@
-/// Pipelines from SPIR-V words that were embedded at build time, or from what the device has in their place. Descriptors are pushed; shader
-/// constants are specialised.
+/// Pipelines from SPIR-V words embedded at build time, or from their replacements (ShaderReplacements). Descriptors are pushed; shader
+/// constants are specialized.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -10,50 +10,63 @@
 
 namespace catena::render::vk {
 
-/// One binding of a shader: what kind it is.
-enum class DescriptorKind { uniform, buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only
+/// Kind of a shader binding.
+enum class DescriptorKind {
+  uniform,
+  buffer,
+  sampled,
+  texture,
+  storage_image
+};  ///< sampled: image with a sampler; texture: texel fetches only
+/// Returns the Vulkan descriptor type.
 VkDescriptorType descriptor_type(DescriptorKind resource);
+/// Binding number and kind in a pipeline layout.
 struct LayoutBinding {
   std::uint32_t binding = 0;
   DescriptorKind kind = DescriptorKind::buffer;
 };
 
+/// Attribute of the vertex buffer.
 struct VertexAttribute {
   std::uint32_t location = 0;
   VkFormat format = VK_FORMAT_R32G32B32_SFLOAT;
   std::uint32_t offset = 0;
 };
 
-/// What becomes of a colour target's texel.
+/// Blending of a fragment with a color target.
 enum class Blend {
   replace,
-  over,           ///< premultiplied colours over what is there
-  over_straight,  ///< the same for straight alpha
+  over,           ///< source over destination, premultiplied colors
+  over_straight,  ///< source over destination, straight alpha
   keep,           ///< nothing is written
   accumulate,     ///< rgb <- rgb + source; alpha <- alpha (1 - source)
-  min,            ///< the lesser of both
+  min,            ///< minimum of both
 };
 
+/// Description of a graphics pipeline.
 struct GraphicsInfo {
   Spirv vertex, fragment;
   std::vector<LayoutBinding> layout_bindings;
-  std::vector<std::uint32_t> constants;  ///< specialisation constants 0, 1, 2, .. of the fragment shader
+  std::vector<std::uint32_t> constants;  ///< specialization constants 0, 1, 2, .. of the fragment shader
   std::vector<VkFormat> colors;
-  std::vector<Blend> blends{};      ///< by colour; empty: replace
-  bool has_depth = false;           ///< D32F, reversed: greater is nearer
+  std::vector<Blend> blends{};      ///< one per color target; empty: replace
+  bool has_depth = false;           ///< depth buffer D32F, reversed: greater is nearer
   std::uint32_t vertex_stride = 0;  ///< 0: no vertex buffer
   std::vector<VertexAttribute> attributes;
 };
 
+/// Description of a compute pipeline.
 struct ComputeInfo {
   Spirv shader;
   std::vector<LayoutBinding> layout_bindings;
   std::vector<std::uint32_t> constants;
 };
 
+/// Graphics or compute pipeline with its layout. Move-only; destruction is retired to the device's timeline. Frame thread.
 class Pipeline {
  public:
   Pipeline() = default;
+  /// Creates the pipeline. An Error if the driver refuses.
   static Result<Pipeline> create(Device& device, const GraphicsInfo& info);
   static Result<Pipeline> create(Device& device, const ComputeInfo& info);
   ~Pipeline();

@@ -1,5 +1,5 @@
-/// What Catena needs of a Vulkan device, for a program that makes its device itself and lends it (VulkanProvider, instance.h): ask before
-/// the device is made, and make it with these extensions and features besides one's own. Any thread.
+/// Requirements on a Vulkan device, for a host application that creates the device itself and lends it to Catena (VulkanProvider,
+/// instance.h): check them before creating the device, and enable these extensions and features besides one's own. Any thread.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -9,24 +9,24 @@
 
 namespace catena::render::vk {
 
-inline constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;  ///< of the instance and of the device
+inline constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;  ///< version of the instance and of the device
 
-/// The chain that vkCreateDevice takes as pNext = &core. It points into itself, so it does not move.
+/// Feature chain for vkCreateDevice, to be passed as pNext = &core. Not movable, as it points into itself.
 struct DeviceFeatures {
-  VkPhysicalDeviceFeatures2 core{};        ///< begins the chain
-  VkPhysicalDeviceVulkan12Features v12{};  ///< next in it
-  VkPhysicalDeviceVulkan13Features v13{};  ///< last in it
+  VkPhysicalDeviceFeatures2 core{};        ///< start of the chain
+  VkPhysicalDeviceVulkan12Features v12{};  ///< second in the chain
+  VkPhysicalDeviceVulkan13Features v13{};  ///< last in the chain
   DeviceFeatures();
   DeviceFeatures(const DeviceFeatures&) = delete;
   DeviceFeatures& operator=(const DeviceFeatures&) = delete;
 };
 
-/// Switches on what Catena needs; what is on already stays on.
+/// Enables the features that Catena requires; features already enabled stay enabled.
 void enable_required(DeviceFeatures& features);
-/// Of the device. `presents`: Catena shows its pictures in a window of its own.
+/// Returns the required device extensions. `presents`: Catena presents images in a window of its own.
 std::vector<const char*> required_extensions(bool presents = false);
-/// What the device has not got of all this: its first word, such as "independentBlend"; empty: it will do. `surface`: where pictures are
-/// shown, none for pictures in memory.
+/// Returns the first requirement that the device does not meet, by its name such as "independentBlend"; empty: it meets all. `surface`:
+/// where images are presented; null for offscreen rendering.
 std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 }  // namespace catena::render::vk

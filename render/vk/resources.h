@@ -1,5 +1,5 @@
-/// Buffers and images, each with its own memory (they are few). Move-only; destruction is retired to the device's timeline.
-/// What the device's memory budget does not hold is refused with one sentence.
+/// Buffers and images, each with its own memory allocation (there are few). Move-only; destruction is retired to the device's timeline.
+/// Allocations beyond the device's memory budget fail with a one-line Error.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -9,31 +9,31 @@
 
 namespace catena::render::vk {
 
-/// Where a buffer lives: on the device, or on the host (mapped, coherent) for writing or for reading back.
+/// Memory of a buffer: on the device, or on the host (mapped, coherent) for writing or for reading back.
 enum class Memory { device, upload, readback };
 
-/// A buffer with its memory. Frame thread.
+/// Buffer with its memory. Frame thread.
 class Buffer {
  public:
   Buffer() = default;
-  /// Makes one. An error where the budget or the device has no memory.
+  /// Creates a buffer. An Error if the budget or the device has no memory.
   static Result<Buffer> create(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
   ~Buffer() { release(); }
-  /// Takes the buffer over; `other` has none then.
+  /// Moves the buffer; `other` is empty afterwards.
   Buffer(Buffer&& other) noexcept { swap(other); }
-  /// Exchanges the buffers.
+  /// Swaps the buffers.
   Buffer& operator=(Buffer&& other) noexcept {
     swap(other);
     return *this;
   }
 
-  /// Vulkan's handle; null: there is none.
+  /// Returns the Vulkan handle; null if empty.
   VkBuffer handle() const { return buffer_; }
-  /// Bytes.
+  /// Returns the size in bytes.
   VkDeviceSize size() const { return size_; }
-  /// Whether there is one.
+  /// Returns whether the buffer is not empty.
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
-  /// Mapped bytes; empty on the device.
+  /// Returns the mapped bytes; empty for device memory.
   std::span<std::byte> bytes() const { return {static_cast<std::byte*>(mapped_), mapped_ ? std::size_t(size_) : 0}; }
 
  private:
@@ -46,55 +46,55 @@ class Buffer {
   void* mapped_ = nullptr;
 };
 
-/// What an image is to be.
+/// Parameters for creating an image.
 struct ImageInfo {
   VkImageType type = VK_IMAGE_TYPE_2D;         ///< 1D, 2D or 3D
-  VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;  ///< of the texels
+  VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;  ///< texel format
   VkExtent3D extent{1, 1, 1};                  ///< texels
-  VkImageUsageFlags usage = 0;                 ///< as Vulkan's flags
+  VkImageUsageFlags usage = 0;                 ///< Vulkan usage flags
 };
 
-/// Of three dimensions, uploaded once and read by shaders.
+/// Returns the parameters of a 3D image that is uploaded once and read by shaders.
 ImageInfo volume_image_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z);
 
-/// Bytes of one texel of the formats that Catena uses.
+/// Returns the bytes per texel of the formats that Catena uses.
 VkDeviceSize texel_bytes(VkFormat format);
 
-/// What an image takes on this device, with the driver's padding; none where no such image can be made.
+/// Returns the memory size of an image on this device, including padding by the driver; nullopt if the image is not supported.
 std::optional<VkDeviceSize> image_memory_bytes(const Device& device, const ImageInfo& info);
 
-/// One mip level, one layer, one view. Remembers its layout and last use, so that a barrier needs only the next one.
+/// Image with its memory: one mip level, one layer, one view. Tracks its layout and last use, so that a barrier needs only the next use.
 class Image {
  public:
   Image() = default;
-  /// Makes one. An error where the budget or the device has no memory.
+  /// Creates an image. An Error if the budget or the device has no memory.
   static Result<Image> create(Device& device, const ImageInfo& info);
   ~Image() { release(); }
-  /// Takes the image over; `other` has none then.
+  /// Moves the image; `other` is empty afterwards.
   Image(Image&& other) noexcept { swap(other); }
-  /// Exchanges the images.
+  /// Swaps the images.
   Image& operator=(Image&& other) noexcept {
     swap(other);
     return *this;
   }
 
-  /// Vulkan's handle; null: there is none.
+  /// Returns the Vulkan handle; null if empty.
   VkImage handle() const { return image_; }
-  /// Of all of it.
+  /// Returns the view of the whole image.
   VkImageView view() const { return view_; }
-  /// What it was asked to be.
+  /// Returns the creation parameters.
   const ImageInfo& info() const { return info_; }
-  /// Device memory that it holds.
+  /// Returns the size of its device memory, bytes.
   VkDeviceSize bytes() const { return allocated_; }
-  /// Colour or depth.
+  /// Returns the color or the depth aspect.
   VkImageAspectFlags aspect() const;
-  /// Whether there is one.
+  /// Returns whether the image is not empty.
   explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
 
-  // written by Commands::use, as recorded
-  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;        ///< that it is in once what was recorded has run
-  VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_NONE;  ///< that used it last
-  VkAccessFlags2 access = VK_ACCESS_2_NONE;                ///< how they used it
+  // State of the last recorded use, maintained by Commands.
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;        ///< layout after the recorded commands have run
+  VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_NONE;  ///< stages of the last use
+  VkAccessFlags2 access = VK_ACCESS_2_NONE;                ///< accesses of the last use
 
  private:
   void swap(Image& other) noexcept;
@@ -107,31 +107,31 @@ class Image {
   ImageInfo info_;
 };
 
-/// Makes `image` anew unless it has this format and size already; by default a colour target that shaders read.
+/// Re-creates `image` unless it has this format and size; by default as a color target that shaders read.
 Outcome ensure_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
                      VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
 
-/// Between texels: the nearest, or a mix.
+/// Filter between texels: nearest texel or linear interpolation.
 enum class Filter { nearest, linear };
 
-/// Clamped to the edge.
+/// Sampler that clamps to the edge. Move-only.
 class Sampler {
  public:
   Sampler() = default;
-  /// Makes one. An error is one sentence.
+  /// Creates a sampler. A one-line Error if the driver refuses.
   static Result<Sampler> create(Device& device, Filter filter);
   ~Sampler();
-  /// Takes the sampler over; `other` has none then.
+  /// Moves the sampler; `other` is empty afterwards.
   Sampler(Sampler&& other) noexcept : device_(other.device_), sampler_(other.sampler_) { other.sampler_ = VK_NULL_HANDLE; }
-  /// Exchanges the samplers.
+  /// Swaps the samplers.
   Sampler& operator=(Sampler&& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(sampler_, other.sampler_);
     return *this;
   }
-  /// Vulkan's handle; null: there is none.
+  /// Returns the Vulkan handle; null if empty.
   VkSampler handle() const { return sampler_; }
-  /// Whether there is one.
+  /// Returns whether the sampler is not empty.
   explicit operator bool() const { return sampler_ != VK_NULL_HANDLE; }
 
  private:

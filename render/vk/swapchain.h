@@ -1,6 +1,6 @@
-/// A window's images: UNORM, so that display values stay as they are. present() copies (and scales) a finished picture.
-/// FIFO, with as few images as the window system takes: nothing is drawn that no one sees, and no more frames than needed wait between
-/// the hand and the eye. Frame thread only.
+/// Swapchain of a window: UNORM images, so that display values are passed through unchanged. present() copies (and scales) a finished
+/// image. FIFO mode with the minimum number of images: no frames are rendered that are never shown, and the latency between input and
+/// display is minimal. Frame thread only.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -12,18 +12,19 @@
 
 namespace catena::render::vk {
 
+/// Swapchain for the surface of a device.
 class Swapchain {
  public:
-  /// For the surface that the device was created with; the size is used where the window system leaves it open.
+  /// Creates the swapchain for the surface that the device was created with; the size is used if the window system does not define one.
   static Result<std::unique_ptr<Swapchain>> create(Device& device, std::uint32_t width, std::uint32_t height);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
-  /// After a failure there are no images, and present() says false.
+  /// Re-creates the images for a new size. After a failure there are no images, and present() returns false.
   Outcome resize(std::uint32_t width, std::uint32_t height);
-  /// Copies `source` (in the layout TRANSFER_SRC) to the next image and shows it with the display's next refresh; waits until it is
-  /// copied. False: out of date, or of another size than the window, call resize.
+  /// Copies `source` (in the layout TRANSFER_SRC) to the next image and presents it at the display's next refresh; waits until it is
+  /// copied. Returns false if the swapchain is out of date or differs in size from the window: call resize().
   Result<bool> present(const Image& source);
   VkExtent2D extent() const { return extent_; }
 
@@ -39,7 +40,7 @@ class Swapchain {
   VkSurfaceFormatKHR format_{};
   VkExtent2D extent_{};
   std::vector<VkImage> images_;
-  std::vector<VkSemaphore> render_finished_;  ///< one an image
+  std::vector<VkSemaphore> render_finished_;  ///< one per image
   VkSemaphore image_acquired_ = VK_NULL_HANDLE;
 };
 

@@ -1,7 +1,7 @@
-/// What the device's work takes by its own clock: a pair of timestamps around each command buffer. On a GPU the time on the wall holds what
-/// other programs and the processor do beside; on a driver that draws with the processor this is the time on the wall.
-///   auto lap = stopwatch.begin(buffer); .. stopwatch.end(buffer, lap); submit; wait; ns += stopwatch.take(lap);
-/// Laps of command buffers that run beside each other count twice. Frame thread.
+/// Execution time of submitted work by the device's clock: a pair of timestamps around each command buffer. On a GPU, unlike wall time, it
+/// excludes other programs and the processor; with a CPU driver it equals wall time.
+///   auto pair = queries.begin(buffer); .. queries.end(buffer, pair); submit; wait; ns += queries.read_ns(pair);
+/// Overlapping intervals of command buffers that run concurrently are counted twice. Frame thread.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -10,23 +10,26 @@
 
 namespace catena::render::vk {
 
+/// Pool of timestamp query pairs.
 class TimestampQueries {
  public:
-  using TimestampPair = std::optional<std::uint32_t>;  ///< none: not measured
+  using TimestampPair = std::optional<std::uint32_t>;  ///< index of a query pair; nullopt: not measured
 
-  /// A queue family without timestamps, or too little memory: none is ever measured.
+  /// If the queue family has no timestamps or memory is short, nothing is measured.
   TimestampQueries(VkPhysicalDevice physical, VkDevice device, std::uint32_t queue_family);
   ~TimestampQueries();
   TimestampQueries(const TimestampQueries&) = delete;
   TimestampQueries& operator=(const TimestampQueries&) = delete;
 
+  /// Returns whether work is measured.
   bool is_supported() const { return pool_ != VK_NULL_HANDLE; }
-  /// OutwardSide a pass. None where too many laps are on their way.
+  /// Records the first timestamp, outside a render pass. nullopt if too many pairs are in use.
   TimestampPair begin(VkCommandBuffer commands);
+  /// Records the second timestamp; nothing for nullopt.
   void end(VkCommandBuffer commands, TimestampPair lap) const;
-  /// Nanoseconds of a lap whose work is done; the lap is over. 0 where they cannot be had.
+  /// Returns the nanoseconds of a pair whose work is done, and frees the pair. 0 if not available.
   double read_ns(TimestampPair lap);
-  /// The lap's commands never run.
+  /// Frees a pair whose commands are never executed.
   void cancel(TimestampPair lap);
 
  private:
@@ -34,8 +37,8 @@ class TimestampQueries {
   VkDevice device_;
   VkQueryPool pool_ = VK_NULL_HANDLE;
   double ns_per_tick_ = 1;
-  std::uint64_t mask_ = ~std::uint64_t{0};        ///< the bits that count
-  std::uint64_t free_slots_ = ~std::uint64_t{0};  ///< a bit a lap
+  std::uint64_t mask_ = ~std::uint64_t{0};        ///< valid bits of a timestamp
+  std::uint64_t free_slots_ = ~std::uint64_t{0};  ///< one bit per pair
 };
 
 }  // namespace catena::render::vk

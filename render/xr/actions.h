@@ -1,12 +1,12 @@
-/// The hands in OpenXR's words: what a person does with controllers, whichever they are, and the vibration that they feel. The runtime maps
-/// what is suggested here for the common controllers (KHR simple, Oculus LinkContact, Valve Index, HTC Vive, Windows motion controllers),
-/// and for others what it thinks best.
-///   aim    where the hand points: along -z        grip   where the controller is held; the probe is its origin
-///   select trigger, 0..1                          grab   squeeze, 0..1
-///   stick  thumbstick or trackpad, right and up   menu   the panel
-/// Where a headset sees the eyes (XR_EXT_eye_gaze_interaction), their gaze is a pose like the others: along -z from between them.
-/// A hand whose controller is off, or which the runtime cannot see, is not there. One object a session; it goes before the session.
-/// Frame thread; the haptic thread never comes here.
+/// Controller input as OpenXR actions, independent of the controller type, and vibration output. The runtime applies the bindings suggested
+/// here for common controllers (KHR simple, Oculus Touch, Valve Index, HTC Vive, Windows motion controllers), and its own choice for
+/// others.
+///   aim    pointing direction: along -z               grip   where the controller is held; the probe is its origin
+///   select trigger, 0..1                              grab   squeeze, 0..1
+///   stick  thumbstick or trackpad, right and up       menu   the panel
+/// If the headset tracks the eyes (XR_EXT_eye_gaze_interaction), the gaze is a pose like the others: along -z from between the eyes. A
+/// controller that is off, or that the runtime cannot track, is reported as not tracked. One object per session; to be destroyed before the
+/// session. Frame thread; never used by the haptic thread.
 #pragma once
 #include <array>
 #include <memory>
@@ -17,38 +17,44 @@
 
 namespace catena::render::xr {
 
+/// State of one controller.
 struct ControllerState {
-  bool is_tracked = false;  ///< position and direction of the grip are known
-  bool has_aim = false;     ///< those of the aim are
-  bool is_focused = false;  ///< buttons count
+  bool is_tracked = false;  ///< pose of the grip is known
+  bool has_aim = false;     ///< pose of the aim is known
+  bool is_focused = false;  ///< input is valid: the session has focus
   XrPose grip, aim;
+  /// Trigger and squeeze, 0..1; stick to the right and up, -1..1.
   double select = 0, grab = 0, stick_x = 0, stick_y = 0;
   bool menu = false;
 };
 
 inline constexpr std::size_t kControllers = 2;  ///< 0 left, 1 right
 
+/// Actions of one session.
 class Actions {
  public:
+  /// Creates the actions and suggests the bindings. An Error if the runtime refuses.
   static Result<std::unique_ptr<Actions>> create(Session& session);
   ~Actions();
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
-  /// Buttons and poses from now on are the newest; once a frame.
+  /// Updates buttons and poses to the latest state; to be called every frame.
   Outcome sync();
-  /// A hand at a time of the runtime's clock: `now` for what it does, the frame's time for what is drawn of it.
+  /// Returns a controller's state at a time of the runtime's clock: the current time for interaction, the frame's display time for
+  /// rendering.
   Result<ControllerState> controller(std::size_t which, XrTime at);
 
-  /// Where the person looks then; nothing where the headset does not know. Nothing without focus.
+  /// Returns the user's gaze at that time; nullopt if the headset does not know it or the session has no focus.
   Result<std::optional<XrPose>> gaze(XrTime at);
 
-  /// Replaces what the hand feels. amplitude 0..1; frequency in Hz, 0: the runtime's choice; what it cannot make it clamps.
-  /// Nothing without focus.
+  /// Replaces the vibration of a controller. amplitude 0..1; frequency in Hz, 0: chosen by the runtime, which clamps unsupported values.
+  /// Does nothing without focus.
   Outcome vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns);
+  /// Stops the vibration of a controller.
   Outcome stop_vibration(std::size_t which);
 
-  /// "/interaction_profiles/valve/index_controller"; empty: no controller.
+  /// Returns, for instance, "/interaction_profiles/valve/index_controller"; empty: no controller.
   Result<std::string> interaction_profile(std::size_t which);
 
  private:

@@ -1,5 +1,5 @@
-/// The runtime's clock against ours: CLOCK_MONOTONIC by XR_KHR_convert_timespec_time, so that hands are located at *now*, and recordings of
-/// head and hands have the ticks' times. Frame thread.
+/// Conversion from CLOCK_MONOTONIC to the runtime's clock by XR_KHR_convert_timespec_time, to locate controllers at the current time and to
+/// record head and controllers with the time stamps of haptic ticks. Frame thread.
 #pragma once
 #include <optional>
 
@@ -7,7 +7,7 @@
 
 namespace catena::render::xr {
 
-/// Of a time of engine/base/clock.h; nothing where the runtime does not offer it.
+/// Converts a time of engine/base/clock.h; nullopt if the runtime does not support it.
 std::optional<XrTime> to_xr_time(const Instance& instance, std::int64_t monotonic_ns);
 
 }  // namespace catena::render::xr

@@ -1,8 +1,9 @@
-/// The depth of a view's picture, for the runtime to move it with the head between frames (XR_KHR_composition_layer_depth): of what is
-/// opaque, and of volumes and what is translucent where alpha passes 0.5 on the way to that (of every kRaySpacing-th pixel's ray):
-///   d = f / (f - n) (1 - n / z),  z metres from the eye along its axis, n = kNearM and f = kFarM; 1 where nothing is
-/// A projection (maximum, minimum, average) has no depth: what is opaque behind it would lie too deep, and nothing is submitted. Frame
-/// thread.
+/// Depth of a view's image, used by the runtime to reproject it to the head pose between frames (XR_KHR_composition_layer_depth): depth of
+/// opaque objects, and half-opacity depth (alpha exceeds 0.5) of volumes and translucent objects in front of them (from every
+/// kRaySpacing-th pixel's ray):
+///   d = f / (f - n) (1 - n / z),  z meters from the eye along its axis, n = kNearM and f = kFarM; 1 where there is nothing
+/// A projection (maximum, minimum, average) has no depth: that of opaque objects behind it would be too large, and nothing is submitted.
+/// Frame thread.
 #pragma once
 #include <array>
 #include <memory>
@@ -13,15 +14,16 @@
 
 namespace catena::render::xr {
 
+/// Depth swapchain of one view.
 class DepthImages {
  public:
   static constexpr float kNearM = 0.02f, kFarM = 1000;
   static constexpr std::uint32_t kRaySpacing = 8;
 
-  /// Nothing where the runtime takes no depths of 32 bits.
+  /// Returns null if the runtime does not support 32-bit depth.
   static std::unique_ptr<DepthImages> create(Session& session, ViewSize size);
   const SwapchainImages& images() const { return *images_; }
-  /// Of the renderer's last picture, drawn with ray_depth_spacing. False: it has no depth.
+  /// Submits the depth of the renderer's last image, rendered with ray_depth_spacing. Returns false if it has no depth.
   Result<bool> submit_depth(Renderer& renderer, double metres_per_unit);
 
  private:
@@ -29,7 +31,7 @@ class DepthImages {
   Session* session_;
   std::unique_ptr<SwapchainImages> images_;
   vk::Image depth_image_;
-  std::array<vk::Pipeline, 4> pipelines_;  // by what there is: 1 something opaque, 2 rays
+  std::array<vk::Pipeline, 4> pipelines_;  // index bits of the available input: 1 opaque depth, 2 ray depth
   vk::Buffer uniform_;
 };
 

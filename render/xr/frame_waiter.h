@@ -1,4 +1,5 @@
-/// The wait for a frame on a thread of its own: a runtime may keep it for seconds, and the window goes on meanwhile. One wait at a time.
+/// Waits for frames on a separate thread: a runtime may block for seconds, during which the window must stay responsive. One wait at a
+/// time.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -11,6 +12,7 @@
 
 namespace catena::render::xr {
 
+/// Thread that calls xrWaitFrame. To be used by the frame thread.
 class FrameWaiter {
  public:
   struct WaitResult {
@@ -19,26 +21,27 @@ class FrameWaiter {
   };
 
   FrameWaiter(PFN_xrWaitFrame wait, XrSession session);
-  /// After the runtime's answer, unless end() was told that there is none: a session is not destroyed while it is used.
+  /// Waits for the runtime's answer, unless stop() returned false: a session must not be destroyed while it is in use.
   ~FrameWaiter();
   FrameWaiter(const FrameWaiter&) = delete;
   FrameWaiter& operator=(const FrameWaiter&) = delete;
 
-  /// Asks the runtime, unless it was asked and has not answered. Nothing where there is no answer within `patience`; none: however long.
+  /// Requests a wait from the runtime, unless one is pending, and returns its result. nullopt if there is none within `patience` (nullopt:
+  /// no time limit).
   std::optional<WaitResult> wait_for(std::optional<std::chrono::nanoseconds> patience);
 
-  /// The last call. False where the runtime does not answer within `patience` (none: however long): its call and the thread are left
-  /// behind, and the session is in use for good.
+  /// Stops the thread; no other calls may follow. Returns false if the runtime does not answer within `patience` (nullopt: no time limit):
+  /// the call and the thread are then abandoned (deliberately leaked), and the session stays in use forever.
   bool stop(std::optional<std::chrono::nanoseconds> patience);
 
  private:
-  /// What the thread needs, even where it is left behind.
+  /// State shared with the thread, which outlives the object if the thread is abandoned.
   struct SharedState {
     PFN_xrWaitFrame wait;
     XrSession session;
     std::mutex mutex;
     std::condition_variable changed;
-    bool is_waiting = false, should_stop = false, has_stopped = false;  // under the lock, with the answer
+    bool is_waiting = false, should_stop = false, has_stopped = false;  // guarded by the mutex, like the result
     std::optional<WaitResult> wait_result;
   };
   static void run_thread(SharedState& shared);

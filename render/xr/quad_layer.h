@@ -1,4 +1,5 @@
-/// A flat panel in the room: a picture on a rectangle, over the scene. The runtime draws it, sharp at any distance. Frame thread.
+/// Flat panel in the local space: an image on a rectangle, on top of the scene. Composited by the runtime, sharp at any distance. Frame
+/// thread.
 #pragma once
 #include "engine/base/vec.h"
 #include "render/xr/actions.h"
@@ -6,20 +7,22 @@
 
 namespace catena::render::xr {
 
+/// Placement of the panel.
 struct Quad {
-  XrPose pose;                            ///< of its middle; it faces along +z
-  double width_m = 0.5, height_m = 0.35;  ///< > 0
-  bool opaque = false;                    ///< the picture's alpha does not count
+  XrPose pose;                            ///< pose of its center in the local space, meters; it faces along +z
+  double width_m = 0.5, height_m = 0.35;  ///< meters, > 0
+  bool opaque = false;                    ///< the image's alpha is ignored
 };
 
+/// Panel with its swapchain.
 class QuadLayer {
  public:
-  /// Of that many pixels.
+  /// Creates a panel of `size` pixels. An Error if the runtime refuses.
   static Result<std::unique_ptr<QuadLayer>> create(Session& session, ViewSize size);
-  /// The picture from now on (RGBA, 8 bits, straight alpha, of the layer's size).
+  /// Sets the image (RGBA, 8 bits, straight alpha, of the layer's size).
   Outcome submit_image(vk::Image& picture);
   void set_quad(const Quad& quad) { quad_ = quad; }
-  /// For end_frame; lives until the next call. Nothing before the first picture.
+  /// Returns the layer for end_frame(), valid until the next call; null before the first image.
   const XrCompositionLayerBaseHeader* composition_layer();
 
  private:

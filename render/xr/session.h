@@ -1,8 +1,8 @@
-/// A session of the headset on a Vulkan device that its runtime made: begun and ended as the runtime's events say (session_state.h), with
-/// the spaces in which heads and hands are located. It is destroyed before the device. Frame thread; the queue's lock is held where the
-/// runtime may use the queue.
-///   local:  origin where the person's head was when the session began or was recentred, y up
-///   stage:  origin on the floor in the middle of the room, where the runtime knows it
+/// Session of the headset on a Vulkan device created by its runtime: begun and ended according to the runtime's events (session_state.h),
+/// with the reference spaces in which head and controllers are located. To be destroyed before the device. Frame thread; the queue's lock
+/// is held where the runtime may use the queue.
+///   local:  origin at the user's head position when the session began or was recentered, y up
+///   stage:  origin on the floor in the center of the tracking space, if the runtime knows it
 ///   head:   fixed to the head
 #pragma once
 #include <array>
@@ -19,16 +19,19 @@
 
 namespace catena::render::xr {
 
+/// Reference space.
 enum class SpaceKind { local, stage, head };
 
-/// In the local space, metres.
+/// Pose in the local space, meters.
 struct XrPose {
   Vec3 position{0.0};
   Quat orientation = kIdentityRotation;
 };
 
+/// OpenXR session.
 class Session {
  public:
+  /// Creates the session and its spaces. An Error if the runtime refuses.
   static Result<std::unique_ptr<Session>> create(Instance& instance, vk::Device& device);
   ~Session();
   Session(const Session&) = delete;
@@ -39,34 +42,35 @@ class Session {
   vk::Device& device() const { return *device_; }
   const DispatchTable& dispatch() const { return instance_->dispatch(); }
 
-  /// Takes all events: begins and ends the session with them. Where the session or the instance is lost, instance().loss() says so.
+  /// Processes all events: begins and ends the session accordingly. If the session or the instance is lost, instance().loss() is set.
   Outcome poll();
-  /// The person wants to leave: the runtime ends the session by its events.
+  /// Requests to exit when the user leaves: the runtime then ends the session by its events.
   Outcome request_exit();
 
-  /// Of a session that runs; made when it is first asked for.
+  /// Returns the frame waiter of a running session; created on first use.
   FrameWaiter& frame_waiter();
-  /// The wait that is under way is given some seconds; a runtime that does not come back from it is left behind, with all that is its own.
+  /// Stops the pending wait with a time limit of some seconds; if the runtime does not return from it, instance and device are abandoned.
   void stop_wait();
 
   XrSessionState state() const { return state_; }
-  bool is_running() const { return is_running_; }  ///< frames are made
+  bool is_running() const { return is_running_; }  ///< frames can be begun
   bool is_focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
-  bool has_exited() const { return has_exited_; }
-  const std::vector<XrSessionState>& state_history() const { return state_history_; }  ///< of states, the latest 256
-  std::uint64_t invalid_transitions() const { return invalid_transitions_; }           ///< state changes that OpenXR does not have
+  bool has_exited() const { return has_exited_; }                                      ///< the session has ended because the user left
+  const std::vector<XrSessionState>& state_history() const { return state_history_; }  ///< the latest 256 states
+  std::uint64_t invalid_transitions() const { return invalid_transitions_; }  ///< number of state changes that OpenXR does not define
 
-  /// The null handle where the runtime does not have it.
+  /// Returns the null handle if the runtime does not support the space.
   XrSpace space(SpaceKind kind) const { return spaces_[static_cast<std::size_t>(kind)]; }
-  /// Where a space is in the local one at that time; nothing where it is not known. `what`: for the error.
+  /// Returns the pose of a space in the local space at that time; nullopt if unknown. `what`: action named in the Error.
   Result<std::optional<XrPose>> locate(XrSpace space, XrTime at, const char* what);
-  /// The origin of the local or stage space has moved: how often so far. What is placed in it may be placed anew.
+  /// Returns the number of changes of the origin of the local or stage space. Objects placed in them may need a new placement.
   std::uint64_t recenter_count() const { return recenter_count_; }
-  /// The parts of the lenses that are seen have changed: how often so far.
+  /// Returns the number of changes of the visibility masks.
   std::uint64_t mask_change_count() const { return mask_change_count_; }
-  /// The interaction profile has changed: how often so far.
+  /// Returns the number of changes of the interaction profile.
   std::uint64_t profile_change_count() const { return profile_change_count_; }
 
+  /// Returns the error of a failed call; records a loss if the result implies one.
   Error failed(XrResult result, const std::string& what) { return instance_->failed(result, what); }
 
  private:

@@ -1,6 +1,6 @@
-/// Images that the runtime lends, of one view or of a panel. Colours are 8 bits of sRGB: Catena's are display values, and are copied as
-/// they are; an sRGB image says that its bytes are display values already, so nothing is encoded twice. Where a runtime has no sRGB format,
-/// its plain one gets the same bytes. Depths are floats. Images come and go in the layout of an attachment. Frame thread.
+/// Images owned by the runtime, for one view or a panel. Colors are 8-bit sRGB: Catena's display values are copied unchanged; as an sRGB
+/// image is defined to hold display values, nothing is encoded twice. If a runtime has no sRGB format, its plain format gets the same
+/// bytes. Depths are floats. Images are acquired and released in the layout of an attachment. Frame thread.
 #pragma once
 #include <memory>
 #include <vector>
@@ -10,10 +10,13 @@
 
 namespace catena::render::xr {
 
+/// Content of a swapchain.
 enum class SwapchainContent { color, depth };
 
+/// Swapchain of the runtime.
 class SwapchainImages {
  public:
+  /// Creates a swapchain of `size` pixels. An Error if the runtime has no suitable format.
   static Result<std::unique_ptr<SwapchainImages>> create(Session& session, ViewSize size,
                                                          SwapchainContent content = SwapchainContent::color);
   ~SwapchainImages();
@@ -23,8 +26,8 @@ class SwapchainImages {
   XrSwapchain handle() const { return swapchain_; }
   ViewSize size() const { return size_; }
 
-  /// Copies a picture that is at most of this size (RGBA, 8 bits; of depths: D32) to the upper left of the next image, and hands that
-  /// over. The next frame's layers show it.
+  /// Copies an image of at most this size (RGBA, 8 bits; for depth: D32) to the upper left part of the next swapchain image, and releases
+  /// that to the runtime. The next frame's layers show it.
   Outcome submit_image(vk::Image& picture);
 
  private:

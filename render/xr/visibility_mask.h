@@ -1,5 +1,5 @@
-/// What of a view the lenses never show: triangles that the runtime knows, drawn black right before the eye, so that no ray is marched
-/// behind them. XR_KHR_visibility_mask. Frame thread.
+/// Parts of a view that the lenses never show (XR_KHR_visibility_mask): triangles from the runtime, rendered black right in front of the
+/// eye, so that no ray is marched behind them. Frame thread.
 #pragma once
 #include <memory>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace catena::render::xr {
 
-/// At the distance 1 before the eye: right and up are tangents.
+/// Hidden area mesh in the plane at distance 1 in front of the eye: coordinates to the right and up are tangents.
 struct HiddenMesh {
   std::vector<std::array<float, 2>> vertices;
-  std::vector<std::uint32_t> triangles;  ///< three indices each
+  std::vector<std::uint32_t> triangles;  ///< three indices per triangle
   bool empty() const { return triangles.empty(); }
 };
 
-/// Empty where the runtime does not offer it, or hides nothing.
+/// Loads the mesh of a view; empty if the runtime does not support it or hides nothing. An Error if the call fails.
 Result<HiddenMesh> load_hidden_mesh(Session& session, std::size_t view);
 
-/// The mesh as a part of the scene, so near that nothing stands before it.
+/// Returns the mesh as a scene item, so near to the eye that nothing is in front of it.
 MeshItem make_mask_item(const HiddenMesh& mesh, const Placement& placement, const XrEye& eye);
 
 }  // namespace catena::render::xr

@@ -1,5 +1,5 @@
-/// The one place that includes OpenXR. Its functions come from the loader, which is opened when a headset is asked for (never linked), so
-/// that a machine without it says one sentence. Every XrResult becomes a Result with one sentence. Frame thread.
+/// The only place that includes OpenXR. Its functions come from the loader library, which is opened when a headset is requested (never
+/// linked): a machine without it gets a one-line Error. Every XrResult becomes a Result with a one-line message. Frame thread.
 #pragma once
 #include <time.h>
 #include <vulkan/vulkan.h>
@@ -15,7 +15,7 @@
 
 #include "engine/base/result.h"
 
-/// Without an instance; of every instance; of instances whose extension was asked for.
+/// OpenXR functions by how they are obtained: without an instance; from every instance; from instances with the extension enabled.
 #define CATENA_XR_GLOBAL(X) X(EnumerateInstanceExtensionProperties) X(CreateInstance)
 // clang-format off
 #define CATENA_XR_CORE(X) \
@@ -36,10 +36,12 @@
 
 namespace catena::render::xr {
 
+/// Returns the name of a result code, for instance "XR_ERROR_INSTANCE_LOST".
 const char* result_name(XrResult result);
-/// "the headset could not WHAT: XR_ERROR_..."
+/// Returns an error "the headset could not WHAT: XR_ERROR_...".
 Error xr_error(XrResult result, const std::string& what);
 
+/// Function pointers of OpenXR.
 struct DispatchTable {
   PFN_xrGetInstanceProcAddr GetInstanceProcAddr = nullptr;
 #define CATENA_XR_MEMBER(name) PFN_xr##name name = nullptr;
@@ -49,22 +51,23 @@ struct DispatchTable {
   CATENA_XR_OPTIONAL(CATENA_XR_MEMBER)
 #undef CATENA_XR_MEMBER
 
-  /// Of an instance with XR_KHR_vulkan_enable2; an optional function stays empty where its extension was not asked for.
+  /// Loads the functions of an instance with XR_KHR_vulkan_enable2; optional functions stay null if their extension was not enabled.
   Outcome load(XrInstance instance);
-  /// From now on nothing is destroyed, and all that would be counts as destroyed: the runtime does not come back from a call.
+  /// Makes all destroy functions do nothing and report success, as the runtime does not return from a call.
   void disable_destruction();
 };
 
-/// The loader's library, kept open as long as this lives.
+/// Loader library, open as long as this object exists.
 class Loader {
  public:
+  /// Opens the library. A one-line Error if it is missing or unusable.
   static Result<std::unique_ptr<Loader>> open(const char* library = "libopenxr_loader.so.1");
   ~Loader();
   Loader(const Loader&) = delete;
   Loader& operator=(const Loader&) = delete;
-  /// With the global functions.
+  /// Returns a table with the global functions.
   const DispatchTable& dispatch() const { return dispatch_; }
-  /// It stays open for good.
+  /// Keeps the library open forever.
   void keep_loaded() { library_ = nullptr; }
 
  private:

@@ -1,5 +1,5 @@
-// One struct, two languages: the headers of this folder are compiled as C++ (GLM types) and as GLSL with scalar block layout, where
-// both put members at the same offsets. No booleans, no arrays of unknown length, nothing but 32-bit scalars, vectors and matrices.
+// Shared structs: the headers of this folder are compiled as C++ (GLM types) and as GLSL with scalar block layout, which place members at
+// the same offsets. No booleans, no arrays of unknown length, only 32-bit scalars, vectors and matrices.
 #ifndef CATENA_SHARED_LANGUAGE_H
 #define CATENA_SHARED_LANGUAGE_H
 #ifdef __cplusplus

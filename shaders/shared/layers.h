@@ -1,34 +1,37 @@
-// What is drawn into translucent layers (render/passes/passes.h), and slices, need beside the frame's data.
+// Translucent layers (render/passes/passes.h) and slices: shader data in addition to the frame data.
 #ifndef CATENA_SHARED_LAYERS_H
 #define CATENA_SHARED_LAYERS_H
 #include "shaders/shared/frame.h"
 #include "shaders/shared/language.h"
 
 #define MODE_OPAQUE 0  // into the opaque targets
-#define MODE_FIRST 1   // the nearest layer
-#define MODE_LAYER 2   // the nearest that lies behind the layer before
-#define MODE_TAIL 3    // all that lies behind the layer before, collected
+#define MODE_FIRST 1   // nearest layer
+#define MODE_LAYER 2   // nearest fragments behind the previous layer
+#define MODE_TAIL 3    // tail: all fragments behind the previous layer, averaged
 
 CATENA_SHARED_BEGIN
 
+// Depth range of the frame, and opacity of the item.
 struct LayerData {
   float reference_depth;
-  float depth_near, depth_far;  // as FrameData
+  float depth_near, depth_far;  // as in FrameData
   uint orthographic;
   float opacity;
 };
 
+// Slice plane, its appearance and its contour lines.
 struct SliceData {
-  ClipData plane;    // the distance from it, along the pixel's ray
-  vec3 normal;       // unit, world
-  float clip_slack;  // a slice that lies in a clip plane is kept: world units
+  ClipData plane;    // signed distance from the plane, along the pixel's ray
+  vec3 normal;       // unit vector, world axes
+  float clip_slack;  // tolerance of clipping, world units: a slice that lies in a clip plane is not cut
   uint is_lit;
-  uint color_last;  // the table's last row
+  uint color_last;  // last row of the color table
   uint level_count;
   vec3 line_color;
-  float half_width;    // of the lines, pixels
-  float depth_bias;    // this share of its distance nearer to the eye: over surfaces in its plane, and over earlier slices in it
-  float hidden_label;  // within a half of this value nothing is drawn; NaN: everywhere
+  float half_width;  // half of the line width, pixels
+  // Shift towards the camera, as a share of the distance, to be over surfaces and earlier slices in the same plane.
+  float depth_bias;
+  float hidden_label;  // values within 0.5 of it are not drawn; NaN: no value is hidden
 };
 
 CATENA_SHARED_END

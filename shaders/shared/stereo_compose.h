@@ -1,4 +1,4 @@
-// Several pictures into one: what stereo_compose.frag and anaglyph.frag are told.
+// Stereo composition of several views into one image: data of stereo_compose.frag and anaglyph.frag.
 #ifndef CATENA_SHARED_PACK_H
 #define CATENA_SHARED_PACK_H
 #include "shaders/shared/language.h"
@@ -10,12 +10,14 @@
 
 CATENA_SHARED_BEGIN
 
+// Placement of one view in the composed image.
 struct StereoComposeData {
-  vec2 first;             // where the view's picture begins in the packed one, pixels
+  vec2 first;             // position of the view in the composed image, pixels
   uint block_x, block_y;  // pixels of the view that are averaged to one
-  uint view, views;       // interlaced: this view out of so many
+  uint view, views;       // interlaced patterns: index of this view, number of views
 };
 
+// Color matrices of an anaglyph.
 struct AnaglyphData {
   mat3 left, right;  // display light = left * left eye's + right * right eye's, linear
 };

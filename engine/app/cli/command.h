@@ -1,4 +1,4 @@
-/// What every subcommand shares: how it registers itself, how it fails, how it finds its scene.
+/// Shared by all subcommands: registration, errors and exit codes, opening scenes, progress output.
 #pragma once
 #include <functional>
 #include <string>
@@ -15,10 +15,11 @@ class App;
 
 namespace catena::app {
 
-/// A subcommand's work; the exit code of a success is 0. An Error means bad input: exit code 2, or 1 where it is the machine's.
+/// The action of a subcommand; exit code 0 on success. An Error is bad input, exit code 2, or a system failure (Error::system_failure),
+/// exit code 1.
 using CommandAction = std::function<Outcome()>;
 
-/// Each adds its subcommand and, when the user chose it, sets `chosen`.
+/// Each function adds its subcommand to `program` and sets `chosen` if the user selected it.
 void add_render(CLI::App& program, CommandAction& chosen);
 void add_replay(CLI::App& program, CommandAction& chosen);
 void add_export(CLI::App& program, CommandAction& chosen);
@@ -34,52 +35,57 @@ void add_study(CLI::App& program, CommandAction& chosen);
 void add_documents(CLI::App& program, CommandAction& chosen);
 void add_view(CLI::App& program, CommandAction& chosen, int& exit_code);
 
-/// A failure of the machine, not of the input, or a replay that does not repeat its recording: exit code 1.
+/// Thrown for a failure of the system rather than the input, and for a replay that differs from its recording: exit code 1.
 struct MachineFailure {
   std::string message;
 };
 
-/// A scene file (.json), or a bare data file.
+/// Whether a path is a scene file (.json); otherwise it is a data file.
 bool is_scene_file(const std::string& path);
-/// What a data file says of its grids; of one alone where `grid` names it, or is its number.
+/// Describes the grids of a data file at a time step; only the matching ones if `grid`, a name or a number, is not empty. Error: no such
+/// grid, or the file cannot be read.
 Result<std::vector<field::GridInfo>> read_grid_infos(const std::string& path, const std::string& grid, int step = 0);
 
-/// `colors`, `grid` and `step` are for a bare data file.
+/// Opens a scene file, or makes the default scene of a data file. `field_options`: NAME=FILE[:GRID], scene files only. `colors`, `grid` and
+/// `step`: data files only. Prints the notes of a scene file.
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {},
                                 const scene::NamedColors& colors = {}, const std::string& grid = {}, int step = 0);
-/// The same of a scene that is followed (engine/scene/follow_files.h): a data file that is still being written is waited for. `source`
-/// becomes what is followed. Error: nothing in it can get steps, or none was whole after `seconds` (0: no limit).
+/// Opens a scene whose time steps are followed (engine/scene/follow_files.h); waits for a data file that is still being written. `source`
+/// becomes the path that is followed. Error: nothing in the scene can get time steps, or no file was complete after `seconds` (0: no
+/// limit).
 Result<scene::Scene> open_followed_scene(std::string& source, const std::vector<std::string>& field_options, const std::string& grid,
                                          double seconds);
-/// Tells the notes of a scene and of the data that it has loaded so far, each once in a process: at most ten, and how many more there are.
-/// Every command calls it when its data are loaded; open_scene has told those of a scene file. Any thread.
+/// Prints the notes of a scene and of the data loaded so far to stderr, each only the first time in a process: at most ten, then the number
+/// of the others. Every command calls it after loading its data; open_scene() has printed those of a scene file. Any thread.
 void print_scene_notes(const scene::Scene& scene);
-/// The same of notes on one file.
+/// As above, for notes on the file `path`.
 void print_scene_notes(const std::string& path, const std::vector<std::string>& notes);
-/// Refuses a step in time beyond the last one of `source`; `option` states it ("--step 3").
+/// Error if the time step is greater than `last`, the last step of `source`. `option`: how it was given ("--step 3"), for the message.
 Outcome check_step(int step, int last, const std::string& option, const std::string& source);
-/// Goes to a step in time, which `option` states ("--step 3"); below 0: nothing is stated. Loads the fields, whose files say how many
-/// there are. Error: a step beyond the last one.
+/// Sets the time step of a scene and loads all its fields, whose files determine the number of steps. `option`: how the step was given
+/// ("--step 3"). A negative step does nothing. Error: a step beyond the last one, or a field that cannot be loaded.
 Outcome go_to_step(scene::Scene& scene, int step, const std::string& option);
-/// NAME=FILE[:GRID], as the command line gives them.
+/// Parses the --field options, NAME=FILE[:GRID].
 Result<std::vector<scene::FieldOverride>> parse_field_overrides(const std::vector<std::string>& field_options);
 
-/// "1.23 MiB", "512 B".
+/// Formats a size with a binary unit: "1.23 MiB", "512 B".
 std::string format_bytes(double bytes);
 
-/// The same of a file that is read by another program: how long it has taken (field::set_read_progress).
+/// Progress callback for field::set_read_progress: prints to stderr for how many seconds an external reader has been reading `path`; on a
+/// terminal after the first second, elsewhere after 10 s and then at times three times as long. `ended`: the read is over. Any thread.
 void print_reading_progress(const std::string& path, double seconds, bool ended);
 
-/// The same of streamlines (scene::set_trace_progress).
+/// Progress callback for scene::set_trace_progress: `seeds` of `of` seeds are traced; `of` = 0: the work is over.
 void print_tracing_progress(const std::string& field, std::size_t seeds, std::size_t of);
 
-/// A line on stderr that says how far long work is: rewritten in place on a terminal, after the first second; elsewhere at most ten lines,
-/// after the first ten seconds.
+/// Progress of long work, on stderr: a line rewritten in place on a terminal, after the first second; elsewhere at most ten lines, after
+/// the first ten seconds.
 class ProgressLine {
  public:
+  /// `what`: label of the work; `total`: the value of `done` at the end.
   ProgressLine(std::string what, double total);
   ~ProgressLine();
-  void update(double done, std::string_view doing = {});  ///< `doing`: what comes now
+  void update(double done, std::string_view doing = {});  ///< `doing`: label of the current step
 
  private:
   std::string task_name_;
@@ -89,7 +95,7 @@ class ProgressLine {
   bool is_terminal_, is_shown_ = false;
 };
 
-/// The program `catena`: one file a subcommand. Exit codes: 0 done; 2 bad input, with one clear line on stderr and no output
-/// file; 1 the machine failed (no Vulkan device, no display, out of memory), or a replay does not repeat its recording.
+/// Runs the program `catena`. Exit codes: 0: success; 2: bad input, with one clear line on stderr and no output file; 1: a system failure
+/// (no Vulkan device, no display, out of memory), or a replay that differs from its recording.
 int run(int argc, char** argv);
 }  // namespace catena::app

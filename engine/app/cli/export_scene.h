@@ -1,4 +1,4 @@
-/// One part of a scene as a file for other programs: what `catena export SCENE` writes.
+/// Export of one part of a scene to a file for other programs: `catena export SCENE`.
 #pragma once
 #include <optional>
 #include <string>
@@ -7,17 +7,21 @@
 
 namespace catena::app {
 
+/// What to export, from the command line.
 struct SceneExport {
-  std::string source, grid, output;  ///< a scene or a data file; the output's ending is its format
-  // exactly one of these
-  std::optional<int> isosurface, slice, streamlines;  ///< numbers in the scene's lists, from 0
-  std::string mesh, field, probe;                     ///< names; a path of the hand
-  int step = -1;                                      ///< in time, from 0; -1: the scene's
-  // of some
-  double spacing = 0;            ///< of a slice's samples, world units; 0: the smallest voxel edge
-  std::string outside = "auto";  ///< of an isosurface: lower, higher; auto: higher of a level set, else lower
+  /// `source`: a scene or a data file; `grid`: of a data file that holds several, empty: the default one; the extension of `output` selects
+  /// the format
+  std::string source, grid, output;
+  // Exactly one of the following six is set.
+  std::optional<int> isosurface, slice, streamlines;  ///< Indices into the scene's lists, from 0
+  std::string mesh, field, probe;                     ///< Names of a mesh and a field; CSV file of a probe path
+  int step = -1;                                      ///< Time step, from 0; -1: the scene's
+  // Options of some of the parts.
+  double spacing = 0;            ///< Distance between a slice's samples, world units; 0: the smallest voxel edge
+  std::string outside = "auto";  ///< Outward side of an isosurface: "lower" or "higher" values; "auto": higher for a level set, else lower
 };
 
+/// Writes the file and prints a summary. Error: bad options, an item that does not exist, or an output that is also an input.
 Outcome export_scene(const SceneExport& options);
 
 }  // namespace catena::app

@@ -1,4 +1,4 @@
-/// Every field of a scene at places of the world: the columns of a table, or values by point.
+/// Samples all fields of a scene at points in the world, for the columns of a table or the point values of a mesh.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,17 +9,19 @@
 
 namespace catena::app {
 
+/// One thread: sampling uses cached cursors.
 class FieldSampler {
  public:
-  /// Loads all of the scene's fields, as the hand feels them.
+  /// Loads all fields of the scene, in full resolution as the haptics uses them. Error: a field cannot be loaded.
   static Result<FieldSampler> load(scene::Scene& scene);
 
-  /// ",NAME" of a scalar, ",NAME_x,NAME_y,NAME_z" of a vector, in the scene's order.
+  /// Column names in the scene's order: ",NAME" for a scalar field, ",NAME_x,NAME_y,NAME_z" for a vector field.
   std::string csv_header() const;
-  /// A cell a column; empty where the field has no value. NumberArray read back exactly.
+  /// Appends one cell per column for the point `world`, each after a comma; empty where the field has no value. Numbers read back exactly.
   void append_csv_cells(std::string& line, const Vec3& world);
-  /// The same at many points.
+  /// Samples all fields at the points; NaN where a field has no value.
   std::vector<PointValues> sample_points(const std::vector<Vec3>& points);
+  /// Total number of components of all fields.
   std::size_t column_count() const;
 
  private:
@@ -27,7 +29,7 @@ class FieldSampler {
     std::string name;
     field::AnyField field;
     field::Cursor cursor{};
-    /// Its numbers at a place; false: outside.
+    /// Samples the field at a point; returns false outside of the field.
     bool sample(const Vec3& world, double (&numbers)[3]);
     int components() const { return field.scalar ? 1 : 3; }
   };

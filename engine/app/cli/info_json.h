@@ -1,4 +1,4 @@
-/// `catena info --json`: what `info` tells, as one JSON object on one line of stdout. docs/command-line.md has its members.
+/// `catena info --json`: the contents of `catena info` as one JSON object on one line of stdout. docs/command-line.md lists its members.
 #pragma once
 #include <string>
 
@@ -6,6 +6,7 @@
 
 namespace catena::app {
 
+/// Prints the information on a scene or data file. `grid`: name or number of one grid, or empty. `step`: time step.
 Outcome print_json_info(const std::string& path, const std::string& grid, int step);
 
 }  // namespace catena::app

@@ -1,4 +1,4 @@
-/// `catena info` of data files, on stdout, for people.
+/// Human-readable output of `catena info` for data files, on stdout.
 #pragma once
 #include <string>
 
@@ -10,12 +10,12 @@
 
 namespace catena::app {
 
-/// Fields with their grids, a mesh, curves or points, as they are at a step in time, and the steps.
+/// Prints the contents of a data file at a time step: fields with their grids, a mesh, curves or points, and the time steps.
 Outcome print_data_info(const std::string& path, const std::string& grid, int step);
 
-/// Three coordinates, to eight digits, as large ones need them.
+/// Formats three coordinates with eight digits, which large coordinates need.
 std::string format_position(const Vec3& v);
-/// What a mesh, curves or points hold, each line after `indent`.
+/// Print the contents of a mesh, curves or points; each line starts with `indent`.
 void print_mesh(const mesh::TriangleMesh& mesh, const char* indent);
 void print_curves(const curves::CurveSet& set, const char* indent);
 void print_points(const curves::PointSet& set, const char* indent);

@@ -1,4 +1,4 @@
-/// JSON on one line as `catena info --json` prints it: texts as a terminal may show them, what is not a finite number as null.
+/// One-line JSON for `catena info --json`: strings are sanitized for a terminal, numbers that are not finite become null.
 #pragma once
 #include <fmt/format.h>
 
@@ -25,25 +25,26 @@ inline std::string to_json_value(const Vec3& v) {
 }
 inline std::string to_json_value(const Bounds& box) { return fmt::format("[{},{}]", to_json_value(box.lo), to_json_value(box.hi)); }
 
-/// Of values that are JSON already.
+/// Makes an array of values that are JSON text.
 inline std::string json_array(const std::vector<std::string>& items) {
   std::string out = "[";
   for (const std::string& item : items) out += (out.size() > 1 ? "," : "") + item;
   return out + "]";
 }
 
-/// An object, member by member.
+/// Builds a JSON object, member by member.
 class JsonObject {
  public:
   template <class T>
   JsonObject& add(const std::string& key, const T& value) {
     return add_raw(key, to_json_value(value));
   }
+  /// Adds a member whose value is JSON text.
   JsonObject& add_raw(const std::string& key, const std::string& json) {
     text_ += (text_.size() > 1 ? "," : "") + json_string(key) + ":" + json;
     return *this;
   }
-  /// Nothing where the text is empty.
+  /// Adds a string member, unless it is empty.
   JsonObject& add_if_not_empty(const std::string& key, const std::string& word) { return word.empty() ? *this : add(key, word); }
   std::string text() const { return text_ + "}"; }
 

@@ -1,7 +1,7 @@
-/// Options that several commands share, one section each: numbers, --size, --stereo, what is annotated, colours, real time.
+/// Command-line options that several commands share: numbers, --size, --stereo, annotations, colors, real time.
 ///
-/// "--rate", "--seconds" and their like: finite numbers within bounds. CLI11's own checks let "nan" through, print bounds of 309 digits,
-/// and it takes an empty word for 0 behind them: refuse_empty_numbers.
+/// Numeric options such as --rate and --seconds are finite numbers within bounds. CLI11's own checks let "nan" through, print bounds of 309
+/// digits, and read an empty value as 0 after them: use refuse_empty_numbers().
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -22,10 +22,11 @@
 
 namespace catena::app {
 
-/// A positional option that takes a file, or several files of one series in any order, which become the pattern that stands for them
+/// Adds a positional option that takes one file, or several files of one series in any order, which become the pattern that denotes them
 /// (engine/scene/time_steps.h).
 CLI::Option* add_source(CLI::App& command, const std::string& name, std::string& source, const std::string& help);
 
+/// Accepts a finite number from `least` to `most`.
 inline CLI::Validator number_between(double least, double most) {
   return CLI::Validator(
       [least, most](const std::string& text) -> std::string {
@@ -38,8 +39,10 @@ inline CLI::Validator number_between(double least, double most) {
       "");
 }
 
+/// Accepts a finite number of at least `least`.
 inline CLI::Validator number_at_least(double least) { return number_between(least, std::numeric_limits<double>::max()); }
 
+/// Accepts a finite number above 0.
 inline CLI::Validator number_above_zero() {
   return CLI::Validator(
       [](const std::string& text) -> std::string {
@@ -50,7 +53,7 @@ inline CLI::Validator number_above_zero() {
       "");
 }
 
-/// An empty value of an option that takes numbers is said before any other check sees it. After all options of `command` are there.
+/// Makes all numeric options of `command` report an empty value before any other check. Call after all options of `command` are added.
 inline void refuse_empty_numbers(CLI::App& command) {
   for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_expected_min() > 0; })) {
     const std::string type = option->get_type_name();
@@ -60,14 +63,15 @@ inline void refuse_empty_numbers(CLI::App& command) {
   }
 }
 
-/// "--size WxH".
-inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< each way, of a picture drawn in one piece
+/// Maximum value of --size WxH.
+inline constexpr std::uint32_t kMaxImageSize = 16384;  ///< Pixels on each axis of an image that is rendered in one piece
 
+/// Size of an image, pixels.
 struct ImageSize {
   std::uint32_t width = 1024, height = 768;
 };
 
-/// `most`: pixels each way.
+/// Parses --size WxH. `most`: maximum of width and height, pixels.
 inline Result<ImageSize> parse_image_size(const std::string& text, int most = kMaxImageSize) {
   const auto x = text.find('x');
   if (x != std::string::npos) {
@@ -78,11 +82,12 @@ inline Result<ImageSize> parse_image_size(const std::string& text, int most = kM
   return Error{"--size " + text + ": expected WIDTHxHEIGHT, each 1 to " + std::to_string(most) + ", such as 1024x768"};
 }
 
-/// "--stereo MODE", "--eye-separation S", "--zero-parallax F" and "--screen NAME": over what the scene says.
+/// The options --stereo MODE, --eye-separation S, --zero-parallax F and --screen NAME, which override the scene.
 struct StereoOptions {
   std::string mode, screen;
   std::optional<double> separation, zero_parallax;
 
+  /// Applies the given options to the scene's stereo settings. Error: an unknown mode or screen, or a distance out of range.
   Outcome apply(scene::Stereo& stereo) const {
     if (!mode.empty()) {
       const auto known = scene::parse_stereo_mode(mode);
@@ -113,7 +118,7 @@ struct StereoOptions {
   }
 };
 
-/// Several pictures in one may be more than a picture can hold.
+/// Error if the packed image of all stereo views is larger than kMaxImageSize.
 inline Outcome check_packed_size(const scene::Stereo& stereo, const ImageSize& size) {
   const auto packed = render::packed_size(render::stereo_packing(stereo), render::stereo_view_count(stereo), size.width, size.height);
   if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMaxImageSize && packed.height <= kMaxImageSize) return Done{};
@@ -123,6 +128,7 @@ inline Outcome check_packed_size(const scene::Stereo& stereo, const ImageSize& s
                std::to_string(kMaxImageSize) + " each way"};
 }
 
+/// Adds the stereo options to a command.
 inline void add_stereo_options(CLI::App& command, StereoOptions& choice) {
   command.add_option("--stereo", choice.mode,
                      scene::stereo_mode_names() + " (default: the scene's); each eye has the size of --size, *-half squeezes all into it");
@@ -136,41 +142,45 @@ inline void add_stereo_options(CLI::App& command, StereoOptions& choice) {
 
 }  // namespace catena::app
 
-/// Options that write over the picture of a scene or a bare file: --title TEXT, --scalar-bar, --orientation-marker.
+/// Options that annotate the image of a scene or a data file: --title TEXT, --scalar-bar, --orientation-marker.
 namespace CLI {
 class App;
 }
 
 namespace catena::app {
 
+/// Values of the annotation options.
 struct AnnotationOptions {
   std::string title;
   bool scalar_bar = false, orientation_marker = false;
 };
 void add_annotation_options(CLI::App& command, AnnotationOptions& options);
 
-/// Adds them to what the scene has; a scalar bar for the first thing that has colours, unless the scene has bars already.
+/// Adds the annotations to those of the scene; a scalar bar for the first volume or colored streamlines, unless the scene has scalar bars.
+/// Error: --scalar-bar, but nothing is colored by values.
 Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options);
 
 }  // namespace catena::app
 
-/// --colormap NAME, --range LO HI, --mapping WORD and --linear-below SIZE: how a bare data file is coloured.
+/// The options --colormap NAME, --range LO HI, --mapping WORD and --linear-below SIZE: the colors of a data file.
 namespace CLI {
 class App;
 }
 
 namespace catena::app {
 
+/// Values of the color options, as typed.
 struct ColorOptions {
   std::string colormap;
   std::vector<std::string> range;
   std::string mapping, linear_below;
 
   void add_to(CLI::App& command);
+  /// Checks and converts the options. Error: an unknown color map or mapping, or a range that is not valid for the mapping.
   Result<scene::NamedColors> to_named_colors() const;
 };
 
-/// "--realtime on|off" and "--cpu N": how hard the servo's thread tries.
+/// Adds --realtime on|off and --cpu N: real-time scheduling and core of the haptic thread.
 inline void add_realtime_options(CLI::App& command, RealtimeChoice& choice) {
   command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the servo, where permitted")
       ->check(CLI::IsMember({"on", "off"}))

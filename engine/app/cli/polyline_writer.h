@@ -1,6 +1,6 @@
-/// Lines as a table or for ParaView.
-///   .csv   line,s,x,y,z,tx,ty,tz: arc length and unit tangent, rows in rising s; numbers read back exactly
-///   .vtp   VTK's XML PolyData, raw appended doubles: a polyline a line. Points carry s, tangent, velocity and line; cells line,
+/// Writers of polylines, as a table or for ParaView.
+///   .csv   line,s,x,y,z,tx,ty,tz: arc length, position and unit tangent, rows in ascending s; numbers read back exactly
+///   .vtp   VTK's XML PolyData, raw appended doubles: one polyline per line. Points carry s, tangent, velocity and line; cells carry line,
 ///          length, first_end and last_end (0 BOUNDARY, 1 CRITICAL, 2 LENGTH, 3 LAP, 4 INCOHERENT)
 #pragma once
 #include <vector>
@@ -11,6 +11,7 @@
 
 namespace catena::app {
 
+/// World units.
 void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves);
 void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field);
 

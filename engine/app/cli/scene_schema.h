@@ -1,4 +1,4 @@
-/// Everything that a scene file may say, put together from the rooms that read it: the scene's parts, the constraints, the devices.
+/// The schema of a scene file, assembled from the modules that read its parts: the scene, the constraints, the devices.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace catena::app {
 
-/// In the order of docs/scene.md.
+/// The sections of a scene file, in the order of docs/scene.md.
 std::vector<schema::Section> scene_file_components();
-/// The JSON Schema of a scene file: `catena info --schema`.
+/// The JSON Schema of a scene file: output of `catena info --schema`.
 std::string scene_json_schema();
 
 }  // namespace catena::app

@@ -1,9 +1,9 @@
-/// What the hand felt along a path, for a person to read: a sentence for each link, with units of the hand.
+/// Human-readable summary of the haptic contact along a probe path: one sentence per link, in device units.
 ///   skin: pressed 12.5 mm deep, own share at most 3.8 N; held 3.88 of 6.00 s. Gap 0.25 units; ticks FREE 2120 OK 3881
-/// "pressed" is said of a link with a free side, "pulled ... off" of all others. The depth is the longest way from the link's probe to its
-/// proxy, in metres of the hand. Of several links each has its own share, limited as the whole force is; springs that pull against each
-/// other give a whole that is smaller. A link holds while its status is none of FREE, RELEASED, NO_SURFACE and BAD_PROBE, and
-/// its reason not PARALLEL.
+/// "pressed" is used for a one-sided link, "pulled ... off" for all others. The depth is the longest distance from the link's probe to its
+/// proxy, in device meters. With several links, each reports its own contribution, limited as the total force is; springs that pull against
+/// each other give a smaller total. A link holds while its status is none of FREE, RELEASED, NO_SURFACE and BAD_PROBE, and it is not
+/// CRITICAL with the reason PARALLEL.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,19 +16,23 @@
 
 namespace catena::app {
 
+/// Accumulates the states of a run. One thread.
 class ContactSummary {
  public:
+  /// Adds one state.
   void add(const HapticState& state);
-  /// A sentence a link, a line each; of a run that is looked at now and then the sentences are of those looks.
+  /// One line per link. If only some states of a run were added, the lines describe those.
   std::string link_lines(const haptics::HapticProgram& program) const;
-  /// A line about all ticks, then a line a link.
+  /// One line on all ticks, then one line per link.
   std::string report(const haptics::HapticProgram& program, const haptics::ReplayStats& stats) const;
 
  private:
   struct LinkContact {
     double max_gap = 0, max_force_n = 0, held_s = 0;
-    int hold_count = 0, release_count = 0;             ///< how often it took hold, and how often it went from holding to RELEASED
-    bool is_holding = false, held_everywhere = false;  ///< nowhere: every place would hold it
+    /// Number of times it began to hold, and number of times it went from holding to RELEASED
+    int hold_count = 0, release_count = 0;
+    /// At some tick every point of the field would have held it (CRITICAL, PARALLEL)
+    bool is_holding = false, held_everywhere = false;
     std::map<std::string, std::uint64_t> statuses;
   };
   std::string describe_link(const LinkContact& touch, const haptics::Link& link, const haptics::HapticProgram& program) const;

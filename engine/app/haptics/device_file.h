@@ -1,6 +1,6 @@
-/// "--device-file FILE.json": the settings of a device as an object of their own, with the keys of a scene's "device" (docs/scene.md). They
-/// take its place in whichever scene is shown, so that what belongs to the thing on the desk is said once. A file that is not there yet
-/// says nothing; it is made when there is something to keep. Errors: "FILE:LINE: what; what was expected". Frame thread.
+/// --device-file FILE.json: the settings of a device as an object of their own, with the keys of a scene's "device" (docs/scene.md). They
+/// replace the scene's "device" in every scene, so that the settings of a device on the desk are stored in one place. A file that does not
+/// exist has no effect; it is created when there are settings to store. Errors: "FILE:LINE: what; what was expected". Frame thread.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace catena::app {
 
-/// In place of the scene's own; nothing where `path` is empty or not there.
+/// Replaces the scene's "device" by the file's; does nothing if `path` is empty or the file does not exist.
 Outcome apply_device_file(const std::string& path, scene::Scene& scene);
 
-/// Those values, and all else as it is; whole or not at all.
+/// Writes the edited values into the file and leaves the rest unchanged; atomically.
 Outcome write_device_file(const std::string& path, const std::vector<scene::Document::Edit>& edits);
 
 }  // namespace catena::app

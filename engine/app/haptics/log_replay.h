@@ -1,5 +1,5 @@
-/// `catena replay --log`: runs the tick again over a recording and compares every bit of what came out, forces too.
-/// Exit code 0: all equal; 1: a difference, or ticks that the recording lacks; 2: no recording, or no scene to run.
+/// `catena replay --log`: runs the ticks of a recording and compares every bit of the results, including forces. Exit code 0: all equal; 1:
+/// a difference, or ticks that the recording lacks; 2: no recording, or no scene to run.
 #pragma once
 #include <memory>
 #include <optional>
@@ -15,40 +15,42 @@
 
 namespace catena::app {
 
+/// Options of `catena replay`: input and output files; empty: not given.
 struct ReplayOptions {
   std::string scene, probe, log, output, details, widgets, stats, plan;
   std::vector<std::string> fields;
 };
 
+/// Replays options.log and writes the requested outputs. Error: bad input. Throws MachineFailure for a difference or missing ticks.
 Outcome replay_log_file(const ReplayOptions& options);
 
-/// What the run reads beside its scene, and what it writes.
+/// The input files of a replay and its outputs, without the files that the scene names.
 IoConflictChecker replay_files(const ReplayOptions& options);
-/// `more`: members behind the others ("\"widgets\": {..}"), or none.
+/// The statistics as JSON. `more`: further members ("\"widgets\": {..}"), or empty.
 std::string replay_stats_json(const haptics::ReplayStats& stats, const std::string& more = {});
 
-/// Of a scene that states no workspace: which scales were taken, one after the other; one sentence. `recorded`: they are the recording's.
+/// One sentence on the scales that were used for a scene without an explicit workspace, in the order of use. `metres_per_unit`: device
+/// meters per world unit; `recorded`: the scales are the recording's.
 std::string describe_scales(const std::vector<double>& metres_per_unit, bool recorded);
 
-/// Between a scene and its recording: the header of a log that begins, and the programs of one that runs again.
-
-/// What a recording of this scene begins with: its text as the file is now. For `feel --record`.
+/// Makes the header of a recording of this scene, with the current text of the scene file. For `feel --record`.
 Result<haptics::log::LogHeader> make_log_header(const std::string& scene_path, const std::vector<std::string>& field_options,
                                                 const std::string& device, double rate_hz);
 
-/// Columns for every link that any program of the recording has. Reads all of it.
+/// Reads a whole recording and returns columns for every link of all of its programs.
 Result<LinkColumns> read_log_columns(const std::string& path);
 
-/// Builds a log's programs: from the recorded text, with files relative to the recorded scene's place; or, where `scene_path` is given,
-/// from that scene. `field_options` replace fields beside the recorded ones.
+/// Builds the programs of a recording: from the recorded scene text, with files relative to the recorded scene's path, or from the scene
+/// `scene_path` if that is not empty. `field_options` replace fields, in addition to the recorded options. One thread.
 class LogProgramBuilder {
  public:
   LogProgramBuilder(haptics::log::LogHeader header, std::string scene_path, std::vector<std::string> field_options);
 
+  /// Builds one program. Error: the scene or a file cannot be read, a plug-in is missing, or the program is not valid.
   Result<std::shared_ptr<const haptics::HapticProgram>> build(const haptics::log::LogProgram& program);
-  /// The files that the header's scene names.
+  /// The input files of the scene.
   Result<std::vector<std::string>> input_files();
-  /// Of the scene that was read last.
+  /// Whether the last scene that was read has an explicit workspace.
   bool has_workspace() const { return scene_ && scene_->workspace.is_explicit; }
 
  private:
@@ -59,11 +61,12 @@ class LogProgramBuilder {
   bool from_file_;
   std::vector<std::string> field_options_;
   std::optional<scene::Scene> scene_;
-  std::optional<std::string> own_text_;  ///< of scene_
+  std::optional<std::string> own_text_;  ///< Scene text of scene_ if a program brought its own
 };
 
-/// `catena info FILE.catlog`: what a recording holds, whether it is whole.
+/// Whether a path is a recording.
 inline bool is_log_file(const std::string& path) { return path.ends_with(".catlog"); }
+/// Prints the contents of a recording and whether it is complete: `catena info FILE.catlog`.
 Outcome print_log_info(const std::string& path);
 
 }  // namespace catena::app

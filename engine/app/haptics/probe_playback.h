@@ -1,4 +1,4 @@
-/// The hand in a picture: where it is after a probe path, at a time along it, or at rest at the probe that the scene's cursor names.
+/// The probe in an image: after a probe path, at a time along it, or at rest at the probe position of the scene's cursor.
 #pragma once
 #include <memory>
 #include <string>
@@ -11,30 +11,32 @@
 
 namespace catena::app {
 
+/// Samples of a probe path in order of time.
 using ProbePath = std::vector<haptics::ProbeSample>;
+/// Reads a probe path from a CSV file.
 Result<ProbePath> read_probe_samples(const std::string& probe_csv);
-/// Rest at the scene's own cursor, if it has one and shows it, else empty.
+/// A path of 500 ticks of 1 ms at rest at the scene's cursor; empty if the scene has no visible cursor.
 ProbePath make_resting_path(const scene::Scene& scene);
 
-/// Runs the chain along a path, tick by tick, as far as a picture wants it.
+/// Runs the chain along a probe path, tick by tick, up to the requested time. One thread.
 class ProbePlayback {
  public:
   ProbePlayback(std::shared_ptr<const haptics::HapticProgram> program, ProbePath path)
       : program_(std::move(program)), path_(std::move(path)) {}
-  /// Writes the tick at that share of the path's time, 0 to 1, into the scene's cursor. An earlier one than before begins anew. An empty
-  /// path leaves the cursor as it is.
+  /// Writes the haptic state at the fraction `share`, 0 to 1, of the path's duration into the scene's cursor. Seeking backward restarts the
+  /// chain. An empty path leaves the cursor unchanged.
   void seek(scene::Scene& scene, double share);
 
  private:
   std::shared_ptr<const haptics::HapticProgram> program_;
   ProbePath path_;
-  std::size_t ticks_done_ = 0;  ///< ticks that were run
+  std::size_t ticks_done_ = 0;  ///< Number of ticks that were run
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;
   HapticState last_state_;
 };
 
-/// A probe path as read (engine/base) as the tick takes it (haptics/chain).
+/// Converts a probe path as read from a file (engine/base) to samples for the tick (haptics/chain).
 inline std::vector<haptics::ProbeSample> to_probe_samples(const std::vector<ProbePathRow>& rows) {
   std::vector<haptics::ProbeSample> samples;
   samples.reserve(rows.size());

@@ -1,4 +1,5 @@
-/// "--record FILE", or the window's switch: every tick of a session, written beside the servo. Frame side.
+/// Recording of every tick of a session: --record FILE, or the viewer's switch. Written by a thread other than the haptic thread. Frame
+/// thread.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,37 +10,40 @@
 
 namespace catena::app {
 
-/// What a recording says of the scene, beside its programs.
+/// The scene as stored in a recording, in addition to its programs.
 struct RecordedScene {
-  std::string path;                        ///< relative paths in the text are relative to it
-  std::string text;                        ///< as it is now, saved or not
-  std::vector<std::string> field_options;  ///< --field options
-  std::vector<std::string> input_files;    ///< files that it names: not to be overwritten
-  std::string description{};               ///< what is recorded: LogHeader::about
+  std::string path;                        ///< Relative paths in the text are relative to this file
+  std::string text;                        ///< Current text of the scene, saved or not
+  std::vector<std::string> field_options;  ///< Values of the --field options
+  std::vector<std::string> input_files;    ///< Files that the scene names, which the recording must not overwrite
+  std::string description{};               ///< Description of what is recorded (LogHeader::about)
 };
 
+/// A recording in progress, or none.
 class Recording {
  public:
-  /// Nothing is recorded where `path` is empty. `program`: that with which the servo begins, or which it runs.
+  /// Starts a recording; an empty `path` records nothing. `program`: the program that the servo starts with or is running. Error: the file
+  /// cannot be opened for writing.
   static Result<Recording> open(const std::string& path, RecordedScene scene, const HapticDeviceSetup& hand,
                                 const haptics::HapticProgram& program);
 
-  /// Another program, before the servo gets it. `text`: the scene's, now.
+  /// Adds a program; call it before the servo gets the program. `text`: the scene's current text.
   void add_program(const haptics::HapticProgram& program, const std::string& text);
 
-  /// Of a picture that a headset is about to show.
+  /// Adds the poses of an image that a headset is about to show.
   void add_poses(const haptics::log::LogPoses& poses) {
     if (writer_) writer_->add_poses(poses);
   }
 
-  /// For ServoOptions::sink or Servo::set_sink; nullptr: none.
+  /// The sink for ServoOptions::sink or Servo::set_sink; null: nothing is recorded.
   haptics::TickSink* sink() const { return writer_.get(); }
   bool is_recording() const { return writer_ != nullptr; }
   bool has_failed() const { return writer_ && writer_->status().failed; }
   haptics::log::LogStatus status() const { return writer_ ? writer_->status() : haptics::log::LogStatus{}; }
   const std::string& path() const { return path_; }
+  /// Seconds since the start; 0 if nothing is recorded.
   double seconds() const;
-  /// After the servo has stopped or let go of the sink. Nothing is recorded any more.
+  /// Ends the recording; call it after the servo has stopped or has released the sink. Error: the file could not be written.
   Outcome finish();
 
  private:

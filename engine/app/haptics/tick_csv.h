@@ -1,4 +1,4 @@
-/// The tick CSV and its details: one place for `replay` and `export`. NumberArray read back exactly.
+/// Writers of the tick CSV, the details CSV and the widget CSV, shared by `replay` and `export`. Numbers read back exactly.
 #pragma once
 #include <array>
 #include <string>
@@ -9,55 +9,61 @@
 
 namespace catena::app {
 
-/// Which link stands in which columns. A recording may go on with a program of other links: those that it lacks are empty cells.
+/// Assignment of links to columns. A recording may continue with a program that has other links; cells of links that it lacks are empty.
 class LinkColumns {
  public:
   LinkColumns() = default;
   explicit LinkColumns(std::vector<std::string> names) : names_(std::move(names)) { bind(names_); }
-  void add(const std::vector<std::string>& names);   ///< columns for links that have none yet
-  void bind(const std::vector<std::string>& links);  ///< the links of the states that follow
+  void add(const std::vector<std::string>& names);   ///< Adds columns for links that have none
+  void bind(const std::vector<std::string>& links);  ///< Sets the links of the states that follow
   const std::vector<std::string>& names() const { return names_; }
-  int link_at(std::size_t column) const { return column_links_[column]; }  ///< -1: none
+  int link_at(std::size_t column) const { return column_links_[column]; }  ///< Index of the link in a column; -1: none
 
  private:
   std::vector<std::string> names_;
   std::vector<int> column_links_;
 };
 
+/// Names of the program's links, in their order.
 std::vector<std::string> link_names(const haptics::HapticProgram& program);
+/// Names of the program's modes, in their order.
 std::vector<std::string> mode_names(const haptics::HapticProgram& program);
 
-void append_vector(std::string& line, const Vec3& v);  ///< ",x,y,z"
+void append_vector(std::string& line, const Vec3& v);  ///< Appends ",x,y,z"
 
-/// t, the probe, every link's proxy, active, status, evaluations, reason, then the force, then every link's curve. Lines end with '\n'.
-/// `turns`: the hand has an orientation, and so have the ticks: every link's as a quaternion, and the torque.
+/// The header and one row of the tick CSV: t, the probe; for every link its proxy, active, status, evaluations, reason; then the force,
+/// then every link's curve. Lines end with '\n'. `turns`: the device has an orientation: adds every link's orientation as a quaternion, and
+/// the torque.
 std::string tick_header(const LinkColumns& columns, bool turns = false);
 void append_tick(std::string& line, const LinkColumns& columns, const HapticState& state, bool turns = false);
 
-/// What every link tells beside its proxy: how far the hand is from leaving its feature, its share, its work. No line ends.
+/// The header and one row of the details CSV: t, mode, left_out; for every link its gap, release ratio, whether it released, residual,
+/// stiffness, weight, force contribution and work. No line ends. `modes`: names of the modes; `metres_per_unit`: device meters per world
+/// unit.
 std::string details_header(const LinkColumns& columns);
 void append_details(std::string& line, const LinkColumns& columns, const std::vector<std::string>& modes, double metres_per_unit,
                     const HapticState& state);
 
-/// The widget CSV of `replay --widgets`: a row a tick, `t`, then for every widget
+/// The header and one row of the widget CSV of `replay --widgets`: one row per tick, `t`, then for every widget
 ///   NAME_mode     away explore translate rotate turn hover drag
-///   NAME_handle   -1: none; rake, ruler: 0, 1 its ends, 2 the whole; box: 0..5 faces -x +x -y +y -z +z, 6 the whole
-///   NAME_held     bit i: the plane across the widget's axis i is active
-///   NAME_x,y,z    points[0]: the centre, the place, the first end, the least corner
-///   NAME_x2,y2,z2                            rake, box, ruler: the second end, the greatest corner
-///   NAME_qw,qx,qy,qz, NAME_nx,ny,nz          cutting plane: its orientation and its normal
-///   NAME_value                               isolevel: the field at the handle
+///   NAME_handle   -1: none; rake, ruler: 0, 1 the ends, 2 the whole; box: 0..5 faces -x +x -y +y -z +z, 6 the whole
+///   NAME_held     bit i: the plane perpendicular to the widget's axis i is active
+///   NAME_x,y,z    points[0]: the center, the position, the first end, the minimum corner
+///   NAME_x2,y2,z2                            rake, box, ruler: the second end, the maximum corner
+///   NAME_qw,qx,qy,qz, NAME_nx,ny,nz          cutting plane: orientation and normal
+///   NAME_value                               isolevel: the field's value at the handle
 /// World units; numbers read back exactly.
 std::string widget_header(const haptics::HapticProgram& program);
 void append_widgets(std::string& line, const haptics::HapticProgram& program, const HapticState& state);
 
-/// How many ticks every widget spent in every mode, and where it is at the end.
+/// Counts the ticks of every widget in every mode, and stores its last position.
 class WidgetUsage {
  public:
+  /// Counts one tick.
   void add(const HapticState& state);
-  /// "widgets": {NAME: {"ticks": {MODE: n, ..}, "position": [x, y, z]}, ..}; no widgets: empty.
+  /// The counts as a JSON member, "widgets": {NAME: {"ticks": {MODE: n, ..}, "position": [x, y, z]}, ..}; empty if there are no widgets.
   std::string to_json(const haptics::HapticProgram& program) const;
-  /// A line a widget, for a person.
+  /// A human-readable report, one line per widget.
   std::string report(const haptics::HapticProgram& program) const;
 
  private:

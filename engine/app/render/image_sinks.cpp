@@ -11,9 +11,9 @@
 namespace catena::app {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 16;  // what is converted lies in memory twice
+constexpr std::size_t kRowsAtOnce = 16;  // rows converted at a time, since converted rows are held in addition to the originals
 
-/// Some rows of a band.
+/// A block of rows of a band.
 struct Rows {
   std::span<const std::uint8_t> bytes;
   std::span<const float> floats, depth;
@@ -26,7 +26,7 @@ std::span<const T> part(const std::vector<T>& values, const render::Band& band, 
   return std::span<const T>(values).subspan(first * row, count * row);
 }
 
-/// RGBA, or its RGB.
+/// Converts pixels with RGBA or RGB components.
 template <class To, class From, class Convert>
 std::vector<To> to_imgui_color(std::span<const From> rgba, bool alpha, const Convert& convert) {
   const std::size_t channels = alpha ? 4 : 3, pixels = rgba.size() / 4;
@@ -36,7 +36,7 @@ std::vector<To> to_imgui_color(std::span<const From> rgba, bool alpha, const Con
   return values;
 }
 
-/// Video has no transparent background, but .webm: black behind it, as picture viewers show it.
+/// Composites over black, as image viewers do: video formats other than .webm have no transparency.
 std::vector<std::uint8_t> over_black(std::span<const std::uint8_t> rgba) {
   std::vector<std::uint8_t> values(rgba.size() / 4 * 3);
   for (std::size_t i = 0; i < rgba.size() / 4; ++i)
@@ -54,7 +54,7 @@ std::vector<float> linear(std::span<const float> rgba, bool alpha) {
   return values;
 }
 
-/// A writer with a way to feed it.
+/// A writer, together with the function that feeds it.
 template <class Writer, class Feed>
 class WriterSink : public ImageSink {
  public:

@@ -1,4 +1,5 @@
-/// Where the pixels of a picture go: one sink a file, fed with bands of rows from the top, complete or not there at all.
+/// Destinations of an image's pixels: one sink per file. A sink is fed with bands of rows from the top; a file is written completely or not
+/// at all.
 #pragma once
 #include <memory>
 #include <string>
@@ -8,30 +9,35 @@
 
 namespace catena::app {
 
+/// One output file.
 class ImageSink {
  public:
-  virtual ~ImageSink() = default;  ///< without commit() nothing stays
+  virtual ~ImageSink() = default;  ///< Removes the file unless commit() was called
+  /// Writes the next band of rows.
   virtual Outcome write(const render::Band& band) = 0;
-  /// After the last band: all of it is on its way to the disk.
+  /// Call after the last band (of the last frame): flushes all data to the file.
   virtual Outcome finish() = 0;
-  /// The rename to the final name.
+  /// Renames the temporary file to its final name.
   virtual Outcome commit() = 0;
 };
 
+/// Format of an image or of a video's frames.
 struct ImageFormat {
   std::uint32_t width = 0, height = 0;
-  bool alpha = false;  ///< the background is transparent
+  bool alpha = false;  ///< The image has an alpha channel: the background is transparent
   int bits = 8;
   double fps = 25;
-  std::string object_legend;  ///< of ids: JSON
+  std::string object_legend;  ///< For id images: JSON list of the objects
 };
 
-/// "x.png": 8 or 16 bits, straight alpha. "x.exr": linear light, premultiplied, 32-bit floats. "x.mp4", ".webm", ".gif": video.
-/// /dev/...: PNG.
+/// Opens a sink for a color image. "x.png": 8 or 16 bits, straight alpha. "x.exr": linear light, premultiplied, 32-bit floats. "x.mp4",
+/// ".webm", ".gif": video. /dev/...: PNG.
 Result<std::unique_ptr<ImageSink>> open_image_sink(const std::string& path, const ImageFormat& shape);
-/// One channel Z: distance along the view axis in world units; infinite where nothing opaque is seen.
+/// Opens a sink for a depth image (.exr) with one channel Z: distance along the view axis in world units; infinite where nothing opaque is
+/// visible.
 Result<std::unique_ptr<ImageSink>> open_depth_sink(const std::string& path, const ImageFormat& shape);
-/// 16-bit grey: the id of the opaque object in each pixel, 0 for none; the legend is the text chunk "Objects".
+/// Opens a sink for a 16-bit gray image (.png) of the id of the opaque object in each pixel, 0 for none; the object legend is the text
+/// chunk "Objects".
 Result<std::unique_ptr<ImageSink>> open_id_sink(const std::string& path, const ImageFormat& shape);
 
 }  // namespace catena::app

@@ -72,7 +72,7 @@ Outcome check_kind(const std::string& path, const char* option, std::initializer
   return Error{path + ": expected a name for " + option + " that ends in " + expected};
 }
 
-/// Every file that will be written, with the option that names it.
+/// Adds every file to be written, with the option that names it, to the conflict check.
 void add_outputs(const RenderOptions& o, int frames, IoConflictChecker& files) {
   for (const auto& [path, option] : {std::pair{o.output, "-o"}, {o.depth, "--depth"}, {o.ids, "--ids"}}) {
     if (path.empty()) continue;

@@ -1,4 +1,5 @@
-/// "turn_%03d.png" names every picture of a sequence; a plain name is the first picture's.
+/// The output files of `catena render`. A numbered name ("turn_%03d.png") denotes one file per frame of a sequence; a plain name denotes
+/// the image of the first frame.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,38 +11,43 @@
 
 namespace catena::app {
 
+/// Whether a file name has a number pattern such as %03d.
 bool is_numbered(const std::string& path);
-/// The name of one picture; a plain name as it is.
+/// The file name of one frame; a plain name is returned unchanged.
 std::string numbered_path(const std::string& path, int frame);
 
-/// "1 volume, 3 streamlines, 1 cursor": what a packet draws.
+/// Describes the contents of a packet: "1 volume, 3 streamlines, 1 cursor"; "nothing" if it is empty.
 std::string describe_contents(const render::FramePacket& packet);
 
-/// The files of `catena render`: what is checked before any work, and what is open while frames are drawn.
-/// Numbered names ("turn_%03d.png") are a file a frame, committed with it; a video takes all frames; a plain name the first frame.
-/// Videos and plain names are committed last, all together.
-
-/// Refuses: kinds of file that do not exist, no ffmpeg, sizes that a video cannot hold, an output that is an input or another output.
+/// Checks the outputs before any work. Error: an unknown file extension, no ffmpeg, a size that a video cannot hold, a video of one frame,
+/// or an output that is an input or another output.
 Outcome check_outputs(const RenderOptions& options, const ImageFormat& shape, int frames, IoConflictChecker files);
-/// Whether something is written to standard output; what the program says then goes to standard error.
+/// Whether an output is standard output; messages of the program then go to standard error.
 bool uses_standard_output(const RenderOptions& options);
-/// What the bands must hold for them.
+/// The channels that the rendered bands need for these outputs.
 render::BandChannels required_band_channels(const RenderOptions& options);
 
 /// Whether frames after the first are written.
 bool takes_all_frames(const RenderOptions& options);
 
+/// The files that are open while frames are rendered. Files with numbered names are committed at the end of their frame; videos, which take
+/// all frames, and files with plain names, which take the first frame, are committed together in commit().
 class Outputs {
  public:
   Outputs(const RenderOptions& options, const ImageFormat& shape) : options_(options), shape_(shape) {}
+  /// Opens the files of the frame.
   Outcome begin_frame(int frame);
+  /// Writes a band of rows to all open files.
   Outcome write(const render::Band& band);
-  /// Finishes the frame; numbered files are committed.
+  /// Finishes the frame and commits its numbered files.
   Outcome end_frame();
-  /// All that is left is on its way to the disk; then the renames.
+  /// Flushes the remaining files.
   Outcome finish();
+  /// Renames the remaining files to their final names.
   Outcome commit();
-  double ms_per_frame() const { return frame_count_ > 0 ? write_ms_ / frame_count_ : 0; }  ///< spent on encoding and writing
+  double ms_per_frame() const {
+    return frame_count_ > 0 ? write_ms_ / frame_count_ : 0;
+  }  ///< Average time per frame spent on encoding and writing, ms
 
  private:
   Outcome open(const std::string& path, int frame, Result<std::unique_ptr<ImageSink>> (*opener)(const std::string&, const ImageFormat&));

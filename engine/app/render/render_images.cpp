@@ -26,8 +26,8 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kUnreportedFrames = 3;    // of one planned picture
-constexpr int kMaxTiledPixels = 65536;  // each way
+constexpr int kUnreportedFrames = 3;    // frames of one tuned image that are rendered before the reported ones
+constexpr int kMaxTiledPixels = 65536;  // in each direction
 
 template <class T>
 T machine(Result<T> result) {
@@ -35,14 +35,14 @@ T machine(Result<T> result) {
   return std::move(*result);
 }
 
-/// A line about the picture: on standard output, or beside a picture that goes there.
+/// Prints a line about the image: to standard output, or to standard error if the image goes to standard output.
 void say(std::FILE* to, const std::string& line) {
   if (to == stderr) return print_line(line);
   std::fputs((sanitize_for_terminal(line) + "\n").c_str(), to);
   std::fflush(to);
 }
 
-/// Draws frames of one scene and hands their bands on.
+/// Renders frames of one scene and passes their bands to the outputs.
 class Frames {
  public:
   Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, ProbePlayback& hand, ImageSize size,
@@ -58,7 +58,7 @@ class Frames {
     CATENA_TRY(render::FramePacket packet, render::make_frame(scene_, size_.width, size_.height));
     if (!steps_.empty() && frame + 1 < motion_.frames())
       field::prefetch(scene::prefetch_requests(scene_, steps_[static_cast<std::size_t>(frame + 1) % steps_.size()]));
-    // the eye stays where it is while the hand moves, or time goes by
+    // the camera is fixed while the probe moves or time steps change
     if (!base_view_ || (!options_.play_probe && steps_.empty())) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
     const render::View view = motion_.view_at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
     render::set_view(scene_, view, packet);
@@ -66,7 +66,7 @@ class Frames {
     return packet;
   }
 
-  /// Milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
+  /// Returns milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
   Result<double> draw(int frame, Outputs* outputs) {
     if (!interrupt_) interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
     const std::int64_t start = now_ns();
@@ -91,7 +91,7 @@ class Frames {
     if (!ms) throw MachineFailure{ms.error().message};
     if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
     drawing_ms = ms->render_ms;
-    // the next picture may have other settings; the first one pays for what stays
+    // the next frame may use other settings; the first frame is not recorded, since it includes one-time work
     if (goal && warm_) goal->record_frame_time(drawing_ms), settings = goal->settings();
     warm_ = true;
     return extract_ms + ms->wall_ms;
@@ -99,12 +99,12 @@ class Frames {
 
   std::unique_ptr<render::Renderer> renderer;
   render::RenderSettings settings;
-  std::optional<plan::ImageTuning> goal;  ///< says the settings of the next picture
+  std::optional<plan::ImageTuning> goal;  ///< image tuning that selects the settings of the next frame
   render::TilePlan plan;
   render::BandChannels wants;
   ProgressLine* progress = nullptr;
-  double drawing_ms = 0;  ///< of the last picture (render/quality)
-  double first_ms = 0;    ///< process start to the first pixels on the host
+  double drawing_ms = 0;  ///< time of the last frame (render/quality)
+  double first_ms = 0;    ///< from process start to the first pixels on the host
 
  private:
   scene::Scene& scene_;
@@ -112,22 +112,22 @@ class Frames {
   const CameraMotion& motion_;
   ProbePlayback& hand_;
   ImageSize size_;
-  std::vector<int> steps_;  ///< in time, by frame; empty: they stay
+  std::vector<int> steps_;  ///< time steps by frame; empty: the step is fixed
   std::optional<render::View> base_view_;
   Bounds base_bounds_;
-  std::optional<InterruptHandler> interrupt_;  // while it draws
+  std::optional<InterruptHandler> interrupt_;  // active while rendering
   double tiles_done_ = 0;
   bool warm_ = false;
   std::function<Outcome(const render::Band&)> nothing_;
 };
 
-constexpr double kBalancedError = 2;  // 1/255: hardly seen beside the converged picture
-constexpr double kConverged = 1;      // 1/255: what calls itself a reference is off by less
+constexpr double kBalancedError = 2;  // 1/255: hardly visible next to the reference image
+constexpr double kConverged = 1;      // 1/255: upper bound of the error of a setting used as a reference
 
-/// What is measured of a picture: all of it, or the middle tile of one that is large or supersampled.
+/// Part of an image that is measured: all of it, or the middle tile of one that is large or supersampled.
 struct Sample {
   render::FramePacket packet;
-  double share = 1;  ///< of the picture's samples
+  double share = 1;  ///< fraction of the image's samples
 };
 Sample sample_of(const Frames& frames, const render::FramePacket& packet) {
   const render::TilePlan& plan = frames.plan;
@@ -139,7 +139,7 @@ Sample sample_of(const Frames& frames, const render::FramePacket& packet) {
           double(middle.render_width) * middle.render_height / (double(plan.samples_x()) * plan.samples_y())};
 }
 
-/// Settings for the goal.
+/// Chooses the settings that meet the quality goal.
 render::QualityChoice choose_from_list(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
   const Sample sample = sample_of(frames, packet);
   if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
@@ -147,7 +147,7 @@ render::QualityChoice choose_from_list(Frames& frames, const render::FramePacket
   return machine(render::choose_quality(*frames.renderer, sample.packet, goal, [&progress](double done) { progress.update(done); }));
 }
 
-/// What `quality` leaves to the plan: its settings, said before the first picture.
+/// Runs the image tuning if `quality` leaves the settings to it, and reports them before the first image.
 Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const scene::TuningTargets& wanted, const RenderOptions& o,
                       const scene::Scene& scene, std::FILE* words) {
   CATENA_TRY(const std::string text, plan::read_scene_text(scene));
@@ -162,13 +162,13 @@ Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const s
   return Done{};
 }
 
-/// "observed: error 1.7/255 in 95 ms": the error of the last picture, the median of the times.
+/// Formats "observed: error 1.7/255 in 95 ms": the error of the last image, the median of the times.
 std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
   const auto error = render::measure_single_rmse(*frames.renderer, sample_of(frames, packet).packet, settings);
   return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", *error) : "not known", quantile(times, 0.5));
 }
 
-/// Of the finished picture. Several eyes in one are drawn in one piece.
+/// Size of the finished image. Stereo views in one image are rendered without tiles.
 Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const ImageSize& size) {
   if (render::stereo_view_count(stereo) < 2) return size;
   const std::string mode = "with " + std::to_string(render::stereo_view_count(stereo)) + " views in one picture";
@@ -181,7 +181,7 @@ Result<ImageSize> picture_size(const RenderOptions& o, const scene::Stereo& ster
   return ImageSize{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
 }
 
-/// Every step of --steps has its frame, and a place where it is kept.
+/// Checks that every step of --steps has a frame and an output to store it.
 Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
   const int count = static_cast<int>(steps.size());
   if (count < 2) return Done{};
@@ -191,7 +191,7 @@ Outcome check_frames(const RenderOptions& o, const std::vector<int>& steps) {
   return Done{};
 }
 
-/// Steps beyond the last one of the longest field are refused. Those within files are known once the fields are loaded.
+/// Rejects steps beyond the last one of the longest field. Steps inside data files are known only after the fields are loaded.
 Outcome check_steps(const scene::Scene& scene, const RenderOptions& o, const std::vector<int>& steps) {
   const std::string option = steps.empty() ? fmt::format("--step {}", o.step) : "--steps " + o.steps;
   return check_step(steps.empty() ? o.step : steps.back(), scene::step_count(scene) - 1, option, o.source);
@@ -239,7 +239,7 @@ Outcome render_images(const RenderOptions& given) {
   if (o.probe.empty() && o.plan.find("hand_") != std::string::npos)
     tell_plan("plan: no hand feels here, so that nothing is chosen for it; --probe PATH.csv was expected");
   if (!o.probe.empty()) CATENA_CHECK(plan::tune_links(scene, plan, 1000, o.fields, tell_plan));
-  // the chain is checked with the picture: one scene, two senses
+  // the chain is validated as well, so that a rendered scene also works with haptics
   CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene));
   if (o.probe.empty()) {
     path = make_resting_path(scene);
@@ -321,13 +321,13 @@ Outcome render_images(const RenderOptions& given) {
     print_scene_notes(scene);
     say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, describe_contents(packet),
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
-    // what a plan expects holds for pictures whose pipelines and mirrors are there
+    // predictions of the tuning hold once pipelines and GPU-resident grids exist
     for (int k = 1; k < kUnreportedFrames && planned && motion.frames() == 1; ++k) {
       CATENA_CHECK(frames.draw(0, nullptr));
       took.push_back(frames.drawing_ms);
     }
     stats.frame_ms.push_back(first);
-    // the first picture is there before settings that hold for a sequence are searched for
+    // render the first image before the search for settings of the sequence
     if (motion.frames() > 1 && !planned && wanted.goal && wanted.goal->kind == render::QualityGoal::Kind::error &&
         render::uses_raycast(packet))
       choose_for(" of the sequence", false);

@@ -1,4 +1,4 @@
-/// What `catena render` was asked for, as it came from the command line.
+/// Options of `catena render`, as given on the command line, and the camera and quality that follow from them.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,50 +12,51 @@
 
 namespace catena::app {
 
+/// Maximum number of frames of a sequence.
 inline constexpr int kMaxFrames = 100000;
 
+/// Values of the options.
 struct RenderOptions {
   std::string source, grid, output, size = "1024x768", quality, plan, stats, probe;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
-  // outputs
-  int bits = 8;            ///< of -o FILE.png
-  std::string depth, ids;  ///< beside the picture
-  int tile = 0;            ///< samples; 0: chosen
-  int antialias = 1;       ///< samples a pixel, each way
-  // frames
-  int frames = 0;  ///< 0: not given
+  // Outputs.
+  int bits = 8;            ///< Bits per channel of -o FILE.png
+  std::string depth, ids;  ///< Files for a depth and an id image in addition to the image; empty: none
+  int tile = 0;            ///< Tile size in samples; 0: chosen automatically
+  int antialias = 1;       ///< Samples per pixel on each axis
+  // Frames.
+  int frames = 0;  ///< Number of frames; 0: not given
   double fps = 25, animation_phase = 0;
-  int step = -1;            ///< in time; -1: the scene's
-  std::string steps;        ///< A:B or A:B:STRIDE, a frame each
-  bool play_probe = false;  ///< the hand goes along the probe path over the frames
-  // the camera
+  int step = -1;            ///< Time step; -1: the scene's
+  std::string steps;        ///< Time steps FIRST:LAST or FIRST:LAST:STRIDE, one frame each
+  bool play_probe = false;  ///< The probe moves along the probe path over the frames
+  // Camera.
   std::string camera, view, head_path;
   bool fit = false;
   double orbit_deg = 0, elevation_deg = 0, zoom = 1;
-  double gpu_memory_mb = 0;  ///< 0: what the driver offers
+  double gpu_memory_mb = 0;  ///< Limit of GPU memory, MB; 0: what the driver reports
   StereoOptions stereo;
-  // what is drawn
+  // Contents.
   AnnotationOptions annotate;
   ColorOptions colors;
   bool validation = false;
 };
 
-/// All of the work. An Error: bad input; throws MachineFailure for the rest.
+/// Renders and writes all outputs. Error: bad input. Throws MachineFailure for system failures.
 Outcome render_images(const RenderOptions& options);
 
-/// The places of a tracked head, `t,x,y,z`, as a camera goes along them; what it looks at does not count.
+/// Reads the positions of a tracked head, a CSV table `t,x,y,z`, as a camera path whose view targets are not used.
 Result<render::CameraPath> read_head_path(const std::string& path);
 
-/// Where the camera is in each frame: the scene's, a key-framed path's, or along an axis; fitted, zoomed, raised and turned; or, before a
-/// screen of the scene, where a tracked head is.
+/// Camera of each frame: the scene's, that of a key-framed path, or along an axis; fitted, zoomed, elevated and orbited; or, with a screen
+/// of the scene, at the position of a tracked head.
 class CameraMotion {
  public:
-  /// Checks the words and numbers of the options and reads the path.
-  /// `haptics_s`: the duration of the hand's path where it is played, else 0.
+  /// Checks the camera options and reads the camera path. `hand_s`: duration of the probe path if it is played, else 0.
   static Result<CameraMotion> make(const RenderOptions& options, double hand_s);
-  /// --frames, or what the duration of --camera or of the hand's path comes to at --fps, or 1.
+  /// Number of frames: --frames, or the longest duration of --camera, --head and the played probe path at --fps, or 1.
   int frames() const { return frames_; }
-  /// Of frame 0 .. frames() - 1. `base`: the scene's view; `bounds`: of all that is drawn.
+  /// View of a frame, 0 to frames() - 1. `base`: the scene's view; `bounds`: of everything that is rendered; `aspect`: width / height.
   render::View view_at(const render::View& base, const Bounds& bounds, double aspect, int frame) const;
 
  private:
@@ -66,17 +67,18 @@ class CameraMotion {
   int frames_ = 1;
 };
 
-/// "--steps FIRST:LAST[:STRIDE]": the steps, in order; empty where nothing is said.
+/// Parses --steps FIRST:LAST[:STRIDE] into the list of time steps; empty for an empty string.
 Result<std::vector<int>> parse_steps(const std::string& words);
 
-/// "--quality Q" and the scene's "quality": draft, balanced, reference, time=MS, error=E or step=VOXELS.
-/// Settings, or a goal that they have yet to be measured for.
+/// The quality of --quality and of the scene's "quality": draft, balanced, reference, time=MS, error=E or step=VOXELS. Either settings, or
+/// a goal for which settings have yet to be searched.
 struct Quality {
   render::RenderSettings settings;
   std::optional<render::QualityGoal> goal;
-  std::optional<double> interactive_ms = {};  ///< of a picture while something moves, in a window
+  std::optional<double> interactive_ms = {};  ///< Viewer: target time of a frame while something moves, ms; empty: the default
 };
 
+/// Parses a quality. Error: an unknown word or a number out of range.
 Result<Quality> parse_quality(const std::string& words);
 
 }  // namespace catena::app

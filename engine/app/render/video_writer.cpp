@@ -19,8 +19,8 @@ namespace {
 
 struct Kind {
   const char* name;
-  std::vector<std::string> arguments;  ///< codec and pixels
-  bool even;                           ///< needs an even width and height
+  std::vector<std::string> arguments;  ///< codec and pixel format
+  bool even;                           ///< requires an even width and height
 };
 
 // RGB to YUV by the matrix that the tags name
@@ -99,7 +99,7 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat
   if (::pipe2(ends, O_CLOEXEC) != 0) return cannot(path, "open a pipe", errno);
   self.pipe_ = ends[1];
 
-  // the command
+  // build the command line
   const Kind kind = kind_of(*video_kind(path), format.alpha);
   std::vector<std::string> words{program,
                                  "-hide_banner",
@@ -124,7 +124,7 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
-  // a process group of its own: Ctrl-C is for the one who writes
+  // a process group of its own: Ctrl-C is meant for this process, not for the encoder
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);

@@ -43,7 +43,7 @@ Outcome FrameEncoder::draw(FrameBuilder& drawing, ProgressiveScheduler& pacing, 
   std::optional<render::RenderTimer> clock(*renderer_);
   auto drawn = renderer_->draw(packet, next.settings);
   if (!drawn && renderer_->device().is_lost()) {
-    clock.reset();  // its renderer goes
+    clock.reset();  // the clock's renderer is about to be destroyed
     CATENA_CHECK(make_renderer());
     drawn = renderer_->draw(packet, next.settings);
   }

@@ -1,4 +1,4 @@
-/// FrameEncoder draws without a window and keeps the last picture, to be encoded. Frame thread.
+/// FrameEncoder renders frames without a window and encodes the last one. Frame thread.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,19 +10,20 @@
 
 namespace catena::app {
 
+/// Owns the renderer and the last image.
 class FrameEncoder {
  public:
-  /// An error of the machine.
+  /// Creates the renderer. `memory_budget_bytes`: limit of GPU memory, 0: what the driver reports. Error: a system failure.
   static Result<FrameEncoder> open(std::uint64_t memory_budget_bytes);
 
-  /// That picture, of the page's size; what it took goes to `pacing` and `times`. An error of the machine; what cannot be extracted is
-  /// bad input.
+  /// Renders the requested frame at the page's size; reports its time to `pacing` and `times`. If the device is lost, the renderer is
+  /// created anew and the frame rendered again. Error: a system failure, or bad input if the scene cannot be extracted.
   Outcome draw(FrameBuilder& drawing, ProgressiveScheduler& pacing, FrameTimes& times, const FrameRequest& next, std::uint32_t width,
                std::uint32_t height);
-  /// The last picture as a message. `exact`: PNG.
+  /// Encodes the last image as a message. `exact`: PNG, else JPEG; `motion`: number of the newest input that it shows.
   Result<std::string> encode_message(bool exact, std::uint32_t motion);
 
-  /// Of the last picture, as render::RenderTimer counts; wall time where the device was lost on the way.
+  /// Render time of the last frame, ms, as measured by render::RenderTimer; wall time if the device was lost.
   double render_ms() const { return render_ms_; }
   bool has_image() const { return !image_.rgba.empty(); }
   render::Renderer& renderer() { return *renderer_; }

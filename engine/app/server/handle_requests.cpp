@@ -1,4 +1,4 @@
-// What the page that has the hand asks for, carried out.
+// Carries out the requests of the viewer in control.
 #include <utility>
 
 #include "engine/app/server/serve_session.h"
@@ -54,12 +54,12 @@ void ServeSession::handle(Action action) {
     case Action::previous_time_step:
       return send_note_on_error(playback_.show(scene_, scene_.scene().time.step + (action == Action::next_time_step ? 1 : -1)));
     default:
-      break;  // the eye's
+      break;  // an action of the camera
   }
   has_changed_ = camera_.handle(action, static_cast<double>(width_) / height_) || has_changed_;
 }
 
-/// The hand goes onto what is under the pointer.
+/// Moves the probe onto the item under the pointer.
 void ServeSession::start_haptics() {
   controls_.probe_mode = true;
   const auto under = frame_builder_.pick_at(pointer_x_, pointer_y_);
@@ -69,7 +69,7 @@ void ServeSession::start_haptics() {
   probe_moved_ = true;
 }
 
-/// It stays where it is, with nothing pressed.
+/// The probe stays at its position with no button pressed.
 void ServeSession::stop_haptics() {
   controls_.probe_mode = false;
   controls_.buttons = 0;
@@ -90,7 +90,7 @@ void ServeSession::handle(const LevelRequest& wish) {
 
 namespace {
 
-/// The volume and its transfer function as it is drawn.
+/// The volume and its transfer function as rendered; std::nullopt if there is none.
 std::optional<std::pair<scene::Volume, TransferEdit>> volume_of(const scene::Scene& scene, const std::string& item) {
   const auto volume = find_item<scene::Volume>(scene, item);
   if (!volume || item_pointer(volume->where).empty()) return std::nullopt;
@@ -118,7 +118,7 @@ void ServeSession::handle(const ColormapRequest& wish) {
 
 void ServeSession::handle(const StepRequest& wish) { send_note_on_error(playback_.show(scene_, wish.step)); }
 
-/// While one is under way nothing is offered: what is there is not whole.
+/// During a recording its file is not offered for download, since it is incomplete.
 void ServeSession::handle(const RecordRequest& wish) {
   if (!wish.on) return end_recording();
   send_note_on_error(recording_.begin(scene_, haptics_));

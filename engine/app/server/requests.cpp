@@ -10,7 +10,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kFarthest = 1e5;  // pixels
+constexpr double kFarthest = 1e5;  // maximum magnitude of a pointer coordinate, pixels
 constexpr std::pair<std::string_view, Action> kActions[] = {{"hand", Action::toggle_probe_mode},
                                                             {"fit", Action::fit_view},
                                                             {"first_view", Action::reset_view},

@@ -17,7 +17,7 @@ constexpr const char* kServePage =
 #include "serve_page.inc"
     ;
 
-/// What hears beyond this machine is said: nothing is encrypted.
+/// Prints a warning if the server is reachable from other machines: nothing is encrypted.
 void tell_exposure(const http::ServerOptions& server) {
   if (server.address == "127.0.0.1" || server.address == "::1") return;
   print_message("others can reach " + server.address + ", and what goes there is not encrypted: `ssh -L` is safer (docs/serve.md)");

@@ -1,7 +1,6 @@
-/// `catena serve` shows a scene in browsers: the picture, which gets better while nothing moves, and the mouse as the hand. It is the
-/// window (engine/app/viewer) with a network in the place of the display: the same scene, hand, controls and pacing. One session for all
-/// pages: the first one has the hand, and with it the eye and all that can be changed; the others watch. Nothing is written to the scene's
-/// file.
+/// `catena serve` shows a scene in browsers: progressively refined images, with the mouse as the haptic device. It is the viewer
+/// (engine/app/viewer) with a network in place of the display: same scene, haptics, controls and frame scheduling. All pages share one
+/// session: the first page is in control of the probe, the camera and all edits; the others watch. The scene file is never written.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -15,23 +14,30 @@
 
 namespace catena::app {
 
+/// Options of `catena serve`.
 struct ServeOptions {
-  std::string source;  ///< a scene or a data file
-  std::string grid;    ///< of a data file that holds several; empty: the one that is looked at first
+  std::string source;  ///< A scene or a data file
+  /// Grid of a data file that holds several; empty: the default one
+  std::string grid;
   std::vector<scene::FieldOverride> overrides;
-  std::function<Outcome(scene::Scene&)> adjust_scene;  ///< what the command line wants otherwise than the scene
-  HapticSession::Options haptic_options;               ///< its device is the mouse
-  http::ServerOptions server;                          ///< the page is set here
-  std::uint32_t width = 1024, height = 768;            ///< of the picture before a page says its own size
+  /// Applies the command line's changes to the scene
+  std::function<Outcome(scene::Scene&)> adjust_scene;
+  HapticSession::Options haptic_options;  ///< The device is the mouse
+  http::ServerOptions server;             ///< serve() sets the page
+  /// Size of the image until a page sends its size, pixels
+  std::uint32_t width = 1024, height = 768;
   Quality quality;
-  bool is_quality_explicit = false;  ///< by the command line or the scene: a plan leaves it alone
-  std::uint64_t gpu_memory = 0;      ///< bytes; 0: what the driver offers
-  double seconds = 0;                ///< ends after so long; 0: by Ctrl-C
+  /// The quality was set by the command line or the scene: the tuning does not change it
+  bool is_quality_explicit = false;
+  std::uint64_t gpu_memory = 0;  ///< Limit in bytes; 0: what the driver reports
+  double seconds = 0;            ///< Time limit, s; 0: until Ctrl-C
+  /// Exits when standard input is closed.
   bool exit_with_stdin = false;
-  bool follow = false;  ///< steps in time that are added are shown (`adjust` marks the scene)
+  /// Shows time steps as they are added (`adjust_scene` marks the scene)
+  bool follow = false;
 };
 
-/// Until Ctrl-C, or the time is over. Errors are one line: the scene's (bad input), or the machine's.
+/// Runs until Ctrl-C or the time limit. Error: one line; bad input of the scene, or a system failure.
 Outcome serve(ServeOptions options);
 
 }  // namespace catena::app

@@ -18,7 +18,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kNobodyWaitS = 0.1, kLookWaitS = 0.004;  // between looks at the servo's news
+constexpr double kNobodyWaitS = 0.1, kLookWaitS = 0.004;  // intervals between checks of the servo state
 constexpr double kStateMs = 50, kSceneMs = 500;
 
 }  // namespace
@@ -46,7 +46,7 @@ ServeSession::ServeSession(const ServeOptions& options, const LoadedScene& loade
 
 namespace {
 
-/// Who writes to it has gone; what it writes is of no interest.
+/// Returns whether standard input has ended, which means that the parent process is gone; its content is ignored.
 bool stdin_has_ended() {
   pollfd in{STDIN_FILENO, POLLIN, 0};
   std::array<char, 4096> ignored{};
@@ -99,21 +99,21 @@ Outcome ServeSession::run() {
   return Done{};
 }
 
-// ---- pictures ----
+// ---- frames ----
 
 Outcome ServeSession::show_next_frame() {
   const bool moved = std::exchange(has_changed_, false), hand_moved = std::exchange(probe_moved_, false);
   if (const auto next = frame_builder_.next_frame(moved, hand_moved, width_, height_)) {
     if (const Outcome drawn = encoder_.draw(frame_builder_, scheduler_, frame_times_, *next, width_, height_); !drawn) {
       if (drawn.error().system_failure) return drawn;
-      send_note(drawn.error().message);  // an edit's: the last picture stands
+      send_note(drawn.error().message);  // an error caused by an edit: the last image stays
       return Done{};
     }
     if (tuning_.matches(*next) && tuning_.on_rendered(encoder_.render_ms()))
       if (const auto quality = tuning_.quality()) scheduler_ = ProgressiveScheduler(*quality);
     return send_frame(false);
   }
-  // it rests: what the pages have is as good as it gets, but for how it was encoded
+  // idle: the image cannot be refined further, so it is sent once with lossless encoding
   const bool rests = frame_builder_.idle_s() >= kRefineDelayS && 1e-3 * ms_since(last_frame_ns_) >= kRefineDelayS;
   return rests && !sent_lossless_ && encoder_.has_image() ? send_frame(true) : Outcome(Done{});
 }
@@ -126,7 +126,7 @@ Outcome ServeSession::send_frame(bool exact) {
   return Done{};
 }
 
-// ---- pages ----
+// ---- viewers ----
 
 void ServeSession::on_message(const http::ViewerEvent& news) {
   switch (news.kind) {
@@ -145,7 +145,7 @@ void ServeSession::on_message(const http::ViewerEvent& news) {
     if (*about == ControlRequest::release && has_hand) give_control_to(0);
     return;
   }
-  if (!has_hand) return;  // who watches changes nothing
+  if (!has_hand) return;  // viewers that only watch cannot change anything
   std::visit(
       [this](const auto& asked) {
         if constexpr (!std::is_same_v<std::decay_t<decltype(asked)>, ControlRequest>) handle(asked);
@@ -193,7 +193,7 @@ void ServeSession::send_state() {
       state_message(haptics_, scene_, {controls_.probe_mode, playback_.is_playing, scheduler_.status_text(), tuning_, recording_.name()});
   if (state != last_state_) server_.send(http::kAllViewers, http::Slot::state, state);
   last_state_ = std::move(state);
-  // histograms come when they are sorted
+  // histograms are sent once the values are sorted
   if ((scene_sent_ && !field_values_.is_busy()) || ms_since(last_scene_ns_) < kSceneMs) return;
   last_scene_ns_ = last_state_ns_;
   server_.send(http::kAllViewers, http::Slot::scene, scene_message(scene_, field_values_));
@@ -208,9 +208,9 @@ void ServeSession::send_note_on_error(const Outcome& outcome) {
   if (!outcome) send_note(outcome.error().message);
 }
 
-// ---- the plan ----
+// ---- tuning ----
 
-/// What the scene wants before anybody looks.
+/// Applies the tuning targets that the scene states, before the first viewer connects.
 Outcome ServeSession::apply_stated_targets() {
   tuning_.target = tuning_.scene_target = scene_.scene().tuning;
   if (tuning_.target.has_haptic_targets()) {

@@ -1,4 +1,4 @@
-/// ServeSession is the loop of `catena serve`: what pages ask for -> newest haptic state -> picture -> pages. Frame thread.
+/// ServeSession is the main loop of `catena serve`: requests of the pages -> newest haptic state -> frame -> pages. Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,21 +18,23 @@
 
 namespace catena::app {
 
+/// One session for all pages. One page at a time is in control; requests of the others are ignored.
 class ServeSession {
  public:
-  /// `scene` is loaded, `hand` prepared and not started; all outlive the session.
+  /// `scene` is loaded, `hand` has an open device and is started before run(). All arguments except `loaded` must outlive this object.
   ServeSession(const ServeOptions& options, const LoadedScene& loaded, SceneModel& scene, HapticSession& hand, http::Server& server,
                FrameEncoder& maker, const InterruptHandler& interrupt);
+  /// Runs until interrupted or until the time limit.
   Outcome run();
 
  private:
   bool is_running() const;
-  // pages
+  // Pages.
   void on_message(const http::ViewerEvent& news);
   void on_connect(http::ViewerId viewer);
   void on_disconnect(http::ViewerId viewer);
   void give_control_to(http::ViewerId viewer);
-  // what the page that has the hand asks for
+  // Requests of the page in control.
   void handle(const MoveRequest& wish);
   void handle(const SizeRequest& wish);
   void handle(Action action);
@@ -46,7 +48,7 @@ class ServeSession {
   void start_haptics();
   void stop_haptics();
   void apply_edits(const TextEdits& edits, const std::string& what, const std::string& item);
-  // what pages are told
+  // Messages to the pages.
   void send_roles();
   void send_state();
   void send_note(const std::string& line);
@@ -73,14 +75,14 @@ class ServeSession {
   TimeStepWatcher step_follower_;
   LiveTuning tuning_;
   ServedRecording recording_;
-  std::vector<http::ViewerId> viewers_;  ///< in the order in which they came
-  http::ViewerId controller_ = 0;        ///< of the hand; 0: it is free
+  std::vector<http::ViewerId> viewers_;  ///< In the order in which they connected
+  http::ViewerId controller_ = 0;        ///< The viewer in control; 0: none
   std::size_t max_viewers_ = 0;
   std::uint32_t width_, height_;
-  double pointer_x_ = 0.5, pointer_y_ = 0.5;       ///< shares of the picture
-  std::uint32_t input_number_ = 0;                 ///< number of the newest one
-  bool has_changed_ = true, probe_moved_ = false;  ///< since the last picture
-  bool sent_lossless_ = false;                     ///< the pages have the last picture as it is
+  double pointer_x_ = 0.5, pointer_y_ = 0.5;       ///< Fractions of the image's width and height
+  std::uint32_t input_number_ = 0;                 ///< Number of the newest input
+  bool has_changed_ = true, probe_moved_ = false;  ///< Since the last frame
+  bool sent_lossless_ = false;                     ///< The last frame was also sent lossless
   bool scene_sent_ = false;
   std::string last_frame_, last_state_;
   std::int64_t start_ns_ = 0, last_state_ns_ = 0, last_scene_ns_ = 0, last_frame_ns_ = 0;

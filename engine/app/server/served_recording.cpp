@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kFolderPrefix = "catena-serve-";
-constexpr std::time_t kYoung_s = 60;  // between mkdtemp and the lock a folder is not held
+constexpr std::time_t kYoung_s = 60;  // seconds; a new folder has no lock between mkdtemp and locking
 
-/// Folders of this user's that no program holds.
+/// Removes temporary folders of this user that no running program has locked.
 void remove_left_behind(const fs::path& temporary) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(temporary, ignored)) {
@@ -46,7 +46,7 @@ Outcome ServedRecording::make_folder() {
   if (mkdtemp(pattern.data()) == nullptr) return Error{pattern + ": cannot be made: " + std::generic_category().message(errno), true};
   folder_ = pattern;
   if (auto lock = FolderLock::acquire(folder_)) lock_.emplace(std::move(*lock));
-  if (lock_ && !FolderLock::acquire(folder_)) remove_left_behind(temporary);  // locks are known here
+  if (lock_ && !FolderLock::acquire(folder_)) remove_left_behind(temporary);  // only where the file system supports locks
   return Done{};
 }
 

@@ -1,6 +1,6 @@
-/// ServedRecording is what pages of `catena serve` record: every tick of the hand, from a button to the next one, in a folder of its own
-/// below the machine's temporary one that goes with the program; where the program was killed, the next one that records removes it, by the
-/// lock that it does not hold any more. There is one file at a time, the newest, which pages can fetch; it has at most kMaxBytes. Frame
+/// ServedRecording is the recording of `catena serve`: every haptic tick from the start to the stop of the recording, in a private folder
+/// below the system's temporary folder. The folder is removed at exit; if the program was killed, the next program that records removes the
+/// folder because its lock is free. There is one file at a time, the newest, which pages can download; it has at most kMaxBytes. Frame
 /// thread.
 #pragma once
 #include <optional>
@@ -12,6 +12,7 @@
 
 namespace catena::app {
 
+/// The newest recording and its folder.
 class ServedRecording {
  public:
   static constexpr std::uint64_t kMaxBytes = 256'000'000;
@@ -21,14 +22,14 @@ class ServedRecording {
   ServedRecording(const ServedRecording&) = delete;
   ServedRecording& operator=(const ServedRecording&) = delete;
 
-  /// In the place of the one before. An error of the disk: nothing is recorded.
+  /// Starts a recording and deletes the previous one. Error: the disk cannot be written, and nothing is recorded.
   Outcome begin(const SceneModel& scene, HapticSession& hand);
-  /// Nothing where none is under way.
+  /// Ends the recording; does nothing if none is in progress.
   Outcome end(HapticSession& hand);
-  /// It has to end: there is no more room, or it cannot be written.
+  /// Whether the recording has to be ended: it has exceeded kMaxBytes, or cannot be written.
   bool must_end(const HapticSession& hand) const;
 
-  /// Of the one that is whole; empty: none.
+  /// Name of the complete recording; empty: none.
   const std::string& name() const { return name_; }
   std::string path() const { return name_.empty() ? "" : folder_ + "/" + name_; }
 

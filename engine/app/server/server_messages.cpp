@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kBars = 64;
 
-/// A slider of finite numbers, or nothing.
+/// JSON range of a slider with finite ends, or empty text.
 std::string range_words(const std::array<double, 2>& range, const SortedSamples& values, double linear_below = 0) {
   std::string bars = "[]";
   if (values)

@@ -1,15 +1,18 @@
-/// What a page is told: JSON objects of one member each, and pictures. Frame thread.
-///   {"role": {"hand": "yours" | "free" | "taken", "viewers": N}}
-///   {"scene": {"name", "isosurfaces": [...], "volumes": [...], "maps": [...]}}   what can be changed
-///   {"state": {"force": N, "most": N, "links": [{"name", "status"}], "hand": true, "picture": "...",   newton; hand: the pointer is it
-///              "step": {"now", "count", "time", "plays"}, "undo": "isolevel", "redo": "",   time: null where none is stated; what undo
-///              takes back, empty: nothing
-///              "recording": {"on", "seconds", "mb", "file"}, "plan": {"place", "eye", "hand"}}}   file: to be fetched, empty: none; plan:
-///              null where it was not measured, or decides nothing
+/// Messages to a page: JSON objects of one member each, and frames. Frame thread. The keys are those of the protocol.
+///   {"role": {"hand": "yours" | "free" | "taken", "viewers": N}}                     whether this page is in control
+///   {"scene": {"name", "isosurfaces": [...], "volumes": [...], "maps": [...]}}       what can be edited
+///   {"state": {
+///      "force": N, "most": N,                            force and maximum force, N
+///      "links": [{"name", "status"}], "picture": "...",  "picture": description of the image
+///      "hand": true,                                     the pointer moves the probe
+///      "step": {"now", "count", "time", "plays"},        "time": null if the time steps have no times
+///      "undo": "isolevel", "redo": "",                   labels of what undo and redo change; empty: nothing
+///      "recording": {"on", "seconds", "mb", "file"},     "file": name of the file to download; empty: none
+///      "plan": {"place", "eye", "hand"}}}                slider position, image tuning, tick tuning; null: not measured, or unused
 ///   {"note": "one line"}
-/// A picture is a head of 16 bytes, little endian, and the file: number of the picture (4 bytes), number of the newest motion that it shows
-/// (4), width and height of the page's picture (2, 2; the file may have fewer pixels), 1 for JPEG or 2 for PNG (1), 0 (1), milliseconds
-/// that it took to draw and encode (2).
+/// A frame is a header of 16 bytes, little endian, followed by the image file: frame number (4 bytes), number of the newest input that the
+/// frame shows (4), width and height of the page's image (2, 2; the file may have fewer pixels), 1 for JPEG or 2 for PNG (1), 0 (1),
+/// milliseconds spent on rendering and encoding (2).
 #pragma once
 #include <cstdint>
 #include <string>
@@ -19,24 +22,30 @@
 
 namespace catena::app {
 
+/// The message "role". `hand`: "yours", "free" or "taken"; `viewers`: number of connected pages.
 std::string role_message(const std::string& hand, std::size_t viewers);
-/// `values`: for histograms; they come with a later call where they are still being sorted.
+/// The message "scene". `values`: cache of the histograms; those that are still being computed are sent with a later message.
 std::string scene_message(SceneModel& scene, HistogramCache& values);
+/// State of the session for the message "state", in addition to the haptics and the scene.
 struct SessionState {
   bool probe_mode = false, is_playing = false;
   std::string image_description;
   const LiveTuning& tuning;
-  std::string recording_name;  ///< the name of the file that can be fetched
+  std::string recording_name;  ///< Name of the recording that can be downloaded; empty: none
 };
+/// The message "state".
 std::string state_message(const HapticSession& hand, const SceneModel& scene, const SessionState& more);
+/// The message "note".
 std::string note_message(const std::string& line);
 
+/// Values of a frame's header.
 struct FrameHeader {
   std::uint32_t number = 0, input_number = 0;
   std::uint32_t width = 0, height = 0;
-  bool is_lossless = false;  ///< PNG: every pixel as it is
+  bool is_lossless = false;  ///< PNG; false: JPEG
   double elapsed_ms = 0;
 };
+/// The binary message of a frame.
 std::string frame_message(const FrameHeader& head, const std::string& file);
 
 }  // namespace catena::app

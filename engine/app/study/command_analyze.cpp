@@ -1,4 +1,4 @@
-/// catena study analyse DIR -o OUT: what the trials of a data folder say, as tables, JSON and a page.
+/// catena study analyse DIR -o OUT: evaluates the trials of a data folder and writes tables, JSON and an HTML page.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-/// catena study keys [PART | --schema]: what a study file may say.
+/// catena study keys [PART | --schema]: prints the keys of a study file.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@ Outcome print_study_keys(const std::string& part) {
   return Done{};
 }
 
-/// For an editor: what stands at the top of the file beside its parts.
+/// JSON schema for editors: the top level of the file and its parts.
 std::string study_schema() {
   std::vector<schema::Section> parts;
   for (const schema::Section& component : study::study_components()) {

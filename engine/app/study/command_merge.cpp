@@ -1,4 +1,4 @@
-/// catena study merge DIR... -o DIR: the subjects of several data folders of one study in one.
+/// catena study merge DIR... -o DIR: merges the subjects of several data folders of one study into one folder.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -24,7 +24,7 @@ struct MergeOptions {
   std::string output;
 };
 
-/// A subject's questionnaire goes with its trials.
+/// A subject's questionnaire is copied with the trials.
 Outcome bring_answers(const std::string& from, const std::string& to, int subject) {
   const std::string source = study::answers_file(from, subject), place = study::answers_file(to, subject);
   std::error_code code;
@@ -44,7 +44,7 @@ Outcome bring_answers(const std::string& from, const std::string& to, int subjec
 
 Outcome merge(const MergeOptions& options) {
   namespace fs = std::filesystem;
-  // all are read before anything is written
+  // all input is read before anything is written
   std::optional<study::Study> study;
   std::map<int, std::pair<std::string, std::vector<study::TrialRow>>> subjects;
   std::vector<std::string> notes;

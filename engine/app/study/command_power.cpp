@@ -1,4 +1,4 @@
-/// catena study power STUDY.json --effect D [--power P] [--alpha A]: how many subjects find a difference of that size.
+/// catena study power STUDY.json --effect D [--power P] [--alpha A]: number of subjects needed to find a difference of that size.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-/// catena study run STUDY.json --subject N --device NAME -o DIR: one subject's session in the window, with a hand.
+/// catena study run STUDY.json --subject N --device NAME -o DIR: runs one subject's session in the window, with a haptic device.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -31,7 +31,7 @@ Result<Instructions> instructions_of(const study::Study& study) {
   return read_instructions(study.instructions, tasks);
 }
 
-/// Whether it pushes is said, never guessed: a session without forces is another experiment.
+/// Whether the device exerts forces must be set explicitly, never guessed: a session without forces is another experiment.
 Outcome check_forces(const StudyRunOptions& options, const haptics::DeviceCapabilities& device) {
   if (device.max_force_n > 0 && options.forces.empty())
     return Error{"--device " + options.device + " can push: --forces on was expected, or --forces off"};
@@ -57,7 +57,7 @@ Outcome run_study(const StudyRunOptions& options) {
   ViewOptions view = view_options(options, size);
   CATENA_TRY(view.quality, parse_quality(options.quality));
   const auto adjust = [&](scene::Scene& scene) { return options.stereo.apply(scene.stereo); };
-  // the first trial's scene says what a device needs to know
+  // the first trial's scene provides what a device needs
   const std::vector<study::Trial> trials = study::make_session(study, options.subject);
   CATENA_TRY(const SceneModel trial, LiveTrial(study).open(trials.front(), adjust));
   std::optional<InterruptHandler> interrupt;

@@ -1,4 +1,4 @@
-/// catena study scene STUDY.json --subject S --trial T -o SCENE.json: a trial as a scene, for `render` and `view`.
+/// catena study scene STUDY.json --subject S --trial T -o SCENE.json: writes a trial as a scene, for `render` and `view`.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -34,8 +34,8 @@ Outcome write_trial_scene(const StudySceneOptions& options) {
   study::StimulusGenerator maker(study);
   CATENA_TRY(const study::Stimulus stimulus, maker.generate(trial.task, trial.seed));
   const std::string text = study::make_trial_scene(study, trial, stimulus);
-  CATENA_CHECK(scene::parse_scene(text, options.study));  // mistakes have the study's lines
-  // without the empty lines before, and with names of files that are right where it goes
+  CATENA_CHECK(scene::parse_scene(text, options.study));  // errors are reported with the study's line numbers
+  // remove the leading empty lines, and make file names relative to the output's folder
   CATENA_TRY(scene::Document document,
              scene::Document::create("{" + text.substr(std::min(text.find_first_not_of("{\n"), text.size() - 1)) + "\n", options.study));
   CATENA_CHECK(document.save(options.output));

@@ -1,6 +1,6 @@
-/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--model NAME=NUMBER] [--record]: the sessions of model subjects, on
-/// all cores. Training trials are left out: the model does not learn. What a folder holds already is kept, so that a run that was ended
-/// goes on.
+/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--model NAME=NUMBER] [--record]: simulates sessions with the human
+/// model, on all cores. Training trials are omitted: the model does not learn. Trials that the folder already holds are not repeated, so
+/// that an interrupted run continues.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -37,7 +37,7 @@ struct SimulateOptions {
   bool record = false;
 };
 
-/// The study with other numbers in its "operator": NAME=NUMBER, in its text, so that the data folder holds what was simulated.
+/// Replaces numbers in the study's "operator" (NAME=NUMBER), in its text, so that the data folder holds the study that was simulated.
 Result<study::Study> study_with_model(const SimulateOptions& options) {
   CATENA_TRY(std::string text, read_text_file(options.study, "a study file (JSON)", kMaxJsonBytes));
   for (const std::string& one : options.model) {
@@ -50,7 +50,7 @@ Result<study::Study> study_with_model(const SimulateOptions& options) {
   return study::parse_study(text, options.study);
 }
 
-/// Every N-th subject, from the I-th on.
+/// Every N-th subject, starting from the I-th.
 struct Shard {
   int index = 1, count = 1;
 };
@@ -65,7 +65,7 @@ Result<Shard> read_shard(const std::optional<std::string>& given) {
   return Shard{static_cast<int>(*index), static_cast<int>(*count)};
 }
 
-/// The recordings of one subject, a trial after the other.
+/// Writes the recordings of one subject, one trial after the other.
 class Recordings {
  public:
   Recordings(const study::Study& study, const study::DataFolder& data) : study_(study), data_(data) {}
@@ -84,7 +84,7 @@ class Recordings {
     writer_->add_program(program);
     return writer_.get();
   }
-  /// A recording gets its name once it is whole.
+  /// A recording gets its final name once it is complete.
   Outcome end(const study::Trial& trial) {
     if (!writer_) return Done{};
     const auto writer = std::move(writer_);
@@ -103,7 +103,7 @@ class Recordings {
   std::unique_ptr<haptics::log::LogWriter> writer_;
 };
 
-/// The trials that count, and those of them that a folder lacks.
+/// The trials that count, and those of them that the folder lacks.
 struct Session {
   std::vector<study::Trial> trials;
   std::size_t done = 0;
@@ -167,7 +167,7 @@ Outcome simulate(const SimulateOptions& options) {
   ProgressLine progress("simulate", static_cast<double>(todo));
   std::mutex guard;
   std::size_t done = 0;
-  std::optional<std::pair<std::size_t, Error>> fault;  // of the first subject that has one
+  std::optional<std::pair<std::size_t, Error>> fault;  // of the first subject with an error
   parallel_for(sessions.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Outcome outcome = simulate_subject(study, data, sessions[i], options.record, [&] {

@@ -13,7 +13,7 @@ constexpr std::string_view kBefore = "before ";
 
 bool ends_page(std::string_view line) { return line.size() >= 3 && line.find_first_not_of('-') == std::string_view::npos; }
 
-/// Gathers lines into pages.
+/// Collects lines into pages.
 class PageReader {
  public:
   explicit PageReader(std::vector<InstructionPage>& to) : to_(&to) {}
@@ -30,7 +30,7 @@ class PageReader {
       open_ = true;
     }
   }
-  /// False where the page has nothing.
+  /// Ends the page and stores it. False if the page is empty.
   bool end() {
     if (page_.heading.empty()) return false;
     to_->push_back(std::move(page_));
@@ -42,7 +42,7 @@ class PageReader {
  private:
   std::vector<InstructionPage>* to_;
   InstructionPage page_;
-  bool open_ = false;  ///< the last paragraph goes on
+  bool open_ = false;  ///< whether the next line continues the last paragraph
 };
 
 }  // namespace

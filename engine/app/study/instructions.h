@@ -1,14 +1,14 @@
 /// The instructions of a study: a text file that anybody can write and translate. Pure functions, any thread.
 ///
-///   # introduction                 a line "# NAME" begins the pages of a moment: "introduction", "before TASK" (a task of the study,
-///   before Welcome                        its first trial), "end" (after the questionnaire); a moment without pages is passed over
+///   # introduction                 a line "# NAME" starts the pages of a moment: "introduction", "before TASK" (before the first trial of
+///                                  that task), "end" (after the questionnaire); a moment without pages is skipped
+///   Welcome                        the first line of a page is its heading
 ///
 ///   You will see ...
 ///   ---                            a line of at least three hyphens ends a page
-///   The hand                       the first line of a page is its heading
+///   The hand
 ///   ...
-/// Lines that follow each other are one paragraph, whatever their length; a blank line ends it. A line that begins with "- " begins one,
-/// too.
+/// Consecutive lines form one paragraph, whatever their length; a blank line ends it. A line that starts with "- " starts a new paragraph.
 #pragma once
 #include <string>
 #include <string_view>
@@ -18,12 +18,14 @@
 
 namespace catena::app {
 
+/// One page of instructions.
 struct InstructionPage {
   std::string heading;
   std::vector<std::string> paragraphs;
   bool operator==(const InstructionPage&) const = default;
 };
 
+/// All pages, by moment.
 struct Instructions {
   struct TaskPages {
     std::string task;
@@ -32,12 +34,14 @@ struct Instructions {
   std::vector<InstructionPage> introduction, end;
   std::vector<TaskPages> task_pages;
 
-  /// None where the file says nothing of this task.
+  /// Pages to show before the first trial of a task; empty if the file has none.
   const std::vector<InstructionPage>& pages_before_task(const std::string& task) const;
 };
 
-/// `tasks`: the study's. The error names file and line: a moment that is none, a page without a heading, text before the first moment.
+/// Parses the instructions. `tasks`: names of the study's tasks. Error, with file and line: an unknown or duplicate moment, a page without
+/// a heading, text before the first moment.
 Result<Instructions> parse_instructions(std::string_view text, const std::string& file, const std::vector<std::string>& tasks);
+/// Reads and parses a file.
 Result<Instructions> read_instructions(const std::string& path, const std::vector<std::string>& tasks);
 
 }  // namespace catena::app

@@ -13,7 +13,7 @@ LiveSession::~LiveSession() {
 Result<std::optional<SceneModel>> LiveSession::next_scene() {
   const std::vector<study::Trial>& trials = procedure_.trials();
   std::optional<std::size_t> ahead = procedure_.next_trial();
-  // behind the questions stands what was there last
+  // questions are shown over the last scene
   if (!ahead && !opened_trial_ && !trials.empty()) ahead = trials.size() - 1;
   if (!ahead || ahead == opened_trial_) return std::optional<SceneModel>();
   CATENA_TRY(SceneModel host, live_trial_.open(trials[*ahead], adjust_scene_));

@@ -16,7 +16,7 @@ namespace catena::app {
 
 namespace {
 
-/// The places in a trial's chain of what not every condition feels, the last first.
+/// Indices in the trial's chain of links that not all conditions share, in descending order.
 std::vector<std::size_t> own_links(const study::Study& study, const study::Trial& trial) {
   const auto task = static_cast<std::size_t>(trial.task);
   const auto& links = study.conditions[static_cast<std::size_t>(trial.condition)].chains[task].items;
@@ -31,7 +31,7 @@ std::vector<std::size_t> own_links(const study::Study& study, const study::Trial
   return own;
 }
 
-/// A line so short that it is a ball, in the middle of where the trial starts.
+/// Streamline so short that it appears as a ball, at the center of the trial's start.
 std::string start_ball(const study::Task& task, const study::Stimulus& stimulus) {
   constexpr double kShare = 0.35;
   const double radius = kShare * task.world_from_mm(task.start_radius_mm);
@@ -47,7 +47,7 @@ Result<SceneModel> LiveTrial::open(const study::Trial& trial, const std::functio
   CATENA_TRY(study::Stimulus stimulus, stimulus_maker_.generate(trial.task, trial.seed));
   CATENA_TRY(scene::Document document, scene::Document::create(study::make_trial_scene(study_, trial, stimulus), study_.path));
   CATENA_TRY(SceneModel host, SceneModel::open(std::move(document), adjust));
-  // one step of undo
+  // all edits in one undo step
   std::vector<scene::Document::Edit> before{{"/streamlines/-", start_ball(task, stimulus)}};
   for (const std::size_t i : own_links(study_, trial)) before.push_back({fmt::format("/chain/{}", i), std::nullopt});
   CATENA_CHECK(host.apply(before, "before the trial"));
@@ -80,7 +80,7 @@ Outcome LiveTrial::begin(SceneModel& scene, HapticSession& hand, const std::stri
 
 Result<LiveTrial::State> LiveTrial::update(const HapticSession& hand) {
   if (hand.recording().has_failed()) return Error{hand.recording().path() + ": the recording cannot be written any more", true};
-  // after a hole nothing counts
+  // a trial with dropped ticks is invalid
   if (tick_observer_.has_lost_ticks()) return State::tick_lost;
   while (const auto tick = tick_observer_.pop()) {
     if (tick->epoch != epoch_) continue;

@@ -1,12 +1,12 @@
-/// LiveTrial is one trial with a person's hand: its scene, what is felt before and while it runs, its recording, and its judge, who gets
-/// every tick of the servo however slow the pictures are.
-///   open()    the scene with a ball at its start, and without what one condition feels and another does not: before it begins nothing
-///             tells the condition
-///   begin()   every tick from here on is recorded, and then the condition's own links begin; the judge follows from the first tick that
-///             they run. His clock starts when the cursor leaves the start (engine/study/trial_scorer.h)
-///   follow()  takes what the servo has done since
-///   end()     the condition's own links end, and so does the recording
-/// Frame thread; the haptic thread never waits (tick_tap.h).
+/// LiveTrial runs one trial with a subject and a real device: its scene, the haptics before and during the trial, its recording, and its
+/// scorer, which gets every tick of the servo at any frame rate.
+///   open()    opens the scene with a ball at the start, and without the links that not all conditions share: before the trial begins,
+///             nothing reveals the condition
+///   begin()   starts the recording of every tick, then adds the condition's own links; the scorer starts with the first tick that runs
+///             them. The clock starts when the cursor leaves the start (engine/study/trial_scorer.h)
+///   update()  scores the ticks that the servo has run since the last call
+///   end()     removes the condition's own links and ends the recording
+/// Frame thread; the haptic thread never waits (tick_observer.h).
 #pragma once
 #include <functional>
 #include <optional>
@@ -22,30 +22,33 @@ namespace catena::app {
 
 class LiveTrial {
  public:
-  /// `study` outlives it.
+  /// `study` must outlive this object.
   explicit LiveTrial(const study::Study& study) : study_(study), stimulus_maker_(study) {}
 
-  /// The scene of a trial, read and not loaded yet. `adjust`: as SceneModel::open.
+  /// Opens the scene of a trial: parsed, data not loaded. `adjust`: as for SceneModel::open. Error: the stimulus or the scene is not valid.
   Result<SceneModel> open(const study::Trial& trial, const std::function<Outcome(scene::Scene&)>& adjust);
   const study::Trial& trial() const { return trial_; }
   const Vec3& start_position() const { return stimulus_.start; }
-  /// The cursor is where the trial begins.
+  /// Whether the cursor is inside the start ball of the trial.
   bool is_at_start(const Vec3& cursor) const;
 
-  /// `scene`: what open() gave, loaded, and in the hand. `recording`: where every tick goes.
+  /// Begins the trial. `scene`: the result of open(), loaded and used by `hand`; `recording`: path of the file for every tick.
   Outcome begin(SceneModel& scene, HapticSession& hand, const std::string& recording);
+  /// Whether begin() was called without end().
   bool is_running() const { return scorer_.has_value(); }
 
-  /// What became of it. An error: it cannot be recorded any more.
+  /// State of the trial.
   enum class State : std::uint8_t {
     running,
-    return_to_start,  ///< it was left before the first tick: the cursor has to come back to the start
-    ended,            ///< end() says how
+    return_to_start,  ///< The cursor left the start before the first tick; it has to return
+    ended,            ///< The trial has ended; end() returns the result
     device_lost,
-    tick_lost  ///< the program stood still for so long that ticks were lost
+    /// The program stalled for so long that ticks were dropped
+    tick_lost
   };
+  /// Scores the ticks since the last call. Error (system failure): the recording cannot be written.
   Result<State> update(const HapticSession& hand);
-  /// What was measured, if it has ended.
+  /// Ends the trial and returns what was measured; meaningful only for State::ended.
   Result<study::TrialResult> end(SceneModel& scene, HapticSession& hand);
 
  private:
@@ -55,7 +58,7 @@ class LiveTrial {
   study::Stimulus stimulus_;
   TickObserver tick_observer_;
   std::optional<study::TrialScorer> scorer_;
-  std::uint64_t epoch_ = 0;  ///< of the trial's program
+  std::uint64_t epoch_ = 0;  ///< Epoch of the trial's program
 };
 
 }  // namespace catena::app

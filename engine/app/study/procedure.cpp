@@ -164,7 +164,7 @@ void Procedure::edit_answer(const KeyPress& stroke) {
       answer_ = Answer{question().name, typed_answer_};
       return advance();
     case KeyPress::Kind::space:
-      return;  // comes as a character, too
+      return;  // also arrives as a character
   }
 }
 

@@ -1,4 +1,4 @@
-/// The parts of `catena study`: each adds its subcommand to `study` and, when the user chose it, sets `chosen`.
+/// The subcommands of `catena study`: each function adds one to `study` and sets `chosen` if the user selected it.
 #pragma once
 #include "engine/app/cli/command.h"
 

@@ -43,7 +43,7 @@ Outcome SubjectFolder::find_finished_trials() {
     if (!same) return Error{fmt::format("{}:{}: this is not trial {} of the subject's session", path, i + 2, i)};
   }
   finished_trials_ = rows.size();
-  // what was being recorded when a session was cut off
+  // remove the incomplete recording of an interrupted session
   if (finished_trials_ < trials_.size()) remove_stale_temporaries(study::recording_file(folder_.path(), trials_[finished_trials_]));
   return Done{};
 }

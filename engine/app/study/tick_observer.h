@@ -1,6 +1,6 @@
-/// TickObserver hands every tick of a running servo to the frame side, where a trial is judged, and on to the recording. The haptic thread
-/// copies a few words into a ring and returns; it never waits, and what the ring has no room for is counted, so that a trial with a hole is
-/// known.
+/// TickObserver copies every tick of a running servo to the frame thread, where a trial is scored, and forwards it to the recording. The
+/// haptic thread copies a few words into a ring buffer and never waits. A tick that does not fit into the buffer sets a flag, so that a
+/// trial with dropped ticks is detected.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -11,30 +11,31 @@
 
 namespace catena::app {
 
-/// What a judge sees of a tick. World units, newtons.
+/// The part of a tick that a trial scorer needs. World units, newtons.
 struct ObservedTick {
-  std::uint64_t epoch = 0;  ///< of the program that ran
+  std::uint64_t epoch = 0;  ///< Epoch of the program that ran
   double t_s = 0;
-  Vec3 probe{0.0};  ///< the device's place: the drawn cursor
+  Vec3 probe{0.0};  ///< Position of the device: the rendered cursor
   Vec3 force_n{0.0};
-  bool is_valid = true;  ///< the device was there, and the watchdog has not stopped it
+  bool is_valid = true;  ///< The device was connected, and the watchdog had not stopped it
 };
 
+/// One haptic thread writes, one frame thread reads.
 class TickObserver final : public haptics::TickSink {
  public:
-  /// Room for a minute at 1 kHz: the frame may stand still for so long.
+  /// `ticks`: capacity. The default is a minute at 1 kHz: the frame thread may stall for that long.
   explicit TickObserver(std::size_t ticks = 60'000);
 
-  // frame side
-  /// Before a servo takes it up, or after it has let go of it: nothing is left of before. `next`: gets every tick too (the recording), or
-  /// null.
+  // Frame thread.
+  /// Clears the buffer. Call it before a servo uses this sink, or after the servo has released it. `next`: also receives every tick (the
+  /// recording), or null.
   void begin(haptics::TickSink* next);
-  /// The next tick, in order; nothing where there is none yet.
+  /// Returns the next tick, in order; empty if there is none yet.
   std::optional<ObservedTick> pop();
-  /// A tick did not fit.
+  /// Whether a tick was dropped because the buffer was full.
   bool has_lost_ticks() const { return has_lost_ticks_.load(std::memory_order_acquire); }
 
-  // haptic thread
+  // Haptic thread.
   void begin(const haptics::ChainState& state) noexcept override;
   void put(const haptics::ProbeSample& input, const HapticState& output) noexcept override;
 

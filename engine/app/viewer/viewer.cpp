@@ -22,7 +22,7 @@ Result<SceneModel> read_scene(const ViewOptions& options) {
   return SceneModel::open(std::move(document), options.apply_overrides);
 }
 
-/// The next best thing to a window: what --screenshot asks for, drawn as `catena render` does. Exit code 0.
+/// Fallback without a window: draws what --screenshot requests in the way of `catena render`. Exit code 0.
 Failure draw_without_window(const ViewOptions& options, SceneModel& host, HapticSession& hand, TrackedHead* head, const std::string& why) {
   const bool picture_only = options.ui_screenshot.empty() && options.servo_stats.empty() && options.frame_stats.empty() &&
                             options.haptic_options.recording_path.empty();
@@ -58,14 +58,14 @@ std::optional<Failure> plan_hand(LiveTuning& live, SceneModel& scene, const Hapt
   return std::nullopt;
 }
 
-/// What is wrong with the scene, the device or the shaders is said before any window opens.
+/// Opens the viewer; errors in the scene, the device or the shaders are reported before any window opens.
 std::optional<Failure> show(const ViewOptions& options) {
   auto scene = read_scene(options);
   if (!scene) return to_failure(scene.error());
   std::optional<InterruptHandler> interrupt;
   HapticSession hand(options.haptic_options);
   if (auto opened = hand.open_device(scene->scene()); !opened) return to_failure(opened.error());
-  // before anything is felt
+  // before the haptic program is built
   ViewOptions planned = options;
   if (auto failure = plan_hand(planned.tuning, *scene, hand)) return failure;
   std::optional<ShaderReload> reload;

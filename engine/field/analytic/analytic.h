@@ -1,7 +1,7 @@
-/// Fields by formula, with exact gradients: the closed forms that every algorithm is tested against, and demo data.
-/// Names: circle saddle node rankine lamb-oseen hill abc helix uniform vortices (vectors);
-///        sphere plane torus constant linear gaussian marschner-lobb tanh (scalars);
-///        left-ventricle with the parts density, transmural (scalars) and fibre (vector, a line field).
+/// Fields given by a formula, with exact gradients: closed forms against which every algorithm is tested, and demonstration data.
+/// Vector fields: circle saddle node rankine lamb-oseen hill abc helix uniform vortices.
+/// Scalar fields: sphere plane torus constant linear gaussian marschner-lobb tanh.
+/// left-ventricle has the parts density, transmural (scalar fields) and fibre (vector field, a line field).
 #pragma once
 #include <array>
 #include <limits>
@@ -16,56 +16,58 @@
 
 namespace catena::field {
 
-/// What a formula may be told. World units.
+/// Parameters of a formula. World units.
 struct AnalyticParameters {
-  double scale = 1;               ///< multiplies values
-  Vec3 direction{1.0, 0.0, 0.0};  ///< `uniform`
+  double scale = 1;               ///< factor applied to the values
+  Vec3 direction{1.0, 0.0, 0.0};  ///< `uniform`: the vector
   std::string part;               ///< `left-ventricle`: density (default), transmural or fibre
-  Vec3 center{0.0};               ///< world place of the formula's origin; its box goes with it
-  int seed = 1;                   ///< `vortices`
+  Vec3 center{0.0};               ///< world position of the formula's origin; its box moves with it
+  int seed = 1;                   ///< `vortices`: seed of the random numbers
   int dimensions = 3;             ///< `vortices`: 2 or 3
   bool operator==(const AnalyticParameters&) const = default;
 };
 
-/// All names, in the order of the list above. Any thread.
+/// Returns all names, in the order of the list above. Any thread.
 std::vector<std::string_view> analytic_names();
-/// Whether make_analytic() knows the name.
+/// Returns true when make_analytic() accepts the name.
 bool is_analytic(std::string_view name);
-/// The grids that `generate` writes for this name: the name itself, or the parts.
+/// Returns the names of the grids that `generate` writes for a formula: the name itself, or its parts.
 std::vector<std::string_view> analytic_parts(std::string_view name);
-/// The formula as a field: sampled exactly, any thread. An error for an unknown name, or a parameter that makes no sense for it.
+/// Makes a field that evaluates the formula exactly; it may be sampled from any thread. Error: an unknown name, or an invalid parameter for
+/// this formula.
 Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters = {});
 
-/// Private to this room: the closed forms as plain functions. The scale is applied by the field around them.
+/// Scalar formula as a plain function, without the scale, which the field applies. This and all below is private to this module.
 struct ScalarFormula {
-  std::string_view name;  ///< as in analytic_names()
-  /// The value at p, and its gradient by p.
+  std::string_view name;  ///< name as in analytic_names()
+  /// Returns the value at p and sets its gradient.
   double (*value)(const Vec3& p, Vec3& gradient);
-  double min, max;  ///< over all space
+  double min, max;  ///< range of the values over all space
 };
 
-/// A vector formula as a plain function.
+/// Vector formula as a plain function, without the scale.
 struct VectorFormula {
-  std::string_view name;  ///< as in analytic_names()
-  /// The vector at p, world axes.
+  std::string_view name;  ///< name as in analytic_names()
+  /// Returns the vector at p, world axes.
   Vec3 (*value)(const Vec3& p);
 };
 
-/// The scalar formulas.
+/// Returns the scalar formulas.
 std::span<const ScalarFormula> scalar_formulas();
-/// The vector formulas that need no parameter.
+/// Returns the vector formulas without parameters.
 std::span<const VectorFormula> vector_formulas();
 
-/// Rotations drawn by a seed, in a uniform stream (analytic_vortices.cpp).
+/// Sum of random vortices in a uniform flow; free of divergence (analytic_vortices.cpp).
 class Vortices {
  public:
-  /// Draws the rotations: the same seed gives the same ones. `dimensions` 2 or 3.
+  /// Draws the vortices from the seed: the same seed gives the same ones. `dimensions`: 2 or 3.
   Vortices(int seed, int dimensions);
-  /// The flow at p, world axes; p in world units.
+  /// Returns the flow at p (world units), world axes. Any thread.
   Vec3 value(const Vec3& p) const noexcept;
 
  private:
   static constexpr int kCount = 14;
+  /// One vortex: center, angular velocity, and 1 / radius^2.
   struct Vortex {
     Vec3 center{0.0}, rate{0.0};
     double inverse_radius2 = 1;
@@ -75,11 +77,13 @@ class Vortices {
   bool is_2d_;
 };
 
-/// The left ventricle: see analytic_formulas.cpp.
+/// Density of the left ventricle: 1 in the wall, falling to 0 around it. Formulas: analytic_formulas.cpp.
 double ventricle_density(const Vec3& p, Vec3& gradient);
-/// 0 at the wall's inner surface, 1 at its outer one, and on beyond; `gradient` by world units.
+/// Transmural depth in the left ventricle: 0 at the inner surface of the wall, 1 at the outer one, linear beyond them. `gradient` is per
+/// world unit.
 double ventricle_transmural(const Vec3& p, Vec3& gradient);
-/// False (and zero) away from the wall.
+/// Direction of the muscle fiber in the wall of the left ventricle, unit length. Returns false and sets zero outside of the support of the
+/// density and on the long axis.
 bool ventricle_fiber(const Vec3& p, Vec3& fibre);
 
 }  // namespace catena::field

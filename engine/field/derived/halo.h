@@ -1,28 +1,32 @@
-/// Halo: values in place of the samples that a cubic cell needs and the data does not have. Missing is what lies beyond the box of
-/// voxels, what a mask of voxels takes away, and what is not finite (a mask of cells takes away none: samples beyond such a hole count);
-/// along an axis of one layer nothing is. Each missing sample beside a present one (26 neighbours) has one ghost, made once, so that every
-/// cell that needs it reads the same value:
-///   g = 3 s1 - 3 s2 + s3,  2 s1 - s2,  or  s1      by the present samples s1, s2, s3 that follow it in a row (Keys, 1981)
-/// the mean over the rows along the axes that have most of them; where no neighbour along an axis is present, over the diagonals of
-/// two axes, then of three. Held within one range of the data beyond its own. Polynomials of second degree are continued exactly.
-/// Made off the tick, on all cores, the same for any number of threads.
+/// Halo samples: extrapolated values for samples that a cubic cell needs and the data do not have. Missing are samples outside of the box
+/// of voxels, samples excluded by a mask of voxels, and values that are not finite. A mask of cells makes no sample missing, and neither
+/// does an axis with a single slice. Each missing sample that has a present one among its 26 neighbors gets one halo sample, computed once,
+/// so every cell that needs it reads the same value:
+///   g = 3 s1 - 3 s2 + s3,  2 s1 - s2,  or  s1      from the present samples s1, s2, s3 that follow it in a row (Keys, 1981)
+/// It is the mean over the rows with the most samples along the axes; when no neighbor along an axis is present, over the diagonals in two
+/// axes, then in three. Values are clamped to the range of the data extended by its length at both ends. Polynomials of second degree are
+/// continued exactly. Not for the haptic tick; runs on all cores, with a result independent of the number of threads.
 #pragma once
 #include "engine/base/result.h"
 #include "engine/field/grid/grid_storage.h"
 
 namespace catena::field {
 
+/// Halo samples of a grid, as a NanoVDB grid in its own memory.
 template <class T>
 struct HaloGrid {
   NanoMemory memory;
-  const nanovdb::NanoGrid<T>* grid = nullptr;  ///< active where a ghost is
+  const nanovdb::NanoGrid<T>* grid = nullptr;  ///< active where there is a halo sample
 };
 
+/// Halo samples of a cubic scalar grid and of a cubic vector grid.
 struct ScalarGrid::Halo : HaloGrid<float> {};
 struct VectorGrid::Halo : HaloGrid<nanovdb::Vec3f> {};
 
-/// An error (one phrase) where there is no memory for them, or the box has more than kMaxHaloBlocks blocks of 8^3 voxels.
+/// Maximum number of blocks of 8^3 voxels in the box of a grid with a halo.
 inline constexpr double kMaxHaloBlocks = 1 << 24;
+/// Makes the halo samples of a grid; `stats` are those of its values. Error (a message fragment without the grid's name): the memory budget
+/// is exceeded, or the box has more than kMaxHaloBlocks blocks.
 template <class T>
 Result<HaloGrid<T>> make_halo(const GridStorage<T>& storage, const GridStats& stats);
 

@@ -1,8 +1,8 @@
-/// The largest magnitude X of a field: what safe normalisation divides by. Off the tick: it reads the whole field.
-///   vector grids: max |v| over the active voxels; scalar grids: max |grad s| over the cells' centres
-///   formulas: over 33^3 places of the box -2..2, finite ones only
-/// Outliers and fill values (display_range.h) do not count, nor do cells with one.
-/// And the magnitudes themselves as a grid.
+/// Largest magnitude X of a field, by which safe normalization divides, and the magnitudes as a grid. Reads the whole field, so not for the
+/// haptic tick.
+///   vector grids: max |v| over the active voxels; scalar grids: max |grad s| over the centers of the cells
+///   formulas: over 33^3 positions in the domain box, finite values only
+/// Outliers and fill values (display_range.h), and cells that have one, do not count.
 #pragma once
 #include <memory>
 #include <string>
@@ -12,11 +12,13 @@
 
 namespace catena::field {
 
+/// Returns the largest magnitude of a vector field, in its own unit.
 double compute_max_magnitude(const VectorField& field);
+/// Returns the largest gradient magnitude of a scalar field, its unit per world unit.
 double compute_max_gradient(const ScalarField& field);
 
-/// |v| at the voxels as 32-bit floats, NaN where v is; cells that the vector grid excludes are excluded. `what` begins the errors: the
-/// grid would take more memory than is allowed, or no magnitude is a finite float.
+/// Makes a grid of |v| at the voxels as 32-bit floats, NaN where v is not finite; cells that the vector grid excludes stay excluded. `what`
+/// starts the error messages. Error: the memory budget is exceeded, or no magnitude is a finite float.
 Result<std::shared_ptr<const ScalarGrid>> make_magnitude_grid(const VectorGrid& grid, const std::string& what);
 
 }  // namespace catena::field

@@ -1,5 +1,5 @@
-/// Sampled fields: a NanoVDB buffer on the CPU is the truth; the GPU mirror is made from it and can always be thrown away.
-/// NanoVDB and OpenVDB stay inside this room's .cpp files.
+/// Fields sampled on a grid. The NanoVDB buffer on the CPU is the authoritative copy; a GPU-resident copy is made from it and can be
+/// discarded at any time. NanoVDB and OpenVDB are used in the private headers and .cpp files of this module only.
 #pragma once
 #include <functional>
 #include <optional>
@@ -12,141 +12,150 @@
 
 namespace catena::field {
 
-/// Counts and ranges over a grid's active voxels.
+/// Counts and ranges over the active voxels of a grid.
 struct GridStats {
-  std::uint64_t active_voxels = 0;              ///< active (and valid) voxels
-  std::uint64_t nan_count = 0;                  ///< active voxels with a NaN or an infinity
-  double min = 0, max = 0;                      ///< scalars: values; vectors: magnitudes (finite ones only)
-  Vec3 component_min{0.0}, component_max{0.0};  ///< vectors: by component, finite ones only
+  std::uint64_t active_voxels = 0;              ///< number of active (and valid) voxels
+  std::uint64_t nan_count = 0;                  ///< number of active voxels with a NaN or an infinity
+  double min = 0, max = 0;                      ///< scalar grids: values; vector grids: magnitudes (finite ones only)
+  Vec3 component_min{0.0}, component_max{0.0};  ///< vector grids: range of each component, finite values only
 };
 
-/// A scalar grid: immutable, shared; every const function is for any thread.
+/// Scalar grid: immutable and shared; every const function may be called from any thread.
 class ScalarGrid final : public ScalarField {
  public:
-  struct Storage;  ///< the NanoVDB buffers
-  struct Halo;     ///< what cubic cells need beside them
+  struct Storage;  ///< NanoVDB buffers
+  struct Halo;     ///< halo samples of a cubic grid
   ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage, const GridStats& stats,
              Interpolation interpolation = Interpolation::linear, std::shared_ptr<const Halo> ghosts = {});
   ~ScalarGrid() override;
 
-  /// As ScalarField says, by the grid's interpolation.
+  /// Samples with the interpolation of the grid.
   ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
   SampleStatus status_outside(const Vec3& world, Cursor& cursor) const noexcept override;
+  /// Minimum as in ScalarField; for resampled data see max_value().
   double min_value() const noexcept override;
-  /// As ScalarField says. Of data that were resampled (engine/io/vtk/resample.h) both are the range of the file's own values, which
-  /// stats(), of the voxels, may leave.
+  /// Maximum as in ScalarField. For data that were resampled (engine/io/vtk/resample.h) min_value() and max_value() are the range of the
+  /// file's own values, which the voxels, and stats(), may exceed.
   double max_value() const noexcept override;
-  /// Itself.
+  /// Returns this grid.
   const ScalarGrid* grid() const noexcept override { return this; }
-  /// True.
+  /// Returns true.
   bool is_grid() const noexcept override { return true; }
-  /// How it is read between its voxel centres. It never changes: cubic(), linear() and interpolated() give another grid.
+  /// Returns the interpolation between voxel centers. It is fixed; as_cubic(), as_linear() and with_interpolation() return another grid.
   Interpolation interpolation() const noexcept override { return interpolation_; }
-  /// Of voxels, mask and ghosts.
+  /// Returns the memory of voxels, mask and halo samples in bytes.
   std::size_t bytes() const noexcept override;
-  /// A grid that shares the voxels, is read by cubic cells and has a version of its own. An error (one phrase) where there is no memory for
-  /// its ghosts.
+  /// Returns a grid that shares the voxels, has cubic interpolation and its own version. Error (a message fragment): there is no memory for
+  /// its halo samples, or the grid is too large for them.
   Result<std::shared_ptr<const ScalarGrid>> as_cubic() const;
-  /// Reads trilinearly.
+  /// Returns a grid that shares the voxels and has trilinear interpolation.
   std::shared_ptr<const ScalarGrid> as_linear() const { return with_interpolation(Interpolation::linear); }
-  /// The same voxels, read trilinearly or by the nearest one; Interpolation::cubic is a bug here.
+  /// Returns a grid that shares the voxels, with linear or nearest interpolation; Interpolation::cubic is a bug here.
   std::shared_ptr<const ScalarGrid> with_interpolation(Interpolation linear_or_nearest) const;
-  /// Of a cubic grid, the samples of a legal cell that is valid; null elsewhere. Good until the cursor's next use.
+  /// Returns the samples of a valid cell of a cubic grid; null for an invalid cell or base, or another interpolation. Valid until the
+  /// cursor's next use.
   const CubicSamples<1>* cubic_samples(const Index3& base, Cursor& cursor) const noexcept;
 
-  /// The cell whose base is the nearest legal one to `base` (clamped so that base and base + 1 lie in the index box).
+  /// Returns the cell at `base`, clamped such that base and base + 1 are in the index box.
   ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept;
-  Index3 cell_base(const Vec3& index) const noexcept;  ///< floor, clamped to legal bases
-  /// Of all its voxels, taken when it was made.
+  /// Returns the base voxel of the cell that contains an index position: its floor, clamped to valid bases.
+  Index3 cell_base(const Vec3& index) const noexcept;
+  /// Returns the statistics of all voxels, computed when the grid was made.
   const GridStats& stats() const { return stats_; }
-  /// The value of voxels that the tree does not hold.
+  /// Returns the value of voxels that the tree does not contain.
   float background() const;
-  bool has_mask() const;  ///< some cells may be invalid: a `valid` mask, or values that are not finite
-  /// CellCache may be invalid though all their corners are valid: the mask was given by cells, and voxels alone do not say it.
+  /// Returns true when cells may be invalid: the grid has a mask, or values that are not finite.
+  bool has_mask() const;
+  /// Returns true when cells may be invalid although all their corners are valid: the mask was given by cells and cannot be expressed by
+  /// voxels.
   bool has_cell_mask() const;
-  /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background. Of a cubic grid
-  /// missing samples are given as their ghosts (ghosts.h).
+  /// Copies `size` voxels starting at `origin` to `out` (x fastest); voxels outside of the tree give the background. A cubic grid gives its
+  /// halo samples in place of missing samples.
   void read_block(const Index3& origin, const Index3& size, std::span<float> out) const;
-  /// 1 where the *cell* based at the voxel is valid (always 1 inside the box without a mask), 0 elsewhere.
+  /// Writes 1 where the cell based at a voxel is valid (always inside of the box of a grid without a mask), else 0.
   void read_cell_validity(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const;
-  /// True where the 8^3 block at `origin` (a multiple of 8) holds only one value and no tree leaf; `value` is it.
+  /// Returns true when the 8^3 block at `origin` (a multiple of 8) has a single value and no leaf in the tree; sets `value`.
   bool is_constant_block(const Index3& origin, float& value) const;
-  const Storage& storage() const { return *storage_; }  ///< opaque outside this room
+  /// Returns the buffers; opaque outside of this module.
+  const Storage& storage() const { return *storage_; }
 
  private:
   std::shared_ptr<const Storage> storage_;
   GridStats stats_;
   Interpolation interpolation_;
-  std::shared_ptr<const Halo> halo_;  ///< of a cubic grid
+  std::shared_ptr<const Halo> halo_;  ///< set for a cubic grid
 };
 
-/// A vector grid: immutable, shared; every const function is for any thread.
+/// Vector grid: immutable and shared; every const function may be called from any thread.
 class VectorGrid final : public VectorField {
  public:
   struct Storage;
   struct Halo;
-  /// From NanoVDB's buffers; programs use make_vector_grid() or load().
+  /// Makes a grid from NanoVDB buffers. Applications use make_vector_grid() or the loaders instead.
   VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage, const GridStats& stats,
              std::shared_ptr<const Halo> ghosts = {});
   ~VectorGrid() override;
 
-  /// As VectorField says.
+  /// Samples with the interpolation of the grid.
   VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
   LineSample sample_line(const Vec3& world, Cursor& cursor) const noexcept override;
   SampleStatus status_outside(const Vec3& world, Cursor& cursor) const noexcept override;
-  /// Itself.
+  /// Returns this grid.
   const VectorGrid* grid() const noexcept override { return this; }
-  /// True.
+  /// Returns true.
   bool is_grid() const noexcept override { return true; }
-  /// Linear, or cubic where it was made so.
+  /// Returns linear or cubic.
   Interpolation interpolation() const noexcept { return halo_ ? Interpolation::cubic : Interpolation::linear; }
-  /// As in ScalarGrid. A line field's axes are mixed linearly either way (line_axis.h).
+  /// Returns a grid that shares the voxels and has cubic interpolation; errors as for ScalarGrid::as_cubic(). The axes of a line field are
+  /// interpolated linearly in either case (line_field.h).
   Result<std::shared_ptr<const VectorGrid>> as_cubic() const;
-  /// Reads trilinearly.
+  /// Returns a grid that shares the voxels and has trilinear interpolation.
   std::shared_ptr<const VectorGrid> as_linear() const;
-  /// As in ScalarGrid.
+  /// Returns the samples of a valid cell of a cubic grid; null as for ScalarGrid::cubic_samples().
   const CubicSamples<3>* cubic_samples(const Index3& base, Cursor& cursor) const noexcept;
-  /// Of voxels, mask and ghosts.
+  /// Returns the memory of voxels, mask and halo samples in bytes.
   std::size_t bytes() const noexcept override;
 
-  /// As in ScalarGrid.
+  /// Returns the cell at `base`, clamped such that base and base + 1 are in the index box.
   VectorCell cell(const Index3& base, Cursor& cursor) const noexcept;
-  /// As in ScalarGrid.
+  /// Returns the base voxel of the cell that contains an index position, clamped to valid bases.
   Index3 cell_base(const Vec3& index) const noexcept;
-  /// Of all its voxels, taken when it was made.
+  /// Returns the statistics of all voxels, computed when the grid was made.
   const GridStats& stats() const { return stats_; }
-  /// As in ScalarGrid.
+  /// Returns true when cells may be invalid: the grid has a mask, or values that are not finite.
   bool has_mask() const;
-  /// The least and the greatest length, as ScalarGrid's min_value() and max_value().
+  /// Returns the smallest magnitude, by the rules of ScalarGrid::min_value() and max_value().
   double min_magnitude() const noexcept;
-  /// As min_magnitude() the least.
+  /// Returns the largest magnitude.
   double max_magnitude() const noexcept;
-  /// As in ScalarGrid, three floats a voxel.
+  /// Copies voxels as ScalarGrid::read_block() does, with three floats per voxel.
   void read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const;
-  const Storage& storage() const { return *storage_; }  ///< opaque outside this room
+  /// Returns the buffers; opaque outside of this module.
+  const Storage& storage() const { return *storage_; }
 
  private:
   std::shared_ptr<const Storage> storage_;
   GridStats stats_;
-  std::shared_ptr<const Halo> halo_;  ///< of a cubic grid
+  std::shared_ptr<const Halo> halo_;  ///< set for a cubic grid
 };
 
-/// Grids made in memory: values by voxel, x fastest, over `size` voxels from index (0, 0, 0). `valid` (optional) by voxel.
-/// `cells` (optional, beside `valid`) by cell, at the number of the voxel at its base: 0 makes a cell with valid corners invalid.
-/// Voxels whose value is not finite are kept and counted.
+/// Makes a grid from values in memory, by voxel, x fastest, for `size` voxels from index (0, 0, 0). `valid` (optional): 0 marks an invalid
+/// voxel. `cells` (optional, only with `valid`): one entry per cell, at the index of its base voxel; 0 makes a cell with valid corners
+/// invalid. Values that are not finite are stored and counted. A grid without a usable value is a bug and aborts.
 std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                    std::span<const float> values, std::span<const std::uint8_t> valid = {},
                                                    std::span<const std::uint8_t> cells = {});
-/// The same of vectors, three floats a voxel in world axes.
+/// The same for vectors, three floats per voxel in world axes.
 std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
                                                    std::span<const std::uint8_t> valid = {}, std::span<const std::uint8_t> cells = {});
 
-/// Samples any field at `resolution` nodes an axis, both ends included, over the cube lo..hi (the grid `generate` writes).
+/// Samples a field at `resolution` nodes along each axis, both ends included, over the cube lo..hi (the grid that `generate` writes). Nodes
+/// where the field is not inside are invalid.
 std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
-/// The same of vectors.
+/// The same for vectors.
 std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
-/// The same for what a user asks for: an error where the samples hold nothing (too coarse for the field's domain) or do not
-/// fit into 32-bit floats.
+/// The same for a request of the user. Error: no node is inside (the sampling is too coarse for the field's domain), a sample does not fit
+/// into a 32-bit float, the box is not usable, or the memory budget is exceeded.
 Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi);
 
 }  // namespace catena::field

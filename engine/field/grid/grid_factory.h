@@ -1,4 +1,4 @@
-/// Private to this room: a grid from its buffers, checked for what a field must hold.
+/// Makes a grid from NanoVDB buffers and checks what a field requires. Private to this module.
 #pragma once
 #include <array>
 #include <optional>
@@ -10,6 +10,7 @@
 
 namespace catena::field {
 
+/// Value type that a grid stores.
 template <class Grid>
 struct GridValue;
 template <>
@@ -21,25 +22,25 @@ struct GridValue<VectorGrid> {
   using Type = nanovdb::Vec3f;
 };
 
-/// Values; the valid voxels and the valid cells, both empty where there is no mask. CellCache that are missing are made, of the voxels and
-/// of `input_cell_mask`, a mask of cells beside that of voxels (empty: there is none).
+/// Buffers of a grid: values; valid voxels and valid cells, both empty when there is no mask. Valid cells that are missing are computed
+/// from the valid voxels and `input_cell_mask`, an additional mask of cells (empty: there is none).
 struct NanoBuffers {
   NanoMemory values, valid_voxels, valid_cells, input_cell_mask;
-  bool has_cell_mask = false;           ///< where `cells` are there: a mask of cells is in them
-  std::optional<DisplayRange> range{};  ///< of the data that were resampled
+  bool has_cell_mask = false;           ///< `valid_cells` is given and includes a mask of cells
+  std::optional<DisplayRange> range{};  ///< display range of the original data, when the values were resampled
 };
 
-/// An error (one phrase: "has no active voxels, ...") where no voxel is active, valid or finite, or where indices are too large.
+/// Makes a grid. Error (a message fragment: "has no active voxels, ..."): no voxel is active, valid or finite, or indices are too large.
 template <class Grid>
 Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Mapping& mapping, NanoBuffers buffers);
 
-/// The grid in a buffer.
+/// Returns the grid in a buffer.
 template <class T>
 const nanovdb::NanoGrid<T>& as_nano_grid(const NanoMemory& memory) {
   return *reinterpret_cast<const nanovdb::NanoGrid<T>*>(memory.data());
 }
 
-/// One phrase on indices that are too large.
+/// Returns an Error (a message fragment) for indices that are too large.
 Error index_range_error(const ActiveBox& box);
 
 }  // namespace catena::field

@@ -1,5 +1,5 @@
-/// A grid of numbers that a program has in memory, in whatever form: it is asked for them layer by layer, so that beside the program's own
-/// numbers stands only the grid that is made of them.
+/// Grid from numbers that the application has in memory, in any form. The application is called for them slice by slice, so only the grid
+/// itself is allocated in addition.
 #pragma once
 #include <functional>
 #include <span>
@@ -10,17 +10,18 @@
 
 namespace catena::field {
 
-/// How a program hands its numbers over.
+/// Source of the values of a grid.
 struct SliceSource {
-  Index3 size{0, 0, 0};    ///< voxels along x, y, z; at least 2 each
-  bool is_vector = false;  ///< three numbers a voxel
-  /// Writes the layers z, z + 1, ... that fill `out`: x fastest, then y, then z; vectors as three numbers a voxel. Called with z rising.
+  Index3 size{0, 0, 0};    ///< number of voxels along x, y, z; at least 2 each
+  bool is_vector = false;  ///< three numbers per voxel
+  /// Writes the slices z, z + 1, ... that fill `out`: x fastest, then y, then z; vectors as three numbers per voxel. Called with ascending
+  /// z.
   std::function<void(int z, std::span<float> out)> read;
 };
 
-/// Voxel (i, j, k) lies at mapping.world_from_index of it. Values that are not finite are kept: cells that touch them are not inside. An
-/// error (one phrase) where an axis has fewer than two voxels, no value is finite, or the grid does not fit into the memory that is
-/// allowed.
+/// Makes a grid; voxel (i, j, k) is at mapping.world_from_index of its index. Values that are not finite are stored; the cells that touch
+/// them are invalid. Error: an axis has fewer than two voxels or too many, the mapping cannot be inverted, no value is finite, or the
+/// memory budget is exceeded.
 Result<AnyField> make_grid_from_slices(std::string name, const Mapping& mapping, const SliceSource& layers);
 
 }  // namespace catena::field

@@ -1,6 +1,6 @@
-/// Private to this room: the NanoVDB buffers behind a grid, and the walk's memory.
-/// Where there is a mask, `valid_cells` has one bit a cell: set when all eight corners of the cell with that base are valid and a mask of
-/// cells, where there is one, does not exclude it.
+/// NanoVDB buffers of a grid, and the cell cache in a Cursor. Private to this module.
+/// When there is a mask, `valid_cells` has one bit per cell, at its base voxel: set when all eight corners of the cell are valid and the
+/// mask of cells, where there is one, does not exclude it.
 #pragma once
 #include <nanovdb/NanoVDB.h>
 
@@ -19,6 +19,7 @@ namespace catena::field {
 
 inline nanovdb::Coord to_nano_coord(const Index3& i) { return {i.x, i.y, i.z}; }
 
+/// Buffers of a grid with values of type T. Read-only after construction, except for the cached display range, which range_mutex protects.
 template <class T>
 struct GridStorage {
   using Value = T;
@@ -26,35 +27,41 @@ struct GridStorage {
   const nanovdb::NanoGrid<T>* values = nullptr;
   const NanoMask* valid_voxels = nullptr;  ///< null: no mask
   const NanoMask* valid_cells = nullptr;
-  Index3 first_base, last_base;  ///< legal bases: lo..last
-  Index3 step;                   ///< 1, or 0 along an axis of one layer
+  Index3 first_base, last_base;  ///< valid base indices: first_base..last_base
+  Index3 step;                   ///< offset to the next corner: 1, or 0 along an axis with a single slice
   bool has_invalid_cells = false;
-  bool has_cell_mask = false;                ///< `valid_cells` is less than what `valid_voxels` says
-  std::optional<DisplayRange> data_range{};  ///< of the data that were resampled: scalars, lengths of vectors
+  /// `valid_cells` excludes cells that `valid_voxels` alone would not.
+  bool has_cell_mask = false;
+  /// Display range of the original data when the values were resampled; of magnitudes for vectors.
+  std::optional<DisplayRange> data_range{};
   mutable std::mutex range_mutex;
-  mutable std::optional<DisplayRange> cached_range;  ///< once somebody has asked (display_range.h)
+  /// Set on first use (field_display_range.h).
+  mutable std::optional<DisplayRange> cached_range;
 
   std::size_t bytes() const { return values_memory.size() + voxels_memory.size() + cells_memory.size(); }
+  /// Sets the range of base indices from the first and the last voxel.
   void set_box(const Index3& first, const Index3& final_voxel) {
     first_base = first;
     step = {first.x < final_voxel.x, first.y < final_voxel.y, first.z < final_voxel.z};
     last_base = {final_voxel.x - step.x, final_voxel.y - step.y, final_voxel.z - step.z};
   }
-  /// Whether the cell at a base is valid as far as the masks say.
+  /// Returns true when `base` is a valid base index and the mask of valid cells contains it.
   template <class Accessor>
   bool is_cell_valid(const Accessor& cells, const Index3& base) const {
     return is_legal_base(base) && cells.getValue(nanovdb::Coord(base.x, base.y, base.z));
   }
-  Index3 last_voxel() const { return {last_base.x + step.x, last_base.y + step.y, last_base.z + step.z}; }  ///< the last voxel
+  Index3 last_voxel() const { return {last_base.x + step.x, last_base.y + step.y, last_base.z + step.z}; }  ///< last voxel of the index box
+  /// Returns true when base and base + step are in the index box.
   bool is_legal_base(const Index3& b) const {
     return b.x >= first_base.x && b.y >= first_base.y && b.z >= first_base.z && b.x <= last_base.x && b.y <= last_base.y &&
            b.z <= last_base.z;
   }
+  /// Returns the nearest valid base index.
   Index3 clamp_base(const Index3& b) const {
     return {std::min(std::max(b.x, first_base.x), last_base.x), std::min(std::max(b.y, first_base.y), last_base.y),
             std::min(std::max(b.z, first_base.z), last_base.z)};
   }
-  /// floor, clamped before it is made an integer: any input is safe.
+  /// Returns the floor of an index position, clamped before the conversion to integers: safe for any input.
   Index3 cell_base(const Vec3& index) const {
     const auto axis = [](double x, std::int32_t first, std::int32_t final_base) {
       if (!(x >= first)) return first;
@@ -66,14 +73,15 @@ struct GridStorage {
   }
 };
 
-/// A stored value as cells have it.
+/// Converts a stored value to a cell corner.
 inline double corner_value(float v) { return v; }
 inline Vec3 corner_value(const nanovdb::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
+/// Buffers of a scalar grid and of a vector grid.
 struct ScalarGrid::Storage : GridStorage<float> {};
 struct VectorGrid::Storage : GridStorage<nanovdb::Vec3f> {};
 
-/// What a Cursor's bytes hold: the accessors and the last cell; of a cubic grid its samples, too.
+/// Cell cache in the bytes of a Cursor: accessors and the last cell. CubicCellCache also contains the cell's samples.
 template <class T, class Corner>
 struct CellCache {
   using Values = nanovdb::ReadAccessor<T, 0, 1, 2>;
@@ -93,6 +101,7 @@ using ScalarCellCache = CellCache<float, double>;
 using VectorCellCache = CellCache<nanovdb::Vec3f, Vec3>;
 static_assert(offsetof(ScalarCellCache, version) == 0 && offsetof(VectorCellCache, version) == 0);
 
+/// Cell cache of a cubic grid, with the samples around the cell.
 template <class T, class Corner>
 struct CubicCellCache : CellCache<T, Corner> {
   alignas(16) CubicSamples<sizeof(T) / sizeof(float)> samples;
@@ -102,8 +111,8 @@ struct CubicCellCache : CellCache<T, Corner> {
       : CellCache<T, Corner>(grid, v), samples{}, halo(ghost_grid) {}
 };
 
-/// The walk in the cursor's memory, made anew when the cursor comes from another grid (or from one freed at the same address).
-/// `ghosts`: of a CubicCellCache.
+/// Returns the cell cache in the cursor's memory. It is constructed anew when the cursor was last used with another grid (or with one that
+/// was freed at the same address). `ghosts`: the halo grid, for a CubicCellCache.
 template <class W, class Storage, class... Ghosts>
 W& cell_cache(Cursor& cursor, const void* owner, std::uint64_t version, const Storage& storage, const Ghosts&... ghosts) {
   static_assert(sizeof(W) <= sizeof(Cursor::memory) && alignof(W) <= 16 && std::is_trivially_copyable_v<W>);
@@ -115,7 +124,8 @@ W& cell_cache(Cursor& cursor, const void* owner, std::uint64_t version, const St
   return *walk;
 }
 
-/// Fills the walk with the cell at a legal base. `convert` turns a stored value to a corner; `finite` judges a corner.
+/// Fills the cache with the cell at a valid base index. `convert` converts a stored value to a corner; `finite` returns whether a corner is
+/// finite.
 template <class W, class Storage, class Convert, class Finite>
 void fetch_cell(W& walk, const Storage& storage, const Index3& base, const Convert& convert, const Finite& finite) {
   const nanovdb::Coord ijk = to_nano_coord(base);
@@ -137,13 +147,14 @@ void fetch_cell(W& walk, const Storage& storage, const Index3& base, const Conve
   for (int n = 0; n < 8; ++n) walk.valid = walk.valid && finite(walk.corner[n]);
 }
 
-/// Fills a cubic walk with the samples about a legal base: by blocks, at most two an axis. Halo stand where they are.
+/// Fills a cubic cache with the samples around a valid base index, read by blocks, at most two per axis. Halo samples replace missing
+/// samples.
 template <class W, class Storage>
 void fetch_cubic_samples(W& walk, const Storage& storage, const Index3& base) {
   constexpr int C = sizeof(typename Storage::Value) / sizeof(float);
   const std::int32_t first[3] = {base.x - storage.step.x, base.y - storage.step.y, base.z - storage.step.z};
   const std::int32_t step[3] = {storage.step.x, storage.step.y, storage.step.z};
-  int split[3];  // samples in the first block
+  int split[3];  // number of samples in the first block
   for (int a = 0; a < 3; ++a) split[a] = step[a] == 0 ? 4 : std::min(4, 8 - (first[a] & 7));
   const bool inner = storage.is_legal_base({first[0], first[1], first[2]}) &&
                      storage.is_legal_base({base.x + storage.step.x, base.y + storage.step.y, base.z + storage.step.z});
@@ -176,16 +187,16 @@ void fetch_cubic_samples(W& walk, const Storage& storage, const Index3& base) {
   }
 }
 
-/// The place within the cell. Far outside it is held to a range in which the polynomial cannot overflow.
+/// Returns the position relative to the base voxel, clamped far outside of the cell to a range in which the polynomial cannot overflow.
 inline Vec3 position_in_cell(const Vec3& index, const Index3& base) {
   static constexpr double far = 1e9;
   const auto axis = [](double x, std::int32_t b) { return std::min(std::max(x - b, -far), far); };
   return {axis(index.x, base.x), axis(index.y, base.y), axis(index.z, base.z)};
 }
 
-constexpr double kDomainSlack = 1e-9;  ///< voxels, at the faces of the domain
+constexpr double kDomainSlack = 1e-9;  ///< tolerance at the faces of the domain, voxels
 
-/// Why a place is not inside, given the walk at its cell. `finite` judges a corner.
+/// Returns why a position is not inside, given the cache at its cell. `finite` returns whether a corner is finite.
 template <class W, class Finite>
 SampleStatus cell_status(const W& walk, const Box& box, const Vec3& index, const Finite& finite) {
   if (!box.contains(index, kDomainSlack)) return SampleStatus::outside_box;
@@ -195,7 +206,8 @@ SampleStatus cell_status(const W& walk, const Box& box, const Vec3& index, const
   return SampleStatus::masked;
 }
 
-/// Calls visit(leaf or null, block origin, first, last) for every aligned 8^3 block that meets the region.
+/// Calls visit(accessor, block origin, first, after) for every aligned 8^3 block that intersects the region; `first` is the first voxel of
+/// the intersection, `after` is one past the last along each axis.
 template <class Grid, class Visit>
 void for_blocks(const Grid& grid, const Index3& origin, const Index3& size, const Visit& visit) {
   auto accessor = grid.getAccessor();

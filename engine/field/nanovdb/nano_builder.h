@@ -1,5 +1,6 @@
-/// Private to this room and to engine/io/vdb: the bytes of a NanoVDB buffer. They are anonymous memory, zero when reserved (memory that
-/// is never touched costs nothing), or a part of a mapped file, which they keep mapped. Aligned to pages; shared by copies.
+/// Memory of a NanoVDB buffer: anonymous memory, zero when reserved (pages that are never touched take no memory), or a slice of a mapped
+/// file, which stays mapped as long as it is used. Aligned to pages, except for slices; copies share the memory. Private to this module and
+/// to engine/io/vdb.
 #pragma once
 #include <nanovdb/NanoVDB.h>
 #include <cstddef>
@@ -12,15 +13,18 @@
 
 namespace catena::field {
 
+/// Shared, contiguous memory of a buffer; unmapped with its last copy.
 class NanoMemory {
  public:
   NanoMemory() = default;
-  /// Throws std::bad_alloc.
+  /// Reserves zeroed memory, counted in the memory budget. Throws std::bad_alloc.
   static NanoMemory reserve(std::size_t bytes);
-  /// Takes over a mapping of mmap; `held`: it counts as memory that data holds.
+  /// Takes ownership of a mapping made by mmap. `held`: its bytes count in the memory budget.
   static NanoMemory from_mapping(void* start, std::size_t bytes, bool held);
+  /// Returns a part of the memory, which it keeps alive.
   NanoMemory slice(std::size_t offset, std::size_t bytes) const;
-  /// Of reserved memory that nobody shares: what is behind the end goes back, what is new is zero. It may move. Throws std::bad_alloc.
+  /// Resizes reserved memory that is not shared: memory beyond the new end is freed, new memory is zero. It may move. Throws
+  /// std::bad_alloc.
   void resize(std::size_t bytes);
 
   std::byte* data() { return data_; }
@@ -34,13 +38,16 @@ class NanoMemory {
   std::size_t size_ = 0;
 };
 
-/// Where a builder gets its zeroed memory: the heap of this process, or a file that another process will map.
+/// Provides zeroed memory to a builder: heap of this process, or a file that another process will map.
 using NanoAllocator = std::function<NanoMemory(std::size_t bytes)>;
 
-/// Private to this room and to engine/io/vdb: NanoVDB buffers made in place. One buffer has its exact size from the start; leaves are
-/// written where they stay, by any number of threads; what points to them comes after.
-///   layout: grid, tree, leaves, lower nodes, upper nodes, root, its entries; children lie in the order of their parents' entries
-/// Values and states are all that a buffer holds: its own statistics, boxes, map and checksum are left empty.
+/// Builder of NanoVDB buffers in place. A buffer has its exact size from the start; leaves are written at their final position, by any
+/// number of threads; the nodes that point to them are added afterwards.
+///   layout: grid, tree, leaves, lower nodes, upper nodes, root, its entries; children are in the order of their parents' entries
+/// A buffer contains values and states only: its statistics, boxes, map and checksum stay empty. Private to this module and to
+/// engine/io/vdb.
+///
+/// NanoTypes: NanoVDB's node types for the value type T.
 template <class T>
 struct NanoTypes {
   using Grid = nanovdb::NanoGrid<T>;
@@ -52,13 +59,13 @@ struct NanoTypes {
   using Value = typename Root::ValueT;
 };
 
-/// Insets of nodes in voxels, and entries of internal nodes an axis.
+/// Edges of nodes in voxels, and numbers of entries of internal nodes.
 inline constexpr std::int32_t kLeafEdge = 8, kLowerEdge = 128, kUpperEdge = 4096;
 inline constexpr std::uint32_t kLowerEntries = 4096, kUpperEntries = 32768;
-/// A fetch outside of all nodes looks at every entry of the root.
+/// Maximum number of root entries; a fetch outside of all nodes compares with each of them.
 inline constexpr std::uint64_t kMaxRootEntries = 1024;
 
-/// The number of the entry that holds a voxel, z fastest.
+/// Returns the index of the entry of a lower (upper) node that contains a voxel, z fastest.
 inline std::uint32_t lower_entry(const nanovdb::Coord& c) {
   return static_cast<std::uint32_t>((c[0] >> 3 & 15) << 8 | (c[1] >> 3 & 15) << 4 | (c[2] >> 3 & 15));
 }
@@ -66,17 +73,21 @@ inline std::uint32_t upper_entry(const nanovdb::Coord& c) {
   return static_cast<std::uint32_t>((c[0] >> 7 & 31) << 10 | (c[1] >> 7 & 31) << 5 | (c[2] >> 7 & 31));
 }
 
+/// Numbers of nodes in a buffer, and of root entries.
 struct NanoCounts {
   std::uint64_t leaves = 0, lowers = 0, uppers = 0, entries = 0;
 };
 
+/// Writes the nodes of one buffer.
 template <class T>
 class NanoBuilder {
  public:
   using Types = NanoTypes<T>;
+  /// Returns the byte offset of the first leaf.
   static std::size_t leaves_offset();
+  /// Returns the size of a buffer in bytes.
   static std::size_t bytes(const NanoCounts& counts);
-  /// `start`: zeroed bytes(counts) bytes, but for the leaves, which may be there already.
+  /// Writes the headers. `start`: zeroed memory of bytes(counts) bytes, whose leaves may already be written.
   NanoBuilder(std::byte* start, const NanoCounts& counts, const typename Types::Value& background);
 
   static typename Types::Leaf& leaf_at(std::byte* start, std::uint64_t n);
@@ -84,17 +95,20 @@ class NanoBuilder {
   typename Types::Lower& lower(std::uint64_t n) { return reinterpret_cast<typename Types::Lower*>(start_ + lowers_)[n]; }
   typename Types::Upper& upper(std::uint64_t n) { return reinterpret_cast<typename Types::Upper*>(start_ + uppers_)[n]; }
   typename Types::Entry& root_entry(std::uint64_t n);
-  /// Begin a node: its place, and the background in all its entries.
+  /// Initializes a node: its origin, and the background in all its entries.
   typename Types::Lower& begin_lower(std::uint64_t n, const nanovdb::Coord& origin) { return begin(lower(n), origin, kLowerEntries); }
   typename Types::Upper& begin_upper(std::uint64_t n, const nanovdb::Coord& origin) { return begin(upper(n), origin, kUpperEntries); }
+  /// Makes root entry n point to an upper node, or hold a tile.
   void set_root_child(std::uint64_t n, const nanovdb::Coord& origin, std::uint64_t upper_number);
   void set_root_tile(std::uint64_t n, const nanovdb::Coord& origin, const typename Types::Value& value, bool active);
 
+  /// Makes an entry of an internal node a tile.
   template <class Node, class Value>
   static void set_tile(Node& node, std::uint32_t entry, const Value& value, bool active) {
     node.mTable[entry].value = value;
     if (active) node.mValueMask.setOn(entry);
   }
+  /// Makes an entry of an internal node point to a child.
   template <class Node, class Child>
   static void set_child(Node& node, std::uint32_t entry, const Child& child) {
     node.mChildMask.setOn(entry);
@@ -119,20 +133,20 @@ extern template class NanoBuilder<float>;
 extern template class NanoBuilder<nanovdb::Vec3f>;
 extern template class NanoBuilder<nanovdb::ValueMask>;
 
-/// A block of 8^3 voxels: a leaf that is in the buffer already, or one value.
+/// Block of 8^3 voxels: a leaf that is already in the buffer, or a tile of one value.
 template <class T>
 struct NanoBlock {
   static constexpr std::uint32_t kTile = 0xffffffff;
   nanovdb::Coord origin;
   std::uint32_t leaf = kTile;
-  typename NanoTypes<T>::Value value{};  ///< of a tile, active
+  typename NanoTypes<T>::Value value{};  ///< active value of a tile
 };
 
-/// Reserved memory for at most so many leaves.
+/// Reserves memory for at most `leaves` leaves.
 template <class T>
 NanoMemory reserve_leaves(std::uint64_t leaves);
-/// Completes a buffer of which the first `leaves` leaves are written: nodes of one active value become tiles. Elsewhere: the background.
-/// An error only where the blocks are too far apart.
+/// Completes a buffer whose first `leaves` leaves are written, and returns it. Nodes of one active value become tiles; the background is
+/// everywhere else. Error: the blocks are too far apart (more than kMaxRootEntries root entries).
 template <class T>
 Result<NanoMemory> build_from_blocks(NanoMemory memory, std::uint64_t leaves, std::vector<NanoBlock<T>> blocks,
                                      const typename NanoTypes<T>::Value& background);

@@ -1,4 +1,5 @@
-/// Private to this room: a mask asked by leaves and by aligned regions of 8^3, 128^3 or 4096^3 voxels. Work grows with its nodes there.
+/// Queries of a mask by leaves and by aligned regions of 8^3, 128^3 or 4096^3 voxels. The cost grows with the number of nodes in the
+/// region. Private to this module.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,18 +10,19 @@
 
 namespace catena::field {
 
+/// View of a mask. The mask must outlive it; use one view per thread.
 class MaskView {
  public:
   explicit MaskView(const NanoMask& mask) : accessor_(mask), root_(mask.tree().root()) {}
 
-  /// The 64 voxels of layer x (0 to 7) of the block at `origin`, as a leaf's mask has them.
+  /// Returns the 64 voxels of slice x (0 to 7) of the block at `origin`, in the bit order of a leaf's mask.
   std::uint64_t word(const nanovdb::Coord& origin, int x) const {
     if (const auto* leaf = accessor_.probeLeaf(origin)) return leaf->valueMask().getWord<std::uint64_t>(x);
     return accessor_.getValue(origin) ? ~std::uint64_t{0} : 0;
   }
-  /// Some voxel of the region is on.
+  /// Returns true when some voxel of the region is set. `edge`: 8, kLowerEdge or kUpperEdge.
   bool any(const nanovdb::Coord& origin, std::int32_t edge) const { return find<true>(origin, edge); }
-  /// Voxels of the region that are on.
+  /// Returns the number of voxels of the region that are set.
   std::uint64_t count(const nanovdb::Coord& origin, std::int32_t edge) const {
     const auto* entry = root_.probeTile(origin);
     if (entry == nullptr) return 0;
@@ -36,7 +38,7 @@ class MaskView {
     for (std::uint32_t n = 0; n < kUpperEntries; ++n) all += count_in_upper(upper, n);
     return all;
   }
-  /// Every voxel of the region is on.
+  /// Returns true when every voxel of the region is set.
   bool all(const nanovdb::Coord& origin, std::int32_t edge) const { return !find<false>(origin, edge); }
 
  private:
@@ -92,7 +94,7 @@ class MaskView {
   const nanovdb::NanoRoot<nanovdb::ValueMask>& root_;
 };
 
-/// Private to this room and to engine/io/vdb: the nodes of a buffer made by NanoBuilder, as arrays.
+/// Nodes of a buffer made by NanoBuilder, as arrays. Private to this module and to engine/io/vdb.
 template <class T>
 struct NanoNodes {
   std::span<const typename NanoTypes<T>::Leaf> leaves;
@@ -101,6 +103,7 @@ struct NanoNodes {
   std::span<const typename NanoTypes<T>::Entry> entries;
 };
 
+/// Returns the nodes of a grid. The grid must outlive them.
 template <class T>
 NanoNodes<T> view_nodes(const nanovdb::NanoGrid<T>& grid) {
   const auto& tree = *grid.tree().data();
@@ -115,7 +118,7 @@ NanoNodes<T> view_nodes(const nanovdb::NanoGrid<T>& grid) {
           std::span<const typename Types::Entry>(reinterpret_cast<const typename Types::Entry*>(&root + 1), root.mTableSize)};
 }
 
-/// The voxel at an entry of an internal node.
+/// Returns the first voxel of an entry of a lower (upper) node at `origin`.
 inline nanovdb::Coord lower_coord(const nanovdb::Coord& origin, std::uint32_t entry) {
   return origin.offsetBy(static_cast<std::int32_t>(entry >> 8) * kLeafEdge, static_cast<std::int32_t>(entry >> 4 & 15) * kLeafEdge,
                          static_cast<std::int32_t>(entry & 15) * kLeafEdge);
@@ -125,7 +128,7 @@ inline nanovdb::Coord upper_coord(const nanovdb::Coord& origin, std::uint32_t en
                          static_cast<std::int32_t>(entry & 31) * kLowerEdge);
 }
 
-/// Calls visit(origin, edge, value) for every active tile of one internal node.
+/// Calls visit(origin, edge, value) for every active tile of an internal node.
 template <class Node, class Visit>
 void for_active_tiles(const Node& node, const Visit& visit) {
   constexpr bool lower = sizeof(node.mTable) == kLowerEntries * sizeof(node.mTable[0]);

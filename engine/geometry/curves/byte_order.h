@@ -1,4 +1,4 @@
-/// Private to this room: numbers out of bytes of either order.
+/// Private to this module: decodes numbers from bytes of either byte order.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@ namespace catena::curves {
 
 static_assert(std::endian::native == std::endian::little);
 
+/// Decodes the `sizeof(T)` bytes at `bytes`; no alignment is needed. The host is little-endian.
 template <class T>
 T decode_number(const char* bytes, bool big_endian) {
   std::array<char, sizeof(T)> own;

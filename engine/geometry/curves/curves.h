@@ -1,6 +1,6 @@
-/// Curves from a file: polylines such as the fibres of a tractogram. What any reader gives is this plain struct, and what is drawn and
-/// felt is one object. Points are world units (of a patient's file: mm, +x to the right, +y to the front, +z to the head), in single
-/// precision, as such files have them. Immutable once made; reading is safe from every thread, without allocation.
+/// Polylines loaded from a file, such as the fibers of a tractogram, or traced. Every reader returns this plain struct; the same object
+/// is rendered and used for haptics. Points are in world units (in patient space: mm, +x to the right, +y to the front, +z to the head) and
+/// in single precision, as such files store them. Immutable after creation; reading is safe from any thread and does not allocate.
 #pragma once
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -15,60 +15,62 @@
 
 namespace catena::curves {
 
-/// A number at every point, by the name that the file has for it.
+/// One scalar per point, under the name that the file gives it.
 struct PointValues {
-  std::string name;           ///< the file's word for it
-  std::vector<float> values;  ///< one a point
+  std::string name;           ///< Name of the scalar in the file.
+  std::vector<float> values;  ///< One value per point.
 };
 
 /// A set of polylines. Plain data.
 struct CurveSet {
-  std::string name;               ///< of the file
-  std::vector<glm::vec3> points;  ///< line after line; neighbours on a line differ
+  std::string name;               ///< File name.
+  std::vector<glm::vec3> points;  ///< All points, line by line; neighboring points on a line differ.
   std::vector<std::uint32_t>
-      line_offsets;                       ///< line k is the points first[k] to first[k + 1] - 1, two or more; one more than there are lines
-  std::vector<PointValues> values{};      ///< may be empty
-  std::string unit{};                     ///< of lengths; empty: the file does not say
-  bool is_patient_space = false;          ///< axes as above
-  std::string note{};                     ///< what was left out, in words; may be empty
-  Vec3 min_corner{0.0}, max_corner{0.0};  ///< corners of the box of all points
-  std::uint64_t version = 0;              ///< unique in the process
-  MemoryReservation memory_reservation{};  ///< counts the memory as data
+      line_offsets;  ///< Line k has the points [line_offsets[k], line_offsets[k + 1]), at least two; one entry more than lines.
+  std::vector<PointValues> values{};       ///< Scalars per point; may be empty.
+  std::string unit{};                      ///< Unit of length; empty: not specified by the file.
+  bool is_patient_space = false;           ///< True: the axes are those of patient space (see the top of this file).
+  std::string note{};                      ///< What was left out or rounded, as text for the user; may be empty.
+  Vec3 min_corner{0.0}, max_corner{0.0};   ///< Corners of the bounding box of all points, world units.
+  std::uint64_t version = 0;               ///< Unique in the process.
+  MemoryReservation memory_reservation{};  ///< Counts the memory against the data budget.
 
-  /// How many lines there are.
+  /// Number of lines.
   std::size_t line_count() const { return line_offsets.empty() ? 0 : line_offsets.size() - 1; }
-  /// Memory that it holds.
+  /// Memory used by points, values and offsets, bytes.
   std::size_t bytes() const;
-  const PointValues* find_values(std::string_view name) const;  ///< the values of that name; nullptr: there are none
-  /// The line that a point is on.
+  const PointValues* find_values(std::string_view name) const;  ///< Values with that name; nullptr: none.
+  /// Returns the index of the line that contains the point with index `point`.
   std::uint32_t line_of(std::uint32_t point) const;
 };
-/// Sets of curves are shared and never change.
+/// Shared, immutable set of curves.
 using CurveSetPtr = std::shared_ptr<const CurveSet>;
 
-inline constexpr std::size_t kMaxPoints = 1'000'000'000;  ///< More are refused.
+inline constexpr std::size_t kMaxPoints = 1'000'000'000;  ///< Files with more points are rejected.
 
-/// Collects what a reader finds, or what is traced. A point that equals the one before it on its line is left out, and so is a line of
+/// Collects the lines that a reader or a tracer produces. A point equal to the previous one on its line is dropped, and so is a line of
 /// fewer than two points.
 class CurveSetBuilder {
  public:
-  /// Asks for the memory of as many points as the file can hold. `name` begins every message.
+  /// Checks the memory budget for `most_points` points and reserves them. `name` begins every message. Returns an Error when there are more
+  /// than kMaxPoints or too little memory.
   static Result<CurveSetBuilder> create(std::string name, std::size_t most_points, std::vector<std::string> value_names);
 
-  /// False: not finite, or beyond 1e15, where squares of distances lose their meaning. `values`: as many as there are names.
+  /// Appends a point to the open line. `values`: one per name in `value_names`. Returns false, and adds nothing, when the point is not
+  /// finite or a coordinate exceeds 1e15, where squared distances lose their precision.
   bool add(const Vec3& point, const float* values = nullptr);
-  /// Ends the line; the next add() begins another.
+  /// Ends the open line; the next add() starts another one.
   void end_line();
-  /// Lines that have ended so far.
+  /// Number of lines that have ended so far.
   std::size_t line_count() const { return set_.line_offsets.size() - 1; }
 
-  /// A line that is still open ends here. The error: no line is left.
+  /// Ends a line that is still open and returns the set. Returns an Error when no line remains.
   Result<CurveSet> finish();
 
  private:
   CurveSet set_;
   std::size_t dropped_ = 0;
-  double max_rounding_ = 0;  ///< the largest difference of a coordinate from what is kept
+  double max_rounding_ = 0;  ///< Largest rounding error of a coordinate by single precision, world units.
 };
 
 }  // namespace catena::curves

@@ -1,6 +1,6 @@
-/// Where nearly all of many points lie, however far a few have gone astray. Along each axis the 5 and the 95 percentile are taken, of a
-/// sample; a point belongs to the core unless it lies beyond them by more than twice the widest of these three ranges. Evenly or normally
-/// spread points have no strays, nor have fewer than 20. Deterministic; any thread.
+/// Bounding box of a point set without its outliers. The 5th and 95th percentiles along each axis are estimated from a sample; a point is
+/// an outlier when it lies outside of them by more than twice the widest of the three ranges. Uniformly or normally distributed points have
+/// no outliers, nor have sets of fewer than 20 points. Deterministic; any thread.
 #pragma once
 #include <glm/vec3.hpp>
 #include <span>
@@ -9,12 +9,12 @@
 
 namespace catena::curves {
 
-/// What compute_robust_bounds() finds.
+/// Result of compute_robust_bounds().
 struct RobustBounds {
-  Bounds box;                ///< of the points that are no strays; empty: there are no points
-  std::size_t outliers = 0;  ///< how many are
+  Bounds box;                ///< Bounding box of the points that are not outliers; empty: there are no points.
+  std::size_t outliers = 0;  ///< Number of outliers.
 };
-/// The box of all points but strays.
+/// Computes the bounding box without outliers; see the top of this file.
 RobustBounds compute_robust_bounds(std::span<const glm::vec3> points);
 
 }  // namespace catena::curves

@@ -1,10 +1,10 @@
 /// Private to the batch tracer: one Runge-Kutta step of eight lines at once.
-///   classical RK4 in the field's own (scaled) time; the rate k5 at the end is the next step's first, and closes an estimate of
-///   third order:  error = |h| / 10 |k4 - k5|                 (Hairer, Norsett, Wanner I, II.4)
-/// Places in double, rates and displacements in float: a step's rounding is below 1e-7 of its length.
-/// Lanes: x, y, z of one sample are one register, the two neighbours along x another half; eight lines take turns stage by stage,
-/// so that the processor always has work of several lines. Compiled for the baseline and for AVX2 (chosen once, at the first use):
-/// the same operations in the same order, no contraction, hence the same bits. Any thread; allocates only new bricks.
+///   Classical RK4 in the field's own (scaled) time. The rate k5 at the end of the step is the first rate of the next step and gives a
+///   third-order error estimate:  error = |h| / 10 |k4 - k5|                 (Hairer, Norsett, Wanner I, II.4)
+/// Positions are double, rates and displacements float: the rounding error of a step is below 1e-7 of its length.
+/// SIMD layout: x, y, z of one sample share one register, with the neighbor along x in its upper half; the eight lines are interleaved
+/// stage by stage to hide latency. Compiled for the baseline and for AVX2 (selected at the first use): the same operations in the same
+/// order without contraction, hence bitwise equal results. Any thread; allocates only new bricks.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -14,34 +14,42 @@
 
 namespace catena::flow {
 
-/// The velocities of a grid in bricks of 8^3 cells (9^3 voxels, x fastest), made when a line first
-/// comes there. The rates are those of the motion in index space, scaled so that none is longer than about one:
-///   w = J^-1 v * edge / X,   edge: of the longest voxel edge, X: the largest |v|, each rounded to a power of two
-/// so that on grids of one spacing every number is the stored one times a power of two. Corners of invalid cells are NaN, and so
-/// is every rate next to them. Any number of threads; a brick is made once, or twice by two threads and one copy dropped.
+/// Velocities of a grid in bricks of 8^3 cells (9^3 voxels, x fastest), created when a line first enters them. The stored rates are
+/// velocities in index space, scaled so that none is longer than about one:
+///   w = J^-1 v * edge / X,   edge: the longest voxel edge, X: the largest |v|, each rounded down to a power of two
+/// so that for uniform spacing every number is the stored one times a power of two. Voxels that are a corner of no valid cell are NaN, and
+/// so is every rate interpolated from them. Any number of threads; two threads may create the same brick, and one copy is then dropped.
 class VelocityBricks {
  public:
-  static constexpr int kStrideY = 27, kStrideZ = 243;          ///< floats
-  static constexpr std::size_t kFloatsPerBrick = 729 * 3 + 5;  ///< a load of four at the last voxel stays inside
+  static constexpr int kStrideY = 27, kStrideZ = 243;          ///< Strides between neighboring voxels along y and z, in floats.
+  static constexpr std::size_t kFloatsPerBrick = 729 * 3 + 5;  ///< Includes padding: a load of four floats at the last voxel stays inside.
 
+  /// Refers to `grid`, which must outlive this object; no brick is created yet.
   explicit VelocityBricks(const field::VectorGrid& grid);
   ~VelocityBricks();
   VelocityBricks(const VelocityBricks&) = delete;
   VelocityBricks& operator=(const VelocityBricks&) = delete;
 
-  /// Local coordinates: index - box.lo + 1, so that a place below the box truncates to a cell that is none.
+  /// Converts to local coordinates: index - box.lo + 1, so that a position below the box truncates to an invalid cell index.
   Vec3 local_from_index(const Vec3& index) const { return index - lo_ + 1.0; }
+  /// Converts local coordinates to index coordinates.
   Vec3 index_from_local(const Vec3& local) const { return local - 1.0 + lo_; }
-  const Mat3& world_from_rate() const { return world_from_rate_; }  ///< J: of a rate w, in scaled time
-  double speed_from_rate() const { return speed_from_rate_; }       ///< |v| = |J w| times this
+  const Mat3& world_from_rate() const { return world_from_rate_; }  ///< J: world velocity from a rate w, up to the time scale.
+  double speed_from_rate() const { return speed_from_rate_; }       ///< Scale factor of the speed: |v| = |J w| times this.
 
-  /// The brick's rates; null: not made yet.
+  /// Returns the rates of the brick with index `at`; null: not created yet. Lock-free.
   const float* find_brick(std::size_t at) const { return brick_table_[at].load(std::memory_order_acquire); }
+  /// Creates the brick with index `at`, or returns the one that another thread created. Allocates.
   const float* make_brick(std::size_t at) const;
+  /// Number of cells along x.
   std::uint32_t cells_x() const { return cells_[0]; }
+  /// Number of cells along y.
   std::uint32_t cells_y() const { return cells_[1]; }
+  /// Number of cells along z.
   std::uint32_t cells_z() const { return cells_[2]; }
+  /// Number of bricks along x.
   std::uint32_t bricks_x() const { return bricks_[0]; }
+  /// Number of bricks along y.
   std::uint32_t bricks_y() const { return bricks_[1]; }
 
  private:
@@ -52,7 +60,7 @@ class VelocityBricks {
   std::uint32_t cells_[3], bricks_[3];
   Mat3 rate_from_velocity_{1.0}, world_from_rate_{1.0};
   double speed_from_rate_ = 1;
-  bool is_uniform_ = false;  ///< rate_from_velocity_ is a number
+  bool is_uniform_ = false;  ///< rate_from_velocity_ is a multiple of the identity.
   mutable std::vector<std::atomic<const float*>> brick_table_;
 };
 
@@ -62,36 +70,41 @@ using Double4 = double __attribute__((vector_size(32)));
 using Int4 = int __attribute__((vector_size(16)));
 using Uint4 = unsigned __attribute__((vector_size(16)));
 
+/// Number of lines that step_lanes() advances at once.
 inline constexpr int kLanes = 8;
 
+/// Step-size control of step_lanes().
 struct StepControl {
-  float tolerance2 = 0;  ///< of the error, voxels, squared
-  float max_step = 1;    ///< voxels
+  float tolerance2 = 0;  ///< Squared error tolerance, voxels^2.
+  float max_step = 1;    ///< Maximum step size, voxels.
 };
 
+/// The state of eight lines: input and output of one step.
 struct alignas(32) LaneGroup {
-  // given
-  Double4 q[kLanes];  ///< places, local coordinates
-  Float4 k[kLanes];   ///< rates there
-  float h[kLanes];    ///< signed steps, scaled time
-  // made
+  // input
+  Double4 q[kLanes];  ///< Positions, local coordinates.
+  Float4 k[kLanes];   ///< Rates at q.
+  float h[kLanes];    ///< Signed step sizes, scaled time.
+  // output
   Double4 end[kLanes];
   Float4 k_end[kLanes];
-  float error2[kLanes];           ///< squared, voxels
-  float max_error2[kLanes];       ///< what the tolerance and the step's own length allow of it
-  float displacement2[kLanes];    ///< squared length of the displacement, voxels
-  float speed2[kLanes];           ///< |k_end|^2
-  float tangent_dot[kLanes];      ///< k . k_end
-  float next_h[kLanes];           ///< the step that the estimate and the longest step allow next; signed
-  std::uint8_t left_box[kLanes];  ///< a stage lay outside the box (everything else made is meaningless then)
+  float error2[kLanes];           ///< Squared error estimate, voxels^2.
+  float max_error2[kLanes];       ///< Maximum squared error: by the tolerance and by the step's own length.
+  float displacement2[kLanes];    ///< Squared length of the displacement, voxels^2.
+  float speed2[kLanes];           ///< |k_end|^2.
+  float tangent_dot[kLanes];      ///< k . k_end.
+  float next_h[kLanes];           ///< Next signed step size, by the error estimate and the maximum step size.
+  std::uint8_t left_box[kLanes];  ///< Nonzero: a stage lay outside the box (the other outputs are meaningless).
 };
 
+/// Advances all eight lines of `group` by one step.
 void step_lanes(const VelocityBricks& bricks, const StepControl& control, LaneGroup& group);
-/// The rate at one place; false: outside the box.
+/// Interpolates the rate k at q (local coordinates). Returns false outside the box.
 bool rate_at(const VelocityBricks& bricks, const Double4& q, Float4& k);
 
-/// For the test that both give the same bits: the baseline version; and whether the machine has another one.
+/// Baseline version of step_lanes(), for the test that both versions give bitwise equal results.
 void step_lanes_baseline(const VelocityBricks& bricks, const StepControl& control, LaneGroup& group);
+/// Whether the CPU supports the AVX2 version.
 bool has_avx2_lanes();
 
 }  // namespace catena::flow

@@ -1,11 +1,11 @@
-/// Many streamlines at once: for pictures and tables of whole sets of seeds. The selected line of a link and the tubes that show
-/// it stay trace()'s one curve (curve.h); these are lines of a stated, coarser tolerance, and an order of magnitude cheaper.
-///   grids: RK4 with an error estimate (batch_step.h), eight lines a core in turn, all cores; knots are the steps, with the arc
-///          length by Simpson's rule on each step's cubic. Where a line leaves the domain or its valid cells, or slows down to
-///          nothing, steps are halved to 1e-4 voxels and the exact marcher (march.h) takes over for a while: ends mean the same
-///          BOUNDARY, CRITICAL, LENGTH, LAP. A lap closes within 0.01 voxel, or 10 tolerances, of the seed.
-///   formulas, line fields (v ~ -v), cubic grids, grids of one layer: trace() itself at this tolerance, seeds over all cores
-/// Results do not depend on the number of threads, nor on which other seeds are in the batch, nor on AVX2. Off the tick.
+/// Traces many streamlines at once, for images and tables of whole seed sets. The selected line of a link, and the tubes that show it, come
+/// from trace() (curve.h); batch lines have a coarser, documented tolerance and are an order of magnitude cheaper.
+///   grids: RK4 with an error estimate (batch_rk4_step.h), eight lines per core, on all cores. Knots are the steps; the arc length
+///          follows from Simpson's rule on the cubic of each step. Where a line leaves the domain or the valid cells, or its speed
+///          approaches zero, steps are halved down to 1e-4 voxels and the exact tracer (trace_internal.h) continues: line ends have
+///          the same meaning BOUNDARY, CRITICAL, LENGTH, LAP. A lap closes within 0.01 voxel, or 10 tolerances, of the seed.
+///   formulas, line fields (v ~ -v), cubic grids, grids of one slice: trace() itself at this tolerance, seeds distributed over all cores
+/// Results do not depend on the number of threads, on the other seeds of the batch, or on AVX2. Off the haptic thread.
 #pragma once
 #include <span>
 
@@ -13,33 +13,34 @@
 
 namespace catena::flow {
 
-/// How finely and how far.
+/// Accuracy and length limits of a batch.
 struct BatchOptions {
-  double length = 0;                ///< longest arc length in each direction, world units; 0: 10 L
-  double tolerance = 1e-7;          ///< of the estimated error of one step, times L; never above a hundredth of the step
-  double max_step = 0;              ///< voxels, of a formula world units; 0: half a voxel, which bounds what the estimate cannot see,
-                                    ///< the kinks at the faces of cells
-  std::size_t max_knots = 2000000;  ///< of one line, both directions together
+  double length = 0;        ///< Maximum arc length in each direction, world units; 0: 10 L.
+  double tolerance = 1e-7;  ///< Limit on the estimated error of one step, times L; at most a hundredth of the step.
+  /// Maximum step size, voxels (formulas: world units); 0: half a voxel, because the error estimate misses the kinks at cell faces;
+  /// where trace() does the work, its own default.
+  double max_step = 0;
+  std::size_t max_knots = 2000000;  ///< Maximum number of knots of a line, both directions together.
 };
 
 class VelocityBricks;
 
-/// Keeps what it has read of the grid between calls: the flow's field must outlive it.
+/// Caches what it has read of the grid between calls. trace() is safe from any thread.
 class BatchTracer {
  public:
-  /// Of a flow, whose field outlives this.
+  /// The field of `flow` must outlive this object.
   BatchTracer(const Flow& flow, const BatchOptions& options = {});
   ~BatchTracer();
-  /// One result a seed, in their order; errors are trace()'s.
+  /// Traces a line from each seed. Returns one result per seed, in their order; errors are those of trace().
   std::vector<Result<CurvePtr>> trace(std::span<const Vec3> seeds) const;
 
  private:
   Flow flow_;
   BatchOptions options_;
-  std::unique_ptr<VelocityBricks> bricks_;  ///< null: trace() serves
+  std::unique_ptr<VelocityBricks> bricks_;  ///< Null: trace() is used for each seed.
 };
 
-/// trace() for every seed, over all cores: the same curves, bit for bit.
+/// Calls trace() for every seed, over all cores; the curves are bitwise equal to those of trace().
 std::vector<Result<CurvePtr>> trace_all(const Flow& flow, std::span<const Vec3> seeds, const TraceOptions& options = {});
 
 }  // namespace catena::flow

@@ -1,5 +1,5 @@
-/// StreamlineTracing as arc-length curves: the cubic between two knots, the traced curve, and the place of it that is nearest to a point.
-/// Any thread; what runs in a tick is noexcept, and allocates and locks nothing.
+/// Streamlines as arc-length curves: the cubic between two knots, the traced curve, and its point nearest to a query point.
+/// Any thread; functions for the haptic thread are noexcept and neither allocate nor lock.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace catena::flow {
 
-/// A bracketed root by the Illinois rule, bounded and bit for bit repeatable: f(a) and f(b) have opposite signs (or one is 0).
+/// Finds a bracketed root by the Illinois method, bounded and bitwise repeatable: f(a) and f(b) have opposite signs (or one is 0).
 template <class F>
 double illinois_root(double a, double fa, double b, double fb, F&& f) noexcept {
   if (fa == 0) return a;
@@ -42,80 +42,81 @@ double illinois_root(double a, double fa, double b, double fb, F&& f) noexcept {
   return best;
 }
 
-/// The cubic Hermite of one step: place and rate at both ends. c(theta), theta in [0, 1]; exact at theta = 0. No allocation, lock or throw.
+/// Cubic Hermite polynomial of one step, from position and rate at both ends: c(theta), theta in [0, 1]; exact at theta = 0. Does not
+/// allocate, lock or throw.
 struct Hermite {
-  Vec3 c0, c1, c2, c3;  ///< coefficients of 1, theta, theta^2, theta^3; world units
+  Vec3 c0, c1, c2, c3;  ///< Coefficients of 1, theta, theta^2, theta^3; world units.
 
-  /// From q over `displacement`, in a step of length h with rates w0 and w1 at its ends.
+  /// Builds the cubic from q to q + displacement for a step of length h with rates w0 and w1 at its ends.
   Hermite(const Vec3& q, const Vec3& displacement, double h, const Vec3& w0, const Vec3& w1)
       : c0(q), c1(h * w0), c2(3.0 * displacement - 2.0 * c1 - h * w1), c3(c1 + h * w1 - 2.0 * displacement) {}
 
-  /// The place at theta.
+  /// Position at theta.
   Vec3 evaluate(double theta) const { return c0 + theta * (c1 + theta * (c2 + theta * c3)); }
-  Vec3 derivative(double theta) const { return c1 + theta * (2.0 * c2 + theta * (3.0 * c3)); }  ///< by theta
+  Vec3 derivative(double theta) const { return c1 + theta * (2.0 * c2 + theta * (3.0 * c3)); }  ///< Derivative with respect to theta.
 
-  /// theta where g = (x - c).c' = 0, given g(0) and g(1), which have opposite signs (or one is 0): the foot of x on this piece, to the
-  /// rounding of g. Newton's method on the quintic g, with halving where it would leave the bracket or hardly moves. Bounded and bit for
-  /// bit repeatable.
+  /// Returns the theta where g = (x - c).c' = 0, given g(0) and g(1), which have opposite signs (or one is 0): the foot of x on this piece,
+  /// up to the rounding of g. Newton's method on the quintic g, with bisection where a step would leave the bracket or hardly moves.
+  /// Bounded and bitwise repeatable.
   double foot(const Vec3& x, double g0, double g1) const noexcept;
 };
 
 /// A knot of a Curve.
 struct Knot {
-  double s = 0;  ///< arc length from the seed, signed, world units
-  Vec3 p{0.0};   ///< the place, world units
-  Vec3 t{0.0};   ///< unit tangent
-  /// What p has lost by rounding, of grids so far from the origin that it counts; else 0. A piece between two knots may be so short that
-  /// the rounding of its ends would turn it.
+  double s = 0;  ///< Signed arc length from the seed, world units.
+  Vec3 p{0.0};   ///< Position, world units.
+  Vec3 t{0.0};   ///< Unit tangent.
+  /// Rounding error of p, for grids so far from the origin that it matters; else 0. An interval between two knots may be so short that the
+  /// rounding of its ends would change its direction.
   glm::vec3 position_low{0.0f};
 
-  /// From here to a place; from here to the next knot.
+  /// Vector from this knot to the position x.
   Vec3 vector_to(const Vec3& x) const { return position_low == glm::vec3(0.0f) ? x - p : x - p - Vec3(position_low); }
-  /// From here to the next knot.
+  /// Vector from this knot to the next knot.
   Vec3 vector_to(const Knot& next) const {
     return position_low == next.position_low ? next.p - p : next.p - p + (Vec3(next.position_low) - Vec3(position_low));
   }
 };
 
-/// Why a line ends: at the domain's boundary, at a critical point, at the length that was asked for, after a lap, in an incoherent cell.
+/// Why a line ends: at the domain boundary, at a critical point, at the maximum length, after a lap, or in an incoherent cell.
 enum class Termination { boundary, critical, length, lap, incoherent };
-const char* to_string(Termination end);  ///< BOUNDARY CRITICAL LENGTH LAP INCOHERENT
+const char* to_string(Termination end);  ///< One of BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT.
 
-/// How a line ends, and what the field says there: boundary (box, mask or not_finite), critical (zero), incoherent, or nothing.
+/// How a line ends, and the sample status there: boundary (box, mask or not_finite), critical (zero), incoherent, or ok.
 struct LineEnd {
-  Termination termination;  ///< how
-  SampleStatus status;      ///< what the field says there
-  /// As trace() makes them.
+  Termination termination;  ///< How the line ends.
+  SampleStatus status;      ///< Status of the sample at the end.
+  /// Combines how a line ends with the sample status there.
   LineEnd(Termination how = Termination::length, SampleStatus why = SampleStatus::ok) : termination(how), status(why) {}
   bool operator==(const LineEnd&) const = default;
-  /// Compares how it ends, whatever the reason.
+  /// Compares the termination only.
   bool operator==(Termination how) const { return termination == how; }
 };
 
-/// A streamline as an arc-length curve, traced once: knots (s, position, unit tangent) with cubic Hermite dense output between them.
-/// `trace` writes these knots, the tubes draw this object and the selected streamline link moves on it: what is seen is felt.
-/// Arc lengths and places in world units. Immutable; any thread; reading allocates nothing.
+/// A streamline as an arc-length curve: knots (s, position, unit tangent) with cubic Hermite dense output between them.
+/// The `trace` command writes these knots, the tubes render this object and the selected streamline link moves on it, so that rendering and
+/// haptics agree. Arc lengths and positions in world units. Immutable; any thread; reading does not allocate.
 class Curve {
  public:
-  /// From knots in order, at least two; `closed`: the last one repeats the first one's place.
+  /// Creates a curve from at least two knots with increasing s; `closed`: the last knot repeats the position of the first.
   Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length);
 
-  /// All knots, s rising.
+  /// All knots, s increasing.
   const std::vector<Knot>& knots() const { return knots_; }
-  bool is_closed() const { return closed_; }  ///< the last knot repeats the first one's place; s wraps with period()
-  /// Arc length from the first knot to the last.
+  bool is_closed() const { return closed_; }  ///< The last knot repeats the position of the first; s wraps with period().
+  /// Arc length from the first knot to the last, world units.
   double period() const { return knots_.back().s - knots_.front().s; }
-  /// At the least s.
+  /// End of the line at the smallest s.
   const LineEnd& first_end() const { return first_end_; }
-  /// At the greatest s.
+  /// End of the line at the largest s.
   const LineEnd& last_end() const { return last_end_; }
-  /// L of the field that it was traced in, world units.
+  /// L of the field in which the line was traced, world units.
   double domain_length() const { return domain_length_; }
 
-  /// Cubic Hermite on the knot interval k: position and d/ds at s (world units; s within the interval).
+  /// Evaluates the cubic Hermite of knot interval k: position p and derivative dp/ds at s (world units; s within the interval).
   void evaluate_interval(std::size_t k, double s, Vec3& p, Vec3& derivative) const noexcept;
-  Vec3 position(double s) const noexcept;  ///< clamped to the ends, or wrapped
-  /// The interval of knots that s lies in, clamped to the ends.
+  Vec3 position(double s) const noexcept;  ///< Clamped to the ends, or wrapped.
+  /// Returns the index of the knot interval that contains s, clamped to the first and the last one.
   std::size_t find_interval(double s) const noexcept;
 
  private:
@@ -124,50 +125,50 @@ class Curve {
   LineEnd first_end_, last_end_;
   double domain_length_;
 };
-/// Curves are shared and never change.
+/// Shared, immutable curve.
 using CurvePtr = std::shared_ptr<const Curve>;
 
-/// How finely and how far trace() goes.
+/// Accuracy and length limits of trace().
 struct TraceOptions {
-  double length = 0;                 ///< longest arc length in each direction, world units; 0: 10 L
-  double tolerance = 1e-10;          ///< of the embedded error of one step, times L
-  double hermite_tolerance = 1e-11;  ///< of the Hermite midpoint against a half step, times L
-  std::size_t max_knots = 2000000;   ///< of both directions together
-  double max_step = 0;               ///< of one step, world units; 0: two voxels, or a tenth of L
+  double length = 0;                 ///< Maximum arc length in each direction, world units; 0: 10 L.
+  double tolerance = 1e-10;          ///< Limit on the embedded error of one step, times L.
+  double hermite_tolerance = 1e-11;  ///< Limit on the difference of the Hermite midpoint from a half step, times L.
+  std::size_t max_knots = 2000000;   ///< Maximum number of knots, both directions together.
+  double max_step = 0;               ///< Maximum step size, world units; 0: two voxels, or a tenth of L.
 };
 
-/// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. Ends at the domain's boundary, a
-/// critical point (or min_speed), where a line field is incoherent, at the length, or after one lap. A seed outside the domain, not finite,
-/// or at a zero is an error (the caller prefixes file and line).
+/// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. The line ends at the domain boundary, at a
+/// critical point (or at min_speed), where a line field is incoherent, at the maximum length, or after one lap. Returns an Error when the
+/// seed is outside the domain, not finite, or at a zero (the caller adds file and line).
 Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options = {});
 
-inline constexpr int kMaxNearestWork = 512;  ///< Boxes and pieces that a search may look at.
+inline constexpr int kMaxNearestWork = 512;  ///< Maximum number of tree boxes and curve intervals that find() examines.
 
-/// What NearestOnCurve finds.
+/// Result of a NearestOnCurve search.
 struct NearestPoint {
-  std::size_t line = 0;      ///< the curve, of several
-  std::size_t interval = 0;  ///< its interval between knots
-  double s = 0;              ///< arc length, within the interval
-  double distance2 = 0;      ///< squared, world units
-  int work = 0;              ///< boxes and pieces looked at
+  std::size_t line = 0;      ///< Index of the curve.
+  std::size_t interval = 0;  ///< Index of its knot interval.
+  double s = 0;              ///< Arc length, within the interval, world units.
+  double distance2 = 0;      ///< Squared distance from the query point, world units^2.
+  int work = 0;              ///< Number of boxes and intervals examined.
 };
 
-/// The place of one or several curves nearest to any point, over all of them and in bounded work: a tree of boxes about runs of knot
-/// intervals (about the Bezier hull of each Hermite piece), nearest box first. A function of the point alone: no memory, so that
-/// the same point gives the same bits. At most kMaxNearestWork boxes and pieces are looked at; where many places are all but
-/// equally near (the centre of a circle) one of them is taken. Made off the tick; asked on any thread, without allocation.
+/// Finds the point nearest to a query point on one or several curves, in bounded work: a tree of boxes around runs of knot intervals
+/// (around the Bezier hull of each Hermite interval), nearest box first. Stateless, so that the same point gives bitwise equal results. At
+/// most kMaxNearestWork boxes and intervals are examined; where many points are almost equally near (the center of a circle) one of them is
+/// returned. Built off the haptic thread; queries run on any thread and do not allocate.
 class NearestOnCurve {
  public:
-  /// Builds the tree; off the tick.
+  /// Builds the tree for one curve; off the haptic thread.
   explicit NearestOnCurve(CurvePtr curve) : NearestOnCurve(std::vector<CurvePtr>{std::move(curve)}) {}
-  /// Of several curves, at least one.
+  /// Builds the tree for at least one curve; off the haptic thread.
   explicit NearestOnCurve(std::vector<CurvePtr> curves);
-  /// |x| <= 1e150, or squares overflow. Nothing beyond `within` is looked for: then the distance is infinite.
+  /// Finds the nearest point. |x| <= 1e150, or squares overflow. If no point lies within the distance `within`, the distance is infinite.
   NearestPoint find(const Vec3& x, double within = std::numeric_limits<double>::infinity()) const noexcept {
     return search(x, kMaxNearestWork, within);
   }
-  /// The same with as much work as it takes, for measurements: of a long line that winds through itself, the bounded search may give a
-  /// place that is not the nearest. Off the tick.
+  /// Finds the nearest point without a work limit, for measurements: for a long line that winds around itself, the bounded search may
+  /// return a point that is not the nearest. Off the haptic thread.
   NearestPoint find_exact(const Vec3& x) const noexcept {
     return search(x, std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity());
   }
@@ -176,8 +177,8 @@ class NearestOnCurve {
   NearestPoint search(const Vec3& x, int most, double within) const noexcept;
   struct Node {
     Vec3 lo{0.0}, hi{0.0};
-    std::uint32_t line = 0, first = 0, count = 0;  ///< of a leaf: intervals
-    std::uint32_t right = 0;                       ///< the second child; 0: a leaf. The first child is the next node
+    std::uint32_t line = 0, first = 0, count = 0;  ///< Leaf: curve, first interval and number of intervals.
+    std::uint32_t right = 0;                       ///< Second child; 0: a leaf. The first child is the next node.
   };
   void build_node(std::vector<std::uint32_t>& lines, std::size_t begin, std::size_t end);
   std::uint32_t build_node(std::uint32_t line, std::uint32_t first, std::uint32_t count);

@@ -1,9 +1,9 @@
-/// What a line is marched through: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell
-/// faces are exact numbers. Both serve the marcher (march.h):
-///   begin(seed, u, sign, q)   places the motion at the seed, along sign * u; false: outside the domain
+/// What a line is traced through: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell faces are exact
+/// numbers. Both classes have the interface that the exact tracer (trace.cpp) uses:
+///   start(seed, u, sign, q)   starts at the seed, along sign * u; false: outside the domain
 ///   rate(q, w, u)             u the unit direction of motion in the world, w = dq/ds; or why there is none
-///   settle(q, w)              makes the cell that the motion goes into the current one
-///   leave(piece, way)         the first place where a Hermite piece leaves the current cell
+///   advance_cell(q, w)        makes the cell into which the motion goes the current one
+///   find_exit(piece, way)     finds the first point where a Hermite piece leaves the current cell
 /// Off the haptic thread, but without allocation.
 #pragma once
 #include "engine/field/grid/grid.h"
@@ -13,27 +13,28 @@
 
 namespace catena::flow {
 
+/// Result of advance_cell(): same cell, moved to another cell, or no cell beyond the face.
 enum class CellAdvance { here, moved, boundary };
 
-/// A way out of a cell: the Hermite parameter, and the axis and coordinate of the face.
+/// An exit from a cell: the Hermite parameter, and axis, coordinate and side of the face.
 struct CellExit {
   double theta = 0;
   int axis = 0;
   double face = 0;
-  int side = 0;  ///< -1 or +1
+  int side = 0;  ///< -1: lower face; +1: upper face.
 };
 
-/// Analytic fields, and any field without cells: no faces.
+/// Analytic fields, and any other field without cells: there are no faces.
 class FormulaFlowSource {
  public:
   explicit FormulaFlowSource(const Flow& flow) : flow_(flow) {}
-  /// The field's direction at the seed, or why there is none.
+  /// Computes the direction u of the field at the seed, or why there is none.
   StopReason seed_tangent_at(const Vec3& place, Vec3& u) {
     const StopReason stop = seed_direction(flow_, place, cursor_, u);
     if (stop == StopReason::outside) outside_status_ = flow_.field->status_outside(place, cursor_);
     return stop;
   }
-  SampleStatus outside_status() const { return outside_status_; }  ///< why the last rate that was outside was so
+  SampleStatus outside_status() const { return outside_status_; }  ///< Why the last position outside the domain was outside.
   bool start(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
     q = seed;
     reference_ = sign * u;
@@ -42,7 +43,7 @@ class FormulaFlowSource {
   }
   Vec3 world(const Vec3& q) const { return q; }
   Vec3 world_difference(const Vec3& d) const { return d; }
-  glm::vec3 rounding_error(const Vec3&) const { return glm::vec3(0.0f); }  ///< by the rounding of world(q)
+  glm::vec3 rounding_error(const Vec3&) const { return glm::vec3(0.0f); }  ///< Rounding error of world(q); always 0.
   StopReason rate(const Vec3& q, Vec3& w, Vec3& u) {
     const StopReason stop = direction_at(flow_, q, reference_, cursor_, u);
     if (stop == StopReason::outside) outside_status_ = flow_.field->status_outside(q, cursor_);
@@ -64,23 +65,25 @@ class FormulaFlowSource {
   SampleStatus outside_status_ = SampleStatus::ok;
 };
 
-/// A sampled field: within a cell every stage uses that cell's polynomial (of a line field: its dyads), extended as far as a stage
-/// may reach. Index coordinates are counted from the grid's first voxel where its own are far from 0, so that they stay exact.
+/// A sampled field: within a cell every stage uses the polynomial of that cell (line fields: its dyads), extrapolated as far as a stage
+/// reaches. Index coordinates are relative to the grid's first voxel where indices are far from 0, so that they stay exact.
 class CellFlowSource {
  public:
-  /// `cursor`: where the walk remembers nodes; none: its own.
+  /// `cursor`: cache of grid accessors to use; null: a cursor of its own.
   explicit CellFlowSource(const Flow& flow, field::Cursor* cursor = nullptr);
-  SampleStatus outside_status() const { return outside_status_; }  ///< why the last cell that could not be entered could not
+  SampleStatus outside_status() const { return outside_status_; }  ///< Why the last cell that could not be entered could not.
   StopReason seed_tangent_at(const Vec3& place, Vec3& u);
   bool start(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
   Vec3 world(const Vec3& q) const { return mapping_.world_from_index(q); }
   Vec3 world_difference(const Vec3& d) const { return mapping_.world_from_index_linear * d; }
-  glm::vec3 rounding_error(const Vec3& q) const;  ///< by the rounding of world(q), where that is more than 1e-13 L; else 0
+  /// Rounding error of world(q) where the position is so far from the origin that it exceeds about 1e-13 L; else 0.
+  glm::vec3 rounding_error(const Vec3& q) const;
   StopReason rate(const Vec3& q, Vec3& w, Vec3& u) const;
-  /// Goes on to neighbours while q lies on (or beyond) a face and moves outward.
+  /// Moves to neighboring cells while q lies on (or beyond) a face and w points outward. At the boundary q is put onto the face.
   CellAdvance advance_cell(Vec3& q, const Vec3& w);
+  /// Finds the first point where `piece` leaves the current cell. Returns false when it stays inside.
   bool find_exit(const Hermite& piece, CellExit& way) const;
-  /// Enters the neighbour behind a face; false: there is none.
+  /// Enters the neighboring cell behind a face. Returns false when there is none or it is not valid.
   bool cross_face(const CellExit& way);
   void set_reference(const Vec3& motion) { reference_ = motion; }
   double max_step() const { return max_step_; }
@@ -93,25 +96,26 @@ class CellFlowSource {
 
   Flow flow_;
   const field::VectorGrid* grid_;
-  field::Index3 first_;     ///< from which voxels are counted here
-  field::Mapping mapping_;  ///< of indices as they are counted here
+  field::Index3 first_;     ///< Origin of the index coordinates used here.
+  field::Mapping mapping_;  ///< Mapping of these index coordinates.
   field::Box box_;
   field::Cursor* shared_cursor_;
   field::Cursor own_cursor_;
   field::Index3 base_;
-  Vec3 lo_{0.0}, hi_{0.0};          ///< the current cell's faces, index coordinates
-  std::array<Vec3, 8> polynomial_;  ///< of a vector field: coefficients of 1, x, y, xy, z, xz, yz, xyz
+  Vec3 lo_{0.0}, hi_{0.0};          ///< Faces of the current cell, index coordinates.
+  std::array<Vec3, 8> polynomial_;  ///< Vector field: coefficients of 1, x, y, xy, z, xz, yz, xyz.
   bool cubic_;
-  field::CubicSamples<3> samples_;  ///< of a cubic vector field, instead
-  field::DyadCell dyads_;           ///< of a line field
-  Vec3 reference_{0.0};             ///< last tangent: line fields are turned to its side
+  field::CubicSamples<3> samples_;  ///< Cubic vector field: used instead of polynomial_.
+  field::DyadCell dyads_;           ///< Line field: dyads of the current cell.
+  Vec3 reference_{0.0};             ///< Last tangent: line fields are oriented to its side.
   double sign_ = 1;
   SampleStatus outside_status_ = SampleStatus::ok;
   double max_step_ = 0;
 };
 
-/// Shortens a step of length h from q (with the rate w there) that leaves the cell by `way`, so that it ends on the face: true steps
-/// until |q - face| <= 1e-14 L. `rate` is that of the cell. False: a stage stopped; `step.stop` says why.
+/// Shortens a step of length h from q (rate w there) that leaves the cell through `way`, so that it ends on the face: repeats true steps
+/// until |q - face| <= 1e-14 L. `rate` is that of the cell; `domain` is L. Returns false when a stage stopped; `step.stop` holds the
+/// reason.
 template <class Medium, class Rate>
 bool land_on_face(const Medium& medium, const Tableau& tableau, const Vec3& q, const Vec3& w, const CellExit& way, double domain,
                   Rate&& rate, double& h, Step& step) {

@@ -1,18 +1,18 @@
-/// One explicit Runge-Kutta step of q' = rate(q), for any space (world or index) and any tableau.
-/// Reversible bit for bit: only products (h a) k are formed, so that h -> -h and k -> -k give the same sums.
+/// One explicit Runge-Kutta step of q' = rate(q), for any space (world or index coordinates) and any tableau.
+/// Bitwise reversible: only products (h a) k are formed, so that h -> -h and k -> -k give the same sums.
 /// Any thread; no allocation, lock or throw.
 #pragma once
 #include "engine/geometry/flow/flow.h"
 
 namespace catena::flow {
 
-/// Butcher tableaus of the explicit Runge-Kutta methods. Stages 0..stages-1 advance (weights b); one more evaluation at the end
-/// of the step gives the next step's first stage, and closes the error estimate of the embedded pairs (weights e = b - b^).
+/// Butcher tableau of an explicit Runge-Kutta method. Stages 0..stages-1 advance (weights b); one more evaluation at the end of the
+/// step gives the first stage of the next step, and completes the error estimate of the embedded pairs (weights e = b - b^).
 ///   euler; rk2 midpoint; rk3 Kutta; rk4 classical; rkf34 Fehlberg 3(4); dp54 Dormand-Prince 5(4).
 struct Tableau {
   int order = 1;
-  int stages = 1;         ///< without the one at the end of the step
-  bool embedded = false;  ///< e is meaningful
+  int stages = 1;         ///< Number of stages, without the one at the end of the step.
+  bool embedded = false;  ///< e and e_last are meaningful.
   double a[6][5] = {};
   double b[6] = {};
   double e[6] = {};
@@ -47,7 +47,7 @@ inline constexpr Tableau dp54{5,
 
 }  // namespace tableaus
 
-/// `linear` (Eqs 1-2) advects as Euler does.
+/// Returns the tableau of a method; `linear` (Eqs. 1-2) advects like Euler.
 inline const Tableau& tableau_of(Method method) {
   switch (method) {
     case Method::linear:
@@ -67,15 +67,17 @@ inline const Tableau& tableau_of(Method method) {
   return tableaus::rkf34;
 }
 
+/// Result of runge_kutta_step().
 struct Step {
   Vec3 displacement{0.0};
-  Vec3 end_rate{0.0};  ///< rate at the end of the step, if asked for
-  Vec3 error{0.0};     ///< of the embedded pair
+  Vec3 end_rate{0.0};  ///< Rate at the end of the step, if requested.
+  Vec3 error{0.0};     ///< Error estimate of the embedded pair.
   StopReason stop = StopReason::none;
   int evaluations = 0;
 };
 
-/// `rate(q, out)` returns a Stop; `first` is the rate at q. On a stop the displacement is meaningless.
+/// Takes one step of size h from q. `rate(q, out)` returns a StopReason; `first` is the rate at q; `want_last` requests the rate at the end
+/// and, for embedded pairs, the error. If a stage stops, `stop` is set and the displacement is meaningless.
 template <class Rate>
 Step runge_kutta_step(const Tableau& tableau, const Vec3& q, const Vec3& first, double h, bool want_last, Rate&& rate) noexcept {
   Step step;
@@ -100,8 +102,8 @@ Step runge_kutta_step(const Tableau& tableau, const Vec3& q, const Vec3& first, 
   return step;
 }
 
-/// The factor by which a step changes after an error: (tolerance/error)^(1/4), safety 0.9, between `least` and `most`.
-/// Square roots only, so that bits repeat.
+/// Factor by which the step size changes after an error: 0.9 (tolerance/error)^(1/4), clamped to `least`..`most`. Uses square roots
+/// only, so that results are bitwise repeatable.
 inline double step_factor(double error, double tolerance, double least, double most) {
   if (!(error > 0)) return most;
   const double factor = 0.9 * std::sqrt(std::sqrt(tolerance / error));

@@ -1,4 +1,4 @@
-/// Private to this room: what the exact and the batched tracer share.
+/// Private to this module: shared by the exact tracer and the batch tracer.
 #pragma once
 #include <string>
 
@@ -7,28 +7,28 @@
 
 namespace catena::flow {
 
-/// One direction of a line.
+/// A line traced in one direction from its seed.
 struct Branch {
-  std::vector<Knot> knots;  ///< the seed first; s and t signed by the direction of the march
+  std::vector<Knot> knots;  ///< The seed first; s and t are signed by the direction of the trace.
   LineEnd end;
 };
 
-/// The end of a line where the medium gives no rate any more.
+/// End of a line where the flow source has no rate. `outside`: its status outside the domain.
 inline LineEnd make_line_end(StopReason stop, SampleStatus outside) {
   if (stop == StopReason::outside) return {Termination::boundary, outside};
   if (stop == StopReason::incoherent) return {Termination::incoherent, SampleStatus::incoherent};
   return {Termination::critical, SampleStatus::zero};
 }
 
-/// The direction at a seed, or the sentence that says why no line starts there.
+/// Returns the direction at a seed, or an Error with the complete message why no line starts there.
 Result<Vec3> seed_tangent(const Flow& flow, const Vec3& seed);
-/// Length and knots of a trace as they are meant: 10 L where the length is not given.
+/// Replaces the default values: length 10 L, no limit on the step size; and halves max_knots, for one direction.
 TraceOptions resolve_options(const Flow& flow, TraceOptions options);
 
-/// One direction with the exact marcher, from a place on a line (or beside the domain's face by rounding).
+/// Traces one direction with the exact tracer, from a position on a line (or, by rounding, next to the domain boundary).
 Branch trace_branch(const Flow& flow, const Vec3& place, double sign, const TraceOptions& options);
 
-/// Both directions, sewn at the seed.
+/// Joins both directions at the seed. Returns an Error when the line has no length in either direction.
 Result<CurvePtr> join_branches(const Flow& flow, const Vec3& seed, const Branch& forward, const Branch& backward);
 
 }  // namespace catena::flow

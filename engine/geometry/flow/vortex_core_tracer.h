@@ -1,4 +1,5 @@
-/// Private to this room: follows core lines from seeds, each place corrected across the line. Off the tick; one object a field.
+/// Private to this module: traces core lines from seeds and corrects each point across the line. Off the haptic thread; one object per
+/// field.
 #pragma once
 #include <cstdint>
 #include <unordered_map>
@@ -8,26 +9,28 @@
 
 namespace catena::flow {
 
-/// Where a core may be: found by one Newton step from the middle of a cell.
+/// Estimated point on a core line, from one Newton step at the center of a cell, with the axis of rotation.
 struct CoreSeed {
   Vec3 position{0.0}, axis{0.0};
 };
 
-/// A line as it was traced.
+/// A traced core line, before smoothing.
 struct CoreTrace {
   std::vector<Vec3> points;
   std::vector<double> swirls;
   bool closed = false;
-  bool first_exits_domain = false, last_exits_domain = false;  ///< its ends are where the domain or the mask is left
+  bool first_exits_domain = false, last_exits_domain = false;  ///< Its ends lie where the line exits the domain or the mask.
 };
 
+/// Traces core lines one after the other; remembers their points, so that no line is traced twice.
 class CoreTracer {
  public:
-  /// `step`: along a line; `spacing`: of the cells in which seeds were sought.
+  /// `scale`: scale of the velocity; `step`: step size along a line; `spacing`: edge of the cells in which seeds were searched, both world
+  /// units; `has_kinks`: grad v has kinks at cell faces (grids).
   CoreTracer(const field::VectorField& field, CoreCriterion criterion, double scale, double step, double spacing, bool has_kinks);
-  /// Follows the line at a seed. False: there is none, or it is traced already.
+  /// Traces the core line at a seed. Returns false when there is none or it has already been traced.
   bool trace(const CoreSeed& seed, CoreTrace& out);
-  /// Places on lines so far.
+  /// Number of points on all lines traced so far.
   std::size_t point_count() const { return point_count_; }
 
  private:
@@ -47,14 +50,14 @@ class CoreTracer {
   struct RecordedPoint {
     Vec3 position{0.0};
     std::uint32_t line;
-    std::size_t number;  ///< of all
+    std::size_t number;  ///< Running index over all recorded points.
   };
   std::unordered_map<std::uint64_t, std::vector<RecordedPoint>> recorded_;
   std::uint32_t line_ = 0;
   std::size_t point_count_ = 0;
 };
 
-/// Joins lines whose ends are within `reach` and lead to each other.
+/// Joins lines whose ends are within `reach` (world units) and continue each other.
 void join_traces(std::vector<CoreTrace>& traces, double reach);
 
 }  // namespace catena::flow

@@ -1,16 +1,16 @@
-/// The core lines of the vortices of a steady flow, traced once for the hand and the eye. With J = grad v:
+/// Vortex core lines of a steady flow, traced once for haptics and rendering. With J = grad v:
 ///   sujudi-haimes     v - (v.e) e = 0, e the real unit eigenvector of J where the two others are a complex pair (Sujudi and Haimes, 1995);
 ///                     the same set as v || J v there (Roth and Peikert, 1998). First order: exact where the core is straight
-///   parallel-vectors  v || D^2 v / Dt^2 where J has a complex pair (Roth and Peikert, 1998): second order, for bent cores
-///   vorticity         v || curl v where the flow turns in the plane across curl v. Not a definition of a core: helicity at its extreme
-/// Where more than half of the places at which the flow turns are on a core by the criterion (v || curl v everywhere: a Beltrami flow), it
-/// tells none from another, and none is traced.
-/// How: at the middle of every cell (of a formula: of 48 an axis of its domain) one Newton step; where it is shorter than 1.5 cells the
-/// core is sought, and followed both ways in steps of half a voxel (of a formula: L / 2000), each corrected by Newton's method across the
-/// line to 1e-13 L, or 1e-3 voxels where grad v has a kink. Lines whose ends meet are joined. Of a grid
-/// each knot is then moved onto the parabola that fits its neighbours within three voxels best, fewer near an open end, which stays: noise
-/// and the kinks of cells count less, and a line that is straight or bends evenly stays where it is. Through the knots goes a cubic spline,
-/// so that tangent and curvature are continuous. Off the tick; any thread; the same lines for the same field.
+///   parallel-vectors  v || D^2 v / Dt^2 where J has a complex pair (Roth and Peikert, 1998): second order, for curved cores
+///   vorticity         v || curl v where the flow rotates in the plane normal to curl v. No definition of a core: extremal helicity
+/// Where more than half of the rotating positions satisfy the criterion (v || curl v everywhere: a Beltrami flow), the criterion does not
+/// separate cores, and none is traced.
+/// Method: one Newton step at the center of every cell (formulas: 48 cells per axis of the domain). Where the step is shorter than 1.5
+/// cells the core is located and traced in both directions in steps of half a voxel (formulas: L / 2000). Each point is corrected by
+/// Newton's method across the line to 1e-13 L, or 1e-3 voxels where grad v has a kink. Lines whose ends meet are joined. For grids each
+/// knot is then moved onto the least-squares parabola of its neighbors within three voxels, fewer near an open end, which stays: noise and
+/// kinks at cell faces are reduced, and a line that is straight or evenly curved is unchanged. A cubic spline through the knots makes
+/// tangent and curvature continuous. Off the haptic thread; any thread; deterministic.
 #pragma once
 #include <array>
 #include <memory>
@@ -22,35 +22,38 @@
 
 namespace catena::flow {
 
-/// By what a core is told.
+/// Definition of a core line.
 enum class CoreCriterion { sujudi_haimes, parallel_vectors, vorticity };
-/// The words of scenes, in the order of the enumeration.
+/// Names in scene files, in the order of the enumeration.
 inline constexpr std::array<std::string_view, 3> kCoreCriterionNames{"sujudi-haimes", "parallel-vectors", "vorticity"};
 
-/// What is asked for.
+/// Options of find_vortex_cores().
 struct CoreOptions {
-  CoreCriterion criterion = CoreCriterion::sujudi_haimes;  ///< by what a core is told
-  double min_length = 0;                                   ///< of a line, world units; 0: of grids 6 voxels, of others 0.02 L
-  double min_swirl = 0.05;                                 ///< mean swirl of a line, of the strongest one's
+  CoreCriterion criterion = CoreCriterion::sujudi_haimes;  ///< Definition of a core line.
+  double min_length = 0;                                   ///< Minimum length of a line, world units; 0: grids 6 voxels, formulas 0.02 L.
+  double min_swirl = 0.05;                                 ///< Minimum mean swirl of a line, as a fraction of the strongest line's.
   auto operator<=>(const CoreOptions&) const = default;
 };
 
 /// All core lines of a field, longest first. Immutable; any thread.
 struct VortexCores {
-  std::vector<CurvePtr> lines;             ///< may be empty
-  std::vector<std::vector<float>> swirls;  ///< at the knots of each line: imaginary part of the complex pair, by the greatest of all
-  bool holds_everywhere = false;           ///< every place satisfies the criterion: none is traced
-  double spacing = 0;                      ///< of the knots, world units
+  std::vector<CurvePtr> lines;  ///< Core lines; may be empty.
+  /// At the knots of each line: imaginary part of the complex pair, as a fraction of the maximum over all lines.
+  std::vector<std::vector<float>> swirls;
+  bool holds_everywhere = false;  ///< The criterion holds at more than half of the rotating positions: no line is traced.
+  double spacing = 0;             ///< Distance between knots, world units.
 };
-/// Cores are shared and never change.
+/// Shared, immutable core lines.
 using VortexCoresPtr = std::shared_ptr<const VortexCores>;
 
-/// The cores of a field; those that something holds are not traced again. The error: no memory, or more lines than can be kept.
+/// Returns the core lines of a field; results that are still referenced elsewhere are reused. Returns an Error when the memory budget is
+/// too small or there are too many lines. Calls from several threads run one after the other.
 Result<VortexCoresPtr> find_vortex_cores(const field::VectorFieldPtr& field, const CoreOptions& options);
 
-/// Private to this room: each place on the parabola of the `reach` places before and after it.
+/// Private to this module: fits a parabola to the `reach` points before and after each point and moves the point onto it.
 std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int reach);
-/// Private to this room: a line through these places (core_lines.cpp); `closed`: the last one leads to the first.
+/// Private to this module: returns a spline through these points (vortex_core_splines.cpp); `closed`: the last point is joined to the
+/// first.
 CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last, double domain_length);
 
 }  // namespace catena::flow

@@ -1,8 +1,8 @@
-/// A hierarchy of boxes over the faces of a mesh: binary, flat, two children's boxes a cache line, leaves of at most four faces
-/// that lie one after the other. Split where the surface-area heuristic is least (16 bins), by halves where that goes too deep.
-/// Boxes are floats, rounded outwards. Built off the tick; a walk is bounded by its budget of nodes and a fixed stack.
-/// Curves and polylines keep trees of their own (engine/geometry/flow/curve.h, haptics/constraints/shapes/polyline_bvh.h): the order of a
-/// walk decides which of equally near places is taken and what a walk that is cut off has seen, and theirs is part of what recordings hold.
+/// Bounding volume hierarchy (BVH) over the faces of a mesh: binary, flat, the boxes of two children in one cache line, leaves of at most
+/// four consecutive faces. Split by the surface-area heuristic (16 bins), by halves where the tree would become too deep.
+/// Boxes are floats, rounded outward. Built off the haptic thread; a traversal is bounded by its node budget and a fixed stack.
+/// Curves and polylines have trees of their own (engine/geometry/flow/curve.h, haptics/constraints/shapes/polyline_bvh.h): the traversal
+/// order decides which of several equally near points is returned and what an interrupted traversal has visited; recordings rely on it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,38 +12,38 @@
 
 namespace catena::mesh {
 
-/// The box of one face, in the mesh's own frame.
+/// Bounding box of one face, in the local frame of the mesh.
 struct FaceBox {
-  Vec3 lo{0.0}, hi{0.0};  ///< least and greatest corner
+  Vec3 lo{0.0}, hi{0.0};  ///< Minimum and maximum corner.
 };
 
-/// Two children's boxes in one cache line.
+/// Inner node: the boxes of its two children in one cache line.
 struct alignas(64) BvhNode {
-  std::array<float, 3> lo[2], hi[2];     ///< corners of the children's boxes, rounded outwards
-  std::int32_t child[2] = {-1, -1};      ///< >= 0: a node; else ~first face of a leaf
-  std::array<std::uint16_t, 2> count{};  ///< faces of a leaf; 0 with child < 0: nothing there
-  /// Fills the cache line.
-  std::array<std::uint32_t, 1> unused_{};  // fills the line
+  std::array<float, 3> lo[2], hi[2];     ///< Corners of the children's boxes, rounded outward.
+  std::int32_t child[2] = {-1, -1};      ///< >= 0: index of a node; < 0: ~index of the first face of a leaf.
+  std::array<std::uint16_t, 2> count{};  ///< Number of faces of a leaf; 0 with child < 0: no child.
+  /// Padding to a full cache line.
+  std::array<std::uint32_t, 1> unused_{};
 };
 static_assert(sizeof(BvhNode) == 64);
 
-/// The hierarchy. Walks allocate nothing and may run on the haptic thread.
+/// The hierarchy. Traversals do not allocate and may run on the haptic thread.
 class Bvh {
  public:
-  static constexpr int kStackSize = 64;  ///< Nodes that a walk may keep open.
+  static constexpr int kStackSize = 64;  ///< Maximum number of pending nodes in a traversal.
 
-  /// `order` becomes the faces' order: leaf ranges refer to it.
+  /// Builds the hierarchy over `boxes`. `order` receives the permutation of the faces: leaf ranges refer to it. Off the haptic thread.
   void build(const std::vector<FaceBox>& boxes, std::vector<std::uint32_t>& order);
-  /// Memory of the nodes.
+  /// Memory used by the nodes, bytes.
   std::size_t bytes() const { return nodes_.size() * sizeof(BvhNode); }
 
-  /// Calls visit(face) for every face whose box, grown by `margin`, meets the segment from..to. visit may shorten the segment through
-  /// the reference `to`. Returns false where `budget` (nodes, counted down) ran out.
+  /// Calls visit(face) for every face whose box, grown by `margin`, intersects the segment from..to. `visit` may shorten the segment
+  /// through the reference `to`. Returns false when `budget` (number of nodes, counted down) is exhausted.
   template <class Visit>
   bool visit_segment(const Vec3& from, const Vec3& to, double margin, int& budget, Visit&& visit) const noexcept;
 
-  /// Calls visit(face) for the faces whose boxes are closer to `p` than the square root of `bound2`, nearest boxes first; visit may
-  /// lower the bound through the reference. Returns false where `budget` ran out.
+  /// Calls visit(face) for the faces whose boxes are closer to `p` than sqrt(bound2), nearest boxes first; `visit` may lower the bound
+  /// through the reference. Returns false when `budget` (number of nodes, counted down) is exhausted.
   template <class Visit>
   bool visit_nearest(const Vec3& p, const double& bound2, int& budget, Visit&& visit) const noexcept;
 

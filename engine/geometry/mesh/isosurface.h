@@ -1,10 +1,10 @@
-/// The surface s(x) = level of a grid as triangles, cell by cell:
-///   vertices   where the level is attained on the edges of cells: v0 + t (v1 - v0) = level, as the trilinear cell has it; rarely, where
-///              a loop of cuts crosses a face twice, one more within a cell
-///   faces      of a cell with four cuts are joined as the bilinear function on them is (the asymptotic decider of Nielson and Hamann,
-///              "The asymptotic decider", Proc. Visualization 1991, 83-91), so that neighbouring cells agree and no holes are left
-///   normals    the mean of the cells' gradients at a vertex: of central differences, interpolated along the edge
-/// CellCache that are not valid have no triangles: the surface has open edges there, and where it leaves the grid. Off the tick.
+/// Extracts the isosurface s(x) = level of a grid as triangles, cell by cell:
+///   vertices   lie on cell edges, where the trilinear interpolation attains the level: v0 + t (v1 - v0) = level; rarely, where a loop of
+///              cuts crosses a face twice, there is one more inside the cell
+///   faces      with four cuts are connected as the bilinear function on them demands (Nielson and Hamann, "The asymptotic decider",
+///              Proc. Visualization 1991, 83-91), so that neighboring cells agree and there are no holes
+///   normals    mean over the adjacent cells of the gradient at a vertex (central differences, interpolated along the edge)
+/// Invalid cells have no triangles: the surface has open edges there and at the boundary of the grid. Off the haptic thread.
 #pragma once
 #include <functional>
 
@@ -14,15 +14,16 @@
 
 namespace catena::mesh {
 
-/// Where the normals point, and seen from where the corners of a triangle run counter-clockwise.
+/// Side of the level to which the normals point; the corners of a triangle are counter-clockwise when seen from that side.
 enum class OutwardSide { lower, higher };
 
+/// Triangles of the isosurface, with normals.
 struct Isosurface : TriangleSoup {
-  std::vector<Vec3> normals;  ///< unit, by vertex; zero where the gradient is
+  std::vector<Vec3> normals;  ///< Unit normal per vertex; zero where the gradient is zero.
 };
 
-/// `name` begins every message: a level without a surface, a grid of one layer, more than the memory that is allowed. `progress` is told
-/// now and then which part is done.
+/// Extracts the isosurface. `name` begins every message; `progress` is called from time to time with the completed fraction, 0 to 1.
+/// Returns an Error when the level has no surface, the grid has only one slice of voxels, or the memory budget is too small.
 Result<Isosurface> extract_isosurface(const field::ScalarGrid& grid, double level, OutwardSide outside, const std::string& name,
                                       const std::function<void(double)>& progress = {});
 

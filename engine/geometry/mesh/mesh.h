@@ -1,8 +1,8 @@
-/// A triangle mesh that can be felt and seen: welded, indexed, with its neighbourhoods and a hierarchy of boxes. Immutable;
-/// open edges, non-manifold edges and turned faces are allowed and counted.
-/// World units in `vertices`, double precision. What a tick reads is in the mesh's own frame:
-///   own = (world - centre) / scale,  scale = the power of two at or above L, so that scaling is exact and own lies in [-1/2, 1/2]^3
-/// Made off the tick; reading is safe from every thread, without allocation.
+/// Triangle mesh for haptics and rendering: welded, indexed, with adjacency and a bounding volume hierarchy. Immutable; open edges,
+/// non-manifold edges and misoriented faces are allowed and counted.
+/// `vertices` are in world units, double precision. Data for the haptic thread are in the mesh's local (normalized) frame:
+///   local = (world - center) / scale,  scale = the smallest power of two >= L, so that scaling is exact and local lies in [-1/2, 1/2]^3
+/// Created off the haptic thread; reading is safe from any thread and does not allocate.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,77 +17,77 @@
 
 namespace catena::mesh {
 
-/// Three indices of vertices, counter-clockwise seen from outside.
+/// Three vertex indices, counter-clockwise when seen from the outward side.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// What a reader found: not welded, not checked beyond its numbers.
+/// Output of a mesh reader: neither welded nor validated, except for its numbers.
 struct TriangleSoup {
-  std::vector<Vec3> vertices;       ///< corners, world units
-  std::vector<Triangle> triangles;  ///< faces
+  std::vector<Vec3> vertices;       ///< Corner positions, world units.
+  std::vector<Triangle> triangles;  ///< Vertex indices of each face.
 };
 
-/// One face in the mesh's own frame: normal . x = offset, and within its outline where side[k] . x >= limit[k] for all edges k
-/// (from corner k to corner k + 1; side[k] is unit, in the plane, pointing inwards).
+/// One face in the local frame: the plane normal . x = offset, bounded by edge_normal[k] . x >= edge_offset[k] for all edges k (edge k
+/// goes from corner k to corner k + 1).
 struct Face {
-  Vec3 normal{0.0};                     ///< unit; the corners run counter-clockwise seen from where it points
-  double offset = 0;                    ///< the plane is normal . x = offset
-  std::array<Vec3, 3> edge_normal{};    ///< unit, in the plane, pointing inwards
-  std::array<double, 3> edge_offset{};  ///< see above
+  Vec3 normal{0.0};                     ///< Unit normal; the corners are counter-clockwise when seen from the side it points to.
+  double offset = 0;                    ///< Plane offset: normal . x = offset.
+  std::array<Vec3, 3> edge_normal{};    ///< Unit edge normals, in the plane, pointing inward.
+  std::array<double, 3> edge_offset{};  ///< Edge offsets: edge_normal[k] . x = edge_offset[k] on edge k.
 
-  /// Distance from the plane, positive on the outside.
+  /// Signed distance from the plane, local frame; positive on the outward side.
   double signed_distance(const Vec3& p) const { return dot(normal, p) - offset; }
-  /// Whether p lies over the face's outline, or at most `tolerance` beyond an edge.
+  /// Returns whether the projection of p onto the plane lies within the face, or outside an edge by at most `tolerance` (local frame).
   bool covers(const Vec3& p, double tolerance) const {
     return dot(edge_normal[0], p) - edge_offset[0] >= -tolerance && dot(edge_normal[1], p) - edge_offset[1] >= -tolerance &&
            dot(edge_normal[2], p) - edge_offset[2] >= -tolerance;
   }
 };
 
-/// A mesh. Immutable; any thread; nothing allocates after it was made.
+/// A triangle mesh. Immutable and safe to read from any thread; nothing allocates after creation.
 class TriangleMesh {
  public:
-  /// What messages and the scene call it.
+  /// Name used in messages and in the scene.
   const std::string& name() const { return name_; }
-  std::uint64_t version() const { return version_; }       ///< unique in the process
-  double domain_length() const { return domain_length_; }  ///< L: the longest edge of the bounding box, world units
-  /// Least corner of its box, world units.
+  std::uint64_t version() const { return version_; }       ///< Unique in the process.
+  double domain_length() const { return domain_length_; }  ///< L: the longest edge of the bounding box, world units.
+  /// Minimum corner of the bounding box, world units.
   const Vec3& min_corner() const { return min_corner_; }
-  /// Greatest corner of its box, world units.
+  /// Maximum corner of the bounding box, world units.
   const Vec3& max_corner() const { return max_corner_; }
-  /// Memory that it holds.
+  /// Memory used, bytes.
   std::size_t bytes() const;
 
-  /// Places of the vertices, world units.
+  /// Vertex positions, world units.
   const std::vector<Vec3>& vertices() const { return vertices_; }
-  const std::vector<Triangle>& triangles() const { return triangles_; }  ///< in the order of the hierarchy, not of the file
-  std::size_t dropped_triangles() const { return dropped_triangles_; }   ///< triangles without an area
-  /// Insets with one face.
+  const std::vector<Triangle>& triangles() const { return triangles_; }  ///< In the order of the hierarchy, not of the file.
+  std::size_t dropped_triangles() const { return dropped_triangles_; }   ///< Number of triangles dropped because their area is zero.
+  /// Number of edges with one face.
   std::size_t open_edges() const { return open_edges_; }
-  std::size_t non_manifold_edges() const { return non_manifold_edges_; }  ///< with more than two faces
-  std::size_t misoriented_edges() const { return misoriented_edges_; }    ///< whose two faces disagree on the outside
+  std::size_t non_manifold_edges() const { return non_manifold_edges_; }  ///< Number of edges with more than two faces.
+  std::size_t misoriented_edges() const { return misoriented_edges_; }    ///< Number of edges whose two faces disagree on the outward side.
 
-  // the mesh's own frame
-  /// World units a unit of its own frame.
+  // the local frame
+  /// World units per unit of the local frame.
   double scale() const { return scale_; }
-  /// A world place in its own frame.
+  /// Converts a world position to the local frame.
   Vec3 local_from_world(const Vec3& world) const { return (world - center_) * inverse_scale_; }
-  /// A place of its own frame in the world.
+  /// Converts a position in the local frame to world units.
   Vec3 world_from_local(const Vec3& own) const { return center_ + own * scale_; }
-  /// A face, in its own frame.
+  /// Returns a face, in the local frame.
   const Face& face(std::uint32_t f) const { return faces_[f]; }
-  /// Corner k (0, 1, 2) of a face, in its own frame.
+  /// Returns corner k (0, 1, 2) of a face, in the local frame.
   const Vec3& corner(std::uint32_t f, int k) const { return local_vertices_[triangles_[f][static_cast<std::size_t>(k)]]; }
-  /// The hierarchy of boxes over its faces, in the mesh's own frame; it numbers faces as triangles() does.
+  /// Bounding volume hierarchy of the faces, in the local frame; face indices are those of triangles().
   const Bvh& bvh() const { return bvh_; }
-  /// The next face around edge k (from corner k to k + 1), in a ring; f itself at an open edge.
+  /// Next face around edge k (from corner k to k + 1), in a cyclic order; f itself at an open edge.
   std::uint32_t adjacent_face(std::uint32_t f, int k) const { return adjacent_faces_[f][static_cast<std::size_t>(k)]; }
-  /// All faces at a vertex.
+  /// Indices of all faces that share a vertex.
   std::span<const std::uint32_t> faces_around(std::uint32_t vertex) const {
     return std::span(vertex_faces_).subspan(vertex_face_offsets_[vertex], vertex_face_offsets_[vertex + 1] - vertex_face_offsets_[vertex]);
   }
-  /// Whether a vertex lies on an open edge.
+  /// Returns whether a vertex lies on an open edge.
   bool is_boundary_vertex(std::uint32_t vertex) const { return is_boundary_[vertex] != 0; }
-  /// The mean of the faces' normals, weighted by their angles: its sign tells inside from outside (Baerentzen and Aanaes).
+  /// Angle-weighted mean of the normals of the faces at a vertex, unit; its sign separates inside from outside (Baerentzen and Aanaes).
   const Vec3& vertex_normal(std::uint32_t vertex) const { return vertex_normals_[vertex]; }
 
  private:
@@ -108,27 +108,28 @@ class TriangleMesh {
   Bvh bvh_;
 };
 
-/// Meshes are shared and never change.
+/// Shared, immutable mesh.
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
 
-inline constexpr double kMinTriangleHeight = 1e-10;  ///< of L: the height below which a triangle has no area
+/// Triangles with a smaller height, as a fraction of L, count as having no area.
+inline constexpr double kMinTriangleHeight = 1e-10;
 
-/// Welds vertices of equal coordinates, drops triangles without an area and builds the rest. Refused: no triangle left, numbers that
-/// are not finite, a size beyond 1e-100..1e100. The message begins with `name`.
+/// Welds vertices with equal coordinates, drops triangles without an area and builds the mesh. Returns an Error that begins with `name`
+/// when no triangle remains, a number is not finite, or the size is outside of 1e-100..1e100.
 Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name);
 
-// ---- closest points, in the mesh's own frame; no allocation, lock or throw ----
+// ---- closest points, in the local frame; no allocation, lock or throw ----
 
-/// A place on a mesh, in the mesh's own frame.
+/// A point on a mesh, in the local frame.
 struct ClosestPoint {
-  Vec3 point{0.0};          ///< the place
-  double distance2 = 0;     ///< squared distance from what was asked about
-  std::uint32_t face = 0;   ///< the face that it is on
-  std::int8_t edge = -1;    ///< 0..2: on that edge of the face (its ends included)
-  std::int8_t corner = -1;  ///< 0..2: at that corner
+  Vec3 point{0.0};          ///< Position of the point.
+  double distance2 = 0;     ///< Squared distance from the query point.
+  std::uint32_t face = 0;   ///< Index of the face that contains the point.
+  std::int8_t edge = -1;    ///< 0..2: the point lies on that edge of the face (its ends included); -1: inside the face.
+  std::int8_t corner = -1;  ///< 0..2: the point is that corner of the face; -1: it is not a corner.
 };
 
-/// Calls visit(face) for the other faces at an edge of `face`: one, none at an open edge, several at a non-manifold one (at most 16).
+/// Calls visit(face) for the other faces at an edge of `face`: one, none at an open edge, several at a non-manifold edge (at most 16).
 template <class Visit>
 void for_each_adjacent_face(const TriangleMesh& mesh, std::uint32_t face, int edge, Visit&& visit) noexcept {
   const Triangle& t = mesh.triangles()[face];
@@ -136,7 +137,7 @@ void for_each_adjacent_face(const TriangleMesh& mesh, std::uint32_t face, int ed
   std::uint32_t f = mesh.adjacent_face(face, edge);
   for (int i = 0; i < 16 && f != face; ++i) {
     visit(f);
-    // the ring's faces number the edge in their own way
+    // each face in the cycle has its own index for this edge
     const Triangle& other = mesh.triangles()[f];
     int k = 0;
     for (int j = 0; j < 3; ++j) {
@@ -147,22 +148,23 @@ void for_each_adjacent_face(const TriangleMesh& mesh, std::uint32_t face, int ed
   }
 }
 
-/// The closest point of one face.
+/// Returns the point of one face that is closest to p; all in the local frame.
 ClosestPoint closest_point_on_face(const TriangleMesh& mesh, std::uint32_t face, const Vec3& p) noexcept;
 
-/// What nearest_point() finds.
+/// Result of nearest_point().
 struct NearestResult {
-  ClosestPoint closest;      ///< the place; means something where `found`
-  bool found = false;        ///< something within the radius
-  bool is_complete = false;  ///< false: the budget of nodes ran out, something nearer may be there
+  ClosestPoint closest;      ///< The closest point; meaningful only if `found`.
+  bool found = false;        ///< Whether a point lies within the radius.
+  bool is_complete = false;  ///< False: the node budget was exhausted, so a nearer point may exist.
 };
 
-/// The closest point of the whole mesh, if at most `radius` away. `hint`: a face that may be near.
+/// Finds the point of the mesh closest to p within `radius` (local frame). `budget`: number of BVH nodes, counted down. `hint`: a face that
+/// may be near.
 NearestResult nearest_point(const TriangleMesh& mesh, const Vec3& p, double radius, int& budget, std::uint32_t hint = 0) noexcept;
 
-/// The sum of the normals at the point found, not unit: of its face, of the faces at its edge, or the vertex normal.
+/// Returns the normal at a point, not unit: the face normal, the sum of the normals of the faces at its edge, or the vertex normal.
 Vec3 normal_at(const TriangleMesh& mesh, const ClosestPoint& at) noexcept;
-/// At an open edge, where the surface ends.
+/// Returns whether the point lies on an open edge, where the surface ends.
 bool is_on_boundary(const TriangleMesh& mesh, const ClosestPoint& at) noexcept;
 
 }  // namespace catena::mesh

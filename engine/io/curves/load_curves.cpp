@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint64_t kMaxBytes = std::uint64_t{8} << 30;
 
-/// The registry: one line a format.
+/// Registry of formats, one line each.
 struct Format {
   std::string_view ending;
   Result<CurveSet> (*parse)(std::string_view bytes, const std::string& name);

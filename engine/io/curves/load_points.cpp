@@ -17,7 +17,7 @@ constexpr double kFarthestPoint = 1e15;
 constexpr std::size_t kMostColumns = 256, kSampled = 64;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// CellCache of a line; without a separator blanks part them, as many as there are.
+/// Splits a line into cells at the separator; the separator ' ' stands for any run of blanks.
 void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
   cells.clear();
   while (separator == ' ') {
@@ -105,7 +105,7 @@ class TableReader {
     return Done{};
   }
 
-  /// Which columns hold numbers, the first row says.
+  /// Chooses the columns that hold numbers, by the first row.
   void choose_columns(std::size_t rows) {
     std::string words;
     for (std::size_t k = 0; k < names_.size(); ++k) {
@@ -178,7 +178,7 @@ double spacing_of(const std::vector<glm::vec3>& points) {
 }  // namespace
 
 void PointSet::set_positions(const std::vector<Vec3>& places) {
-  // single precision says a coordinate to 1 in 2^24: of this many edges of their box that leaves 1 in 4096 of an edge
+  // single precision resolves a coordinate to 1 in 2^24: at a distance of this many box edges that leaves 1 in 4096 of an edge
   constexpr double kFarEdges = 4096;
   Bounds box;
   double reach = 0;

@@ -1,4 +1,4 @@
-// MRtrix: "mrtrix tracks", lines "key: value", "END"; "file: . OFFSET" says where the triples begin.
+// Loads MRtrix tracks: "mrtrix tracks", lines "key: value", "END"; "file: . OFFSET" gives the offset of the triples.
 #include <fmt/format.h>
 
 #include <cmath>

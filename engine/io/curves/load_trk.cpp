@@ -1,4 +1,4 @@
-// TrackVis (trackvis.org/docs/?subsect=fileformat); what the header leaves open as NiBabel reads it.
+// Loads TrackVis files (trackvis.org/docs/?subsect=fileformat); what the header leaves undefined is read as NiBabel does.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr std::size_t kHeader = 1000;
 constexpr std::size_t kDim = 6, kVoxelSize = 12, kScalars = 36, kScalarNames = 38, kProperties = 238, kVoxToRas = 440, kVoxelOrder = 948,
                       kCount = 988, kVersion = 992, kHeaderSize = 996;
 constexpr std::size_t kNameBytes = 20;
-constexpr int kMostScalars = 10;  // as many have names
+constexpr int kMostScalars = 10;  // number of scalars that have names
 
 /// world = linear p + shift
 struct Affine {
@@ -22,13 +22,13 @@ struct Affine {
   Vec3 shift{0.0};
 };
 
-/// An axis of the patient: 0..2 for right, front, head, and which way it runs.
+/// An axis of patient space: 0..2 for right, anterior, superior, and its sign.
 struct Axis {
   int axis = -1;
   double sign = 1;
 };
 
-/// The axis that each column of the matrix is nearest to; the columns take theirs by size, each one once.
+/// Assigns each column of the matrix the axis nearest to it; each axis once, the largest entries first.
 std::array<Axis, 3> axes_of(const Mat3& m) {
   std::array<Axis, 3> out;
   Mat3 left;
@@ -113,7 +113,7 @@ class TrkHeaderReader {
     if (!is_finite(voxel) || !(std::min({voxel.x, voxel.y, voxel.z}) > 0))
       return failed(fmt::format("the voxel size is ({}, {}, {}); three numbers > 0 were expected", voxel.x, voxel.y, voxel.z));
 
-    // vox_to_ras; the versions of the matrix before 2 left it out
+    // vox_to_ras; versions below 2 of the format omit it
     Affine ras;
     const auto entry = [&](int row, int column) {
       return static_cast<double>(at<float>(kVoxToRas + 4 * static_cast<std::size_t>(4 * row + column)));
@@ -136,7 +136,8 @@ class TrkHeaderReader {
     if (letters.size() < 3 || !read_order(letters, from))
       return failed("the voxel order is " + in_quotes(letters) + "; three letters such as \"LPS\" were expected");
 
-    // voxel of the file's order -> voxel of the matrix's: the axis that means the same, counted from the other end where it runs against
+    // voxel in the file's order -> voxel of the matrix: the axis with the same meaning, counted from the other end if its direction is
+    // opposite
     Mat3 turn(0.0);
     Vec3 back(0.0);
     for (int c = 0; c < 3; ++c)

@@ -1,4 +1,4 @@
-// Lines and points that the program catena-read-vtk reads: VTK's polylines, and vertices of any of its shapes.
+// Loads lines and points read by the program catena-read-vtk: VTK polylines, and vertices of any VTK data.
 #include "engine/base/text.h"
 #include "engine/geometry/curves/point_set.h"
 #include "engine/io/client.h"

@@ -7,10 +7,10 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;
 
-/// The registry: one line a format.
+/// Registry of formats, one line each.
 struct Format {
   std::string_view ending;
-  Result<TriangleSoup> (*parse)(std::string_view bytes, const std::string& name);  ///< nullptr: the reader program does
+  Result<TriangleSoup> (*parse)(std::string_view bytes, const std::string& name);  ///< nullptr: the reader program parses it
 };
 constexpr Format kFormats[] = {{".stl", parse_stl}, {".obj", parse_obj}, {".ply", nullptr}, {".gii", nullptr}, {".vtp", nullptr},
                                {".vtk", nullptr},   {".vtu", nullptr},   {".vtm", nullptr}, {".pvd", nullptr}, {".series", nullptr}};
@@ -21,7 +21,7 @@ const Format* format_of(std::string_view path) {
   return nullptr;
 }
 
-/// The text is gone when the mesh is made.
+/// Reads the triangles; the text is freed before the mesh is built.
 Result<TriangleSoup> read_soup(const std::string& path, int step) {
   if (format_of(path)->parse == nullptr) return read_surface(path, step);
   CATENA_TRY(const std::string bytes, read_text_file(path, "a triangle mesh (" + join_alternatives(mesh_endings()) + ")", kMaxBytes));

@@ -1,8 +1,8 @@
-/// Reads triangle meshes: STL (binary and ASCII) and OBJ here; PLY, GIFTI and VTK's surfaces by the program catena-read-vtk. Corners are
-/// joined as they lie; stored normals, colours, texture coordinates, groups and materials are not used: the outside is where the corners
-/// run counter-clockwise. OBJ polygons become fans. Refused, with one line "FILE: place: what; what was expected": numbers that are not
-/// finite, indices of vertices that are not there, a file that ends too early or is longer than it says, more than kMaxTriangles, more than
-/// the memory that is allowed (engine/base/memory_limit.h). Off the tick.
+/// Loads triangle meshes: STL (binary and ASCII) and OBJ here; PLY, GIFTI and VTK surfaces through catena-read-vtk. Corners with equal
+/// coordinates are welded; stored normals, colors, texture coordinates, groups and materials are ignored: the outward side is where the
+/// corners are counter-clockwise. OBJ polygons become triangle fans. Rejected with one line "FILE: place: what; what was expected": numbers
+/// that are not finite, vertex indices out of range, a file that is truncated or longer than it states, more than kMaxTriangles, more
+/// memory than the budget allows (engine/base/memory_limit.h). Off the haptic thread.
 #pragma once
 #include <string_view>
 
@@ -10,28 +10,29 @@
 
 namespace catena::mesh {
 
-inline constexpr std::size_t kMaxTriangles = 20'000'000;  ///< More are refused.
+inline constexpr std::size_t kMaxTriangles = 20'000'000;  ///< Meshes with more triangles are rejected.
 
-bool is_mesh_file(std::string_view path);  ///< by its ending, any case; .vtk, .vtu and .vtm may hold fields instead
-/// The endings, in lower case with the dot.
+bool is_mesh_file(std::string_view path);  ///< By the file extension, any case; .vtk, .vtu and .vtm may hold fields.
+/// File extensions, in lower case with the dot.
 const std::vector<std::string_view>& mesh_endings();
 
-/// world = scale * file + offset
+/// Placement of a mesh: world = scale * file + offset.
 struct MeshTransform {
-  double scale = 1;  ///< of the file's numbers
-  Vec3 offset{0.0};  ///< world units, added after the scale
+  double scale = 1;  ///< World units per unit of the file.
+  Vec3 offset{0.0};  ///< World units, added after scaling.
   bool operator==(const MeshTransform&) const = default;
 };
 
-/// Reads a file of any of these formats and makes the mesh. `step`: of a file that has several in time.
+/// Loads a file in any of these formats and creates the mesh. `step`: time step, for a file with several. Returns an Error when the file
+/// is rejected.
 Result<MeshPtr> load_mesh(const std::string& path, const MeshTransform& placement = {}, int step = 0);
 
-/// The contents of a file; `name` begins every message.
+/// Parses the contents of an .stl file; `name` begins every message.
 Result<TriangleSoup> parse_stl(std::string_view bytes, const std::string& name);
-/// The contents of an .obj file.
+/// Parses the contents of an .obj file; `name` begins every message.
 Result<TriangleSoup> parse_obj(std::string_view text, const std::string& name);
 
-/// The surface in a file of the reader program: a whole sentence where there is none.
+/// Reads the surface of a file through catena-read-vtk. Returns an Error with a complete message when there is none.
 Result<TriangleSoup> read_surface(const std::string& path, int step);
 
 }  // namespace catena::mesh

@@ -1,5 +1,5 @@
-// OBJ (Wavefront): lines "v x y z", "f a b c ..." with corners "v", "v/vt", "v//vn", "v/vt/vn" (from 1, or negative: from the last),
-// '#' to the line's end, '\' goes on in the next line. All other known statements are passed over.
+// Loads Wavefront OBJ: lines "v x y z", "f a b c ..." with corners "v", "v/vt", "v//vn", "v/vt/vn" (from 1, or negative: from the last),
+// '#' starts a comment up to the end of the line, '\' continues on the next line. All other known statements are ignored.
 #include <algorithm>
 #include <array>
 
@@ -22,14 +22,14 @@ struct ObjReader {
   std::string_view text;
   const std::string& name;
   std::size_t at = 0;
-  int line = 1;        ///< where the next line begins
-  int line_begin = 1;  ///< of the line that is read
+  int line = 1;        ///< number of the next line
+  int line_begin = 1;  ///< number of the current line
   std::string joined_line;
   TriangleSoup soup;
 
   Error failed(const std::string& what) const { return Error{one_line(name + ":" + std::to_string(line_begin) + ": " + what)}; }
 
-  /// One line without its end and its comment; continued ones are joined. False at the end of the text.
+  /// Gets the next line without its end and its comment; continued lines are joined. Returns false at the end of the text.
   bool next_line(std::string_view& out) {
     if (at >= text.size()) return false;
     line_begin = line;

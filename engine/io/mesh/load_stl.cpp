@@ -1,6 +1,6 @@
-// STL: 80 bytes of anything, the number of triangles, 50 bytes each (normal, three corners, two bytes of anything), little-endian
-// floats; or text, "solid NAME / facet normal x y z / outer loop / vertex x y z (3 times) / endloop / endfacet / ... / endsolid".
-// A file is binary if its length fits its number of triangles, whatever its first word is.
+// Loads STL: binary with an 80-byte header of any content, the number of triangles, and 50 bytes for each (normal, three corners, two
+// ignored bytes), little-endian floats; or text, "solid NAME / facet normal x y z / outer loop / vertex x y z (3 times) / endloop /
+// endfacet / ... / endsolid". A file is binary if its length matches its number of triangles, whatever its first word is.
 #include <bit>
 #include <cstring>
 
@@ -18,11 +18,11 @@ constexpr std::size_t kHeader = 84, kRecord = 50;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
 
-/// RecordWords of a text, with the line that each stands on.
+/// The words of a text with their line numbers.
 class Words {
  public:
   explicit Words(std::string_view text) : text_(text) {}
-  int line() const { return line_; }  ///< of the last word
+  int line() const { return line_; }  ///< line of the last word
 
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_here_ += text_[at_++] == '\n' ? 1 : 0;

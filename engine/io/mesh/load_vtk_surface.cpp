@@ -1,4 +1,4 @@
-// Surfaces that the program catena-read-vtk reads: PLY, GIFTI, VTK's polygons, and the outsides of volumes.
+// Loads surfaces read by the program catena-read-vtk: PLY, GIFTI, VTK polygons, and the outer surfaces of volumes.
 #include "engine/io/client.h"
 #include "engine/io/mesh/load_mesh.h"
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kMostHead = 1 << 16;
 
-/// What follows 'KEY': in the head, which is the text of a Python dictionary.
+/// The text after 'KEY': in the header, which is a Python dictionary.
 std::optional<std::string_view> value_of(std::string_view head, std::string_view key) {
   const std::size_t at = head.find(key);
   if (at == std::string_view::npos) return std::nullopt;
@@ -33,7 +33,7 @@ std::optional<std::string_view> value_of(std::string_view head, std::string_view
   return value;
 }
 
-/// "(3, 4, 5)"
+/// Parses a tuple such as "(3, 4, 5)".
 std::optional<std::vector<std::int64_t>> shape_of(std::string_view text) {
   if (text.empty() || text.front() != '(') return std::nullopt;
   const std::size_t end = text.find(')');
@@ -82,7 +82,7 @@ Outcome read_type(std::string_view word, NpyHeader& head) {
   return Done{};
 }
 
-/// `count` numbers from number `first` on, `stride` apart.
+/// Decodes `count` numbers from number `first` on, `stride` apart.
 void decode_row(const NpyHeader& head, const std::byte* data, std::uint64_t first, std::uint64_t stride, std::size_t count, float* out,
                 std::size_t out_stride, field::RoundingLoss& rounding) {
   const auto type = field::find_number_type(head.type);
@@ -138,7 +138,7 @@ Result<NpyHeader> read_npy_header(std::span<const std::byte> bytes, bool axes_xy
     stride[a] = next;
     next *= static_cast<std::uint64_t>(n[a]);
   }
-  // vectors, then x, y, z
+  // vectors: the components are the last or the first dimension
   if (n.size() == 4) {
     const bool last = n.back() == 3 || n.back() == 2;
     const std::size_t a = last ? n.size() - 1 : 0;
@@ -177,7 +177,7 @@ field::RoundingLoss decode_npy(const NpyHeader& head, std::span<const std::byte>
   const std::size_t components = head.components == 1 ? 1 : 3;
   const field::Size3 n = npy_grid_size(head);
   const auto row = static_cast<std::size_t>(head.size.x);
-  // where the array is flat, its only voxel twice
+  // a flat array is read with its single voxel twice
   const auto voxel = [](std::int64_t i, std::int64_t size) { return static_cast<std::uint64_t>(std::min(i, size - 1)); };
   float* to = out.data();
   for (std::int64_t k = 0; k < n.z; ++k)
@@ -220,7 +220,7 @@ field::ReadResponse handle_npy_request(const field::ReadRequest& request, std::s
   const field::RoundingLoss rounding =
       decode_npy(*head, numbers, {reinterpret_cast<float*>(memory.data()), static_cast<std::size_t>(npy_float_count(*head))});
   reply.notes = field::rounding_notes(rounding, head->type);
-  // a last size of 2 or 3 may have been meant as components
+  // a last dimension of 2 or 3 may have been meant as components
   const field::Size3& n = head->size;
   const std::int64_t last = !request.load_request.axes_xyz ? n.x
                             : n.z > 1                      ? n.z

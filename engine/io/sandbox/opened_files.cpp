@@ -13,7 +13,7 @@ namespace catena::sandbox {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t kSlower = 20;  // than without the sanitizers
+constexpr std::uint64_t kSlower = 20;  // slowdown caused by the sanitizers
 #else
 constexpr std::uint64_t kSlower = 1;
 #endif
@@ -28,7 +28,7 @@ struct Counted {
 Counted counted;
 std::atomic<bool> counting{false};
 
-/// With or without a preamble: group 2 or 8 comes first.
+/// Whether the file is DICOM, with or without a preamble: group 2 or 8 comes first.
 bool is_dicom(int descriptor) {
   char head[132] = {};
   const ssize_t got = ::pread(descriptor, head, sizeof head, 0);
@@ -66,7 +66,7 @@ void record_opened(int descriptor, const struct stat& about) {
   if (counted.dicom_only && !is_dicom(descriptor)) return;
   counted.opened.files.push_back(id);
   counted.opened.newest_mtime_ns = std::max(counted.opened.newest_mtime_ns, modified_ns(about));
-  // what is on the disk: a hole in a file is worth nothing
+  // size on the disk: holes in sparse files do not count
   counted.bytes += std::min(static_cast<std::uint64_t>(about.st_size), 512 * static_cast<std::uint64_t>(about.st_blocks));
   set_time();
 }

@@ -42,7 +42,7 @@ void on_no_memory() {
   throw std::bad_alloc();
 }
 
-/// Libraries start threads where nothing can be caught.
+/// Reports an exception that cannot be caught, as in a thread that a library started.
 [[noreturn]] void on_terminate_of_reader() {
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
@@ -84,7 +84,7 @@ Result<field::ReadRequest> ResponseFile::read_request() {
     return Error{"there is no request"};
   noted_file = fd_;
   report(field::ReaderState::reading);
-  ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an answer that fails
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that cannot grow then fails as a response that cannot be written
   std::set_new_handler(on_no_memory);
   std::set_terminate(on_terminate_of_reader);
   auto request = field::decode_request(text);

@@ -1,4 +1,4 @@
-/// The file in memory through which catena asks and is answered (engine/io/protocol.h), from the reader's side.
+/// The shared memory file for request and response (engine/io/protocol.h), from the reader's side.
 #pragma once
 #include <exception>
 
@@ -7,31 +7,32 @@
 
 namespace catena::sandbox {
 
-/// A reader finds the file as this descriptor.
+/// File descriptor of the shared memory file in a reader.
 inline constexpr int kResponseFd = 3;
 
-/// As ResponseFile::request() does it, for what happens before main() (early.h).
+/// Reports failures that occur before main() (preinit.h), in the same way as after ResponseFile::read_request().
 void report_early_failures() noexcept;
 
+/// Reads the request, allocates buffers and writes the response. One object per process.
 class ResponseFile {
  public:
   explicit ResponseFile(int fd) : fd_(fd) {}
 
-  /// An error is a phrase. From here on a failed allocation, and a thread that could not be started and that nothing handles, are noted in
-  /// the head. One ResponseFile a process.
+  /// Reads the request and applies its memory limit. Afterwards failed allocations, and unhandled failures to start a thread, are recorded
+  /// in the header. Returns an Error with a message fragment.
   Result<field::ReadRequest> read_request();
-  /// Says in the head what has happened.
+  /// Records a state in the header.
   void report(field::ReaderState state) const noexcept;
-  /// The same of an exception that says that a thread could not be started, TBB's and ITK's among them.
+  /// Records an exception in the header if it means that a thread could not be started, including those of TBB and ITK.
   void report(const std::exception& thrown) const noexcept;
-  /// Zeroed memory that is a part of the file; throws std::bad_alloc. `piece` is where.
+  /// Allocates zeroed memory in the shared file; `piece` receives its range. Throws std::bad_alloc.
   field::NanoMemory allocate(std::size_t bytes, field::BufferRange& piece);
-  /// The reply, and the head that says where it is. False where there is no room.
+  /// Writes the response, and the header with its offset. Returns false when the file cannot grow.
   bool finish(const field::ReadResponse& reply);
 
  private:
   int fd_;
-  std::uint64_t end_ = field::kBufferAlignment;  ///< of what is taken; the head, and the request, are in the first page
+  std::uint64_t end_ = field::kBufferAlignment;  ///< End of the allocated part; header and request are in the first page.
 };
 
 }  // namespace catena::sandbox

@@ -23,12 +23,12 @@ namespace catena::sandbox {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // these map terabytes of addresses
+constexpr bool kSanitized = true;  // the sanitizers map terabytes of addresses
 #else
 constexpr bool kSanitized = false;
 #endif
 
-/// Never above what a shell has set, which root could exceed.
+/// Sets a limit, never above one that the shell has set, which root could exceed.
 void set_limit(__rlimit_resource what, std::uint64_t soft, std::uint64_t hard) {
   rlimit limit{};
   if (::getrlimit(what, &limit) != 0) return;
@@ -36,7 +36,7 @@ void set_limit(__rlimit_resource what, std::uint64_t soft, std::uint64_t hard) {
   ::setrlimit(what, &limit);
 }
 
-/// The addresses that this process has mapped now. Without /proc: as many as the largest reader has.
+/// Size of the address space that this process has mapped; without /proc the size of the largest reader.
 std::uint64_t mapped_bytes() {
   constexpr std::uint64_t kLargest = std::uint64_t{2} << 30;
   std::uint64_t pages = 0;
@@ -45,7 +45,7 @@ std::uint64_t mapped_bytes() {
 }
 
 void set_limits(const ProcessLimits& limits) {
-  // stacks of the threads that share the work, and what the C library keeps for itself
+  // stacks of the worker threads, and what the C library reserves
   constexpr std::uint64_t kRoom = 512 << 20;
   ::mallopt(M_ARENA_MAX, 1);
   const bool limited = limits.memory_bytes < ~std::uint64_t{0} / 2;
@@ -59,7 +59,7 @@ void set_limits(const ProcessLimits& limits) {
   set_limit(RLIMIT_CORE, 0, 0);
 }
 
-/// What the folder allows: reading. False where it cannot be said.
+/// Adds a Landlock rule that allows reading in the folder. Returns false if that fails.
 bool allow_reading(int ruleset, const std::string& folder) {
   landlock_path_beneath_attr rule{};
   rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
@@ -70,13 +70,13 @@ bool allow_reading(int ruleset, const std::string& folder) {
   return done == 0;
 }
 
-/// The folder becomes the root, by the right that a user has in a namespace of his own, or that root has.
+/// Makes the folder the root directory, by the right that a user has in a user namespace, or that root has.
 bool change_root(const std::string& folder) {
   if (::chroot(folder.c_str()) != 0 && (::unshare(CLONE_NEWUSER) != 0 || ::chroot(folder.c_str()) != 0)) return false;
   return ::chdir("/") == 0;
 }
 
-/// No right of root stays, whoever started the process: nothing is left to use, to hand on or to take back.
+/// Drops all capabilities, so that a process started by root has none to use, pass on or regain.
 bool drop_capabilities() {
   ::prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
   for (unsigned long capability = 0; ::prctl(PR_CAPBSET_READ, capability, 0, 0, 0) >= 0; ++capability)
@@ -86,7 +86,8 @@ bool drop_capabilities() {
   return ::syscall(SYS_capset, &head, none) == 0;
 }
 
-/// No file or folder may be opened, made or removed, but for those to read. 0: the kernel has no Landlock.
+/// Prevents opening, creating or removing files and folders, except for reading in `readable_folder`. Returns the Landlock version; 0 if it
+/// is not available.
 std::uint32_t landlock(const std::string& readable_folder) {
   const long version = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return 0;
@@ -109,7 +110,7 @@ std::uint32_t landlock(const std::string& readable_folder) {
   return done == 0 ? static_cast<std::uint32_t>(version) : 0;
 }
 
-/// What it takes to find and open files, of which nothing is changed.
+/// Allows the system calls for finding and opening files read-only.
 bool allow_opening(scmp_filter_ctx filter) {
   constexpr int kCalls[] = {SCMP_SYS(stat),       SCMP_SYS(lstat),      SCMP_SYS(newfstatat), SCMP_SYS(statx),      SCMP_SYS(access),
                             SCMP_SYS(faccessat),  SCMP_SYS(faccessat2), SCMP_SYS(readlink),   SCMP_SYS(readlinkat), SCMP_SYS(getcwd),
@@ -123,7 +124,7 @@ bool allow_opening(scmp_filter_ctx filter) {
          seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFD)) == 0;
 }
 
-/// What a program needs that reads and writes open descriptors, has threads and memory, and ends. All else is refused with EPERM.
+/// Allows the system calls for reading and writing open descriptors, threads, memory, and exit. All others are refused with EPERM.
 bool seccomp(bool opens_files, bool raises_time) {
   const std::unique_ptr<void, void (*)(void*)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)), [](void* f) { seccomp_release(f); });
   if (!filter) return false;
@@ -143,24 +144,24 @@ bool seccomp(bool opens_files, bool raises_time) {
   for (const int call : kAllowed)
     if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0) return false;
   if (opens_files && !allow_opening(filter.get())) return false;
-  // the sanitizers look through a pipe whether memory can be read
+  // the sanitizers use a pipe to test whether memory can be read
   if (kSanitized)
     for (const int call : {SCMP_SYS(pipe), SCMP_SYS(pipe2)})
       if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0) return false;
-  // threads, but no processes; the newer call hides its arguments, and the C library does without
+  // threads, but no processes; clone3 hides its flags from the filter, and the C library works without it
   bool good =
       seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD)) == 0;
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0;
-  // memory, but no code
+  // memory, but none that is executable
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mprotect), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
-  // how a descriptor is open may be asked for, and limits, of itself
+  // query how a descriptor is open, and the process's own limits
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFL)) == 0;
   good =
       good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0), SCMP_A2(SCMP_CMP_EQ, 0)) == 0;
   good = good && (!raises_time || seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0),
                                                    SCMP_A1(SCMP_CMP_EQ, RLIMIT_CPU)) == 0);
-  // the end of an assertion, and nobody else's
+  // abort by a failed assertion, in this process only
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
                                   SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid()))) == 0;
   return good && seccomp_load(filter.get()) == 0;

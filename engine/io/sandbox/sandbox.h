@@ -1,25 +1,26 @@
-/// A process that handles a foreign file shuts itself in before it looks at the first byte. From then on it has the descriptors that it
-/// holds, and nothing else: no file can be opened (Landlock where the kernel has it, and seccomp), no socket, program or process made, no
-/// memory made executable, no other process touched. It has no capability, even where root started it. It dies with the thread that started
-/// it, leaves no core file, and has limits. A reader of formats that lie in several files may open those of one folder, to read: Landlock
-/// sees to it, else a change of the root.
+/// Sandbox of a process that handles an untrusted file; entered before the first byte is read. Afterwards only the open descriptors can be
+/// used: no file can be opened (Landlock where the kernel supports it, and seccomp), no socket, program or process created, no memory made
+/// executable, no other process affected. There are no capabilities, even when started by root. The process is killed with the thread that
+/// started it, writes no core file, and has resource limits. A reader of formats that span several files may read the files of one folder:
+/// enforced by Landlock, else by a change of the root directory.
 #pragma once
 #include "engine/io/protocol.h"
 
 namespace catena::sandbox {
 
+/// Resource limits of a sandboxed process.
 struct ProcessLimits {
-  std::uint64_t memory_bytes = ~std::uint64_t{0};  ///< beyond what the process has now; all ones: none
-  std::uint64_t cpu_s = 0;                         ///< 0: none
-  std::uint64_t max_cpu_s = 0;                     ///< to which the process may raise that itself; 0: it may not
-  bool only_memory_files = true;                   ///< files may grow up to memory_bytes
-  std::string readable_folder{};                   ///< with everything below it; empty: nothing can be opened
-  bool use_landlock = true;                        ///< false: as on a kernel without it, for tests
+  std::uint64_t memory_bytes = ~std::uint64_t{0};  ///< Memory beyond the present use of the process, bytes; all ones: no limit.
+  std::uint64_t cpu_s = 0;                         ///< CPU time limit, seconds; 0: none.
+  std::uint64_t max_cpu_s = 0;                     ///< Limit up to which the process may raise `cpu_s` itself; 0: it may not.
+  bool only_memory_files = true;                   ///< Files may grow up to memory_bytes (readers write into memory files only).
+  std::string readable_folder{};                   ///< Folder that may be read, with its subfolders; empty: no file can be opened.
+  bool use_landlock = true;                        ///< False: act as on a kernel without Landlock, for tests.
 };
 
-/// Before any thread is made. An error: the kernel refuses what it must not (seccomp); Landlock may be missing, and the answer says so.
-/// With a readable folder it is an error, too, where neither Landlock nor a change of the root keeps the process in it. `root_changed`: the
-/// folder is now "/".
+/// Enters the sandbox; call it before any thread is created. Returns an Error when seccomp is not available; a missing Landlock is only
+/// reported in the status, except that with a readable folder it is an Error when neither Landlock nor a change of the root directory
+/// confines the process. `root_changed`: receives whether the folder has become "/".
 Result<field::SandboxStatus> enter_sandbox(const ProcessLimits& limits, bool* root_changed = nullptr);
 
 }  // namespace catena::sandbox

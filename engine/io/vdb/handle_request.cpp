@@ -45,7 +45,7 @@ bool same_mapping(const Mapping& a, const Mapping& b) {
   return norm(a.origin - b.origin) <= 1e-3 * edge;
 }
 
-/// Calls use(tree) for the first of the grid types that the grid is of; false if it is of none.
+/// Calls use(tree) for the first matching grid type in `Grids`; false if none matches.
 template <class... Grids, class Use>
 bool with_tree(const openvdb::GridBase::Ptr& grid, const Use& use) {
   const auto one = [&]<class Grid>(const Grid*) {
@@ -66,13 +66,13 @@ bool with_vectors(const openvdb::GridBase::Ptr& grid, const Use& use) {
   return with_tree<openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>(grid, use);
 }
 
-/// The voxels where a grid of bools is true, or where a mask is on.
+/// Calls use(tree) for a bool grid, whose true voxels are valid, or a mask grid, whose active voxels are valid; false for other grids.
 template <class Use>
 bool with_mask(const openvdb::GridBase::Ptr& grid, const Use& use) {
   return with_tree<openvdb::BoolGrid, openvdb::MaskGrid>(grid, use);
 }
 
-/// The entry asked for, or the only usable one.
+/// The requested entry, or the only usable one.
 Result<const VdbEntry*> choose(const VdbFile& f, const LoadRequest& request) {
   const auto& entries = f.entries();
   const auto usable = [](const VdbEntry& e) { return is_scalar_type(type_name(e)) || is_vector_type(type_name(e)); };
@@ -94,7 +94,7 @@ Result<const VdbEntry*> choose(const VdbFile& f, const LoadRequest& request) {
   return Error{fmt::format("{}: the file has several grids, name one of: {}", request.path, format_entries(entries))};
 }
 
-/// One request while it is answered.
+/// Handles one request.
 class Answer {
  public:
   Answer(const ReadRequest& request, VdbFile& file, sandbox::ResponseFile& out)
@@ -109,7 +109,7 @@ class Answer {
     const auto mapping = mapping_of(*grid);
     if (!mapping) return about(mapping.error());
     response.mapping = *mapping;
-    // the values; the tree goes before the mask is read
+    // the values; the tree is freed before the mask is read
     const std::string name = fmt::format("{}: grid \"{}\"", what_.path, entry->name);
     Result<NanoMemory> values = Error{};
     const bool scalar = with_scalars(grid, [&](const auto& tree) { values = to_nano<float>(tree, name, left(), into(response.values)); });
@@ -137,7 +137,7 @@ class Answer {
 
  private:
   std::uint64_t left() const { return request_.memory_bytes; }
-  /// What "crop" leaves of a grid; all of one whose transform is refused later.
+  /// The region that "crop" leaves of a grid; the whole grid if its transform is going to be refused.
   VdbFile::RegionSelector part() const {
     if (!what_.crop) return {};
     return [crop = *what_.crop](const openvdb::GridBase& grid) {
@@ -184,7 +184,7 @@ class Answer {
     return Done{};
   }
 
-  /// The mask of cells beside that of voxels; nothing where there is none.
+  /// The cell mask that belongs to a voxel mask; empty if there is none.
   Result<NanoMemory> cell_mask(ReadResponse& response, const std::string& of) {
     const VdbEntry* entry = file_.find(of + "_cells");
     if (!entry || (type_name(*entry) != "bool" && type_name(*entry) != "mask")) return NanoMemory();
@@ -246,7 +246,7 @@ class Answer {
     return info;
   }
 
-  /// The mask that goes with a grid when it is loaded; null: the file has none, or of another transform.
+  /// The mask that is loaded with a grid; null: the file has none, or it has another transform.
   Result<const ValueMaskGrid*> mask_for(const Mapping& mapping) {
     const VdbEntry* entry = what_.mask_grid ? file_.find(*what_.mask_grid) : nullptr;
     if (entry != nullptr && !mask_read_ && (type_name(*entry) == "bool" || type_name(*entry) == "mask")) {
@@ -277,7 +277,7 @@ class Answer {
   VdbFile& file_;
   sandbox::ResponseFile& out_;
   bool is_near_ = true;
-  // of a description
+  // cached while grids are described
   bool mask_read_ = false;
   NanoMemory mask_;
   std::optional<Mapping> mask_mapping_;

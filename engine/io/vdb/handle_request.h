@@ -1,4 +1,4 @@
-/// What catena-read does once it is shut in: one answer to one request.
+/// Handles a request in catena-read, inside the sandbox: one response per process.
 #pragma once
 #include <span>
 
@@ -6,7 +6,7 @@
 
 namespace catena::vdb {
 
-/// Nothing is thrown: what is wrong with the file is the reply's error, a whole sentence.
+/// Handles a request for the .vdb file in `file`. Does not throw: the `error` of the response is a complete message.
 field::ReadResponse handle_request(const field::ReadRequest& request, std::span<const std::byte> file, sandbox::ResponseFile& out);
 
 }  // namespace catena::vdb

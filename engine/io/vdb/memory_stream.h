@@ -1,4 +1,4 @@
-/// A stream over bytes in memory that throws where it would be read beyond its end: OpenVDB does not notice every short read.
+/// Input streams over bytes in memory that throw when read past the end: OpenVDB does not detect every short read.
 #pragma once
 #include <cstddef>
 #include <cstring>
@@ -9,6 +9,7 @@
 
 namespace catena::vdb {
 
+/// Stream buffer over `bytes`, which must outlive it. Reading or seeking past the end throws std::runtime_error.
 class MemoryBuffer : public std::streambuf {
  public:
   explicit MemoryBuffer(std::span<const std::byte> bytes) {
@@ -35,7 +36,7 @@ class MemoryBuffer : public std::streambuf {
   pos_type seekpos(pos_type place, std::ios_base::openmode mode) override { return seekoff(place, std::ios_base::beg, mode); }
 };
 
-/// Every failure of the stream throws.
+/// Input stream over `bytes`; every failure of the stream throws.
 class MemoryStream : public std::istream {
  public:
   explicit MemoryStream(std::span<const std::byte> bytes) : std::istream(nullptr), buffer_(bytes) {

@@ -1,4 +1,4 @@
-// The program catena-read: reads one .vdb or .npy file for catena, shut in, into the file in memory that is its descriptor 3
+// The program catena-read: reads one .vdb or .npy file for catena, sandboxed, into the shared memory file that is its descriptor 3
 // (engine/io/protocol.h).
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 
 namespace {
 
-/// The file's bytes, mapped: a file that shrinks meanwhile ends this process, and nothing else.
+/// Maps the file. If the file shrinks while it is mapped, only this process is killed.
 catena::Result<std::span<const std::byte>> map_file(const std::string& path) {
   const auto failed = [&] { return catena::Error{fmt::format("{}: cannot be opened ({})", path, std::strerror(errno))}; };
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);

@@ -1,5 +1,5 @@
-/// OpenVDB trees into NanoVDB buffers: values and states as they are, whatever their place in the tree; numbers become floats.
-/// Nothing but the buffer is allocated for a node; leaves are filled in parallel.
+/// Converts OpenVDB trees to NanoVDB buffers: values and active states are preserved at every tree level; numbers become floats.
+/// Only the buffer is allocated, nothing per node; leaves are filled in parallel.
 #pragma once
 #include <openvdb/openvdb.h>
 
@@ -13,7 +13,7 @@ namespace catena::vdb {
 
 inline nanovdb::Coord to_nano_coord(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
-/// What a value of the tree is in the buffer.
+/// Converts a value of the tree to the value type of the buffer.
 template <class T, class V>
 typename field::NanoTypes<T>::Value to_nano_value(const V& v) {
   if constexpr (std::is_same_v<T, nanovdb::Vec3f>)
@@ -22,7 +22,7 @@ typename field::NanoTypes<T>::Value to_nano_value(const V& v) {
     return static_cast<typename field::NanoTypes<T>::Value>(v);
 }
 
-/// Masks: on where the voxel is active and (of a tree of bools) true.
+/// Active state in the buffer; for masks: active and (in a bool tree) true.
 template <class T>
 bool is_nano_active(bool active, const typename field::NanoTypes<T>::Value& value) {
   if constexpr (std::is_same_v<T, nanovdb::ValueMask>) return active && value;
@@ -48,7 +48,8 @@ void fill_leaf(const Leaf& from, NanoLeaf& to) {
   }
 }
 
-/// The buffer of the tree as a grid of T (float, nanovdb::Vec3f or nanovdb::ValueMask). `what` names it where too much memory is needed.
+/// Converts the tree to a NanoVDB buffer of T (float, nanovdb::Vec3f or nanovdb::ValueMask). Returns an Error that begins with `what` when
+/// more than `allowed` bytes are needed, or the tree extends over too many root entries.
 template <class T, class Tree>
 Result<field::NanoMemory> to_nano(const Tree& tree, const std::string& what, std::uint64_t allowed, const field::NanoAllocator& allocate) {
   using Root = typename Tree::RootNodeType;
@@ -56,7 +57,7 @@ Result<field::NanoMemory> to_nano(const Tree& tree, const std::string& what, std
   using Lower = typename Upper::ChildNodeType;
   using Leaf = typename Lower::ChildNodeType;
   using V = typename Tree::ValueType;
-  // the nodes, in the order of their parents' entries
+  // the nodes, in the order of their parents' child tables
   std::vector<const Upper*> uppers;
   std::vector<const Lower*> lowers;
   std::vector<const Leaf*> leaves;

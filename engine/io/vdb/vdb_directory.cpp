@@ -29,7 +29,7 @@ class Reader {
     return from ? std::string(reinterpret_cast<const char*>(from), length) : std::string();
   }
   void skip(std::uint64_t count) { take(count); }
-  /// Forward only: a table that leads back has no end.
+  /// Seeks forward only, so that an offset table cannot cause an endless loop.
   void seek(std::uint64_t place) {
     ok_ = ok_ && place >= at_ && place <= bytes_.size();
     if (ok_) at_ = place;
@@ -52,7 +52,7 @@ class Reader {
 
 VdbEntry entry_of(std::string unique_name, std::string type) {
   VdbEntry e;
-  // a repeated name carries a number behind the ASCII record separator
+  // a repeated name has a number after the ASCII record separator
   const auto separator = unique_name.find('\x1e');
   e.name = separator == std::string::npos ? unique_name
                                           : fmt::format("{}[{}]", unique_name.substr(0, separator), unique_name.substr(separator + 1));
@@ -105,7 +105,7 @@ Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const s
     const auto begin = reader.number<std::int64_t>(), blocks = reader.number<std::int64_t>(), end = reader.number<std::int64_t>();
     if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
     VdbEntry entry = entry_of(std::move(name), std::move(type));
-    const bool in_order = shares_tree ? begin <= end : begin <= blocks && blocks <= end;  // of a shared tree there are no blocks
+    const bool in_order = shares_tree ? begin <= end : begin <= blocks && blocks <= end;  // a shared tree has no blocks
     if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size) return cut(fmt::format("grid \"{}\"", entry.name));
     entry.offset = at;
     reader.seek(static_cast<std::uint64_t>(end));
@@ -137,7 +137,7 @@ std::string format_entries(const std::vector<VdbEntry>& entries) {
   for (std::size_t i = 0; i < std::min(entries.size(), kMaxListedNames); ++i)
     each.push_back(fmt::format("{} ({})", entries[i].name, type_name(entries[i])));
   std::vector<std::string_view> words(each.begin(), each.end());
-  words.resize(entries.size());  // those beyond are counted only
+  words.resize(entries.size());  // names beyond this number are only counted
   return entries.empty() ? "nothing" : join_words(words);
 }
 

@@ -14,7 +14,7 @@ struct VdbFile::Archive : openvdb::io::Archive {
     setLibraryVersion(in);
     setDataCompression(in);
   }
-  /// `box`: nullptr: all voxels.
+  /// `box`: voxels to read; nullptr: all.
   static void grid(const openvdb::GridBase::Ptr& to, const openvdb::io::GridDescriptor& at, std::istream& in,
                    const openvdb::CoordBBox* box = nullptr) {
     if (box != nullptr)
@@ -31,7 +31,7 @@ struct VdbFile::Archive : openvdb::io::Archive {
 
 namespace {
 
-/// The first text of the map that can be a unit.
+/// The first text of the metadata that can be a unit.
 std::string unit_of(const openvdb::MetaMap& map, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     if (const auto text = map.getMetadata<openvdb::StringMetadata>(key); text && field::is_unit_name(text->value())) return text->value();
@@ -61,7 +61,7 @@ Result<std::unique_ptr<VdbFile>> VdbFile::open(std::span<const std::byte> bytes,
   file->archive_->begin(in);
   file->metadata_.readMeta(in);
   if (!file->directory_.is_streamed) return file;
-  // without offsets: one grid after the other
+  // without offsets: read one grid after the other
   for (std::int32_t left = Archive::count(in); left > 0; --left) {
     openvdb::io::GridDescriptor descriptor;
     const openvdb::GridBase::Ptr grid = descriptor.read(in);
@@ -113,7 +113,7 @@ openvdb::GridBase::Ptr VdbFile::read_at(const VdbEntry& entry, const openvdb::Co
   const openvdb::GridBase::Ptr grid = create_grid(entry, descriptor);
   Archive::grid(grid, descriptor, stream_, box);
   if (!descriptor.isInstance()) return grid;
-  // the tree of another grid, which must have one of its own
+  // the tree belongs to another grid, which must have its own tree
   const VdbEntry* parent = find_parent(descriptor.instanceParentName());
   if (parent == nullptr || parent == &entry) throw std::runtime_error("it shares the tree of a grid that is not there");
   openvdb::io::GridDescriptor owner;
@@ -150,7 +150,7 @@ void VdbFile::read_units(field::ReadResponse& reply) {
       reply.grid_metadata.push_back({entry.name, unit_of(*grid, {"unit", "units"}), unit_of(*grid, {"unit_length"}), level_set});
     }
   } catch (const std::exception&) {
-    // reading the grid says what is wrong with it
+    // reading the grid reports the problem
   }
 }
 

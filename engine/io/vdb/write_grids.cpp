@@ -19,7 +19,7 @@ using field::StreamHeader;
 using field::StreamKind;
 using field::StreamRecord;
 
-/// OpenVDB's own file class does not check its stream; this one writes to ours, which throws.
+/// OpenVDB's own file class does not check its stream; this one writes to ours, which throws on errors.
 struct Writer : openvdb::io::Archive {
   void put(std::ostream& out, const openvdb::GridCPtrVec& grids) const { write(out, grids, /*seekable=*/true); }
 };
@@ -63,7 +63,7 @@ void take_leaf(const ReadBytes& take, Leaf& leaf) {
   }
 }
 
-/// Nodes of edge `level` that hold nothing but one active value become tiles of the level above.
+/// Replaces nodes of edge `level` that hold a single active value by tiles of the level above.
 template <class Tree, class Node>
 void merge_nodes(Tree& tree, openvdb::Index level) {
   std::vector<Node*> nodes;
@@ -140,7 +140,7 @@ void put_all(const openvdb::GridCPtrVec& grids, int fd, bool seekable) {
   if (seekable) {
     Writer().put(out, grids);
   } else {
-    // offsets are filled in later: not every place can be written twice
+    // written to memory first: offsets are filled in later, and the output may not be seekable
     std::ostringstream whole;
     Writer().put(whole, grids);
     out << whole.str();

@@ -1,4 +1,4 @@
-/// What catena-write does once it is shut in: the grids that come as a stream of blocks (engine/io/volume/vdb_stream.h) become a .vdb file.
+/// Writes a .vdb file in catena-write, inside the sandbox, from a stream of leaves and tiles (engine/io/volume/vdb_stream.h).
 #pragma once
 #include <functional>
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace catena::vdb {
 
-/// Reads so many bytes from the stream; false at its end.
+/// Reads exactly `bytes` bytes from the stream; returns false at its end.
 using ReadBytes = std::function<bool(void* to, std::size_t bytes)>;
 
-/// Writes to the descriptor; `seekable`: it is a regular file. An error is a phrase.
+/// Writes the grids to the descriptor; `seekable`: it is a regular file. Returns an Error with a message fragment.
 Outcome write_grids(const ReadBytes& take, int fd, bool seekable);
 
 }  // namespace catena::vdb

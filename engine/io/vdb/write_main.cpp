@@ -1,4 +1,4 @@
-// The program catena-write: takes grids block by block from its descriptor 3 and writes them, as a .vdb file, to its descriptor 4.
+// The program catena-write: receives grids block by block on its descriptor 3 and writes them as a .vdb file to its descriptor 4.
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kLine = 3, kFile = 4;
 
-/// The stream, in large pieces.
+/// The input stream, read in large buffers.
 class Line {
  public:
   Line() : buffer_(1 << 20) {}
@@ -66,7 +66,7 @@ void answer_machine(const std::string& why) {
   ::_exit(0);
 }
 
-/// Libraries start threads where nothing can be caught.
+/// Reports an exception that cannot be caught, as in a thread that a library started.
 [[noreturn]] void on_terminate() {
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
@@ -96,7 +96,7 @@ int main() {
     return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
   }
   hear_failures();
-  ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that cannot grow then fails as a write
   struct stat status {};
   const bool seekable = ::fstat(kFile, &status) == 0 && S_ISREG(status.st_mode);
   catena::sandbox::ProcessLimits limits;
@@ -106,7 +106,7 @@ int main() {
   const catena::Outcome done =
       confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile, seekable)
                : catena::Outcome(confined.error());
-  // whose failure it is: '1' of the machine, '0' of the data; then why
+  // the response: '1' for a system failure or '0' for bad data, then the message
   const std::string failure = done ? std::string() : (done.error().system_failure ? "1" : "0") + done.error().message;
   if (!failure.empty() && ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL) < 0) return 1;
   ::_exit(0);

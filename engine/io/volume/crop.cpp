@@ -13,7 +13,7 @@
 namespace catena::field {
 namespace {
 
-/// Voxels of the whole's own box, from its lowest one.
+/// A box of voxels, with indices relative to the lowest voxel of the complete grid.
 struct Part {
   Index3 from, size;
 };
@@ -63,7 +63,7 @@ Result<std::shared_ptr<const Grid>> part_of(const std::string& path, const Voxel
 }  // namespace
 
 ActiveBox voxels_in_box(const Box& world, const Mapping& mapping) {
-  constexpr double kSlack = 1e-9;  // of a voxel: a face that lies on voxels needs no more of them
+  constexpr double kSlack = 1e-9;  // of a voxel: a face that coincides with voxels needs no more voxels
   Vec3 lo(std::numeric_limits<double>::infinity()), hi(-std::numeric_limits<double>::infinity());
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 p = mapping.index_from_world(

@@ -1,7 +1,7 @@
-/// A part of a grid, in the place of the whole: the voxels that a box in the world needs. They are those in its bounding box along the
-/// grid's axes, rounded outwards, so that the part has a value wherever the box and the whole have one; there it is the whole's, to the bit
-/// (cubic cells near its faces excepted: they take samples from beyond). The domain ends with the part, so that the hand never meets a
-/// voxel that was not read; that of a .vdb is the box about the active voxels that are left, as always. Off the tick, any thread.
+/// Crops a grid to the voxels that a world box needs: those in the box's bounding box along the axes of the grid, rounded outward. The
+/// cropped grid has a value wherever both the box and the full grid have one, bitwise equal to the full grid's (except in cubic cells near
+/// the faces, which need samples from outside). The domain ends with the crop, so that the probe never reaches a voxel that was not loaded;
+/// for a .vdb it is the bounding box of the remaining active voxels. Off the haptic thread; any thread.
 #pragma once
 #include "engine/base/result.h"
 #include "engine/field/grid/grid.h"
@@ -9,10 +9,11 @@
 
 namespace catena::field {
 
-/// As far as indices reach.
+/// Returns the index range of the voxels that a world box needs; clamped to kMaxAbsIndex, not to a grid.
 ActiveBox voxels_in_box(const Box& world, const Mapping& mapping);
 
-/// `path` begins the errors: the box has no voxels of the grid, or too few along an axis; the memory does not suffice.
+/// Crops a grid. Returns an Error that begins with `path` when the box contains no voxels of the grid, or too few along an axis, or the
+/// memory budget is too small.
 Result<AnyField> crop_field(const std::string& path, const AnyField& field, const Box& world);
 
 }  // namespace catena::field

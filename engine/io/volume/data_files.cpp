@@ -12,7 +12,7 @@
 namespace catena::field {
 namespace {
 
-/// Whether a name has the form of a pattern whose runs of '*' stand for digits.
+/// Whether a name matches a pattern in which each run of '*' stands for digits.
 bool is_like(std::string_view name, std::string_view pattern) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;
@@ -36,7 +36,7 @@ bool names_files(const std::string& path) {
                              [&](std::string_view ending) { return has_extension(path, ending); });
 }
 
-/// What may be a file's name in a text: its words, and what stands in quotes.
+/// All words and quoted strings of a text, each of which may be a file name.
 std::set<std::string> names_in(const std::string& text) {
   std::set<std::string> names;
   std::string word;
@@ -56,7 +56,7 @@ std::set<std::string> names_in(const std::string& text) {
   return names;
 }
 
-/// The files that a text in several parts names, for every step in time, and those that these name.
+/// Adds the files that a text file in several parts names, for every time step, and those that these name.
 void add_named(const std::string& path, std::set<FileId>& files, int depth = 0) {
   namespace fs = std::filesystem;
   constexpr std::uint64_t kMostBytes = 4 << 20;
@@ -79,7 +79,7 @@ void add_named(const std::string& path, std::set<FileId>& files, int depth = 0) 
   }
 }
 
-/// An OpenFOAM case: its mesh, its settings and all of its times.
+/// Adds the files of an OpenFOAM case: its mesh, its settings and all of its times.
 void add_case(const std::string& path, std::set<FileId>& files) {
   namespace fs = std::filesystem;
   const auto belongs = [](const std::string& name) {
@@ -95,7 +95,7 @@ void add_case(const std::string& path, std::set<FileId>& files) {
   }
 }
 
-/// The images beside a DICOM file, which may be of its series.
+/// Adds the images next to a DICOM file, which may belong to its series.
 void add_images_beside(const std::string& path, std::set<FileId>& files) {
   namespace fs = std::filesystem;
   const fs::path parent = fs::path(path).parent_path();
@@ -110,7 +110,7 @@ void add_images_beside(const std::string& path, std::set<FileId>& files) {
 }  // namespace
 
 std::vector<FileId> find_data_files(const std::string& path) {
-  static_cast<void>(read_file_metadata(path));  // what it opens is kept, with an error, too
+  static_cast<void>(read_file_metadata(path));  // the files that it opens are recorded, even if it fails
   std::set<FileId> files = files_opened_by_readers(path);
   if (names_files(path)) add_named(path, files);
   if (!openfoam_case_folder(path).empty()) add_case(path, files);

@@ -24,7 +24,7 @@ GridDifference difference_of(const Grid& fine, const Grid& coarse) {
   Cursor at_fine, at_coarse;
   const Box& box = fine.index_box();
   const Vec3 count = box.hi - box.lo + Vec3(1.0);
-  // an odd step, so that it does not fall on the coarse grid's own nodes
+  // an odd step, so that the samples do not coincide with the nodes of the coarse grid
   const int step = std::max(1, static_cast<int>(std::cbrt(count.x * count.y * count.z / kDifferenceVoxels)) * 2 - 1);
   GridDifference d;
   double sum = 0, voxels = 0;
@@ -44,13 +44,13 @@ GridDifference difference_of(const Grid& fine, const Grid& coarse) {
   return d;
 }
 
-constexpr int kFlat = 2;  // nodes of an axis that stays: an image is kept as two layers
+constexpr int kFlat = 2;  // nodes along an axis that is not downsampled: an image is stored as two slices
 
 int step_of(int n, int factor) { return n <= kFlat ? 1 : factor; }
-/// Nodes of an axis that are left of `n`.
+/// Number of nodes that remain of `n` along an axis.
 int left_of(int n, int factor) { return (n - 1) / step_of(n, factor) + 1; }
 
-/// The layers of the whole that are in use, the oldest first: asked for with z rising.
+/// The slices of the full grid that are in use, lowest z first; they must be requested with rising z.
 class SliceSource {
  public:
   explicit SliceSource(const VoxelBox& box) : box_(box) {}
@@ -86,7 +86,7 @@ class SliceSource {
   int first_ = 0;
 };
 
-/// How far the tent about a node reaches on either side.
+/// Half-width of the tent filter at a node.
 int reach(int node, int n, int factor) { return n <= kFlat ? 0 : std::min({factor - 1, node, n - 1 - node}); }
 
 float tent(const SliceSource& layers, const Index3& size, const Index3& at, int factor) {
@@ -107,7 +107,7 @@ float tent(const SliceSource& layers, const Index3& size, const Index3& at, int 
   return static_cast<float>(sum / weights);
 }
 
-/// One layer of a mask of cells: a coarse cell is invalid where half of the fine cells in it, or more, are.
+/// One slice of a cell mask: a coarse cell is invalid if at least half of its fine cells are.
 void coarse_cells(const VoxelBox& box, int factor, int z, std::span<std::uint8_t> out) {
   const int n[3] = {box.size.x, box.size.y, box.size.z};
   int step[3], left[3];

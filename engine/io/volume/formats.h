@@ -1,5 +1,5 @@
-/// The file formats that hold fields, by the endings of their names (any case). Who asks for an ending, or prints which there are, asks
-/// here. To add one: a reader with a row of the registry, NAME_format() below, and a line in formats.cpp. Any thread.
+/// Registry of the file formats that hold fields, by file extension (any case). Everything that needs or prints extensions uses this
+/// registry. To add a format: a reader with a row of the registry, NAME_format() below, and a line in formats.cpp. Any thread.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,73 +15,75 @@
 
 namespace catena::field {
 
-/// By its name; a folder and a DICOM file without an ending by themselves.
+/// Decides by the extension; folders and DICOM files without an extension are recognized by their contents.
 bool is_field_file(std::string_view path);
-/// Whether it is of a format that does not say its own layout (.raw): a scene or an option has to.
+/// Whether the format does not specify its own layout (.raw): a scene or an option has to.
 bool needs_layout(std::string_view path);
-/// An array of NumPy's (.npy, .npz), which does not say where it lies.
+/// Whether it is a NumPy array (.npy, .npz), which does not specify its position in the world.
 bool is_numpy_file(std::string_view path);
-/// ".vdb", ".nii", ..; `bare`: of those that say their layout, which can be opened without a scene.
+/// File extensions ".vdb", ".nii", ..; `bare`: only of formats that specify their layout, which can be opened without a scene.
 std::vector<std::string_view> field_extensions(bool bare = false);
-/// "a data file (.vdb, .nii, ..)", for a sentence.
+/// Message fragment: "a data file (.vdb, .nii, ..)".
 std::string describe_field_extensions();
 
-/// Private to this room: the checks that every reader makes of a path.
+/// Private to this module: the path checks of every reader.
 
-/// DICOM files often have names without an ending: "DICM" after 128 bytes tells them.
+/// DICOM files often have no extension: recognized by "DICM" after 128 bytes.
 bool has_dicom_magic(std::string_view path);
 
-/// The size of a regular file that can be opened; else an error that names it.
+/// Size of a regular, readable, non-empty file, bytes; otherwise an Error that names it.
 Result<std::uint64_t> readable_file_size(const std::string& path);
-/// The file's name without folder and extension.
+/// File name without folder and extension.
 std::string file_stem(const std::string& path);
 
-/// For who reads a format: this room, and programs that bring one of their own. One reader a format, and the counters they keep.
+/// For implementers of formats: this module, and programs that register their own.
 
-/// A file that holds one box of numbers, opened: its layout is checked and fits into the memory that is allowed.
+/// An opened file that contains one dense array: the layout has been validated and fits the memory budget.
 struct DenseFile {
-  std::string name;    ///< of its grid
-  std::string type;    ///< as `info` prints it
-  std::string prefix;  ///< of a phrase about its values: "x.raw: the data "
+  std::string name;    ///< Name of the grid.
+  std::string type;    ///< Number type, as printed by `info`.
+  std::string prefix;  ///< Beginning of messages about the values: "x.raw: the data ".
   Mapping mapping;
-  int components = 1;                ///< 1 or 3
-  DenseSource source;                ///< keeps the file open
-  std::vector<double> times{};       ///< as those of AnyField
-  std::string time_unit{};           ///< as that of AnyField
-  std::int64_t newest_mtime_ns = 0;  ///< as that of AnyField
+  int components = 1;                ///< 1 or 3.
+  DenseSource source;                ///< Reads the values; holds the file open.
+  std::vector<double> times{};       ///< See AnyField::times.
+  std::string time_unit{};           ///< See AnyField::time_unit.
+  std::int64_t newest_mtime_ns = 0;  ///< See AnyField::newest_mtime_ns.
   std::vector<std::string> notes{};
-  std::shared_ptr<const RoundingLoss> rounding{};  ///< what reading the numbers has rounded so far; none: nothing is told of it
+  std::shared_ptr<const RoundingLoss> rounding{};  ///< Accumulated rounding loss of reading the values; null: not reported.
 };
+/// Loads the values of a dense file into a grid.
 Result<AnyField> load_dense(const DenseFile& file);
-/// The same grid read by its cubic cells. What is no grid of its own values (points, meshes) is as it was.
+/// Returns the grid with cubic interpolation; other fields are returned unchanged. An Error begins with `path`.
 Result<AnyField> with_cubic_interpolation(AnyField field, const std::string& path);
-/// Of a format that holds one grid: what there is once it is loaded.
+/// For a format that holds one grid: loads it and describes the result.
 Result<std::vector<GridInfo>> describe_by_loading(const std::string& path, int step);
 
-/// One row of the registry of formats (formats.cpp).
+/// A row of the format registry (formats.cpp).
 struct FileFormat {
-  std::vector<std::string_view> extensions;  ///< of names, lower-case
-  bool needs_layout = false;                 ///< the file says nothing about itself: LoadRequest::raw goes with it
-  /// Either a box of numbers is opened, or one grid of the file is loaded.
+  std::vector<std::string_view> extensions;  ///< Lower case, with the dot.
+  bool needs_layout = false;                 ///< The file does not describe itself: LoadRequest::raw is required.
+  /// Either `open` is set (the file contains one dense array), or `load` (loads one grid of the file).
   Result<DenseFile> (*open)(const LoadRequest& request) = nullptr;
   Result<AnyField> (*load)(const LoadRequest& request) = nullptr;
   Result<std::vector<GridInfo>> (*describe)(const std::string& path, int step) = nullptr;
-  Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< nullptr: the format has none
-  bool reads_folders = false;                                                  ///< it reads folders, and DICOM files without an ending, too
+  Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< Null: the format has no units.
+  bool reads_folders = false;                                                  ///< Reads folders and DICOM files without an extension, too.
 };
-/// One more, at start-up, before anything reads a file.
+/// Adds a format. Call it at startup, before any file is read.
 void register_format(FileFormat format);
 FileFormat vdb_format();
 FileFormat nifti_format();
 FileFormat raw_format();
 FileFormat npy_format();
 FileFormat vtk_format();
-/// nullptr: none. `ending`: which of its endings.
+/// Returns the format of a path; nullptr: none. `ending`: receives the matching extension; empty for a folder or by contents.
 const FileFormat* find_format(std::string_view path, std::string_view* ending = nullptr);
 
 Units read_nifti_units(const std::string& path, const std::string& grid);
 Units read_vdb_units(const std::string& path, const std::string& grid);
 
+/// Counters of load_counters(): a loaded file, grid or mask.
 void count_file();
 void count_grid();
 void count_mask();

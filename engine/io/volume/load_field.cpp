@@ -25,7 +25,7 @@ namespace {
 
 std::atomic<std::uint64_t> files{0}, grids{0}, masks{0};
 
-/// Nothing that a library throws leaves this room.
+/// Converts the exceptions of libraries to Errors: none leaves this module.
 template <class T, class Body>
 Result<T> guarded(const std::string& path, const Body& body) {
   try {
@@ -41,14 +41,14 @@ Result<T> guarded(const std::string& path, const Body& body) {
   }
 }
 
-/// Each number of a transform may be finite, and the box not.
+/// Whether all corners of the grid are finite; they may be infinite even if each number of the transform is finite.
 bool has_finite_box(const Field& field) {
   bool finite = std::isfinite(field.domain_length());
   for (int i = 0; i < 8; ++i) finite = finite && is_finite(field.corner(i));
   return finite;
 }
 
-/// Where the largest size of a value lies outside 1e-30 .. 1e30, what that hints at: a sentence without an end.
+/// Message fragment on the probable cause if the largest magnitude is outside of 1e-30 .. 1e30.
 std::string absurd_sizes(const AnyField& field) {
   const GridStats* stats = field.scalar && field.scalar->grid()   ? &field.scalar->grid()->stats()
                            : field.vector && field.vector->grid() ? &field.vector->grid()->stats()
@@ -139,7 +139,7 @@ void count_grid() { ++grids; }
 void count_mask() { ++masks; }
 LoadCounters load_counters() { return {files, grids, masks}; }
 
-/// The format; of a folder with a known ending (Zarr) none.
+/// The format of the file; nullptr for a folder with a known extension (Zarr).
 static const FileFormat* format_to_read(const std::string& path) {
   std::string_view ending;
   const FileFormat* format = find_format(path, &ending);
@@ -168,7 +168,7 @@ Result<AnyField> load(const LoadRequest& request) {
     const auto is_hinted = [](const std::string& note) { return note.find("bytes") != std::string::npos; };
     if (const std::string absurd = absurd_sizes(*field); !absurd.empty() && std::ranges::none_of(field->notes, is_hinted))
       field->notes.push_back(absurd);
-    if (request.crop && !has_extension(request.path, ".vdb")) {  // of a .vdb nothing else was read
+    if (request.crop && !has_extension(request.path, ".vdb")) {  // of a .vdb only the region was read
       CATENA_TRY(field, crop_field(request.path, *field, *request.crop));
     }
     const bool nearest = request.interpolation == Interpolation::nearest;

@@ -1,7 +1,7 @@
-/// Reading and writing of fields: .vdb (float, half, double, integer scalars; 3-vectors), .nii and .nii.gz, .raw.
-/// Every failure is one sentence that names the file, what is wrong and what was expected. .vdb files are read and written by programs of
-/// their own, catena-read and catena-write (engine/io/vdb): a damaged file ends the reader, not the program that asked for it. Nothing is
-/// allocated on the word of a header beyond what engine/base/memory_limit.h allows.
+/// Reading and writing of fields (formats: formats.h; in .vdb: float, half, double and integer scalars, and 3-vectors). Every Error is one
+/// complete message that names the file, the problem and what was expected. .vdb files are read and written by separate processes,
+/// catena-read and catena-write (engine/io/vdb): a damaged file crashes the reader, not the calling program. No header makes a reader
+/// allocate more than engine/base/memory_limit.h allows.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -16,101 +16,103 @@
 
 namespace catena::field {
 
-/// What a .raw file does not say of itself.
+/// Layout of a .raw file, which has no header.
 struct RawLayout {
-  Index3 shape{0, 0, 0};         ///< voxels along x, y, z
-  Vec3 spacing{1.0};             ///< world units a voxel
-  Vec3 origin{0.0};              ///< world place of voxel (0, 0, 0)
-  std::string type = "float32";  ///< float32 float64 uint8 int8 uint16 int16 uint32 int32; little-endian, x fastest; "float32x3" a vector
+  Index3 shape{0, 0, 0};  ///< Voxels along x, y, z.
+  Vec3 spacing{1.0};      ///< World units per voxel.
+  Vec3 origin{0.0};       ///< World position of voxel (0, 0, 0).
+  /// float32 float64 uint8 int8 uint16 int16 uint32 int32; little-endian, x fastest; with the suffix "x3", as in "float32x3", a vector.
+  std::string type = "float32";
   bool operator==(const RawLayout&) const = default;
 };
 
-/// Which grid of which file, and how it is to be read.
+/// Which grid of which file to load, and how.
 struct LoadRequest {
-  std::string path;                                     ///< the file, or a folder of DICOM images
-  std::string grid;                                     ///< empty: the only usable grid of the file, or an error that lists them
-  std::optional<std::string> mask_grid = "valid";       ///< nullopt: no mask ("valid": null); a missing default mask is fine
-  bool mask_required = false;                           ///< the user named the mask: it must exist
-  std::int32_t step = 0;                                ///< which of the file's steps in time, from 0
-  bool axes_xyz = false;                                ///< .npy, .npz: the first index is x, not z
-  Vec3 spacing{1.0}, origin{0.0};                       ///< .npy, .npz
-  std::optional<RawLayout> raw;                         ///< for .raw
-  Interpolation interpolation = Interpolation::linear;  ///< of a scalar grid; nearest: of scalar grids only
-  std::optional<Box> crop;                              ///< world: only the voxels that it needs (crop.h)
-  std::int32_t level = 0;                               ///< of detail (level.h); 0: as it is in the file
+  std::string path;                                ///< File, or a folder of DICOM images.
+  std::string grid;                                ///< Empty: the only usable grid of the file; if there are several, an Error lists them.
+  std::optional<std::string> mask_grid = "valid";  ///< Nullopt: no mask ("valid": null in a scene). The default mask may be missing.
+  bool mask_required = false;                      ///< The mask was named explicitly: it must exist.
+  std::int32_t step = 0;                           ///< Time step in the file, from 0.
+  bool axes_xyz = false;                           ///< For .npy, .npz: the first index is x, not z.
+  Vec3 spacing{1.0}, origin{0.0};                  ///< For .npy, .npz: world units per voxel, and world position of voxel (0, 0, 0).
+  std::optional<RawLayout> raw;                    ///< For .raw.
+  Interpolation interpolation = Interpolation::linear;  ///< Interpolation of the grid; nearest: scalar grids only.
+  std::optional<Box> crop;                              ///< World box: load only the voxels that it needs (crop.h).
+  std::int32_t level = 0;                               ///< Resolution level (downsample.h); 0: full resolution.
   bool operator==(const LoadRequest&) const = default;
 };
 
-/// Loads one grid (and its mask), nothing else of the file.
+/// Loads one grid (and its mask), nothing else of the file. Any thread; blocks.
 Result<AnyField> load(const LoadRequest& request);
 
-/// Voxels an axis: a file's indices may be farther apart than an index can say.
+/// Voxels per axis, 64-bit: the index range in a file may exceed 32 bits.
 struct Size3 {
-  std::int64_t x = 0, y = 0, z = 0;  ///< along x, y, z
+  std::int64_t x = 0, y = 0, z = 0;  ///< Voxels along x, y, z.
   Size3() = default;
-  /// From three counts.
+  /// Creates a size from three counts.
   Size3(std::int64_t nx, std::int64_t ny, std::int64_t nz) : x(nx), y(ny), z(nz) {}
-  /// From an index's three counts.
+  /// Converts a 32-bit size.
   Size3(const Index3& n) : x(n.x), y(n.y), z(n.z) {}
   bool operator==(const Size3&) const = default;
 };
 
-/// What values belong to: a grid's voxels, or the points or cells of a mesh that a grid is resampled from.
+/// What the values of a grid belong to: its voxels, or the points or cells of a mesh from which it is resampled.
 enum class ElementKind : std::uint8_t { voxels, points, cells };
-/// "voxels", "points" or "cells".
+/// Returns "voxels", "points" or "cells".
 std::string_view to_string(ElementKind counted);
 
-/// What a file says of one of its grids, without loading it.
+/// Description of a grid in a file, without loading it.
 struct GridInfo {
-  std::string name, type;                          ///< type as the file says: float, half, vec3s, bool, ...
-  Size3 size;                                      ///< voxels along x, y, z
-  Index3 first_index{0, 0, 0};                     ///< index of the first voxel
-  Mapping mapping;                                 ///< world from index
-  GridStats stats;                                 ///< active_voxels: how many of what is counted
-  DisplayRange display_range;                      ///< of a usable grid (display_range.h)
-  ElementKind element_kind = ElementKind::voxels;  ///< what size and active_voxels count
-  std::size_t bytes = 0;                           ///< in memory, as NanoVDB
-  bool is_usable = false;                          ///< Catena can load it as a field
-  bool is_vector = false;                          ///< Vectors of three components.
-  std::string series_number;                       ///< of a DICOM series, by which --grid finds it, too; empty: none
-  std::int32_t image_count = 0;                    ///< that a DICOM volume was made of; 0: not counted
+  std::string name, type;                          ///< Type as named in the file: float, half, vec3s, bool, ...
+  Size3 size;                                      ///< Voxels along x, y, z.
+  Index3 first_index{0, 0, 0};                     ///< Index of the first voxel.
+  Mapping mapping;                                 ///< World from index.
+  GridStats stats;                                 ///< Value statistics; active_voxels counts elements of `element_kind`.
+  DisplayRange display_range;                      ///< Of a usable grid (display_range.h).
+  ElementKind element_kind = ElementKind::voxels;  ///< What `size` and `active_voxels` count.
+  std::size_t bytes = 0;                           ///< Size in memory as NanoVDB, bytes.
+  bool is_usable = false;                          ///< Can be loaded as a field.
+  bool is_vector = false;                          ///< Vectors with three components.
+  std::string series_number;                       ///< Number of a DICOM series, which --grid accepts, too; empty: none.
+  std::int32_t image_count = 0;                    ///< Number of images in a DICOM volume; 0: not counted.
 };
-/// Describes every grid of a file, as it is at a step in time.
+/// Describes every grid of a file, at a time step.
 Result<std::vector<GridInfo>> describe_grids(const std::string& path, int step = 0);
 
-/// What of a file of the program catena-read-vtk is drawn as it lies, beside points.
+/// Kinds of geometry, besides points, in a file read by catena-read-vtk.
 struct PrimitiveKinds {
-  bool triangles = false, lines = false;  ///< which of them there are
+  bool triangles = false, lines = false;  ///< Whether the file has triangles, and lines.
 };
-/// Empty where the file cannot be read.
+/// Returns nullopt when the file cannot be read.
 std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path);
 
-/// The times of the steps that a file of the program catena-read-vtk states; empty: none, or it is another file.
+/// Times of the steps in a file read by catena-read-vtk; empty: none, or a file of another format.
 std::vector<double> read_times(const std::string& path);
 
-/// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
+/// A grid to be written to a .vdb.
 struct NamedGrid {
-  AnyField field;    ///< grids only
-  std::string name;  ///< of the grid in the file
+  AnyField field;    ///< A grid (not an analytic field).
+  std::string name;  ///< Name of the grid in the file.
 };
-/// Writes the grids. An error names the file; what was there stays then.
+/// Writes grids to a .vdb through a temporary file, renamed when it is complete: the write is atomic. An Error names the file; an
+/// existing file is then unchanged.
 Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items);
 
-/// Reads one grid and writes it to a .vdb; raw and NIfTI files layer by layer, without a grid in this process's memory. Returns the grid's
-/// name in the output: `name`, else its own, else the file's.
+/// Converts one grid to a .vdb; raw and NIfTI files slice by slice, without a grid in the memory of this process. Returns the name of the
+/// grid in the output: `name`, else its own, else the file's.
 Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name);
 
-/// Called about once a second while a file is read by another program, with the seconds so far, and once with `ended`. Any thread.
+/// Called about once a second while a reader process reads a file, with the seconds elapsed, and a last time with `ended`. Any thread.
 using ReadProgress = std::function<void(const std::string& path, double seconds, bool ended)>;
-/// Once, before anything is read.
+/// Sets the callback. Call it once, before anything is read.
 void set_read_progress(ReadProgress called);
 
-/// Counts of what was really loaded, so that a test can show that only what the scene names is.
+/// Counts what has been loaded, so that tests can show that nothing is loaded but what the scene names.
 struct LoadCounters {
-  std::uint64_t files = 0, grids = 0;  ///< fields
-  std::uint64_t masks = 0;             ///< `valid` grids read along with them
+  std::uint64_t files = 0, grids = 0;  ///< Files and fields loaded.
+  std::uint64_t masks = 0;             ///< `valid` grids loaded with them.
 };
-/// Since the program began. Any thread.
+/// Counts since program start. Any thread.
 LoadCounters load_counters();
 
 }  // namespace catena::field

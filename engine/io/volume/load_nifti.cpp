@@ -1,5 +1,5 @@
-// NIfTI-1 volumes. The library reads the header and opens the (compressed) stream; the voxels are decoded here, because the
-// library's own reader turns NaN into 0. World: the sform, else the qform, else the voxel sizes; millimetres, RAS, as stored.
+// Loads NIfTI-1 volumes. The library reads the header and opens the (compressed) stream; the voxels are decoded here, because the
+// library's own reader turns NaN into 0. World: the sform, else the qform, else the voxel sizes; millimeters, RAS, as stored.
 #include <nifti1_io.h>
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ bool is_usable(const Mapping& mapping) {
   return is_finite(mapping.origin) && is_finite(mapping.index_from_world(Vec3(1.0))) && mapping.min_voxel_edge() > 0;
 }
 
-/// The sform, else the qform, else the voxel sizes. A note says where the sform cannot be used, and where both say different places.
+/// The mapping by the sform, else the qform, else the voxel sizes. Adds a note if the sform cannot be used, or if the two differ.
 Result<Mapping> placement_of(const nifti_image& image, const std::string& path, std::vector<std::string>& notes) {
   const bool has_sform = image.sform_code > 0, has_qform = image.qform_code > 0;
   const Mapping sform = mapping_of(image.sto_xyz), qform = mapping_of(image.qto_xyz);
@@ -85,7 +85,7 @@ Result<Mapping> placement_of(const nifti_image& image, const std::string& path, 
   return qform;
 }
 
-/// The voxels of one volume, in order. The library's stream is inflated no further than the header promises.
+/// The voxels of one volume, in order. The library's stream is decompressed only as far as the header specifies.
 class NiftiLayers {
  public:
   NiftiLayers(const std::string& path, const nifti_image& image, const NumberType& type, bool swapped, std::uint64_t file_size, int volume)
@@ -102,9 +102,9 @@ class NiftiLayers {
     file_size_ = file_size;
   }
 
-  /// A header that promises more than the file can hold is found before anything is read.
+  /// Opens the stream. Returns an Error before anything is read if the header specifies more data than the file can contain.
   Outcome open(const char* name) {
-    constexpr std::uint64_t best_ratio = 1032;  // of deflate
+    constexpr std::uint64_t best_ratio = 1032;  // maximum compression ratio of deflate
     const std::uint64_t most = compressed_ ? file_size_ * best_ratio : file_size_;
     if (offset_ > most || bytes_ > most - offset_) return cut(most > offset_ ? (compressed_ ? 0 : most - offset_) : 0);
     file_.reset(znzopen(name, "rb", compressed_));
@@ -125,7 +125,7 @@ class NiftiLayers {
       type_.decode(raw_.data(), count, slope_, inter_, values.data() + at, *rounding);
     }
     if (done_ < bytes_) return Done{};
-    // one byte beyond lets the decompressor check its trailer when the volume is the whole file
+    // reading one more byte lets the decompressor check its trailer if the volume is the whole file
     std::byte beyond{};
     bool sound = !whole_ || znzread(&beyond, 1, 1, file_.get()) <= 1;
     znzFile last = file_.release();
@@ -155,9 +155,9 @@ class NiftiLayers {
 
 /// Steps along the fourth axis.
 struct Steps {
-  std::vector<double> times;  ///< seconds; empty: it is not one of time
-  std::string interval;       ///< a phrase for the type
-  std::string note;           ///< why they have no times
+  std::vector<double> times;  ///< seconds; empty if the axis is not time
+  std::string interval;       ///< message fragment for the type
+  std::string note;           ///< why there are no times
 };
 Steps steps_of(const nifti_image& image, double dt, int volume) {
   Steps steps;
@@ -185,11 +185,11 @@ Steps steps_of(const nifti_image& image, double dt, int volume) {
 struct Header {
   Image image;
   bool swapped = false;
-  std::array<float, 5> pixdim{};  ///< as stored: the library makes 1 of 0
+  std::array<float, 5> pixdim{};  ///< as stored: the library replaces 0 by 1
 };
 
-/// The header is looked at first: the library reports some bad ones on stderr, whatever its debug level, and takes a place of the voxels
-/// that is no number for one. Extensions, which may be of any size, are not read.
+/// Reads the header, checking it before the library does: the library reports some errors on stderr, whatever its debug level, and accepts
+/// a voxel offset that is not a number. Extensions, which may be of any size, are not read.
 Result<Header> read_header(const std::string& path) {
   nifti_set_debug_level(0);
   const auto unknown = [&] {
@@ -248,7 +248,7 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
   // the voxels of the first volume: dimensions are 16-bit numbers
   const int volumes = std::max(image.nt, 1), volume = std::min(request.step, volumes - 1);
   const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size, volume);
-  if (const auto voxels = find_file_id(image.iname)) register_inputs({*voxels});  // another file (.img) where the header says so
+  if (const auto voxels = find_file_id(image.iname)) register_inputs({*voxels});  // another file (.img) if the header says so
   CATENA_CHECK(layers->open(image.iname));
   Steps steps = steps_of(image, static_cast<double>(header.pixdim[4]), volume);
   DenseFile file{name,

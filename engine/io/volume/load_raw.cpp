@@ -1,4 +1,4 @@
-// Bare numbers, x fastest, little-endian; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`. Read layer by layer.
+// Loads raw numbers, x fastest, little-endian, slice by slice; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`.
 #include <fmt/format.h>
 
 #include <bit>
@@ -14,7 +14,7 @@ static_assert(std::endian::native == std::endian::little, "raw files are read as
 
 namespace {
 
-/// The file from its first byte to its last; layers come in order.
+/// The file from its first byte to its last; slices must be read in order.
 class RawLayers {
  public:
   RawLayers(const std::string& path, const NumberType& type) : path_(path), type_(type), in_(path, std::ios::binary) {}
@@ -78,7 +78,7 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
     return Error{fmt::format("{}: there is no grid \"{}\", a .raw file holds one, \"{}\"", path, request.grid, name)};
   if (request.mask_required) return Error{fmt::format("{}: a .raw file holds no mask", path)};
 
-  // the size, with room for any shape
+  // the size, computed without overflow for any shape
   const std::size_t components = vector ? 3 : 1, voxel_bytes = components * type->bytes;
   const long double wanted = static_cast<long double>(n.x) * n.y * n.z * static_cast<long double>(voxel_bytes);
   if (wanted != static_cast<long double>(size))

@@ -1,4 +1,4 @@
-// OpenVDB files, as the program catena-read hands them over. What it wrote is believed as far as it is checked here.
+// Loads OpenVDB files from the response of the program catena-read, which is untrusted and validated here.
 #include <fmt/format.h>
 
 #include "engine/field/grid/grid_factory.h"
@@ -9,7 +9,7 @@
 namespace catena::field {
 namespace {
 
-/// One buffer of the answer, checked.
+/// One buffer of the response, validated.
 template <class T>
 Result<NanoMemory> buffer_at(const NanoMemory& memory, const BufferRange& piece) {
   if (piece.offset % kBufferAlignment != 0 || piece.offset > memory.size() || piece.bytes > memory.size() - piece.offset)

@@ -1,5 +1,5 @@
-// What the reader programs hand over as numbers, voxel by voxel: VTK's and ITK's formats, and NumPy's. What they wrote is believed as far
-// as it is checked here.
+// Loads voxel data from the responses of the reader programs: the formats of VTK and ITK, and NumPy's. The responses are untrusted and
+// validated here.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,7 +98,7 @@ std::vector<double> read_times(const std::string& path) {
   return file ? file->times : std::vector<double>();
 }
 
-/// .npy: a single array, described by loading it.
+/// .npy: a single array, which is described by loading it.
 FileFormat npy_format() { return {.extensions = {".npy"}, .load = load_answered, .describe = describe_by_loading}; }
 
 FileFormat vtk_format() {

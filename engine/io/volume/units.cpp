@@ -36,7 +36,7 @@ Units read_vdb_units(const std::string& path, const std::string& grid) {
   std::vector<const GridMetadata*> fields;
   for (const GridMetadata& words : file->grid_metadata)
     if (words.name != "valid") fields.push_back(&words);
-  // without a name: the first in the order of names
+  // without a name: the first grid in alphabetical order
   const auto by_name = [](const GridMetadata* a, const GridMetadata* b) { return a->name < b->name; };
   const std::string name = grid.empty() && !fields.empty() ? (*std::ranges::min_element(fields, by_name))->name : grid;
   units = parse_units(file->units, fields.size() == 1);

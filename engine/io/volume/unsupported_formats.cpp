@@ -8,7 +8,7 @@ namespace catena::field {
 namespace {
 
 struct ForeignKind {
-  std::string_view endings;  ///< each between blanks
+  std::string_view endings;  ///< each surrounded by blanks
   std::string_view what;
   std::string_view how;
 };

@@ -1,12 +1,12 @@
-/// Kinds of files that are not read, by the endings of their names (any case; Zarr is a folder), and how a common free program converts
-/// them into one that is. Any thread.
+/// File formats that are not read, by file extension (any case; Zarr is a folder), and how common free programs convert them to a
+/// supported format. Any thread.
 #pragma once
 #include <string>
 #include <string_view>
 
 namespace catena::field {
 
-/// "a TIFF image, which is not read; convert it: ..."; empty: the ending is not known.
+/// Returns a message fragment "a TIFF image, which is not read; convert it: ..."; empty: unknown extension.
 std::string conversion_hint(std::string_view path);
 
 }  // namespace catena::field

@@ -107,7 +107,7 @@ void VdbStreamWriter::end_grid() {
 Outcome VdbStreamWriter::finish() {
   flush();
   ::shutdown(socket_.get(), SHUT_WR);
-  // the answer
+  // the response
   std::string answer;
   char piece[512];
   constexpr std::size_t kLongest = 2000;
@@ -117,14 +117,14 @@ Outcome VdbStreamWriter::finish() {
     if (n <= 0) break;
     if (answer.size() < kLongest) answer.append(piece, static_cast<std::size_t>(n));
   }
-  constexpr double kLongestWait_s = 60;  // it has closed its end
+  constexpr double kLongestWait_s = 60;  // it has closed its end of the socket
   const ProcessExit end = writer_.wait(kLongestWait_s);
   const std::string limits = describe_resource_limits();
   if (!answer.empty()) {
     const bool machine = answer.front() == '1';
     return cannot_write(path_, answer.substr(1), machine);
   }
-  // what it writes is the program's own: it breaks down where the machine refuses it something
+  // it writes data of this process, so that it can only break down if the system refuses it something
   if (end.cause != ProcessExit::Cause::exited || end.code != 0)
     return cannot_write(path_,
                         fmt::format("the program catena-write broke down ({}){}",

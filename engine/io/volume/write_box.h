@@ -1,4 +1,4 @@
-/// Private to this room: a grid as the box of its voxels, for formats that hold nothing else. One writer a format.
+/// Private to this module: a grid as a dense box of voxels, for formats that store nothing else. One writer per format.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,26 +9,29 @@
 
 namespace catena::field {
 
+/// Reads a grid slice by slice as the dense box of its voxels.
 class VoxelBox {
  public:
   VoxelBox(const AnyField& field, const std::string& name, const Units& units);
 
   std::string name;
   Units units;
-  Mapping mapping;  ///< of voxel (0, 0, 0) of the box
+  Mapping mapping;  ///< World from index; voxel (0, 0, 0) is the first one of the box.
   Index3 size;
-  int components = 1;          ///< 1 or 3
-  bool has_mask = false;       ///< some voxel may be invalid
-  bool has_cell_mask = false;  ///< beside the voxels some cells are invalid of themselves
+  int components = 1;          ///< 1 or 3.
+  bool has_mask = false;       ///< Some voxels may be invalid.
+  bool has_cell_mask = false;  ///< Some cells may be invalid in addition to those with an invalid voxel.
 
+  /// Number of voxels in a slice.
   std::size_t layer_voxels() const { return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y); }
+  /// Number of voxels in the box.
   double voxels() const { return static_cast<double>(size.x) * size.y * size.z; }
-  /// One layer across z, x fastest; of vectors all components of a voxel together.
+  /// Reads the slice at z, x fastest; vectors interleaved.
   void read_values(std::int32_t z, std::span<float> out) const;
-  void read_valid(std::int32_t z, std::span<std::uint8_t> out) const;  ///< 0 or 1; all 1 without a mask
-  /// The same of the cells based at the voxels of one layer. Those based at the last voxel of an axis are none: 1.
+  void read_valid(std::int32_t z, std::span<std::uint8_t> out) const;  ///< 0 or 1; all 1 without a mask.
+  /// Reads the validity (0 or 1) of the cells based at the voxels of a slice; 1 at the last voxel of an axis, where there is no cell.
   void read_cells(std::int32_t z, std::span<std::uint8_t> out) const;
-  /// The same values, NaN where a voxel is invalid.
+  /// Reads the values of a slice, with NaN where a voxel is invalid.
   void read_values_or_nan(std::int32_t z, std::span<float> out) const;
 
  private:
@@ -36,8 +39,11 @@ class VoxelBox {
   Index3 first_index_;
 };
 
+/// Writes a VTK XML image file; see write_field.h.
 Outcome write_vti(const std::string& path, const VoxelBox& box);
+/// Writes an NRRD file.
 Outcome write_nrrd(const std::string& path, const VoxelBox& box);
+/// Writes a NIfTI-1 file.
 Outcome write_nifti(const std::string& path, const VoxelBox& box);
 
 }  // namespace catena::field

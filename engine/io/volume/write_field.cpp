@@ -29,7 +29,7 @@ const Writer* writer_of(std::string_view path) {
   return nullptr;
 }
 
-/// `use` of the storage of either kind of grid.
+/// Applies `use` to the storage of a scalar or a vector grid.
 template <class Use>
 auto with_storage(const AnyField& field, const Use& use) {
   return field.scalar ? use(field.scalar->grid()->storage()) : use(field.vector->grid()->storage());
@@ -39,7 +39,7 @@ const NanoMask* mask_of(const AnyField& field) {
   return with_storage(field, [](const auto& storage) { return storage.valid_voxels; });
 }
 
-/// The formats that hold a mask of cells.
+/// Whether the format stores a cell mask.
 bool holds_cells(std::string_view path) { return has_extension(path, ".vdb") || has_extension(path, ".vti"); }
 
 }  // namespace
@@ -115,7 +115,8 @@ std::string writable_extensions() {
   return join_alternatives(endings);
 }
 
-/// NIfTI's 32-bit axes and origin, far from the origin; empty: no voxel is moved by more than a hundredth of its edge.
+/// Note if the single precision of NIfTI's axes and origin displaces voxels far from the origin; empty if none moves by more than a
+/// hundredth of its edge.
 static std::string moved_in(const std::string& path, const VoxelBox& box) {
   constexpr double kTold = 0.01;
   if (!has_extension(path, ".nii") && !has_extension(path, ".nii.gz")) return {};
@@ -139,7 +140,7 @@ std::string lost_mask_note(const std::string& path, const AnyField& field) {
   const VoxelBox box(field, {}, {});
   std::string moved = moved_in(path, box);
   if (!box.has_cell_mask || holds_cells(path)) return moved;
-  // cells between valid voxels that are not valid
+  // invalid cells between valid voxels
   std::vector<std::uint8_t> below(box.layer_voxels()), above(box.layer_voxels()), cells(box.layer_voxels());
   const int step[3] = {box.size.x > 1, box.size.y > 1, box.size.z > 1};
   std::uint64_t lost = 0;
@@ -171,7 +172,7 @@ Outcome write_field(const std::string& path, const AnyField& field, const std::s
   if (writer == nullptr) return Error{path + ": expected an output that ends in " + writable_extensions()};
   if (writer->write == nullptr) return write_vdb(path, {{field, name}});
   const VoxelBox box(field, name, units);
-  // who reads the file has to hold it
+  // whoever reads the file has to hold the whole box
   CATENA_CHECK(
       check_memory_available(fmt::format("{}: the whole box of the grid, {} x {} x {} voxels,", path, box.size.x, box.size.y, box.size.z),
                              box.voxels() * (box.components * static_cast<double>(sizeof(float)) + (box.has_mask ? 1 : 0))));
@@ -182,7 +183,7 @@ Result<std::string> convert_file(const LoadRequest& request, const std::string& 
                                  std::vector<std::string>* notes) {
   const Writer* writer = writer_of(path);
   const bool as_vdb = writer == nullptr || writer->write == nullptr;
-  // layer by layer where the file comes so
+  // slice by slice if the format supports it
   if (const FileFormat* format = find_format(request.path); as_vdb && (format == nullptr || format->open != nullptr))
     return import_as_vdb(request, path, name);
   CATENA_TRY(const AnyField field, load(request));

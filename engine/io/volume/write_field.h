@@ -1,11 +1,11 @@
-/// Writing of grids for other programs. The ending of the name says how:
-///   .vdb           as it is: the grid's tree and its masks: "valid" of voxels, and "valid_cells" beside it where cells are masked
-///   .vti           VTK's XML image data, raw appended floats; rotated and mirrored axes, no sheared ones; voxels that are not valid are
-///                  hidden points, masked cells hidden cells (vtkGhostType)
+/// Writes grids for other programs. The file extension selects the format:
+///   .vdb           unchanged: the tree of the grid and its masks: "valid" of voxels, and also "valid_cells" if there is a cell mask
+///   .vti           VTK XML image data, raw appended floats; rotated and mirrored axes, but no sheared ones; invalid voxels are hidden
+///                  points, masked cells hidden cells (vtkGhostType)
 ///   .nrrd          raw floats, any axes; vectors as "vector domain domain domain"
 ///   .nii, .nii.gz  NIfTI-1 with an sform, any axes in single precision; vectors as 5 dimensions with the intent VECTOR
-/// All but .vdb hold the box of the grid's voxels, layer by layer: where a sparse grid holds nothing its background, where a voxel of an
-/// .nrrd or a NIfTI file is not valid NaN. An output is whole or not there. Errors name the output. Any thread.
+/// All but .vdb store the box of the grid's voxels, slice by slice: the background where a sparse grid has no voxels, NaN where a voxel of
+/// an .nrrd or NIfTI file is invalid. Writing is atomic. Errors name the output. Any thread.
 #pragma once
 #include <string>
 #include <string_view>
@@ -16,17 +16,19 @@
 
 namespace catena::field {
 
-bool is_writable_format(std::string_view path);  ///< by its ending
-std::string writable_extensions();               ///< ".vdb, .vti, .nrrd, .nii or .nii.gz"
+bool is_writable_format(std::string_view path);  ///< By the file extension.
+std::string writable_extensions();               ///< Returns ".vdb, .vti, .nrrd, .nii or .nii.gz".
 
-/// `field`: a grid. What `units` says of lengths and of a patient's axes goes with it where the format has a place.
+/// Writes a grid. The length unit and the patient space in `units` are stored if the format supports them. Returns an Error for an unknown
+/// extension, too little memory or a failed write.
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units);
 
-/// What of a mask of cells the output at `path` cannot hold, as a sentence without an end; empty: nothing.
+/// Message, without a final period, on what the output at `path` cannot store: cells masked between valid voxels, and voxel positions far
+/// from the origin in single precision (NIfTI); empty: nothing is lost.
 std::string lost_mask_note(const std::string& path, const AnyField& field);
 
-/// Reads one grid of any file and writes it. Returns its name in the output: `name`, else its own, else the file's. `notes`: those of
-/// AnyField.
+/// Reads one grid of any file and writes it. Returns the name in the output: `name`, else its own, else the file's. `notes`: receives
+/// AnyField::notes and lost_mask_note().
 Result<std::string> convert_file(const LoadRequest& request, const std::string& path, const std::string& name,
                                  std::vector<std::string>* notes = nullptr);
 

@@ -1,5 +1,5 @@
-// NIfTI-1: the library makes the header and the stream. The sform holds the axes as they are; where they are at right angles the qform
-// says the same, for programs that know no other.
+// Writes NIfTI-1; the library creates the header and the stream. The sform holds the exact axes; if they are orthogonal the qform holds the
+// same, for programs that read only the qform.
 #include <nifti1_io.h>
 
 #include <fmt/format.h>
@@ -59,12 +59,12 @@ nifti_1_header header_of(const VoxelBox& box) {
   image->pixdim[2] = image->dy = edge(1);
   image->pixdim[3] = image->dz = edge(2);
   nifti_1_header header = nifti_convert_nim2nhdr(image.get());
-  constexpr int kVoxels = 352;  // the header, and four bytes that say: no extensions
+  constexpr int kVoxels = 352;  // the header, and four bytes that mean: no extensions
   header.vox_offset = kVoxels;
   return header;
 }
 
-/// Into `place`; errors name `path`.
+/// Writes to the file `place`; errors name `path`.
 Outcome write_into(const std::string& place, const std::string& path, const VoxelBox& box) {
   errno = 0;
   const auto failed = [&] { return system_error(path + ": cannot write", errno != 0 ? errno : EIO); };
@@ -74,7 +74,7 @@ Outcome write_into(const std::string& place, const std::string& path, const Voxe
   const nifti_1_header header = header_of(box);
   const char no_extensions[4]{};
   if (!write(&header, sizeof header) || !write(no_extensions, sizeof no_extensions)) return failed();
-  // components one after the other, each a volume
+  // components one after the other, each as a volume
   const auto components = static_cast<std::size_t>(box.components);
   std::vector<float> values(box.layer_voxels() * components), one(components > 1 ? box.layer_voxels() : 0);
   for (std::size_t c = 0; c < components; ++c)
@@ -99,7 +99,7 @@ Outcome write_nifti(const std::string& path, const VoxelBox& box) {
     CATENA_CHECK(write_into(fmt::format("/proc/self/fd/{}", ::fileno(direct.stream())), path, box));
     return direct.commit();
   }
-  // through a link to the file that it names
+  // a symbolic link is resolved, so that the file that it names is replaced
   std::error_code code;
   const bool link = std::filesystem::is_symlink(path, code);
   CATENA_TRY(TemporaryFile part, TemporaryFile::create(link ? std::filesystem::weakly_canonical(path, code).string() : path));

@@ -1,4 +1,4 @@
-// Writing .vdb: the nodes of grids in memory, or the layers of a file that is read meanwhile, go to the writer as they are.
+// Writes .vdb: the nodes of grids in memory, or the slices of a file that is being read, are sent unchanged to the program catena-write.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace catena::field {
 namespace {
 
 Outcome check_volume(const std::string& path, const Mapping& mapping) {
-  // OpenVDB takes smaller voxels for flat ones
+  // OpenVDB treats smaller voxels as degenerate
   const double volume = std::fabs(glm::determinant(mapping.world_from_index_linear));
   if (!(volume > 3e-15) || !std::isfinite(volume))
     return Error{fmt::format("{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length",
@@ -26,7 +26,7 @@ Outcome check_volume(const std::string& path, const Mapping& mapping) {
 bool same_voxels(const NanoMask& a, const NanoMask& b) {
   if (&a == &b) return true;
   if (count_voxels(a) != count_voxels(b)) return false;
-  // as many, and all of the one are in the other
+  // equal counts, and all voxels of one are in the other
   const NanoNodes<nanovdb::ValueMask> nodes = view_nodes(a);
   const MaskView other(b);
   for (const auto& leaf : nodes.leaves)
@@ -57,7 +57,7 @@ const void* values_of(const NanoTypes<nanovdb::ValueMask>::Leaf&) {
   return nullptr;
 }
 
-/// All that a buffer holds, but for inactive tiles of the background.
+/// Sends all nodes of the buffer, except inactive tiles of the background value.
 template <class T>
 void stream_nodes(VdbStreamWriter& out, const nanovdb::NanoGrid<T>& grid) {
   using Value = typename NanoTypes<T>::Value;
@@ -106,7 +106,7 @@ Result<bool> stream_layers(VdbStreamWriter& out, const DenseSource& source) {
 }  // namespace
 
 Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items) {
-  // one mask for the file
+  // a file holds a single mask
   const NanoMask *mask = nullptr, *cells = nullptr;
   bool cells_masked = false;
   const Field* masked = nullptr;

@@ -1,4 +1,4 @@
-// VTK's XML image data. world = origin + direction (spacing * index): columns of `direction` are the unit axes.
+// Writes VTK's XML image data. world = origin + direction (spacing * index): the columns of `direction` are the unit axes.
 #include <fmt/format.h>
 
 #include "engine/base/numbers.h"
@@ -15,7 +15,7 @@ Outcome write_vti(const std::string& path, const VoxelBox& box) {
     spacing[a] = norm(steps[a]);
     direction[a] = steps[a] / spacing[a];
   }
-  constexpr double kSquare = 1e-5;  // what is left of axes in single precision; they are written as they are
+  constexpr double kSquare = 1e-5;  // deviation from orthogonal axes left by single precision; such axes are written unchanged
   for (int a = 0; a < 3; ++a)
     if (std::fabs(dot(direction[a], direction[(a + 1) % 3])) > kSquare)
       return Error{path + ": the grid's axes are sheared, and a .vti holds axes at right angles only: .nrrd or .nii was expected"};
@@ -37,7 +37,7 @@ Outcome write_vti(const std::string& path, const VoxelBox& box) {
                                          write_bytes(to, values.data(), values.size() * sizeof(float));
                                        }
                                      }}};
-  // a byte a cell, 1 to the last but one of each axis
+  // one byte per cell; an axis with one voxel has one cell
   constexpr std::uint8_t kHiddenCell = 32;
   const auto cells_along = [](int n) { return std::max(n - 1, 1); };
   const std::uint64_t cell_count = static_cast<std::uint64_t>(cells_along(box.size.x)) *

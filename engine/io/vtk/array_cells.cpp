@@ -18,7 +18,7 @@
 namespace catena::vtk {
 namespace {
 
-/// Pieces of one mesh as one, so that cells on both sides of a cut share its points.
+/// Joins the pieces of one mesh, so that cells on both sides of a cut share its points.
 vtkSmartPointer<vtkDataSet> joined_pieces(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen) {
   vtkNew<vtkAppendFilter> join;
   join->MergePointsOn();
@@ -33,7 +33,7 @@ bool is_finite_at(vtkDataArray& values, vtkIdType i) {
   return true;
 }
 
-/// The cells with a volume whose own value, or all of whose points' values, are finite; null where there are none.
+/// The cells that have a volume and whose own value, or the values of all of whose points, are finite; null if there are none.
 vtkSmartPointer<vtkDataSet> solid_part(vtkDataSet* data, vtkDataArray& values, bool of_cells) {
   vtkNew<vtkGenericCell> cell;
   vtkNew<vtkIdList> ids, points;

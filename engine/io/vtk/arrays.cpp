@@ -153,7 +153,7 @@ ImageWriteResult write_image(const ImportedData& opened, const FieldArray& colum
     own[a] = grid.is_flat[a] ? 1 : n[a];
     cells_along[a] = std::max(own[a] - 1, 1);
   }
-  // one number a voxel, as it lies: at once
+  // one contiguous number per voxel: copied at once
   const bool plain =
       column.components == components && own[0] == n[0] && own[1] == n[1] && own[2] == n[2] && array.HasStandardMemoryLayout();
   if (plain) {
@@ -218,7 +218,7 @@ field::GridStats compute_stats(const ImportedData& opened, const FieldArray& col
 DisplayRange compute_display_range(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
                                    const field::GridStats& stats) {
   constexpr std::uint64_t kSampled = 1u << 17;
-  // every so many values; not a power of two, as rows may be
+  // a sample of the values; the step is not a power of two, because rows may be
   const auto step = static_cast<vtkIdType>(stats.active_voxels > kSampled ? 1 + 2 * (stats.active_voxels / kSampled) : 1);
   const auto each = [&](vtkIdType by, const auto& take) {
     for (const std::size_t b : column.block_indices) {

@@ -1,6 +1,6 @@
-/// The arrays of a file by name, whichever blocks they are in, and what becomes of each as a field.
-///   image       one block, an image: voxel by voxel as it lies; values of cells sit in the cells' middles
-///   resampled   anything else with cells that have a volume (resample.h); values of cells are averaged at the points first
+/// The arrays of a file by name, across blocks, and how each becomes a field.
+///   image       one block that is an image: voxel by voxel; cell values are placed at the cell centers
+///   resampled   any other data whose cells have a volume (resample.h); cell values are first averaged at the points
 #pragma once
 #include <vtkDataArray.h>
 
@@ -14,51 +14,55 @@
 
 namespace catena::vtk {
 
-/// An array's name; "data" where it has none.
+/// Name of an array; "data" if it has none.
 std::string name_of(vtkDataArray& array);
 
+/// A point or cell array that can become a field.
 struct FieldArray {
-  std::string name;  ///< of the grid: the array's own; "NAME (cells)" where points have an array of the same name
+  std::string name;  ///< Name of the grid: that of the array; "NAME (cells)" if points have an array with the same name.
   std::string array_name;
   bool is_cell_data = false;
   int components = 1;
-  std::vector<std::size_t> block_indices;  ///< that have it
+  std::vector<std::size_t> block_indices;  ///< Blocks that have the array.
+  /// Returns the array in a block; null: the block does not have it.
   vtkDataArray* find_in(const Block& block) const;
 };
 
-/// All that a field can be made of, in the order of the blocks: 1, 2 (a plane's vectors) or 3 components of numbers. Masks, ghosts and
-/// identities are left out.
+/// Lists the arrays that can become fields, in the order of the blocks: 1, 2 (vectors in a plane) or 3 numeric components. Masks, ghost
+/// flags and ids are omitted.
 std::vector<FieldArray> list_field_arrays(const ImportedData& opened);
-/// The words of arrays that cannot be fields: "tensor (9 components)".
+/// Lists the arrays with too many components for a field, as "tensor (9 components)".
 std::vector<std::string> list_unsupported_arrays(const ImportedData& opened);
 
-/// The voxels of an image.
+/// The voxel grid of an image.
 struct ImageGrid {
-  field::Index3 size;  ///< at least 2 an axis: flat data are written twice
+  field::Index3 size;  ///< At least 2 per axis: the slice of a flat image is stored twice.
   field::Mapping mapping;
+  /// Axes along which the image is one voxel thick.
   bool is_flat[3] = {false, false, false};
 };
-/// nullopt: it is not an image.
+/// Returns the voxel grid of an image; nullopt: the data are not an image.
 std::optional<ImageGrid> find_image_grid(const ImportedData& opened, const FieldArray& column);
 
-/// Writes the voxels of an image; says whether all were 32-bit floats already, and which are valid (1). `cells`, where it is not null, gets
-/// the same of the cells based at the voxels (values of points).
+/// Result of write_image().
 struct ImageWriteResult {
-  bool is_exact = true;  ///< no number was rounded
+  bool is_exact = true;  ///< No number was rounded to a 32-bit float.
   bool all_valid = true;
-  bool has_cell_mask = false;  ///< they say more than the voxels
+  bool has_cell_mask = false;  ///< The cell mask excludes more than the voxel mask.
 };
+/// Writes the voxels of an image: `values` as 32-bit floats, x fastest, `valid` as 1 or 0 per voxel, and, unless `cells` is null, 1 or 0
+/// for the cell based at each voxel (point data only).
 ImageWriteResult write_image(const ImportedData& opened, const FieldArray& column, const ImageGrid& grid, const ValidityMask& seen,
                              float* values, std::uint8_t* valid, std::uint8_t* cells);
 
-/// The blocks of a column as the cells that are data, with values at their points. `seen`: of each block (seen.h). `keep` holds what was
-/// made for them.
+/// Returns the valid cells of the blocks that have an array, with values at their points. `seen`: the validity mask of each block
+/// (validity_mask.h). `keep` receives the data sets created for them, which must live as long as the result.
 std::vector<CellValues> make_cell_values(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
                                          std::vector<vtkSmartPointer<vtkDataSet>>& keep);
 
-/// Values of the array itself, of all blocks, where they are data.
+/// Statistics of the array's own values, over all blocks, where they are valid.
 field::GridStats compute_stats(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen);
-/// The display range of the same values.
+/// Display range of the same values.
 DisplayRange compute_display_range(const ImportedData& opened, const FieldArray& column, const std::vector<ValidityMask>& seen,
                                    const field::GridStats& stats);
 

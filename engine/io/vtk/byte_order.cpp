@@ -44,7 +44,7 @@ bool numbers_look_swapped(const T* numbers, std::size_t count, bool often) {
       as_read += std::fabs(static_cast<double>(numbers[i + 1]) - static_cast<double>(numbers[i]));
       swapped += std::fabs(static_cast<double>(in_other_order(numbers[i + 1])) - static_cast<double>(in_other_order(numbers[i])));
     }
-    // small numbers become multiples of 256, or of more
+    // with swapped bytes, small integers become multiples of 256 or of higher powers
     constexpr double kLargeStep = 4096, kMuchLess = 8, kAlmostNothing = 64;
     const bool small = often && kAlmostNothing * swapped < as_read;
     return count >= 16 && (small || (as_read >= kLargeStep * static_cast<double>(count - 1) && kMuchLess * swapped < as_read));

@@ -59,7 +59,7 @@ void CellSampler::interpolate(bool was_inside, double* out) {
 
 namespace {
 
-/// The range of scalars, of vectors from 0 to the largest length; at least a little.
+/// Display range of the scalars; for vectors from 0 to the largest length. Never empty.
 DisplayRange range_of(const std::vector<CellValues>& blocks) {
   const std::size_t components = component_count(blocks);
   constexpr std::size_t kSampled = 1u << 17;
@@ -78,13 +78,13 @@ DisplayRange range_of(const std::vector<CellValues>& blocks) {
       hi = std::max(hi, v);
     }
   if (lo > hi) return {0, 1e-300};
-  // an error in per cent of an outlier says nothing
+  // an error in percent of a range with outliers would mean nothing
   DisplayRange range = display_range(std::move(sample), lo, hi);
   if (components == 3) range.lo = 0;
   return range;
 }
 
-/// Random places inside random cells.
+/// Random positions inside random cells.
 std::vector<CellSamples::Sample> places_inside(const std::vector<CellValues>& blocks, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -117,7 +117,7 @@ std::vector<CellSamples::Sample> places_inside(const std::vector<CellValues>& bl
   return places;
 }
 
-/// At the points of cells with the least and the greatest value.
+/// Samples at the points of cells with the lowest and the highest value.
 std::vector<CellSamples::Sample> places_of_extremes(const std::vector<CellValues>& blocks) {
   const std::size_t components = component_count(blocks);
   struct Extreme {
@@ -183,7 +183,7 @@ BoxSamples::BoxSamples(CellFinder& within, const Vec3& lo, const Vec3& hi, std::
 }
 
 bool BoxSamples::is_in_narrow_gap(const Vec3& p, int axis, double voxel) const {
-  constexpr double kStep = 0.25, kMiddle = 0.4;  // voxels; of the gap's width
+  constexpr double kStep = 0.25, kMiddle = 0.4;  // in voxels; in gap widths
   double way[2] = {0, 0};
   for (const int side : {0, 1}) {
     bool hit = false;
@@ -207,7 +207,7 @@ double BoxSamples::gap_fill_share(const ResampleGrid& lattice) const {
     bool gap = false;
     for (int axis = 0; axis < 3; ++axis) gap = gap || is_in_narrow_gap(place.position, axis, lattice.spacing[axis]);
     if (!gap) continue;
-    // its cell of the lattice meets cells of the data
+    // its voxel cell intersects cells of the data
     bool meets = false;
     for (int c = 0; c < 8 && !meets; ++c) {
       Vec3 corner;

@@ -1,5 +1,5 @@
-/// Private to resampling: one cell after the other with its values, random places inside cells with VTK's value there, and what the
-/// differences at them come to.
+/// Private to resampling: evaluates single cells, samples random positions in cells with VTK's interpolated values, and measures the
+/// resampling error at them.
 #pragma once
 #include <vtkGenericCell.h>
 #include <vtkNew.h>
@@ -16,37 +16,40 @@
 
 namespace catena::vtk {
 
-inline constexpr double kInsideTolerance = 1e-9;  ///< of a voxel: rounding
+inline constexpr double kInsideTolerance = 1e-9;  ///< Tolerance for rounding, voxels.
 
+/// Number of components of the values.
 std::size_t component_count(const std::vector<CellValues>& blocks);
 
-/// Work on one cell of a block after the other; what a cell needs is allocated once.
+/// Evaluates one cell of a block at a time; buffers are allocated once. Not thread-safe.
 class CellSampler {
  public:
   explicit CellSampler(const CellValues& block) : block_(block), components_(block.values->GetNumberOfComponents()) {}
 
-  /// False: it has no volume, or too many points.
+  /// Selects a cell. Returns false when it has no volume, or too many points.
   bool set_cell(vtkIdType id);
 
+  /// Bounding box of the cell: x min, x max, y min, ...
   const double* bounds() const { return bounds_; }
   Vec3 min_corner() const { return {bounds_[0], bounds_[2], bounds_[4]}; }
   Vec3 max_corner() const { return {bounds_[1], bounds_[3], bounds_[5]}; }
 
-  /// Whether p lies inside; sets its distance (squared) from the cell.
+  /// Returns whether p lies inside, with VTK's tolerance; `distance2`: receives the squared distance from the cell.
   bool contains(const Vec3& p, double& distance2);
-  /// The same without VTK's tolerance, which is a thousandth of the cell.
+  /// Whether the last contains() found p inside without VTK's tolerance, which is a thousandth of the cell.
   bool strictly_inside() const { return strictly_inside_; }
-  /// A place of the cell, the nearest to what inside() was asked for last as far as VTK finds it.
+  /// Point of the cell nearest to the p of the last contains(), as found by VTK.
   const Vec3& closest_point() const { return closest_point_; }
-  /// The cell's points, moved a little toward their middle.
+  /// Calls visit() for the center of the cell, and for its points, moved 2 % toward the center.
   template <class Visit>
   void for_each_corner(const Visit& visit) const;
-  /// The cell's interpolation at the place last asked for; outside continued, and held back.
+  /// Interpolates at the p of the last contains(); outside, the polynomial is extrapolated and clamped.
   void interpolate(bool was_inside, double* out);
 
  private:
-  static constexpr int kMaxPoints = 216;               ///< of a cell: a hexahedron of order 5
-  static constexpr double kExtrapolationLimit = 0.25;  ///< of its range: how far its polynomial may go beyond it
+  static constexpr int kMaxPoints = 216;  ///< Maximum number of points of a cell: a hexahedron of order 5.
+  /// How far an extrapolated value may exceed the range of the cell's values, as a fraction of it.
+  static constexpr double kExtrapolationLimit = 0.25;
 
   CellValues block_;
   std::size_t components_;
@@ -58,7 +61,7 @@ class CellSampler {
   Vec3 closest_point_{0.0};
   bool strictly_inside_ = false;
   int sub_id_ = 0;
-  double min_value_ = 0, max_value_ = 0;  ///< of its values
+  double min_value_ = 0, max_value_ = 0;  ///< Range of the cell's values.
 };
 
 template <class Visit>
@@ -79,24 +82,26 @@ void CellSampler::for_each_corner(const Visit& visit) const {
   }
 }
 
-/// Which places are inside the cells.
+/// Finds the cell that contains a position.
 class CellFinder {
  public:
+  /// Builds a locator for each block.
   explicit CellFinder(const std::vector<CellValues>& blocks);
   bool contains(const Vec3& p) { return find_cell(p).second >= 0; }
-  /// Block and cell; the cell is -1 where there is none.
+  /// Returns block and cell; cell -1: p is in no cell.
   std::pair<std::size_t, vtkIdType> find_cell(const Vec3& p);
 
  private:
   std::vector<vtkSmartPointer<vtkStaticCellLocator>> locators_;
 };
 
-/// Random places of a box, and what becomes of them on a grid.
+/// Random positions in a box, and how a sampling grid classifies them.
 class BoxSamples {
  public:
   BoxSamples(CellFinder& within, const Vec3& lo, const Vec3& hi, std::uint64_t seed);
-  /// The share of the box in the middle of gaps that cells of a lattice fill.
+  /// Fraction of the positions in the middle of narrow gaps that would be filled by cells of a sampling grid.
   double gap_fill_share(const ResampleGrid& lattice) const;
+  /// Misclassified fractions of the box, for a sampling grid with these valid cells.
   ResampleShares shares(const ResampleGrid& lattice, const std::vector<std::uint8_t>& cells) const;
 
  private:
@@ -104,17 +109,18 @@ class BoxSamples {
     Vec3 position;
     bool is_inside;
   };
-  /// CellCache lie on both sides of a place along an axis, kNarrowGapVoxels voxels apart at most, and neither much nearer than the other.
+  /// Whether there are cells on both sides of p along the axis, at most kNarrowGapVoxels voxels apart, with p near the middle between them.
   bool is_in_narrow_gap(const Vec3& p, int axis, double voxel) const;
 
   CellFinder& cell_finder_;
   std::vector<Sample> samples_;
 };
 
-/// Random places inside random cells, the same for the same seed, and what errors there are told in.
+/// Random positions inside random cells, deterministic for a seed, and the range to which errors are related.
 class CellSamples {
  public:
   static constexpr int kSampleCount = 20'000;
+  /// A sampled position and VTK's value there.
   struct Sample {
     std::size_t block;
     vtkIdType cell;
@@ -124,15 +130,15 @@ class CellSamples {
 
   CellSamples(const std::vector<CellValues>& blocks, std::uint64_t seed);
   const std::vector<Sample>& samples() const { return samples_; }
-  /// Where the least and the greatest value are (of vectors the greatest length): at a point of a cell, moved a little into it.
+  /// Positions of the minimum and the maximum value (of vectors: of the length): at a point of a cell, moved slightly inward.
   const std::vector<Sample>& extremes() const { return extremes_; }
-  /// That errors are told in: of scalars; of vectors up to the largest length.
+  /// Range to which errors are related: of the scalars; of vectors from 0 to the largest length.
   const DisplayRange& range() const { return range_; }
-  /// The cell below a place, and where in it; false outside of the lattice.
+  /// Finds the grid cell that contains p: its base voxel and the position inside it, 0 to 1. Returns false outside of the grid.
   static bool locate_voxel_cell(const ResampleGrid& lattice, const Vec3& p, int (&base)[3], double (&t)[3]);
 
-  /// Of the trilinear interpolation of eight corners: `corner(place, base, k, value)` gives the k-th of the lattice cell at `base`, false
-  /// where it has none. Every `every`-th of the places is looked at.
+  /// Error of the trilinear interpolation in grid cells: `corner(place, base, k, value)` gives the value at corner k of the grid cell at
+  /// `base`, and returns false if there is none. Uses every `every`-th of the positions.
   template <class Corner>
   ResampleError measure_error(const ResampleGrid& lattice, const std::vector<Sample>& places, std::size_t every,
                               const Corner& corner) const;

@@ -9,12 +9,12 @@ namespace {
 using gdcm::DataSet;
 using gdcm::Tag;
 
-/// Where a key is in classic files, and in functional groups.
+/// Location of a key in classic files, and in functional groups.
 struct KeyTags {
   DicomKey key;
   Tag root;
   Tag group, element;
-  DicomEncoding encoding;  ///< of the element of the group
+  DicomEncoding encoding;  ///< of the element in the group
 };
 const Tag kNone(0, 0);
 const KeyTags kKeyTags[] = {
@@ -36,7 +36,7 @@ const KeyTags kKeyTags[] = {
     {DicomKey::acquisition_time, Tag(0x8, 0x32), kNone, kNone, DicomEncoding::text},
     {DicomKey::content_time, Tag(0x8, 0x33), kNone, kNone, DicomEncoding::text},
 };
-/// Vectors of NM files with a number a frame.
+/// Vectors of nuclear medicine (NM) files, with one number per frame.
 const std::pair<DicomKey, Tag> kVectors[] = {
     {DicomKey::energy_window, Tag(0x54, 0x10)}, {DicomKey::detector, Tag(0x54, 0x20)},    {DicomKey::phase, Tag(0x54, 0x30)},
     {DicomKey::rotation, Tag(0x54, 0x50)},      {DicomKey::rr_interval, Tag(0x54, 0x60)}, {DicomKey::time_slot, Tag(0x54, 0x70)},

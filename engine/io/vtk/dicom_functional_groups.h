@@ -1,16 +1,17 @@
-/// Private to this room: what the headers of DICOM frames say by functional groups, and what tells frames at one place apart.
+/// Private to this module: looks up DICOM elements in the functional groups of frames, and reads the keys that distinguish frames.
 #pragma once
 #include "engine/io/vtk/dicom_element.h"
 #include "engine/io/vtk/dicom_headers.h"
 
 namespace catena::vtk {
 
-/// Elements of one frame: its own functional groups, the shared ones, and the file's data set, in this order.
+/// Elements of one frame: searched in its own functional groups, the shared ones, and the root data set of the file, in this order.
 struct DicomFunctionalGroups {
   const gdcm::DataSet& root;
   const gdcm::DataSet* shared;
   const gdcm::DataSet* per_frame;
 
+  /// Returns the first nonempty result of `find` on the items of `group`, or its result on the root data set.
   template <class Find>
   auto first(gdcm::Tag group, const Find& find) const -> decltype(find(root)) {
     for (const gdcm::DataSet* set : {per_frame, shared})
@@ -19,6 +20,7 @@ struct DicomFunctionalGroups {
           if (auto found = find(item); static_cast<bool>(found)) return found;
     return find(root);
   }
+  /// Returns all numbers of an element, if there are at least `least`.
   std::optional<std::vector<double>> numbers(gdcm::Tag group, gdcm::Tag tag, std::size_t least,
                                              DicomEncoding encoding = DicomEncoding::text) const {
     return first(group, [&](const gdcm::DataSet& set) {
@@ -26,10 +28,12 @@ struct DicomFunctionalGroups {
       return found.size() >= least ? std::optional(std::move(found)) : std::nullopt;
     });
   }
+  /// Returns the first number of an element.
   std::optional<double> number(gdcm::Tag group, gdcm::Tag tag, DicomEncoding encoding = DicomEncoding::text) const {
     const auto found = numbers(group, tag, 1, encoding);
     return found ? std::optional(found->front()) : std::nullopt;
   }
+  /// Returns the text of an element; empty: missing.
   std::string text(gdcm::Tag group, gdcm::Tag tag) const {
     return first(group,
                  [&](const gdcm::DataSet& set) {
@@ -40,9 +44,9 @@ struct DicomFunctionalGroups {
   }
 };
 
-/// Fills in what may tell the frame from others at its place.
+/// Fills in the keys that can distinguish the frame from others at its position.
 void read_frame_keys(const DicomFunctionalGroups& groups, DicomFrame& frame);
-/// The same of the vectors of NM files, which have a number a frame.
+/// Fills in the keys from the vectors of NM files, which have one number per frame.
 void read_nm_vectors(const gdcm::DataSet& root, std::vector<DicomFrame>& frames);
 
 }  // namespace catena::vtk

@@ -23,7 +23,7 @@ using gdcm::Tag;
 
 constexpr std::size_t kMaxFrames = 65'536;
 
-/// A text for people, at most 64 bytes as the standard has it. Latin-1 becomes UTF-8; of other character sets than that only ASCII is read.
+/// A human-readable text, at most 64 bytes as in the standard. Latin-1 becomes UTF-8; in other character sets only ASCII is read.
 std::string words_at(const DataSet& set, Tag tag, const std::string& character_set) {
   constexpr std::size_t kMaxBytes = 64;
   std::string words;
@@ -43,7 +43,7 @@ std::optional<Vec3> vector_of(const std::vector<double>& numbers, std::size_t at
   return numbers.size() >= at + 3 ? std::optional(Vec3(numbers[at], numbers[at + 1], numbers[at + 2])) : std::nullopt;
 }
 
-/// False: a real world value mapping that is no straight line.
+/// Reads the rescale of a frame. Returns false if the file has a real world value mapping that is not linear.
 bool read_rescale(const DicomFunctionalGroups& groups, DicomFrame& frame, DicomFile& file) {
   const Tag group(0x28, 0x9145);
   const auto slope = groups.number(group, Tag(0x28, 0x1053)), intercept = groups.number(group, Tag(0x28, 0x1052));
@@ -84,7 +84,7 @@ void read_units(const DataSet& root, const DicomFunctionalGroups& groups, DicomF
     if (stated == code) file.unit = word;
 }
 
-/// Position and axes, as far as the frame states them itself.
+/// Reads position and axes, as far as the frame itself has them.
 void read_place(const DicomFunctionalGroups& groups, DicomFrame& frame) {
   for (const Tag& group : {Tag(0x20, 0x9113), Tag(0x20, 0x930e)})
     if (!frame.has_position)
@@ -102,7 +102,7 @@ void read_place(const DicomFunctionalGroups& groups, DicomFrame& frame) {
   frame.thickness = groups.number(measures, Tag(0x18, 0x50)).value_or(0);
 }
 
-/// In place of a PixelSpacing that is not there.
+/// Reads another spacing in place of a missing PixelSpacing.
 void read_other_spacing(const DataSet& root, DicomFile& file) {
   struct Other {
     Tag tag;
@@ -119,7 +119,7 @@ void read_other_spacing(const DataSet& root, DicomFile& file) {
   }
 }
 
-/// RT dose. False: the offsets contradict the position.
+/// Adds the frame offsets of an RT dose. Returns false if the offsets contradict the position.
 bool add_grid_offsets(const std::vector<double>& offsets, DicomFile& file) {
   for (DicomFrame& frame : file.frames) {
     const double z = frame.position.z, by = offsets[frame.index];
@@ -127,14 +127,14 @@ bool add_grid_offsets(const std::vector<double>& offsets, DicomFile& file) {
     if (offsets[0] == 0)
       frame.position = frame.position + by * frame.normal();
     else if (along_z && std::fabs(offsets[0] - z) < 1e-3)
-      frame.position.z = by;  // offsets are z coordinates of the patient
+      frame.position.z = by;  // the offsets are z coordinates in patient space
     else
       return false;
   }
   return true;
 }
 
-/// Positions of frames in files without functional groups.
+/// Sets the positions of frames in files without functional groups.
 void place_frames(const DataSet& root, double step, DicomFile& file) {
   const std::vector<double> offsets = read_numbers(root, Tag(0x3004, 0xc)),
                             slices = read_numbers(root, Tag(0x54, 0x80), DicomEncoding::u16);
@@ -154,7 +154,7 @@ void place_frames(const DataSet& root, double step, DicomFile& file) {
     return;
   }
   const std::string increment = read_bytes(root, Tag(0x28, 0x9));
-  const bool timed = increment.size() >= 2 && increment[0] == 0x18 && increment[1] == 0;  // FrameTime and its kin
+  const bool timed = increment.size() >= 2 && increment[0] == 0x18 && increment[1] == 0;  // FrameTime and similar
   if (timed)
     file.problem = fmt::format("its {} frames follow each other in time, expected slices", file.frames.size());
   else if (step == 0)
@@ -179,7 +179,7 @@ void read_detectors(const DataSet& root, DicomFile& file) {
   }
 }
 
-/// Axes must be two directions at right angles; a spacing must be a length.
+/// Checks that the axes are two orthogonal directions, and that each spacing is a length.
 void check_frames(DicomFile& file) {
   constexpr double kMaxLength = 1e6;
   for (const DicomFrame& frame : file.frames) {
@@ -225,7 +225,7 @@ void read_geometry(const DataSet& root, std::size_t frames, DicomFile& file) {
   if (file.problem.empty()) check_frames(file);
 }
 
-/// Where pixels begin, and how many bytes: just behind the element's head, which the stream stopped at; -1: there are none.
+/// Offset of the pixels and their number of bytes. They follow the header of the element, where the stream stopped; -1: there are none.
 std::int64_t find_pixels(const std::string& path, std::uint64_t at, std::uint64_t& bytes) {
   constexpr std::uint64_t kLongest = 12;
   if (at < kLongest) return -1;

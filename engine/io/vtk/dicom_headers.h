@@ -1,10 +1,11 @@
-/// Private to this room: what the header of a DICOM file says of geometry and values, one record a frame. A file of one image is a file of
-/// one frame. Lengths are millimetres; positions and directions are the patient's: +x to the left, +y to the back, +z to the head.
-///   position of a frame, the first that there is of
+/// Private to this module: geometry and value encoding from the header of a DICOM file, one record per frame. A file with one image has one
+/// frame. Lengths are millimeters; positions and directions are in DICOM's patient space (LPS): +x to the left, +y to the back, +z to the
+/// head.
+///   position of a frame, the first available of
 ///     ImagePositionPatient of the frame, of its functional groups, of its NM detector
 ///     ImagePositionPatient + GridFrameOffsetVector (RT dose), + (slice - 1) SpacingBetweenSlices along the normal (NM and other
 ///     multi-frame files)
-///   value = slope stored + intercept: Rescale Slope and Intercept of the frame, DoseGridScaling, else a linear real world value mapping
+///   value = slope * stored + intercept: Rescale Slope and Intercept of the frame, DoseGridScaling, else a linear real world value mapping
 #pragma once
 #include <gdcmReader.h>
 
@@ -19,7 +20,7 @@
 
 namespace catena::vtk {
 
-/// What may tell images at one position apart, in order of preference; text as the header has it.
+/// Attributes that can distinguish images at one position, in order of preference; values are text as in the header.
 enum class DicomKey : std::size_t {
   segment,
   stack,
@@ -48,51 +49,54 @@ enum class DicomKey : std::size_t {
   content_time,
   count
 };
+/// Name and unit of a key, for messages and names of volumes.
 struct DicomKeyInfo {
   const char *name, *unit;
 };
 DicomKeyInfo key_info(DicomKey key);
 
+/// One frame of a DICOM file.
 struct DicomFrame {
-  std::size_t file = 0;     ///< which file of the scan
-  std::uint32_t index = 0;  ///< which frame of the file
+  std::size_t file = 0;     ///< Index of the file in the scan.
+  std::uint32_t index = 0;  ///< Index of the frame in the file.
   std::uint32_t columns = 0, rows = 0;
-  bool has_position = false, has_orientation = false;  ///< whether the header says position and orientation
-  Vec3 position{0.0};                                  ///< of the first pixel's centre
+  bool has_position = false, has_orientation = false;  ///< Whether the header specifies position and orientation.
+  Vec3 position{0.0};                                  ///< Center of the first pixel, mm.
   Vec3 row_direction{1, 0, 0}, column_direction{0, 1, 0};
-  double column_spacing = 0, row_spacing = 0;  ///< between columns, between rows; 0: not stated
-  double thickness = 0;                        ///< of the slice; 0: not stated. It is no distance between slices
+  double column_spacing = 0, row_spacing = 0;  ///< Distance between columns, between rows, mm; 0: not specified.
+  double thickness = 0;                        ///< Slice thickness, mm; 0: not specified. Not the distance between slices.
   double slope = 1, intercept = 0;
   int instance = 0;
   std::array<std::string, static_cast<std::size_t>(DicomKey::count)> keys;
 
   Vec3 normal() const { return direction(cross(row_direction, column_direction)); }
-  /// Place along the normal.
+  /// Position along the normal, mm.
   double offset() const { return dot(position, normal()); }
 };
 
-/// What holds for all frames of a file.
+/// Attributes shared by all frames of a file.
 struct DicomFile {
-  std::string path, name;  ///< name: for messages
+  std::string path, name;  ///< `name` is used in messages.
   std::string series, description, series_number, modality, unit, frame_of_reference, transfer_syntax;
   bool localizer = false, segmentation = false;
-  std::string problem;             ///< why its frames are no field: a phrase; empty: they are
-  std::vector<std::string> notes;  ///< what was assumed
+  std::string problem;             ///< Why the frames are not a field, as a message fragment; empty: they are.
+  std::vector<std::string> notes;  ///< Assumptions that were made.
   std::uint16_t bits_allocated = 0, bits_stored = 0, high_bit = 0;
   bool is_signed = false;
-  std::int64_t pixel_offset = -1;      ///< of uncompressed little-endian pixels in the file; -1: they have to be decoded
-  std::int64_t fragments_offset = -1;  ///< of compressed pixels in the file; -1: there are none
-  std::uint64_t pixel_bytes = 0;       ///< at pixel_offset, as the header says
+  std::int64_t pixel_offset = -1;      ///< Offset of uncompressed little-endian pixels in the file, bytes; -1: they have to be decoded.
+  std::int64_t fragments_offset = -1;  ///< Offset of compressed pixels in the file, bytes; -1: there are none.
+  std::uint64_t pixel_bytes = 0;       ///< Number of bytes at pixel_offset, according to the header.
   std::vector<std::string> segments;
   std::vector<DicomFrame> frames;
 };
 
-/// A file's data set, with its pixels or without. nullptr: GDCM cannot read it.
+/// Opens a file's data set, with or without its pixels; nullptr: GDCM cannot read it.
 std::unique_ptr<gdcm::Reader> open_dicom_reader(const std::string& path, bool header_only);
 
+/// Kind of a file, by its header.
 enum class DicomKind { image, other_object, not_dicom, damaged };
-/// Reads a header, without its pixels. `file` is complete for images only; `modality` is set of other objects, and `trouble` of a damaged
-/// file where it is known.
+/// Reads a header, without the pixels. `file` is complete for images only; for other objects `modality` is set, and for a damaged file
+/// `problem`, if it is known.
 DicomKind read_dicom_header(const std::string& path, DicomFile& file);
 
 }  // namespace catena::vtk

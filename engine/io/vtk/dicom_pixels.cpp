@@ -20,10 +20,10 @@ namespace {
 using gdcm::Tag;
 using Syntax = gdcm::TransferSyntax;
 
-/// NumberArray as they are stored, before rescale.
+/// Type of the numbers as stored, before rescale.
 enum class Stored { integers, floats, doubles };
 
-/// From stored to modality values, and which stored values are padding. For integers in units of the stored type.
+/// Maps stored to modality values, and tells which stored values are padding. For integers in units of the stored type.
 struct ValueTable {
   std::vector<double> table;  ///< modality LUT; empty: none
   double first = 0;           ///< stored value of its first entry
@@ -36,7 +36,7 @@ struct ValueTable {
   bool is_padding(double stored) const { return padding_lo && stored >= *padding_lo && stored <= *padding_hi; }
 };
 
-/// A 16-bit word of the header in the type of the pixels.
+/// A 16-bit word of the header as a value of the pixels' type.
 double in_type_of_pixels(double word, const DicomFile& file) {
   const auto bits = static_cast<std::uint16_t>(word);
   if (file.is_signed) return static_cast<std::int16_t>(bits);
@@ -75,7 +75,7 @@ Result<ValueTable> table_of(const gdcm::DataSet& root, const DicomFile& file, St
   return table;
 }
 
-/// Little-endian pixels of one frame, already cut out of the file.
+/// Decodes little-endian pixels of one frame, already extracted from the file.
 class FrameDecoder {
  public:
   FrameDecoder(const DicomFile& file, Stored stored, unsigned bits, const ValueTable& table)
@@ -86,7 +86,7 @@ class FrameDecoder {
     sign_ = std::uint64_t{1} << (used - 1);
   }
 
-  /// `first_bit`: of the frame's first pixel in `bytes`.
+  /// `first_bit`: offset of the frame's first pixel in `bytes`.
   void decode(std::string_view bytes, std::size_t first_bit, const DicomFrame& frame, std::span<float> values, PixelStats& notes) const {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double stored = number_at(bytes, first_bit + i * bits_);
@@ -134,10 +134,10 @@ class FrameDecoder {
 /// All pixels of a file, in memory, little-endian.
 struct Pixels {
   std::string bytes;
-  unsigned bits = 0;  ///< a pixel
+  unsigned bits = 0;  ///< per pixel
 };
 
-/// Big-endian words of 16 bits are swapped by GDCM already; what is wider has its words in the wrong order still.
+/// Corrects the order of 16-bit words. GDCM has swapped the bytes of big-endian words, but wider numbers still have their words reversed.
 void order_words(std::string& bytes, unsigned bits) {
   const std::size_t step = bits / 8;
   if (step <= 2) return;
@@ -147,7 +147,7 @@ void order_words(std::string& bytes, unsigned bits) {
 }
 
 Result<Pixels> decoded_pixels(const DicomFile& file, std::size_t pixels) {
-  auto reader = std::make_unique<gdcm::PixmapReader>();  // without the geometry, of which an ImageReader refuses forms that occur
+  auto reader = std::make_unique<gdcm::PixmapReader>();  // reads no geometry; an ImageReader rejects some forms of it that occur
   reader->SetFileName(file.path.c_str());
   Pixels decoded;
   std::size_t bytes = 0;
@@ -171,13 +171,13 @@ Result<Pixels> decoded_pixels(const DicomFile& file, std::size_t pixels) {
   return decoded;
 }
 
-/// Compressed pixels lie in fragments, which end with a delimiter: decoders fill up silently what is missing.
+/// Checks that the fragments of compressed pixels are complete and end with a delimiter: decoders fill in missing data silently.
 Outcome check_fragments(const DicomFile& file) {
   if (file.fragments_offset < 0) return Done{};
   std::ifstream in(file.path, std::ios::binary | std::ios::ate);
   const auto end = static_cast<std::int64_t>(in.tellg());
   for (std::int64_t at = file.fragments_offset; at + 8 <= end;) {
-    std::array<std::uint16_t, 4> head{};  // item, delimiter; two words of length
+    std::array<std::uint16_t, 4> head{};  // group and element of an item or delimiter; two words of length
     in.seekg(at).read(reinterpret_cast<char*>(head.data()), sizeof head);
     if (in && head[0] == 0xfffe && head[1] == 0xe0dd) return Done{};
     if (!in || head[0] != 0xfffe || head[1] != 0xe000) return Error{"its compressed pixels are damaged"};
@@ -190,7 +190,7 @@ Outcome cut_short(std::size_t has, std::size_t expected) {
   return Error{fmt::format("it is cut short: it has {} bytes of pixels, expected {}", has, expected)};
 }
 
-/// Pixels that lie in the file as they are: one frame at a time.
+/// Reads uncompressed pixels, one frame at a time.
 Outcome read_plain(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameDecoder& decoder,
                    const FrameCallback& take, PixelStats& notes) {
   std::ifstream in(file.path, std::ios::binary | std::ios::ate);

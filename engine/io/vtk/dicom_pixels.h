@@ -1,4 +1,4 @@
-/// Private to this room: the pixels of DICOM files as numbers.
+/// Private to this module: reads the pixels of DICOM files as numbers.
 #pragma once
 #include <functional>
 #include <span>
@@ -7,16 +7,16 @@
 
 namespace catena::vtk {
 
-/// What became of the pixels, over all frames that were read.
+/// Statistics over all frames read.
 struct PixelStats {
-  std::uint64_t padding_count = 0;  ///< pixels that the header calls padding: NaN
-  std::uint64_t rounded_count = 0;  ///< values that are no 32-bit floats
+  std::uint64_t padding_count = 0;  ///< Number of pixels declared as padding by the header; they become NaN.
+  std::uint64_t rounded_count = 0;  ///< Number of values that are not exactly representable as 32-bit floats.
 };
 
-/// One frame at a time, rows * columns values with the frame's rescale applied, columns fastest.
+/// Called for each frame with rows * columns values, rescaled, columns fastest.
 using FrameCallback = std::function<void(const DicomFrame& frame, std::span<const float> values)>;
 
-/// Reads frames of one file. Errors are phrases without the file's name. GDCM may throw.
+/// Reads frames of one file. Returns an Error with a message fragment without the file name. GDCM may throw.
 Outcome read_dicom_pixels(const DicomFile& file, const std::vector<const DicomFrame*>& frames, const FrameCallback& take,
                           PixelStats& notes);
 

@@ -9,7 +9,7 @@
 namespace catena::vtk {
 namespace {
 
-/// Largest difference between the file's slices and the lattice at their places, in parts of the range.
+/// Largest difference between the file's slices and the sampling grid at their positions, as a fraction of the range.
 double lattice_error(const std::vector<float>& slices, const std::vector<float>& even, std::size_t voxels, const DicomSliceGrid& lattice) {
   double lo = std::numeric_limits<double>::infinity(), hi = -lo, most = 0;
   for (std::size_t k = 0; k < lattice.stated_positions.size(); ++k) {
@@ -27,7 +27,7 @@ double lattice_error(const std::vector<float>& slices, const std::vector<float>&
   return hi > lo ? most / (hi - lo) : 0;
 }
 
-/// NumberArray of steps, from the least: the first that meets every place; else the one whose nodes come nearest to all of them.
+/// Number of steps between slices: the smallest number whose nodes meet every position, otherwise the one whose nodes come nearest to all.
 struct Steps {
   double count = 1;
   bool exact = false;
@@ -50,7 +50,7 @@ Steps steps_for(const std::vector<double>& places, double least, double most_sli
   return best;
 }
 
-/// Distances that are no spacing of slices: the space between two acquisitions, or several slices that are missing.
+/// Finds distances that are not slice spacings: the space between two acquisitions, or several missing slices.
 void find_gaps(const std::vector<double>& places, DicomSliceGrid& lattice) {
   constexpr double kOfNeighbour = 2.05, kOfMedian = 10;
   std::vector<double> distances;
@@ -98,7 +98,7 @@ DicomSliceGrid fit_slice_grid(const DicomVolume& volume) {
   lattice.is_uniform = lattice.max_distance - lattice.min_distance <= kEven * lattice.min_distance;
   double steps = static_cast<double>(n - 1);
   if (!lattice.is_uniform) {
-    // as many slices as eight times the file's, or as many as fit in a reasonable memory
+    // at most eight times the number of slices in the file, or as many as fit in a reasonable amount of memory
     constexpr double kMaxSlices = 4096, kTimes = 8, kVoxels = 32e6;
     const double own = static_cast<double>(n), by_memory = kVoxels / (static_cast<double>(first.columns) * first.rows);
     const double most = std::max(std::clamp(kTimes * own, 64.0, std::max(kMaxSlices, own)), std::min(kMaxSlices, by_memory));
@@ -149,7 +149,7 @@ std::string slice_grid_note(const DicomSliceGrid& lattice, const std::vector<flo
   std::string note = fmt::format("slices lie {:.4g} to {:.4g} mm apart: {} were brought to {} at equal distances of {:.4g} mm, {}",
                                  lattice.min_distance, lattice.max_distance, lattice.positions.size(), lattice.count, norm(lattice.step),
                                  zero_between ? "0 where the segment has none" : "linearly between the file's");
-  // below what 32-bit floats round to, nothing is lost
+  // differences below the rounding of 32-bit floats are not reported
   constexpr double kLost = 1e-6;
   if (const double error = lattice_error(slices, even, voxels, lattice); error > kLost)
     note += fmt::format("; at the file's own slices they differ by up to {:.2g} % of the range", 100 * error);

@@ -1,29 +1,31 @@
-/// Private to this room: the frames of a DICOM volume at equal distances.
+/// Private to this module: resamples the frames of a DICOM volume to equal distances.
 #pragma once
 #include "engine/io/vtk/dicom_volumes.h"
 
 namespace catena::vtk {
 
-/// The places of the frames on the volume's lattice.
+/// Positions of the frames on the equidistant slices of the volume.
 struct DicomSliceGrid {
+  /// World position of the first slice, and the vector from one slice to the next, mm.
   Vec3 origin, step;
+  /// Number of slices.
   std::size_t count = 1;
-  std::vector<double> positions;              ///< of each frame, in steps; whole numbers where `exact`
-  std::vector<double> stated_positions;       ///< of each frame, in steps, as the headers state them
-  double min_distance = 0, max_distance = 0;  ///< distances of neighbours, mm
+  std::vector<double> positions;              ///< Position of each frame, in steps; integers if `is_exact`.
+  std::vector<double> stated_positions;       ///< Position of each frame according to the header, in steps.
+  double min_distance = 0, max_distance = 0;  ///< Distances between neighboring frames, mm.
   bool is_uniform = true, is_exact = true;
-  std::vector<bool> is_open_gap;                      ///< [k]: the gap between frames k and k + 1 has no values; empty: there is none
-  double widest_open_gap = 0, widest_filled_gap = 0;  ///< gaps, mm; 0: there are none
+  std::vector<bool> is_open_gap;  ///< [k]: the gap between frames k and k + 1 has no values; empty: there is no such gap.
+  double widest_open_gap = 0, widest_filled_gap = 0;  ///< Widest gaps, mm; 0: none.
 };
-/// The largest step that meets every frame, within 1 % of itself or 0.001 % of the smallest distance. Where that needs too many slices, the
-/// step that comes nearest to every frame. A gap is a distance more than twice those beside it, or ten times the median. It is open where
-/// two slices or more lie on either side; a single slice would be lost with it.
+/// Finds the largest step whose multiples meet every frame, within 1 % of the step or 0.001 % of the smallest distance. If that needs too
+/// many slices: the step that comes nearest to all frames. A gap is a distance more than twice (2.05 times) its neighbors, or ten times the
+/// median. It is left open if there are at least two slices on either side; a single slice would be lost with it.
 DicomSliceGrid fit_slice_grid(const DicomVolume& volume);
 
-/// The slices of a volume, one after the other, brought to the lattice: linearly between them; NaN where it is open. Of a segmentation,
-/// where nothing is, 0.
+/// Resamples the slices of a volume (`voxels` each) to the slice grid: linearly between them; NaN in open gaps. `zero_between`: a
+/// segmentation, with 0 where there is no slice.
 std::vector<float> resample_slices(const std::vector<float>& slices, std::size_t voxels, const DicomSliceGrid& lattice, bool zero_between);
-/// What that did to them: a sentence without an end.
+/// Message on what the resampling changed, without a final period.
 std::string slice_grid_note(const DicomSliceGrid& lattice, const std::vector<float>& slices, const std::vector<float>& even,
                             std::size_t voxels, bool zero_between);
 

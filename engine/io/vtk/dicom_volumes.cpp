@@ -19,7 +19,7 @@ using Frames = std::vector<const DicomFrame*>;
 constexpr double kSameDirection = 1e-3;  // difference of unit vectors
 constexpr double kSameSpacing = 1e-3;    // relative
 
-/// Distance along the normal below which frames lie at one place, mm: small against pixels, also of a microscope's.
+/// Distance along the normal, mm, below which frames have the same position: small relative to a pixel, even in microscopy.
 double same_place(const DicomFrame& frame) {
   constexpr double kMost = 1e-3, kPart = 0.02;
   const double pixel = std::min(frame.column_spacing, frame.row_spacing);
@@ -42,7 +42,7 @@ std::string orientation_word(const DicomFrame& frame) {
   return "oblique";
 }
 
-/// Frames at one place follow each other by their numbers.
+/// Sorts frames along the normal; frames at the same position by their numbers.
 void sort_along_normal(Frames& frames) {
   const Vec3 normal = frames.front()->normal();
   const auto place = [&](const DicomFrame* frame) { return dot(frame->position, normal); };
@@ -59,7 +59,7 @@ void sort_along_normal(Frames& frames) {
   }
 }
 
-/// Runs of sorted frames at one place.
+/// Numbers of consecutive sorted frames at the same position.
 std::vector<std::size_t> counts_at_places(const Frames& sorted) {
   std::vector<std::size_t> counts;
   const Vec3 normal = sorted.front()->normal();
@@ -76,7 +76,7 @@ std::vector<std::size_t> counts_at_places(const Frames& sorted) {
   return counts;
 }
 
-/// How far frames lie from the line through the first and the last, across the normal.
+/// Largest distance of the frames, across the normal, from the line through the first and the last.
 double off_line(const Frames& sorted) {
   const Vec3 normal = sorted.front()->normal(), from = sorted.front()->position, all = sorted.back()->position - from;
   const double span = dot(all, normal);
@@ -98,7 +98,7 @@ bool is_stack(const Frames& sorted) {
 struct Part {
   std::string suffix;
   Frames frames;
-  bool told_apart = true;  ///< false: by their numbers alone
+  bool told_apart = true;  ///< false: separated only by their numbers
 };
 
 std::vector<Part> parted_by(const Frames& frames, DicomKey key, const DicomFile& file) {
@@ -128,7 +128,7 @@ std::vector<Part> parted_by(const Frames& frames, DicomKey key, const DicomFile&
   return parts;
 }
 
-/// Frames that no header tells apart: the first at each place, the second, ...
+/// Separates frames that no header distinguishes: the first at each position, the second, and so on.
 std::vector<Part> parted_by_number(const Frames& sorted) {
   std::vector<Part> parts;
   std::size_t at = 0;
@@ -142,7 +142,7 @@ std::vector<Part> parted_by_number(const Frames& sorted) {
   return parts;
 }
 
-/// Equal distances between slices, along the normal.
+/// Whether the distances between slices along the normal are equal.
 bool is_even(const Frames& sorted) {
   constexpr double kUneven = 0.02;
   const Vec3 normal = sorted.front()->normal();
@@ -152,7 +152,7 @@ bool is_even(const Frames& sorted) {
   return true;
 }
 
-/// The acquisitions of a stack where slices of one lie between those of another; empty: they do not.
+/// The acquisitions of a stack if slices of one lie between those of another; empty if they do not.
 std::vector<Part> interleaved_acquisitions(const Frames& stack, const DicomFile& file) {
   std::vector<Part> parts = parted_by(stack, DicomKey::acquisition, file);
   const Vec3 normal = stack.front()->normal();
@@ -165,14 +165,15 @@ std::vector<Part> interleaved_acquisitions(const Frames& stack, const DicomFile&
   return {};
 }
 
-/// Stacks of frames, one a place each. By the key that needs the fewest; where none will do, by the one that comes nearest, and again.
+/// Separates frames into stacks with one frame per position: by the key that needs the fewest stacks; if no key suffices, by the one that
+/// comes nearest, and recursively.
 std::vector<Part> stacks_of(Frames frames, const DicomFile& file, int depth = 0) {
   sort_along_normal(frames);
   const bool placed = std::ranges::all_of(frames, [](const DicomFrame* frame) { return frame->has_position; });
-  if (!placed || !file.problem.empty()) return {{{}, std::move(frames)}};  // one volume, which is refused
+  if (!placed || !file.problem.empty()) return {{{}, std::move(frames)}};  // one volume, which is going to be refused
   const bool segments = file.segmentation && depth == 0;
   if (is_stack(frames) && !segments) {
-    // slices of two passes that interleave evenly are one scan; where together they are uneven, and each alone is even, they are two
+    // two passes that interleave evenly are one scan; if they are uneven together and each is even by itself, they are two scans
     std::vector<Part> passes = is_even(frames) ? std::vector<Part>() : interleaved_acquisitions(frames, file);
     if (!passes.empty() && std::ranges::all_of(passes, [](const Part& part) { return is_even(part.frames); })) return passes;
     return {{{}, std::move(frames)}};
@@ -192,7 +193,8 @@ std::vector<Part> stacks_of(Frames frames, const DicomFile& file, int depth = 0)
     }
   }
   constexpr int kDeepest = 4;
-  const bool many = best.size() > 2 * std::max<std::size_t>(deepest, 2) && !segments;  // a number of each image tells nothing
+  // a key that differs in every image does not separate stacks
+  const bool many = best.size() > 2 * std::max<std::size_t>(deepest, 2) && !segments;
   if (best.empty() || many || depth >= kDeepest) {
     const bool same_place = deepest > 1;
     return same_place ? parted_by_number(frames) : std::vector<Part>{{{}, std::move(frames)}};
@@ -206,7 +208,7 @@ std::vector<Part> stacks_of(Frames frames, const DicomFile& file, int depth = 0)
   return all;
 }
 
-/// Frames of one size, orientation and pixel spacing.
+/// Groups frames of the same size, orientation and pixel spacing.
 std::vector<Frames> parted_by_geometry(const Frames& frames, const std::vector<DicomFile>& files) {
   std::vector<Frames> parts;
   for (const DicomFrame* frame : frames) {
@@ -234,7 +236,7 @@ std::string geometry_suffix(const DicomFrame& one, const DicomFrame& main, const
   return "other images";
 }
 
-/// A stack misses slices where frames of other pixels lie: they belong into it, and it would be wrong without them.
+/// Problem if frames with other pixels lie in the gaps of a stack: they belong to it, and without them it would be wrong; empty if none do.
 std::string torn_by(const Frames& stack, const Frames& others, const std::vector<DicomFile>& files) {
   Frames sorted = stack;
   sort_along_normal(sorted);
@@ -264,7 +266,7 @@ std::string torn_by(const Frames& stack, const Frames& others, const std::vector
   return {};
 }
 
-/// What makes a stack of frames no field, or is to be said of it.
+/// Sets the problem that makes a stack of frames unusable as a field, and the notes about it.
 void check_volume(DicomVolume& volume, const std::vector<DicomFile>& files) {
   const DicomFrame& first = *volume.frames.front();
   std::set<std::string> notes;
@@ -306,13 +308,13 @@ struct Series {
   Frames frames;
 };
 
-/// SeriesNumber as an integer without sign, zeros and blanks in front; another text as it is.
+/// SeriesNumber as an integer without sign, leading zeros and blanks; any other text unchanged.
 std::string plain_number(const std::string& number) {
   const auto value = parse_integer(number.starts_with('+') ? number.substr(1) : number);
   return value ? std::to_string(*value) : sanitize_for_terminal(number);
 }
 
-/// Series in the order of their numbers. Where no series has a number, they are counted from 1.
+/// Series in the order of their numbers. If no series has a number, they are counted from 1.
 std::vector<Series> series_of(const std::vector<DicomFile>& files) {
   std::vector<Series> all;
   std::map<std::string, std::size_t> known;
@@ -328,8 +330,8 @@ std::vector<Series> series_of(const std::vector<DicomFile>& files) {
   return all;
 }
 
-/// "7" where one volume alone has this SeriesNumber and none has it for a name; else "7.1", "7.2", ..., counted over all series that share
-/// the number. A series without a number is found by its name.
+/// Names each volume: "7" if it is the only one with this SeriesNumber and no series is named so; otherwise "7.1", "7.2", ..., counted over
+/// all series that share the number. A series without a number is found by its name.
 void number_volumes(std::vector<DicomVolume>& volumes) {
   std::map<std::string, std::size_t> all, counted;
   for (const DicomVolume& volume : volumes) ++all[volume.series_number];

@@ -15,7 +15,7 @@ bool is_guarded = false;
 
 }  // namespace
 
-/// In place of the C library's: every library of the process calls it where an assertion fails.
+/// Replaces the C library's function, which every library of the process calls when an assertion fails.
 extern "C" [[noreturn]] __attribute__((visibility("default"))) void __assert_fail(const char* assertion, const char*, unsigned,
                                                                                   const char*) noexcept {
   if (is_guarded) std::longjmp(after_assertion, 1);

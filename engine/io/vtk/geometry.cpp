@@ -62,7 +62,7 @@ void add(vtkPolyData& poly, const std::string& value_name, Gathered& all) {
     all.values.push_back(values != nullptr ? static_cast<float>(values->GetComponent(i, 0)) : std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Polygons and strips as triangles, what else there is as it is.
+/// The data as vtkPolyData: polygons and strips as triangles, other cells unchanged.
 vtkSmartPointer<vtkPolyData> poly_of(vtkDataSet* data) {
   vtkSmartPointer<vtkPolyData> poly = vtkPolyData::SafeDownCast(data);
   if (poly == nullptr) {
@@ -87,7 +87,7 @@ void put(const std::vector<T>& numbers, sandbox::ResponseFile& out, field::Buffe
   std::memcpy(memory.data(), numbers.data(), numbers.size() * sizeof(T));
 }
 
-/// The array of one number that most would be coloured by: the active one, else the first.
+/// The single-component array to color by: the active scalars, otherwise the first.
 std::string value_of(const ImportedData& opened) {
   for (const Block& block : opened.blocks) {
     vtkPointData* arrays = block.data->GetPointData();

@@ -38,7 +38,7 @@ std::string type_of(const ImportedData& opened, const FieldArray& column) {
   return column.components == 1 ? word : fmt::format("{} x {}", word, column.components);
 }
 
-/// One request while it is answered.
+/// Handles one request.
 class Answer {
  public:
   Answer(const ReadRequest& request, const ImportedData& opened, sandbox::ResponseFile& out)
@@ -103,14 +103,14 @@ class Answer {
     return field::Mapping::from_linear(linear, lattice.origin);
   }
 
-  /// What a resampled voxel may cost: it is found among the cells, and tried again while the grid is refined.
+  /// CPU time per resampled voxel: it is located among the cells, repeatedly while the grid is refined.
   static constexpr double kSecondsPerVoxel = 5e-6;
 
-  /// In memory, here and in the grid that is made of it.
+  /// Memory per voxel, in this process and in the grid built from it.
   static double bytes_a_voxel(const FieldArray& column) { return column.components > 1 ? 40 : 20; }
 
-  /// How many voxels there may be: by the file alone, and less only where the user states an allowance. What is free on the machine does
-  /// not count, so that a file becomes the same grid everywhere.
+  /// Maximum number of voxels: determined by the file alone, and less only if the user sets a memory limit. Free memory does not count, so
+  /// that a file gives the same grid on every system.
   struct Room {
     double voxels, of_file;
   };
@@ -123,7 +123,7 @@ class Answer {
     return {std::min(of_file, kShare * static_cast<double>(request_.user_memory_limit) / bytes_a_voxel(column)), of_file};
   }
 
-  /// What the stated allowance costs, as a sentence without an end; empty: nothing.
+  /// Message fragment about the resolution lost by the user's memory limit; empty if nothing is lost.
   std::string coarsened(const FieldArray& column, const std::vector<CellValues>& cells, const ResamplePlan& plan) const {
     const Room room = room_for(column);
     if (room.voxels == room.of_file) return {};
@@ -134,7 +134,7 @@ class Answer {
                        1e-6 * static_cast<double>(request_.user_memory_limit), n.x, n.y, n.z, w.x, w.y, w.z);
   }
 
-  /// Without a stated allowance nothing is made coarser: what does not fit is refused.
+  /// Returns an Error if the grid does not fit into memory and the user set no limit: without one nothing is resampled more coarsely.
   Outcome check_room(const FieldArray& column, const ResampleGrid& lattice) const {
     const double bytes = static_cast<double>(lattice.voxel_count()) * bytes_a_voxel(column);
     if (request_.user_memory_limit != 0 || bytes <= static_cast<double>(request_.memory_bytes)) return Done{};
@@ -153,7 +153,7 @@ class Answer {
   Result<const FieldArray*> choose() const {
     const std::string& name = request_.load_request.grid;
     if (columns_.empty()) return Error{path_ + ": there are no values in the file that a field could be made of"};
-    const bool chosen = name.empty() || !opened_.name.empty();  // by whoever opened it, by other names, too
+    const bool chosen = name.empty() || !opened_.name.empty();  // chosen by the opening function, under another name too
     if (chosen && columns_.size() == 1) return &columns_.front();
     if (name.empty()) {
       std::vector<FieldArray> fields;
@@ -169,7 +169,8 @@ class Answer {
     return Error{fmt::format("{}: there is no grid \"{}\", the file has: {}", path_, name, list_of(columns_))};
   }
 
-  /// Room for the voxels in the answer: their values, a byte each, and one for the cell based at each where `cells` is not null.
+  /// Allocates the voxels in the response: their values, one byte each for validity, and one for the cell based at each if `cells` is not
+  /// null.
   Outcome allocate(const field::Index3& size, ReadResponse& response, float*& values, std::uint8_t*& valid, std::uint8_t** cells) {
     const double voxels = static_cast<double>(size.x) * size.y * size.z;
     const double bytes = voxels * (4.0 * response.dense.components + (cells != nullptr ? 2 : 1));
@@ -238,7 +239,7 @@ class Answer {
     const field::GridStats stats = compute_stats(opened_, column, seen_);
     response.dense.has_range = true;
     response.dense.range = compute_display_range(opened_, column, seen_, stats);
-    // in a sentence
+    // the note about the resampling
     vtkIdType count = 0;
     for (const CellValues& block : cells) count += block.data->GetNumberOfCells();
     std::string of = response.is_vector ? "largest length" : "range";
@@ -265,7 +266,7 @@ class Answer {
     return Done{};
   }
 
-  /// What is said of the whole box, and of values that cells smaller than voxels hold.
+  /// Adds notes about errors of the mask over the whole box, and about extreme values lost in cells that are smaller than voxels.
   static void add_losses(ReadResponse& response, const ResampleResult& made, const field::GridStats& stats) {
     const ResampleShares& shares = made.shares;
     if (shares.falsely_inside + shares.falsely_outside > 0) {
@@ -298,7 +299,8 @@ class Answer {
   field::NanoMemory values_, valid_, cells_;
 };
 
-/// Volumes that are opened one at a time. One that is no field is listed with the reason; alone it is an error.
+/// Describes volumes that are opened one at a time. One that is not a field is listed with the problem; if it is the only one, it is an
+/// Error.
 Outcome describe_later(const ReadRequest& request, const ImportedData& opened, sandbox::ResponseFile& out, ReadResponse& response) {
   for (const auto& open : opened.deferred_volumes) {
     CATENA_TRY(const ImportedData one, open());
@@ -355,7 +357,7 @@ Outcome answer_opened(const ReadRequest& request, const ImportedData& opened, sa
   }
 }
 
-/// Which step an error is about, where there are several, and whether the last one has the grid that is missing.
+/// Adds the step to an error message if there are several, and whether the last step has the missing grid.
 std::string with_step(const std::string& what, const ReadRequest& request, const Source& source, const ImportedData& opened) {
   const std::string begin = request.load_request.path + ": ";
   const std::size_t last = opened.times.size() - 1, step = std::min(static_cast<std::size_t>(source.step), last);

@@ -1,11 +1,11 @@
-/// What catena-read-vtk does once it is shut in: one answer to one request.
+/// Handles a request in catena-read-vtk, inside the sandbox: one response per process.
 #pragma once
 #include "engine/io/sandbox/response_file.h"
 
 namespace catena::vtk {
 
-/// `path`: where the file lies for this process; `folder`: where it lies for others, absolute. Nothing is thrown: what is wrong is the
-/// reply's error, a whole sentence.
+/// Handles a request. `path`: location of the file in this process (the root may have changed); `folder`: absolute path of its folder
+/// outside. Does not throw: the `error` of the response is a complete message.
 field::ReadResponse handle_request(const field::ReadRequest& request, const std::string& path, const std::string& folder,
                                    sandbox::ResponseFile& out);
 

@@ -75,7 +75,7 @@ Mapping ras_from_lps(const Mapping& m) {
 
 std::string error_message(const itk::ExceptionObject& error) {
   std::string words = strip_addresses(error.GetDescription());
-  // NRRD's library tells each function on the way, "[nrrd] FUNCTION: WHAT" a line; the last one says what it is
+  // NRRD's library reports every function on the call path as a line "[nrrd] FUNCTION: WHAT"; the last one is the cause
   constexpr std::string_view kNrrd = "[nrrd] ";
   if (const auto last = words.rfind(kNrrd); last != std::string::npos) {
     words.erase(0, last + kNrrd.size());

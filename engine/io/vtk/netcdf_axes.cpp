@@ -58,7 +58,7 @@ NetcdfAxis axis_of_name(const std::string& name) {
   return NetcdfAxis::unknown;
 }
 
-/// Values of a box of `size`, x fastest, in the order of other axes.
+/// Copies the values of a box of `size`, x fastest, into another order of axes.
 void reorder(vtkDataSetAttributes* from, vtkDataSetAttributes* to, const int (&size)[3], const AxisOrder& order) {
   const vtkIdType steps[3] = {1, size[0], vtkIdType{size[0]} * size[1]};
   const auto of = [&](int a) { return static_cast<std::size_t>(order[static_cast<std::size_t>(a)]); };

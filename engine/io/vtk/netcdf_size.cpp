@@ -1,9 +1,9 @@
-// The header (NetCDF's "classic format specification"), big-endian; N is 4 bytes, in CDF-5 8, OFFSET 4 bytes, in CDF-2 and CDF-5 8:
+// The header (NetCDF's "classic format specification"), big-endian; N is 4 bytes, in CDF-5 8; OFFSET is 4 bytes, in CDF-2 and CDF-5 8:
 //   "CDF" version, N records (all ones: not known), dimensions, attributes, variables; each list is a 4-byte tag, N entries, the entries
 //   dimension   name, N length (0: that of the records)
 //   attribute   name, 4-byte type, N values, the values
-//   variable    name, N dimensions and each one's N, attributes, 4-byte type, N bytes (not believed), OFFSET of its first value
-//   name        N bytes, the bytes; everything is filled up to multiples of 4 bytes
+//   variable    name, N dimensions and each one's N, attributes, 4-byte type, N bytes (ignored), OFFSET of its first value
+//   name        N bytes, the bytes; everything is padded to multiples of 4 bytes
 #include "engine/io/vtk/netcdf_size.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class Header {
   }
   std::uint64_t number() { return bytes(version_ == 5 ? 8 : 4); }
   std::uint64_t offset() { return bytes(version_ == 1 ? 4 : 8); }
-  /// Of a list after its tag.
+  /// Number of entries of a list, after its tag.
   std::uint64_t entries() {
     bytes(4);
     const std::uint64_t count = number();
@@ -53,7 +53,8 @@ class Header {
       skip(size * count);
     }
   }
-  /// Of NC_BYTE, NC_CHAR, NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE, NC_UBYTE, NC_USHORT, NC_UINT, NC_INT64, NC_UINT64, which are 1 to 11.
+  /// Bytes of NC_BYTE, NC_CHAR, NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE, NC_UBYTE, NC_USHORT, NC_UINT, NC_INT64, NC_UINT64, which are 1
+  /// to 11.
   std::uint64_t type_bytes(std::uint64_t type) {
     constexpr std::uint64_t kBytes[] = {1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
     if (type < 1 || type > std::size(kBytes)) fail();
@@ -71,7 +72,7 @@ class Header {
 };
 
 struct Variable {
-  std::uint64_t begin, bytes;  ///< of a variable of records: of one record
+  std::uint64_t begin, bytes;  ///< for a record variable: of one record
   bool of_records;
 };
 
@@ -110,7 +111,7 @@ Outcome check_netcdf_size(const std::string& path) {
     variables.push_back({begin, static_cast<std::uint64_t>(values), of_records});
   }
   if (!header.ok()) return Done{};
-  // variables of records take turns, each filled up to 4 bytes unless it is the only one
+  // record variables are interleaved, each padded to 4 bytes unless it is the only one
   const auto count = std::ranges::count_if(variables, &Variable::of_records);
   double record = 0;
   for (const Variable& v : variables)

@@ -1,5 +1,5 @@
-/// The size that a NetCDF file of the classic formats (CDF-1, CDF-2, CDF-5) must have by its own header. The NetCDF library reads zeros
-/// behind a file's end; files of NetCDF-4 are HDF5's, which checks that itself.
+/// Checks the size that a NetCDF file of the classic formats (CDF-1, CDF-2, CDF-5) must have by its own header. The NetCDF library returns
+/// zeros past the end of a file; files of NetCDF-4 are checked by the HDF5 library itself.
 #pragma once
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace catena::vtk {
 
-/// An error, which completes "PATH: ", where the file ends before the data that its header describes. Other files, and headers that make no
-/// sense, are left to their readers.
+/// Returns an Error, whose message completes "PATH: ", when the file ends before the data described by its header. Other files, and invalid
+/// headers, are left to their readers.
 Outcome check_netcdf_size(const std::string& path);
 
 }  // namespace catena::vtk

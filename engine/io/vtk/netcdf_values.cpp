@@ -17,7 +17,7 @@
 namespace catena::vtk {
 namespace {
 
-/// NumberArray of an attribute; long double holds 64-bit integers exactly.
+/// The numbers of an attribute; long double represents 64-bit integers exactly.
 struct Numbers {
   nc_type type = NC_NAT;
   std::vector<long double> list;
@@ -46,7 +46,7 @@ Numbers numbers_at(int file, int variable, const char* name) {
   return numbers;
 }
 
-/// Order of the numeric types by what they can hold.
+/// Rank of the numeric types by what they can represent.
 int width_of(nc_type type) {
   switch (type) {
     case NC_BYTE:
@@ -70,7 +70,7 @@ int width_of(nc_type type) {
   }
 }
 
-/// An attribute's number as one of the variable's stored numbers; of integers the one with the same bits where only the sign differs.
+/// An attribute's number as a stored number of the variable; an integer that differs only in signedness is converted with the same bits.
 template <class T>
 long double as_stored(long double v) {
   if constexpr (std::is_integral_v<T>) {
@@ -91,12 +91,12 @@ class TypedVariable {
     const Numbers factor = at("scale_factor"), offset = at("add_offset");
     scale_ = read_netcdf_scale(part.file, part.variable);
     value_type_ = width_of(factor.type) >= width_of(offset.type) ? factor.type : offset.type;
-    // holes
+    // missing values
     const Numbers fill = at("_FillValue");
     add_holes(fill, false);
     add_holes(at("missing_value"), true);
     if (fill.list.empty()) add_default_fill();
-    // limits
+    // valid range
     const Numbers range = at("valid_range");
     if (range.list.size() == 2) {
       limit(range.type, range.list[0], range.list[1]);
@@ -139,13 +139,13 @@ class TypedVariable {
   }
 
  private:
-  /// Exact for every stored number.
+  /// Represents every stored number exactly.
   using Wide = std::conditional_t<std::is_integral_v<T> && sizeof(T) == 8, long double, double>;
 
   void add_holes(const Numbers& numbers, bool in_either_units) {
     for (const long double number : numbers.list) {
       holes_.push_back(static_cast<Wide>(as_stored<T>(number)));
-      // doubles and their marker have often gone through single precision, one of them or both
+      // doubles and their fill value, or one of them, have often been rounded to single precision
       if (std::is_same_v<T, double>) rounded_holes_.push_back(static_cast<float>(number));
       if (in_either_units && !scale_.is_identity()) value_holes_.push_back(static_cast<double>(number));
     }
@@ -189,7 +189,7 @@ class TypedVariable {
     const Wide slack_here = limits_values_ ? static_cast<Wide>(slack()) : 0;
     return (least_ && number < *least_ - slack_here) || (most_ && number > *most_ + slack_here);
   }
-  /// What rounding makes of a value: a small part of the step between two stored integers.
+  /// Rounding tolerance of a value: a small fraction of the step between two stored integers.
   double slack() const { return std::is_integral_v<T> ? 1e-3 * std::fabs(scale_.factor) : 0; }
 
   static std::string in_words(const std::optional<Wide>& v) { return v ? fmt::format("{:.6g}", static_cast<double>(*v)) : "any"; }
@@ -245,7 +245,7 @@ Result<vtkSmartPointer<vtkDataArray>> read_netcdf_values(const NetcdfHyperslab& 
   nc_type type = NC_NAT;
   if (const int code = nc_inq_vartype(part.file, part.variable, &type); code != NC_NOERR) return Error{nc_strerror(code)};
   if (type > NC_MAX_ATOMIC_TYPE) {
-    // of an enumeration its numbers
+    // for an enumeration its base type
     char name[NC_MAX_NAME + 1];
     std::size_t bytes = 0, members = 0;
     nc_type base = NC_NAT;

@@ -20,7 +20,7 @@ std::string in_lower_case(std::string_view text, bool keep_blanks = true) {
   return out;
 }
 
-/// "(1,0,0) none (0,2,0)": an empty vector for "none".
+/// Parses "(1,0,0) none (0,2,0)"; "none" gives an empty vector.
 Result<std::vector<std::vector<double>>> vectors_of(std::string_view text) {
   std::vector<std::vector<double>> vectors;
   while (!(text = trim(text)).empty()) {

@@ -1,7 +1,7 @@
-/// What the header of an NRRD file says of the space that its data lie in (teem.sourceforge.net/nrrd/format.html), read from its text: the
-/// answers of a library about it depend on the library's version.
+/// Space and kind of the data in an NRRD file (teem.sourceforge.net/nrrd/format.html), parsed from the text of its header, because the
+/// results of a library depend on its version.
 ///   world = origin + sum over axes of direction[axis] * index[axis];   vector in space = sum over k of frame[k] * component[k]
-/// The space of a patient is named by where its axes point to; its axes are turned to right, anterior, superior by `signs`.
+/// A patient space is named by the directions of its axes; they are converted to right, anterior, superior by ras_signs().
 #pragma once
 #include <array>
 #include <string>
@@ -12,39 +12,42 @@
 
 namespace catena::vtk {
 
-/// What the numbers of one voxel are.
+/// Meaning of the numbers of one voxel.
 enum class NrrdRange {
-  scalar,      ///< one number
-  directions,  ///< vectors and normals: turned with the space, and by the measurement frame
-  points,      ///< points in the space: turned with it
-  numbers,     ///< colours, lists, complex numbers: no relation to the space
-  other,       ///< matrices and quaternions
+  scalar,      ///< One number.
+  directions,  ///< Vectors and normals: transformed with the space, and by the measurement frame.
+  points,      ///< Points in the space: transformed with it.
+  numbers,     ///< Colors, lists, complex numbers: unrelated to the space.
+  other,       ///< Matrices and quaternions.
 };
 
+/// The parsed header.
 struct NrrdHeader {
-  std::string space;                            ///< in lower case, without hyphens; empty: none
-  std::vector<std::string> kinds;               ///< one for each axis, as written; empty: not stated
-  std::vector<std::vector<double>> directions;  ///< one for each axis; an empty one: "none"
+  std::string space;                            ///< In lower case, without hyphens; empty: none.
+  std::vector<std::string> kinds;               ///< One per axis, as written; empty: not specified.
+  std::vector<std::vector<double>> directions;  ///< One per axis; an empty vector: "none".
   std::vector<double> origin;
-  std::vector<std::vector<double>> measurement_frame;  ///< the columns of the measurement frame; empty: the axes of the space
+  std::vector<std::vector<double>> measurement_frame;  ///< Columns of the measurement frame; empty: the axes of the space.
   std::size_t space_dimension = 0;
 
+  /// Whether `space` is a patient space.
   bool is_patient() const;
-  /// Of x and y, from this space to right, anterior, superior; (1, 1) where it is not a patient's.
+  /// Signs that convert x and y of this space to right and anterior; (1, 1) if it is not a patient space.
   std::array<double, 2> ras_signs() const;
-  /// World from index along the first three axes of the domain, turned by `signs`; nullopt: the header names neither
-  /// directions nor a patient's space.
+  /// World from index for the first three domain axes, with ras_signs() applied; nullopt: the header specifies neither directions nor a
+  /// patient space.
   std::optional<field::Mapping> mapping() const;
-  /// The kind of the axis that counts the numbers of a voxel; empty: there is none.
+  /// Kind of the axis that counts the numbers of a voxel; empty: there is no such axis.
   std::string range_kind() const;
+  /// Meaning of the numbers of a voxel, from range_kind().
   NrrdRange range() const;
-  /// The axis (from 1) that has neither a kind nor a direction in a space that others have one in; 0: none.
+  /// The axis (from 1) that has neither a kind nor a direction, if the number of domain axes does not match the space; 0: none.
   std::size_t ambiguous_axis() const;
 };
 
-/// An error is a phrase.
+/// Parses the text of a header. Returns an Error with a message fragment.
 Result<NrrdHeader> parse_nrrd_header(const std::string& text);
-/// Of a file, .nrrd or .nhdr.
+/// Reads the header of a file, .nrrd or .nhdr.
 Result<NrrdHeader> read_nrrd_header(const std::string& path);
 
 }  // namespace catena::vtk

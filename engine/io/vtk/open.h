@@ -1,4 +1,4 @@
-/// A file as the readers of VTK, ITK and their kin see it: blocks of data, each with its arrays, before anything is made of them.
+/// A file as read by VTK, ITK and related libraries: blocks of data, each with its arrays, before they are converted to fields.
 #pragma once
 #include <vtkDataSet.h>
 #include <vtkSmartPointer.h>
@@ -15,60 +15,63 @@
 
 namespace catena::vtk {
 
+/// One data set of a file.
 struct Block {
   vtkSmartPointer<vtkDataSet> data;
-  std::optional<field::Mapping> mapping;  ///< of an image whose axes VTK cannot say; empty: the image's own
+  std::optional<field::Mapping> mapping;  ///< Of an image whose axes VTK cannot represent; nullopt: the image's own.
 };
 
+/// Contents of a file.
 struct ImportedData {
-  std::vector<Block> blocks;                 ///< none is empty
-  std::map<std::string, std::string> units;  ///< of arrays, by name
+  std::vector<Block> blocks;                 ///< No block is empty.
+  std::map<std::string, std::string> units;  ///< Units of arrays, by name.
   std::string unit_length;
   bool is_patient_space = false;
   std::vector<double> times;
-  std::string time_unit;           ///< of `times`; empty: not stated
-  std::vector<std::string> notes;  ///< what is not as it was in the file: sentences without an end
+  std::string time_unit;           ///< Unit of `times`; empty: not specified.
+  std::vector<std::string> notes;  ///< How the data differ from the file: messages without a final period.
 
-  // of a folder of several volumes (DICOM)
-  std::vector<field::GridMetadata> grid_metadata;  ///< of all volumes by each of their names, opened or not
+  // for a folder of several volumes (DICOM)
+  std::vector<field::GridMetadata> grid_metadata;  ///< Of all volumes, by each of their names, whether opened or not.
   std::vector<std::function<Result<ImportedData>()>>
-      deferred_volumes;             ///< volumes in the order of their numbers, opened when they are described
-  std::string name, volume_number;  ///< of one volume
-  int image_count = 0;              ///< that it was made of; 0: not counted
-  std::string problem;              ///< why it is no field, and there are no blocks: a sentence; empty: it is one
+      deferred_volumes;             ///< Volumes in the order of their numbers; each is opened when it is described.
+  std::string name, volume_number;  ///< Name and number of one volume.
+  int image_count = 0;              ///< Number of images in the volume; 0: not counted.
+  std::string problem;              ///< Complete message why the volume is not a field, and has no blocks; empty: it is one.
 };
 
-/// What is to be read. `shown` begins every message; `path` is where the file lies for this process.
+/// What to read. `display_name` begins every message; `path` is the location of the file in this process.
 struct Source {
   std::string display_name, path;
-  std::string grid;  ///< of formats that hold several images: the one wanted; empty: all; of DICOM the largest
+  std::string grid;  ///< Requested image, for formats that hold several; empty: all; for DICOM: the largest.
   int step = 0;
   bool axes_xyz = false;
-  std::string original_folder;                   ///< where `path` lies, as other processes call it: absolute names in a file begin with it
-  field::ReadMode mode = field::ReadMode::load;  ///< DICOM opens no more than is asked for
+  std::string original_folder;                   ///< Folder of `path` outside of the sandbox: absolute names in a file begin with it.
+  field::ReadMode mode = field::ReadMode::load;  ///< DICOM opens only what the mode needs.
 };
 
-/// One function a family of formats. Errors are whole sentences.
+/// Openers, one per family of formats. Errors have complete messages.
 Result<ImportedData> open_with_vtk(const Source& source);
 Result<ImportedData> open_with_itk(const Source& source);
-/// "DICM" after the preamble.
+/// Whether the file has "DICM" after the preamble.
 bool is_dicom_file(const std::string& path);
-/// A DICOM file, or a folder of them.
+/// Opens a DICOM file, or a folder of them.
 Result<ImportedData> open_dicom(const Source& source);
 Result<ImportedData> open_npz(const Source& source);
 Result<ImportedData> open_gifti(const Source& source);
 Result<ImportedData> open_ply(const Source& source);
-/// An OpenFOAM case, by its folder or a file NAME.foam in it, which may be empty: all regions; of one that is decomposed only, all pieces.
+/// Opens an OpenFOAM case, given by its folder or a file NAME.foam in it, which may be empty: all regions; if it is decomposed only: all
+/// pieces.
 Result<ImportedData> open_foam(const Source& source);
-/// A file of the names and times of others: .pvd, .series.
+/// Opens a file that lists other files and their times: .pvd, .series.
 Result<ImportedData> open_collection(const Source& source);
 
-/// By its ending, or because it is a folder.
+/// Selects the opener by the file extension, or because the path is a folder.
 Result<ImportedData> open_any(const Source& source);
 
-/// What VTK's readers told since the last call, as one phrase; empty: nothing.
+/// Returns the first error that VTK's readers have reported since the last call, as a message fragment; empty: none.
 std::string take_reader_errors();
-/// From now on nothing that VTK or ITK tells reaches the terminal.
+/// Redirects messages of VTK from the terminal to take_reader_errors(), for the rest of the process.
 void capture_reader_errors();
 
 }  // namespace catena::vtk

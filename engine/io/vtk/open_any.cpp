@@ -8,7 +8,7 @@
 namespace catena::vtk {
 namespace {
 
-/// The registry: what VTK's own families do not read.
+/// Registry of the formats that VTK's own readers do not read.
 struct Family {
   std::string_view ending;
   Result<ImportedData> (*open)(const Source& source);

@@ -1,5 +1,5 @@
-// Collections: files of a series with their times, in a file of names. ParaView's .pvd (XML; several parts may make up one step) and its
-// .series (JSON: .vtk.series, .vtu.series and so on). The parts of the step that is read are blocks, as those of a multi-block file.
+// Opens collections: text files that name the files of a series with their times. ParaView's .pvd (XML; several parts may make up one step)
+// and .series (JSON: .vtk.series, .vtu.series and so on). The parts of the requested step become blocks, as in a multi-block file.
 #include <fmt/format.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLDataElement.h>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One step: file names as the collection has them, in the order in which they stand.
+/// One step: file names as in the collection, in their order.
 struct Step {
   double time = 0;
   std::vector<std::string> files;
@@ -29,12 +29,12 @@ struct Step {
 using Steps = std::vector<Step>;
 
 constexpr std::uint64_t kMostBytes = 64 << 20;
-/// Elements of the file of names; parsing that many takes seconds.
+/// Maximum number of XML elements; parsing that many takes seconds.
 constexpr std::ptrdiff_t kMostElements = 200'000;
 
 bool is_collection(const std::string& path) { return has_extension(path, ".pvd") || has_extension(path, ".series"); }
 
-/// An error is a phrase.
+/// Adds the data sets of a collection by time. The error is a message fragment.
 Outcome add_datasets(vtkXMLDataElement& collection, std::map<double, std::vector<std::string>>& steps) {
   for (int i = 0; i < collection.GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* element = collection.GetNestedElement(i);
@@ -53,7 +53,7 @@ Result<Steps> read_pvd(const std::string& path) {
   const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
   if (const std::string complaint = take_reader_errors(); root == nullptr || !complaint.empty())
     return Error{"it is no XML file, or not a whole one" + (complaint.empty() ? "" : " (" + complaint + ")")};
-  std::map<double, std::vector<std::string>> by_time;  // several files of one time are its parts
+  std::map<double, std::vector<std::string>> by_time;  // files of the same time are parts of one step
   for (int i = 0; i < root->GetNumberOfNestedElements(); ++i)
     if (std::strcmp(root->GetNestedElement(i)->GetName(), "Collection") == 0)
       CATENA_CHECK(add_datasets(*root->GetNestedElement(i), by_time));
@@ -76,7 +76,7 @@ Result<Steps> read_series(const std::string& path, const std::string& text) {
   return steps;
 }
 
-/// Where a named file lies for this process. An error is a phrase.
+/// Path of a named file for this process. The error is a message fragment.
 Result<std::string> part_path(const Source& source, const std::string& name) {
   const fs::path folder = fs::path(source.path).parent_path();
   std::error_code code;

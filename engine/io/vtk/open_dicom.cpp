@@ -1,5 +1,5 @@
-// DICOM: a file, or a folder with everything below it. Headers are read first and brought together to volumes (dicom_volumes.h); then the
-// pixels of the volume that is asked for. The patient's +x to the left and +y to the back become Catena's, to the right and to the front.
+// Opens DICOM: a file, or a folder with everything below it. Headers are read first and grouped into volumes (dicom_volumes.h), then the
+// pixels of the requested volume. Patient space +x left, +y posterior (LPS) becomes Catena's +x right, +y anterior (RAS).
 #include <fmt/format.h>
 #include <gdcmTrace.h>
 #include <vtkPointData.h>
@@ -26,12 +26,12 @@ struct DicomScan {
   std::string shown;
   std::vector<DicomFile> files;
   std::vector<DicomVolume> volumes;
-  std::map<std::string, int> others;  ///< objects that are no images, by modality
+  std::map<std::string, int> others;  ///< number of objects that are not images, by modality
   std::vector<std::string> damaged;
 };
 using DicomScanPtr = std::shared_ptr<const DicomScan>;
 
-/// At most ten, and how many more.
+/// A list of at most ten texts, and the number of the others.
 std::string cut_list(const std::vector<std::string>& words) {
   constexpr std::size_t kMax = 10;
   std::string list =
@@ -67,7 +67,7 @@ Result<DicomScanPtr> scan_of(const Source& source) {
         scan->files.push_back(std::move(file));
         break;
       case DicomKind::other_object:
-        if (file.modality == "DICOMDIR" && paths.size() > 1) break;  // the table of contents of the folder
+        if (file.modality == "DICOMDIR" && paths.size() > 1) break;  // the folder's directory file
         ++scan->others[file.modality.empty() ? "of no modality" : sanitize_for_terminal(file.modality)];
         break;
       case DicomKind::damaged:
@@ -97,7 +97,7 @@ Result<DicomScanPtr> scan_of(const Source& source) {
            : ": is no DICOM file, expected an image")};
 }
 
-// ---- which volume ----
+// ---- choice of the volume ----
 
 const DicomVolume* largest_of(const std::vector<DicomVolume>& volumes, const std::function<bool(const DicomVolume&)>& counts) {
   const auto rank = [](const DicomVolume& v) {
@@ -123,10 +123,11 @@ std::string list_of_volumes(const std::vector<DicomVolume>& volumes) {
 
 struct Choice {
   const DicomVolume* volume = nullptr;
-  std::string note;  ///< what else the word might have meant; empty: nothing
+  std::string note;  ///< other meanings of the requested name; empty: none
 };
 
-/// By name, by the series' description, by number; the largest of several volumes of one series. A number of several series is refused.
+/// Finds a volume by name, by series description, or by number; of several volumes of a series the largest. Returns an Error if the number
+/// belongs to several series.
 Result<Choice> chosen(const DicomScan& scan, const std::string& grid) {
   const auto& volumes = scan.volumes;
   if (grid.empty()) return Choice{largest_of(volumes, [](const DicomVolume&) { return true; }), {}};
@@ -164,7 +165,7 @@ void add_scan_notes(const DicomScan& scan, const DicomVolume& volume, const std:
   if (!scan.damaged.empty()) notes.push_back(fmt::format("damaged files are left out: {}", cut_list(scan.damaged)));
 }
 
-// ---- its values ----
+// ---- values ----
 
 Outcome read_stack(const DicomScan& scan, const DicomVolume& volume, std::vector<float>& stack, PixelStats& notes) {
   const DicomFrame& first = *volume.frames.front();
@@ -175,7 +176,8 @@ Outcome read_stack(const DicomScan& scan, const DicomVolume& volume, std::vector
     slot[frame] = slot.size();
     by_file[frame->file].push_back(frame);
   }
-  // nothing is allocated on the word of a header: plain pixels must be there, and compressed ones are a thousandth at least
+  // the header is untrusted: before memory is allocated, the file must be large enough for the pixels, compressed ones by kBestRatio at
+  // most
   constexpr double kBestRatio = 2000;
   double there = 0;
   for (const auto& [index, frames] : by_file) {
@@ -236,7 +238,7 @@ Result<ImportedData> open_volume(const DicomScan& scan, const DicomVolume& volum
   return opened;
 }
 
-/// Units by every name that a volume may be asked for.
+/// Units under every name by which a volume may be requested.
 std::vector<field::GridMetadata> words_of_volumes(const DicomScan& scan, const std::string& grid) {
   std::vector<field::GridMetadata> words;
   const auto add = [&](const std::string& name, const DicomVolume& volume) {
@@ -253,7 +255,7 @@ std::vector<field::GridMetadata> words_of_volumes(const DicomScan& scan, const s
   return words;
 }
 
-/// One file opens alone: says so where more of its series lie beside it.
+/// Note that more files of the series are in the folder of the single file that was opened; empty if there are none.
 std::string series_beside(const Source& source, const DicomFile& self) {
   if (self.series.empty()) return {};
   std::error_code code;
@@ -262,7 +264,7 @@ std::string series_beside(const Source& source, const DicomFile& self) {
   for (fs::directory_iterator at(file.parent_path(), code), end; !code && at != end; at.increment(code))
     if (std::error_code ignored; at->is_regular_file(ignored)) files.push_back(at->path());
   std::ranges::sort(files);
-  constexpr std::ptrdiff_t kLooks = 4;  // a series has names in a row: a few on either side tell
+  constexpr std::ptrdiff_t kLooks = 4;  // files of a series have consecutive names: checking a few on either side is enough
   const auto own = std::ranges::find(files, file) - files.begin();
   for (std::ptrdiff_t k = std::max(own - kLooks, std::ptrdiff_t{0}); k <= std::min(own + kLooks, std::ssize(files) - 1); ++k) {
     DicomFile other;

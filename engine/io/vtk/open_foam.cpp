@@ -1,4 +1,4 @@
-// OpenFOAM cases.
+// Opens OpenFOAM cases.
 #include <fmt/format.h>
 #include <vtkAppendFilter.h>
 #include <vtkDummyController.h>
@@ -36,7 +36,7 @@ void each_folder_in(const fs::path& folder, const Visit& visit) {
     if (std::error_code ignored; at->is_directory(ignored)) visit(at->path());
 }
 
-/// "processors4" of the collated format; empty: there is none.
+/// Name of the collated folder, such as "processors4"; empty: there is none.
 std::string collated_in(const fs::path& folder) {
   std::string name;
   each_folder_in(folder, [&](const fs::path& one) {
@@ -46,7 +46,7 @@ std::string collated_in(const fs::path& folder) {
   return name;
 }
 
-/// The volumes of all regions, and no patches.
+/// Selects the volumes of all regions, and no patches.
 void choose_volumes(vtkOpenFOAMReader& reader) {
   const auto is_volume = [](const std::string& name) { return name == "internalMesh" || name.ends_with("/internalMesh"); };
   for (int i = 0; i < reader.GetNumberOfPatchArrays(); ++i) {
@@ -55,8 +55,8 @@ void choose_volumes(vtkOpenFOAMReader& reader) {
   }
 }
 
-/// The reader sets the pieces of a decomposed case side by side: cells on both sides of a cut are to share its points. vtkAppendFilter
-/// merges points of two inputs or more, so that it gets the cells in two halves.
+/// Joins the pieces of a decomposed case, which the reader leaves separate, so that cells on both sides of a cut share its points.
+/// vtkAppendFilter merges the points of two inputs or more, so that it gets the cells in two halves.
 void join_pieces(ImportedData& opened) {
   for (Block& block : opened.blocks) {
     const vtkIdType cells = block.data->GetNumberOfCells();
@@ -75,7 +75,7 @@ void join_pieces(ImportedData& opened) {
   }
 }
 
-/// Times that hold no field, such as a "0" whose fields were removed: they are no steps. Empty where no time has one.
+/// Times without fields, such as a "0" whose fields were removed, which are not steps. Empty if no time has a field.
 std::set<double> times_without_fields(const fs::path& folder) {
   std::set<double> times = list_foam_times(folder);
   const std::size_t all = times.size();
@@ -83,7 +83,7 @@ std::set<double> times_without_fields(const fs::path& folder) {
   return times.size() == all ? std::set<double>() : times;
 }
 
-/// A note of the fields that the last step has and the first one has not.
+/// Adds a note about fields that are in the last step but not in the first.
 void add_later_fields(const fs::path& folder, ImportedData& opened) {
   const std::set<std::string> first = list_foam_fields(folder, opened.times.front());
   std::vector<std::string> later;
@@ -115,7 +115,7 @@ Result<ImportedData> open_foam(const Source& source) {
   reader->SetController(alone);
   reader->SetCaseType(whole ? vtkPOpenFOAMReader::RECONSTRUCTED_CASE : vtkPOpenFOAMReader::DECOMPOSED_CASE);
   reader->SetFileName((folder / "case.foam").c_str());
-  reader->CreateCellToPointOff();  // its own averages would stand for the cells' values
+  reader->CreateCellToPointOff();  // the reader's own averages would replace the cell values
   reader->DecomposePolyhedraOn();
   reader->UpdateInformation();
   choose_volumes(*reader);

@@ -1,5 +1,5 @@
-// GIFTI surfaces, by its own library: points and triangles, millimetres, a patient's axes (right, front, head). Shape and function files
-// without points belong to a surface in another file, and are refused.
+// Opens GIFTI surfaces with the GIFTI library: points and triangles, millimeters, patient space (right, anterior, superior). Shape and
+// function files without points belong to a surface in another file, and are refused.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
@@ -31,7 +31,7 @@ bool is_table(const giiDataArray& array) {
   return array.num_dim == 2 && array.dims[0] > 0 && array.dims[1] == kColumns && array.data != nullptr;
 }
 
-/// Where a number of a row lies among all.
+/// Index of a number of a row in the array's data.
 std::size_t place_of(const giiDataArray& array, int row, int column) {
   const auto r = static_cast<std::size_t>(row), c = static_cast<std::size_t>(column);
   return array.ind_ord == GIFTI_IND_ORD_COL_MAJOR ? c * static_cast<std::size_t>(array.dims[0]) + r : kColumns * r + c;

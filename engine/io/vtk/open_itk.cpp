@@ -1,7 +1,7 @@
-// Medical images as ITK reads them: NRRD, MetaImage. Of an NRRD ITK gives the numbers alone: versions of it turn the
-// space left-anterior-superior in different ways, so that the header is read here (nrrd_header.h). Of the other its world is a patient's
-// with +x to the left and +y to the back; Catena's, as NIfTI's, has +x to the right and +y to the front: both are turned round, unless the
-// file says that its space is no patient's.
+// Opens NRRD and MetaImage with ITK. Of an NRRD ITK provides only the numbers: its versions convert the space
+// left-anterior-superior differently, so that the header is read here (nrrd_header.h). MetaImage uses patient space with +x left, +y
+// posterior (LPS); Catena, like NIfTI, uses +x right, +y anterior (RAS): both formats are converted, unless the file states that its space
+// is not patient space.
 #include <fmt/format.h>
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
@@ -29,7 +29,7 @@ std::string stem(const std::string& path) {
   return name.stem().string();
 }
 
-/// The start of a file, where formats with a header of text have it.
+/// The beginning of a file, where formats with a text header have it.
 std::string header_of(const std::string& path) {
   constexpr std::size_t kHeader = 8192;
   std::string header(kHeader, ' ');
@@ -39,7 +39,7 @@ std::string header_of(const std::string& path) {
   return header;
 }
 
-/// A number of axes that MetaIO has room for; it trusts any.
+/// Returns an Error if the number of axes is more than MetaIO has memory for; MetaIO does not check it.
 Outcome check_dimensions(const std::string& path) {
   constexpr long long kMost = 10;
   std::istringstream lines(header_of(path));
@@ -54,14 +54,14 @@ Outcome check_dimensions(const std::string& path) {
   return Done{};
 }
 
-/// What the numbers of a voxel mean, and how the file's space lies to Catena's.
+/// Meaning of the numbers of a voxel, and the mapping from the file's space to Catena's.
 struct Meaning {
   Mapping mapping;
   bool patient = false;
-  NrrdRange range = NrrdRange::directions;  ///< of voxels of several numbers
-  std::array<double, 2> signs{1, 1};        ///< of x and y of directions
+  NrrdRange range = NrrdRange::directions;  ///< for voxels of several numbers
+  std::array<double, 2> signs{1, 1};        ///< signs of the x and y components of directions
   std::vector<std::vector<double>> frame{};
-  std::string kind{};  ///< as the file names it
+  std::string kind{};  ///< as named in the file
 };
 
 std::string left_out(const std::string& name, const std::string& kind, int components) {
@@ -70,8 +70,8 @@ std::string left_out(const std::string& name, const std::string& kind, int compo
       kind.empty() ? "" : kind + ", ", components);
 }
 
-/// What ITK refuses in words of its own: an axis without a kind and a direction counts neither places nor components; general matrices with
-/// a mask are unknown to it, and so is the size of a "3-gradient".
+/// Returns a clear Error for what ITK refuses: an axis without a kind and a direction that counts neither positions nor components; general
+/// matrices with a mask; a "3-gradient", whose size ITK does not know.
 Outcome check_axes(const std::string& path, const std::string& name) {
   CATENA_TRY(const NrrdHeader header, read_nrrd_header(path));
   for (const std::string& kind : header.kinds) {
@@ -94,8 +94,8 @@ Result<Meaning> meaning_of_nrrd(const Io& io, const std::string& path) {
                  header.range_kind()};
 }
 
-/// ITK's world is that of the header, left, posterior, superior of a patient. MetaImage does not say what several numbers are: unsigned
-/// integers have no sign to be turned.
+/// Meaning of a MetaImage. ITK's world is that of the header: left, posterior, superior of the patient. MetaImage does not specify the
+/// meaning of several numbers per voxel: unsigned integers have no sign that could be flipped.
 Meaning meaning_of_meta_image(const Io& io, const std::string& path) {
   Meaning meaning{read_mapping(*io)};
   const std::string header = header_of(path);
@@ -109,7 +109,7 @@ Meaning meaning_of_meta_image(const Io& io, const std::string& path) {
   return meaning;
 }
 
-/// Directions in the file's own axes, to those of the world: by an NRRD's measurement frame, and what of x and y points the other way.
+/// Transforms directions from the file's axes to the world's: by an NRRD's measurement frame, and by flipping x and y where they differ.
 vtkSmartPointer<vtkDataArray> turned_vectors(const vtkSmartPointer<vtkDataArray>& values, const Meaning& meaning) {
   const int components = values->GetNumberOfComponents();
   if ((components != 2 && components != 3) || (meaning.range != NrrdRange::directions && meaning.range != NrrdRange::points)) return values;
@@ -160,7 +160,7 @@ Result<ImportedData> open_with_itk(const Source& source) {
     if (components > 3 || (components > 1 && meaning.range == NrrdRange::other))
       return failed(left_out(stem(source.display_name), meaning.kind, components));
     ImportedData opened;
-    // a fourth axis is one of time only where the header says so, and these do not
+    // a fourth axis is time only if the header says so, which these formats do not
     const auto read = read_all_voxels(*io, shape->voxel_count() * static_cast<std::size_t>(shape->volume_count));
     if (!read) return failed(read.error().message);
     vtkSmartPointer<vtkDataArray> values = *read;

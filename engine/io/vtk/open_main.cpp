@@ -1,5 +1,5 @@
-// The C library's functions that open files, for catena-read-vtk alone: the libraries of formats find these before the C library's own.
-// What is no regular file or folder is refused without waiting for it, and what is opened is counted (engine/io/sandbox/opened_files.h).
+// Replaces the C library's functions that open files, for catena-read-vtk only: the format libraries link to these. Anything but a regular
+// file or a folder is refused without blocking, and opened files are recorded (engine/io/sandbox/opened_files.h).
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -44,7 +44,7 @@ std::FILE* open_stream(const char* path, const char* mode) {
 
 }  // namespace
 
-// Names of their own, because the headers make some of these inline functions; the linker sees the C library's.
+// C++ names of their own, because the headers define some of these as inline functions; the linker sees the C library's names.
 #define CATENA_IN_FRONT_OF(name) __asm__(name) __attribute__((visibility("default"), used))
 extern "C" {
 int catena_open(const char* path, int flags, ...) CATENA_IN_FRONT_OF("open");

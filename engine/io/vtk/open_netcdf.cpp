@@ -30,7 +30,7 @@ std::string dimension_name(int file, int dimension) {
   return name;
 }
 
-/// All variables of the groups below one.
+/// Number of variables in the groups below a group.
 std::size_t variables_in_groups(int file, int depth = 0) {
   int count = 0;
   constexpr int kDeepest = 8;
@@ -80,7 +80,7 @@ class NetcdfReader : public vtkNetCDFCFReader {
       return failed(name, "is damaged");
     std::vector<int> dimensions(static_cast<std::size_t>(count));
     nc_inq_vardimid(file, part.variable, dimensions.data());
-    // the step in time
+    // the time step
     if (count > 0 && IsTimeDimension(file, dimensions[0]) != 0) {
       const vtkSmartPointer<vtkDoubleArray> times = GetTimeValues(file, dimensions[0]);
       std::size_t step = 0;
@@ -145,7 +145,7 @@ class NetcdfReader : public vtkNetCDFCFReader {
     return 0;
   }
 
-  /// What the dimensions of space say of themselves; the last one is the data's first axis.
+  /// Records the axes that the spatial dimensions declare; the last dimension is the data's first axis.
   void note_axes(int file, const std::vector<int>& dimensions) {
     axis_scales.assign(3, {});
     std::array<NetcdfAxis, 3> axes;
@@ -169,7 +169,7 @@ class NetcdfReader : public vtkNetCDFCFReader {
 };
 vtkStandardNewMacro(NetcdfReader);
 
-/// Coordinates as stored, which VTK takes, to those that their scale_factor and add_offset make of them.
+/// Applies scale_factor and add_offset to the coordinates, which VTK reads as stored.
 void scale_axes(vtkDataSet* data, const std::vector<NetcdfScale>& scales) {
   if (auto* image = vtkImageData::SafeDownCast(data)) {
     double origin[3], spacing[3];
@@ -189,7 +189,7 @@ void scale_axes(vtkDataSet* data, const std::vector<NetcdfScale>& scales) {
   }
 }
 
-/// First place and step of coordinates of even steps; nullopt: they are uneven, or there is one.
+/// First position and step of evenly spaced coordinates; nullopt if they are uneven, or there is only one.
 std::optional<std::pair<double, double>> even_steps(vtkDataArray* axis) {
   const vtkIdType count = axis != nullptr ? axis->GetNumberOfTuples() : 0;
   if (count < 2) return std::nullopt;
@@ -200,7 +200,7 @@ std::optional<std::pair<double, double>> even_steps(vtkDataArray* axis) {
   return step != 0 ? std::optional(std::pair(first, step)) : std::nullopt;
 }
 
-/// A rectilinear grid of even steps as an image, with its axes beside it, as they may fall.
+/// Converts an evenly spaced rectilinear grid to an image with a mapping; steps may be negative.
 void make_image(Block& block) {
   auto* grid = vtkRectilinearGrid::SafeDownCast(block.data);
   if (grid == nullptr) return;

@@ -1,4 +1,4 @@
-/// NetCDF (CF): VTK finds the coordinates, the values come from the NetCDF library (netcdf_values.h).
+/// Opens NetCDF files (CF): VTK finds the coordinates, the values come from the NetCDF library (netcdf_values.h).
 #pragma once
 #include <vtkAlgorithm.h>
 #include <vtkSmartPointer.h>
@@ -7,14 +7,15 @@
 
 namespace catena::vtk {
 
+/// Creates the VTK reader for a file.
 vtkSmartPointer<vtkAlgorithm> open_netcdf(const Source& source);
 
-/// Which variables are read: those of the grid that is wanted, else those with most dimensions. Others are named in a note. Before the
-/// data are read; of another reader than open_netcdf's nothing is done.
+/// Selects the variables to read: those of the requested grid, else those with most dimensions; others are listed in a note. Call it before
+/// the data are read; does nothing for readers that open_netcdf() has not created.
 void choose_netcdf_variables(vtkAlgorithm* reader, const Source& source, ImportedData& opened);
 
-/// After the data are read: units and notes, coordinates that are stored with a scale, and grids of even steps as images (VTK takes falling
-/// coordinates for uneven ones). An error is a phrase: there are no values.
+/// Call it after the data have been read: sets units and notes, applies the scale of coordinates, and converts evenly spaced grids to
+/// images (VTK considers decreasing coordinates uneven). Returns an Error with a message fragment: there are no values.
 Outcome finish_netcdf(vtkAlgorithm* reader, ImportedData& opened);
 
 }  // namespace catena::vtk

@@ -1,4 +1,4 @@
-// NumPy's .npz: arrays in a zip file, each an image of its own by the name it was saved under.
+// Opens NumPy's .npz: arrays in a zip file, each as an image under the name with which it was saved.
 #include <fmt/format.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
@@ -22,7 +22,7 @@ struct CloseMember {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 
-/// The bytes of a member, not more than its directory says.
+/// The bytes of a member, at most as many as its directory entry states.
 Result<std::vector<std::byte>> member_bytes(zip_t* file, zip_uint64_t index, std::uint64_t size) {
   const std::unique_ptr<zip_file_t, CloseMember> member(zip_fopen_index(file, index, 0));
   if (!member) return Error{"cannot be unpacked"};
@@ -75,7 +75,7 @@ Result<ImportedData> open_npz(const Source& source) {
     const auto bytes = member_bytes(file.get(), static_cast<zip_uint64_t>(i), about.size);
     if (!bytes) return failed(what + " " + bytes.error().message);
     const auto head = sandbox::read_npy_header(*bytes, source.axes_xyz);
-    // scalars, texts and lists beside the fields are no fields
+    // skip scalars, texts and lists, which are not fields
     constexpr std::int64_t kMostAxis = 1 << 24;
     if (!head || head->size.y < 2 || std::max({head->size.x, head->size.y, head->size.z}) > kMostAxis) {
       opened.notes.push_back(what + " is left out" + (head ? ": it is no image" : ": it " + head.error().message));

@@ -1,6 +1,6 @@
-// PLY (Turk, 1994): text or binary of either byte order, elements with properties of any type. Read here are the vertices with x, y, z as
-// doubles and their other single numbers as values, faces (polygons) and strips of triangles; other elements are passed over. VTK's own
-// reader rounds coordinates to single precision, which welds vertices that lie far from the origin.
+// Opens PLY (Turk, 1994): text or binary of either byte order, elements with properties of any type. Read are the vertices with x, y, z as
+// doubles and their other single numbers as values, faces (polygons) and strips of triangles; other elements are ignored. VTK's own reader
+// rounds coordinates to single precision, which merges vertices that lie far from the origin.
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -47,7 +47,7 @@ std::size_t read_bytes(PlyType type) {
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::float32;
-  std::optional<PlyType> list;  ///< of the count before the numbers; empty: a single number
+  std::optional<PlyType> list;  ///< type of the count before the numbers; empty: a single number
 };
 struct PlyElement {
   std::string name;
@@ -55,13 +55,13 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-/// The numbers of the body, one after the other.
+/// Reads the numbers of the body in sequence.
 class PlyNumbers {
  public:
   PlyNumbers(std::string_view bytes, bool text, bool big) : rest_(bytes), text_(text), big_(big) {}
   std::size_t left() const { return rest_.size(); }
 
-  /// False: the file ends, or has a word that is no number.
+  /// Returns false at the end of the file, or at a word that is not a number.
   bool next(PlyType type, double& out) {
     if (text_) {
       const std::size_t begin = rest_.find_first_not_of(" \t\r\n");
@@ -117,14 +117,14 @@ class PlyNumbers {
   bool text_, big_;
 };
 
-/// One file while it is read. Errors are phrases.
+/// Reads one file. Errors are message fragments.
 class PlyReader {
  public:
   explicit PlyReader(std::string_view bytes) : bytes_(bytes) {}
 
   Result<vtkSmartPointer<vtkPolyData>> read() {
     CATENA_CHECK(read_header());
-    // what is counted must be there: a number takes at least a byte, in text two
+    // the counted items must exist: a number takes at least one byte, in text two
     PlyNumbers numbers(bytes_.substr(body_), text_, big_);
     points_->SetDataTypeToDouble();
     for (const PlyElement& element : elements_) {
@@ -190,7 +190,7 @@ class PlyReader {
 
   Outcome read_element(const PlyElement& element, PlyNumbers& numbers) {
     const bool vertices = element.name == "vertex";
-    // where a vertex's numbers go: 0, 1, 2: a coordinate; 3 and more: values
+    // destination of a vertex's numbers: 0, 1, 2: a coordinate; 3 and more: values
     std::vector<int> goes(element.properties.size(), -1);
     if (vertices) {
       if (points_->GetNumberOfPoints() > 0) return Error{"has two elements \"vertex\""};
@@ -264,7 +264,7 @@ class PlyReader {
     return Done{};
   }
 
-  /// Normals, colours and texture coordinates are no values.
+  /// Whether a property is a value; normals, colors and texture coordinates are not.
   static bool is_value(const std::string& name) {
     static constexpr std::string_view kLook[] = {
         "nx", "ny", "nz", "red", "green",     "blue",     "alpha", "diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha",

@@ -1,4 +1,4 @@
-// VTK's own formats, and those of simulation programs that it reads.
+// Opens VTK's own formats, and the simulation formats that VTK reads.
 #include <fmt/format.h>
 #include <vtkAlgorithm.h>
 #include <vtkCGNSReader.h>
@@ -41,7 +41,7 @@ Reader named(const Source& source) {
   return reader;
 }
 
-/// All arrays of a legacy file: of several SCALARS VTK reads the first alone otherwise.
+/// Reads all arrays of a legacy file; by default VTK reads only the first of several SCALARS.
 Reader open_legacy(const Source& source) {
   const auto reader = vtkSmartPointer<vtkGenericDataObjectReader>::New();
   reader->SetFileName(source.path.c_str());
@@ -90,7 +90,7 @@ void keep_units(vtkDataSetAttributes* arrays, ImportedData& opened) {
   }
 }
 
-/// The time of a file of one step, where it states one: ParaView's TimeValue, VisIt's TIME.
+/// The time that a file of one step states: ParaView's TimeValue, VisIt's TIME; nullopt if it states none.
 std::optional<double> stated_time(vtkDataObject* object) {
   if (object == nullptr) return std::nullopt;
   for (const char* name : {"TimeValue", "TIME"}) {
@@ -100,12 +100,12 @@ std::optional<double> stated_time(vtkDataObject* object) {
   return std::nullopt;
 }
 
-/// VTK makes a place for every block below the largest index.
+/// Returns an Error if a block index is too large: VTK allocates every block below the largest index.
 Outcome check_indices(const Source& source) {
   constexpr std::uint64_t kMostBytes = 16 << 20;
   constexpr long long kMostBlocks = 1'000'000;
   const auto text = read_text_file(source.path, "a collection of blocks", kMostBytes);
-  if (!text) return Done{};  // VTK says what is wrong
+  if (!text) return Done{};  // VTK reports the problem
   for (std::size_t at = text->find("index"); at != std::string::npos; at = text->find("index", at + 1)) {
     const std::size_t open = text->find_first_of("\"'", at),
                       close = open == std::string::npos ? open : text->find_first_of("\"'", open + 1);
@@ -149,7 +149,7 @@ Result<ImportedData> read_with_reader(vtkAlgorithm& algorithm, const Source& sou
     opened.times.assign(times, times + about->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()));
   }
   std::erase_if(opened.times, [&](double time) { return !std::isfinite(time) || no_steps.contains(time); });
-  if (has_extension(source.path, ".vtk")) opened.times.clear();  // the legacy reader says 0 of every file
+  if (has_extension(source.path, ".vtk")) opened.times.clear();  // the legacy reader reports 0 for every file
   choose_netcdf_variables(reader, source, opened);
   // the data
   bool again = false;

@@ -1,4 +1,4 @@
-/// What VTK's readers have in common, for the files of this room that bring a reader of their own.
+/// Shared by the VTK readers, and by the files of this module that create a VTK reader of their own.
 #pragma once
 #include <vtkAlgorithm.h>
 
@@ -8,8 +8,8 @@
 
 namespace catena::vtk {
 
-/// The step that is asked for, of a reader that knows its file. `no_steps`: times that the reader states and that are left out. Errors are
-/// whole sentences.
+/// Reads the requested time step with a reader whose file name is set. `no_steps`: times that the reader reports but that are to be left
+/// out. Returns an Error with a complete message.
 Result<ImportedData> read_with_reader(vtkAlgorithm& reader, const Source& source, const std::set<double>& no_steps = {});
 
 }  // namespace catena::vtk

@@ -73,7 +73,7 @@ class Cutter {
     return at->second;
   }
 
-  /// `stream`: the number of faces, then each with its number of points and these. Nothing where that is not so.
+  /// Parses `stream`: the number of faces, then the number of points and the points of each. Empty if the stream is invalid.
   static std::vector<Ids> faces_of(vtkIdList* stream) {
     std::vector<Ids> faces;
     const vtkIdType end = stream->GetNumberOfIds();
@@ -88,12 +88,12 @@ class Cutter {
     return faces;
   }
 
-  /// Turns faces until all go round the same way, whichever way a file lists each: neighbours run along their edge against each other.
-  /// False where the faces do not close.
+  /// Orients all faces the same way, whatever the order in the file: neighbors traverse their common edge in opposite directions. Returns
+  /// false if the faces are not a closed surface.
   static bool turn_alike(std::vector<Ids>& faces) {
     struct Side {
       std::size_t face;
-      bool forward;  ///< from the edge's lesser point
+      bool forward;  ///< starts at the edge's lower point index
     };
     std::map<std::pair<vtkIdType, vtkIdType>, std::vector<Side>> edges;
     for (std::size_t f = 0; f < faces.size(); ++f)
@@ -101,7 +101,8 @@ class Cutter {
         const vtkIdType a = faces[f][i], b = faces[f][(i + 1) % faces[f].size()];
         edges[{std::min(a, b), std::max(a, b)}].push_back({f, a < b});
       }
-    std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(faces.size());  // and whether they run alike as listed
+    // neighbors of each face, and whether both are listed with the same orientation
+    std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(faces.size());
     for (const auto& [edge, sides] : edges) {
       if (sides.size() != 2) return false;
       const bool alike = sides[0].forward != sides[1].forward;
@@ -141,7 +142,7 @@ class Cutter {
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     if (all.size() < 4) return false;
-    // the centre sees all triangles from one side
+    // all triangles must have the same orientation as seen from the center
     Vec3 eye(0.0);
     for (const vtkIdType i : all) eye += place(i) * (1.0 / static_cast<double>(all.size()));
     int positive = 0, negative = 0;

@@ -1,14 +1,15 @@
-/// Polyhedra as tetrahedra, so that values in them are continuous, and linear ones exact. VTK's mean value coordinates lose accuracy
-/// beside faces, and its test of what is inside is one by random rays.
-///   a polyhedron    is cut into tetrahedra of its centre, a face's centre and an edge of the face; faces of three points have no centre
-///   values          at a centre the mean over its points, where the centre's place is the mean, too
-/// A face that two polyhedra share is cut the same way for both. One that its centre does not see whole stays as it is.
+/// Splits polyhedra into tetrahedra, so that interpolated values are continuous and linear functions exact. VTK's mean value coordinates
+/// lose accuracy near faces, and its inside test uses random rays.
+///   a polyhedron    is split into tetrahedra of its center, a face center and an edge of that face; triangular faces have no center
+///   values          at a center: the mean over its points; the position of the center is the mean of their positions, too
+/// A face shared by two polyhedra is split in the same way for both. A polyhedron with a face not fully visible from its center is kept.
 #pragma once
 #include "engine/io/vtk/resample.h"
 
 namespace catena::vtk {
 
-/// `keep` holds what was made. The same block where it has no polyhedra.
+/// Splits the polyhedra of a block; returns the block itself when it has none. `keep` receives the data sets created, which must live as
+/// long as the result.
 CellValues tetrahedralize_polyhedra(const CellValues& block, std::vector<vtkSmartPointer<vtkDataSet>>& keep);
 
 }  // namespace catena::vtk

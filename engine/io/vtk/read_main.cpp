@@ -1,5 +1,5 @@
-// The program catena-read-vtk: reads one file, or one folder, for catena, by VTK, ITK and their kin, into the file in memory that is its
-// descriptor 3 (engine/io/protocol.h). It is shut in: of all files it can open those of the named one's folder alone.
+// The program catena-read-vtk: reads one file, or one folder, for catena, with VTK, ITK and similar libraries, into the shared memory file
+// that is its descriptor 3 (engine/io/protocol.h). It is sandboxed: it can only open files in the folder of the named file.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace {
 
 struct Place {
-  std::filesystem::path folder, name;  ///< no name: the folder itself is meant
+  std::filesystem::path folder, name;  ///< no name: the folder itself is requested
 };
 
 Place place_of(const std::string& path) {
@@ -27,7 +27,7 @@ Place place_of(const std::string& path) {
   return {whole.parent_path(), whole.filename()};
 }
 
-/// A pipe, a socket or a device in a folder of images, at which GDCM's search ends without a word; empty: none.
+/// A pipe, socket or device in a folder of images, at which GDCM's search would end silently; empty: none.
 std::string strange_in(const std::filesystem::path& folder) {
   std::error_code code;
   for (std::filesystem::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {

@@ -38,9 +38,10 @@ void put(CellSampler& work, bool inside, float* values, std::size_t components) 
   for (std::size_t c = 0; c < components; ++c) values[c] = static_cast<float>(value[c]);
 }
 
-constexpr std::uint8_t kNear = 2;  ///< of `valid`, meanwhile: next to a voxel inside
+constexpr std::uint8_t kNear = 2;  ///< temporary value in `valid`: next to a voxel inside
 
-/// Voxels that touch one inside: straight on from those behind it, 2 v(1) - v(2), on average over the directions in which both are inside.
+/// Extrapolates to voxels next to one inside, linearly from those behind it, 2 v(1) - v(2), averaged over the directions in which both are
+/// inside.
 void continue_lattice(const ResampleGrid& lattice, std::size_t components, float* values, std::uint8_t* valid) {
   const int n[3] = {lattice.size.x, lattice.size.y, lattice.size.z};
   const auto inside = [&](int i, int j, int k) {
@@ -74,12 +75,13 @@ void continue_lattice(const ResampleGrid& lattice, std::size_t components, float
       }
 }
 
-/// Where cells are thinner than voxels no voxel may lie inside: those within a voxel's diagonal of a cell get the nearest one's polynomial.
+/// Fills voxels near cells that are thinner than voxels, in which no voxel may lie: those within a voxel's diagonal of a cell get the value
+/// of the nearest cell's polynomial.
 void continue_cells(const std::vector<CellValues>& blocks, const ResampleGrid& lattice, std::size_t components, float* values,
                     std::uint8_t* valid) {
   constexpr std::uint8_t kThin = 3;
   std::vector<float> nearest;
-  const double near2 = dot(lattice.spacing, lattice.spacing);  // no corner around a place inside is farther from it
+  const double near2 = dot(lattice.spacing, lattice.spacing);  // no corner of the voxel cell around a position is farther away
   for (const CellValues& block : blocks) {
     CellSampler work(block);
     for (vtkIdType id = 0; id < block.data->GetNumberOfCells(); ++id) {
@@ -121,7 +123,7 @@ void fill(const std::vector<CellValues>& blocks, const ResampleGrid& lattice, fl
   continue_cells(blocks, lattice, components, values, valid);
 }
 
-/// The cells of a lattice that overlap cells of the data.
+/// The cells of a sampling grid that overlap cells of the data.
 class Overlap {
  public:
   Overlap(const ResampleGrid& lattice, std::vector<std::uint8_t>& cells) : lattice_(lattice), cells_(cells) {}
@@ -151,7 +153,7 @@ class Overlap {
     if (CellSamples::locate_voxel_cell(lattice_, p, base, t)) cells_[lattice_.linear_index(base[0], base[1], base[2])] = 1;
   }
 
-  /// Calls visit(number, lowest corner) for the cells within bounds that are not marked.
+  /// Calls visit(index, lowest corner) for the cells within bounds that are not marked.
   template <class Visit>
   void each_open(const double* b, const Visit& visit) const {
     const int n[3] = {lattice_.size.x, lattice_.size.y, lattice_.size.z};
@@ -173,7 +175,7 @@ class Overlap {
     return some;
   }
 
-  /// A place of the data's cell lies in the lattice's, not on its faces.
+  /// Whether a position of the data's cell lies within the grid's cell, not on its faces.
   bool overlaps(CellSampler& work, const Vec3& lowest, Test test) const {
     constexpr double kBeside = 0.01;  // of a voxel
     const auto meets = [&](const Vec3& place) {
@@ -197,7 +199,7 @@ class Overlap {
   std::vector<std::uint8_t>& cells_;
 };
 
-/// CellCache with a voxel that has no value are none; of the voxels the corners of cells are valid.
+/// Makes both masks consistent: a cell is valid only if all its voxels have values, and a voxel only if it is a corner of a valid cell.
 void agree(const ResampleGrid& lattice, std::vector<std::uint8_t>& valid, std::vector<std::uint8_t>& cells) {
   std::vector<std::uint8_t> corners(valid.size(), 0);
   for (int k = 0; k < lattice.size.z; ++k)
@@ -205,7 +207,7 @@ void agree(const ResampleGrid& lattice, std::vector<std::uint8_t>& valid, std::v
       for (int i = 0; i < lattice.size.x; ++i) {
         std::uint8_t& cell = cells[lattice.linear_index(i, j, k)];
         if (i + 1 == lattice.size.x || j + 1 == lattice.size.y || k + 1 == lattice.size.z) {
-          cell = 1;  // there is none
+          cell = 1;  // no cell is based at the last voxel
           continue;
         }
         const auto corner = [&](int c) { return lattice.linear_index(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)); };
@@ -215,7 +217,7 @@ void agree(const ResampleGrid& lattice, std::vector<std::uint8_t>& valid, std::v
   valid = std::move(corners);
 }
 
-/// The grid at places of the least and the greatest value.
+/// Samples the grid at the positions of the lowest and the highest value.
 void find_extremes(const CellSamples& places, ResampleResult& made, std::size_t components) {
   std::vector<double> read;
   for (const CellSamples::Sample& place : places.extremes()) {

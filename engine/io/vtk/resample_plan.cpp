@@ -8,7 +8,7 @@
 namespace catena::vtk {
 namespace {
 
-/// What a grid would give that was never made: its corners are asked for one by one, of the blocks themselves.
+/// Predicts the error of a grid without resampling to it: the grid's nodes are evaluated one by one, directly in the blocks.
 class Foresight {
  public:
   Foresight(const std::vector<CellValues>& blocks, CellFinder& within) : blocks_(blocks), within_(within), places_(blocks, 1) {
@@ -18,7 +18,7 @@ class Foresight {
   const std::vector<CellSamples::Sample>& extremes() const { return places_.extremes(); }
 
   double p99(const ResampleGrid& lattice) { return on(lattice, places_.samples(), kEvery).p99; }
-  /// At the least and the greatest value.
+  /// Error at the lowest and the highest value.
   double at_extremes(const ResampleGrid& lattice) { return on(lattice, places_.extremes(), 1).max; }
 
  private:
@@ -57,7 +57,7 @@ class Foresight {
 };
 
 constexpr double kLeastSteps = 72;  ///< along the longest axis
-constexpr double kFewVoxels = 4e5;  ///< that may be spent on it
+constexpr double kFewVoxels = 4e5;  ///< maximum number of voxels for reaching kLeastSteps
 
 double middle(std::vector<double>& values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -106,11 +106,11 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
   for (int a = 0; a < 3; ++a) edges[a] = middle(extents[a]);
   const double largest = max_abs(hi - lo);
   for (int a = 0; a < 3; ++a) edges[a] = std::clamp(edges[a], 1e-4 * largest, std::max(largest, 1e-300));
-  // as coarse as fits
+  // the finest grid that fits
   double factor = 1;
   const auto voxels = [&](double f) { return static_cast<double>(make_resample_grid(lo, hi, edges, f).voxel_count()); };
   while (voxels(factor) > most_voxels) factor *= 1.1;
-  // few cells may be exact in few voxels, but their mask would end in large steps
+  // a few cells may be represented exactly by a few voxels, but their mask would be a coarse staircase
   const auto steps = [&](double f) {
     const field::Index3 size = make_resample_grid(lo, hi, edges, f).size;
     return std::max({size.x, size.y, size.z}) - 1;
@@ -125,11 +125,11 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
   for (;;) {
     plan.grid = make_resample_grid(lo, hi, edges, factor);
     plan.p99 = foresight.p99(plan.grid);
-    plan.meets_target = plan.p99 <= kTargetError * 0.9;  // the final measure has other places
+    plan.meets_target = plan.p99 <= kTargetError * 0.9;  // the final error is measured at other positions
     if (plan.meets_target) break;
-    // an error of second order, at worst of first
+    // the error decreases with the second order of the voxel size, at worst with the first
     constexpr double kLeastStep = 1.2, kMostStep = 2;
-    // values that jump from cell to cell do not get better with voxels
+    // values that jump from cell to cell do not improve with finer voxels
     idle = plan.p99 > kUsefulErrorRatio * before ? idle + 1 : 0;
     before = plan.p99;
     constexpr int kIdle = 2;
@@ -138,12 +138,12 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
     if (voxels(finer) > most_voxels) break;
     factor = finer;
   }
-  if (!plan.meets_target && idle == 0) {  // as fine as fits
+  if (!plan.meets_target && idle == 0) {  // the finest grid that fits
     while (voxels(factor / 1.1) <= most_voxels) factor /= 1.1;
     plan.grid = make_resample_grid(lo, hi, edges, factor);
     plan.p99 = foresight.p99(plan.grid);
   }
-  // cells beside which voxels are large
+  // cells at the extremes that are small relative to voxels
   if (foresight.at_extremes(plan.grid) > kTargetError) {
     double smallest = 1e300;
     for (const CellSamples::Sample& place : foresight.extremes()) {

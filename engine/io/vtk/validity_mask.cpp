@@ -19,13 +19,13 @@ namespace {
 
 constexpr int kHiddenCell = vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
 
-/// An array of one number for each point, or cell; null where there is none of the right size.
+/// The named array with one number per point, or per cell; null if there is none of the right size.
 vtkDataArray* numbers_named(vtkDataSetAttributes* arrays, const char* name, vtkIdType count) {
   vtkDataArray* array = arrays->GetArray(name);
   return array != nullptr && array->GetNumberOfTuples() == count && array->GetNumberOfComponents() == 1 ? array : nullptr;
 }
 
-constexpr const char* kGhostLevels = "vtkGhostLevels";  ///< of old files: above 0 it is a duplicate
+constexpr const char* kGhostLevels = "vtkGhostLevels";  ///< of old files: above 0 means a duplicate
 
 vtkDataArray* flags_of(vtkDataSetAttributes* arrays, vtkIdType count) {
   vtkDataArray* flags = numbers_named(arrays, vtkDataSetAttributes::GhostArrayName(), count);
@@ -38,7 +38,7 @@ int flags_at(vtkDataArray* flags, vtkIdType i) {
   return v >= -128 && v <= 255 ? static_cast<int>(v) & 255 : 0;
 }
 
-/// Calls visit(number of a point) for the corners of one cell after the other.
+/// Calls visit(point index) for the corners of one cell after the other.
 class Corners {
  public:
   explicit Corners(vtkDataSet* data) : data_(data) {
@@ -68,7 +68,7 @@ class Corners {
   vtkIdType n_[3]{}, m_[3]{};
 };
 
-/// CellCache that other pieces hold as well are told by their bounds, which have the same bits there.
+/// Cells that a piece owns, identified by their bounds, which are bitwise equal in other pieces that contain duplicates of them.
 using Bounds6 = std::array<double, 6>;
 std::set<Bounds6> owned_cells(const ImportedData& opened) {
   std::set<Bounds6> owned;
@@ -91,7 +91,7 @@ std::set<Bounds6> owned_cells(const ImportedData& opened) {
   return owned;
 }
 
-/// Of what may have points that belong to no cell, and has.
+/// Whether the data can have points that belong to no cell, and does.
 bool has_loose_points(vtkDataSet* data) {
   if (vtkUnstructuredGrid::SafeDownCast(data) == nullptr || data->GetNumberOfCells() == 0) return false;
   std::vector<bool> used(static_cast<std::size_t>(data->GetNumberOfPoints()), false);
@@ -135,9 +135,9 @@ ValidityMask seen_in(vtkDataSet* data, const std::string& mask, std::set<Bounds6
     seen.cells[static_cast<std::size_t>(i)] = good ? 1 : 0;
     all = all && good;
   }
-  // points that no cell that is data uses
+  // points that no valid cell uses
   if (all && !loose) return {};
-  std::vector<std::uint8_t> touched(seen.points.size(), 0);  // 1: by a cell; 2: by one that is data
+  std::vector<std::uint8_t> touched(seen.points.size(), 0);  // 1: used by a cell; 2: used by a valid cell
   for (vtkIdType i = 0; i < cells; ++i)
     corners.each(i, [&, by = static_cast<std::uint8_t>(seen.is_valid_cell(i) ? 2 : 1)](vtkIdType p) {
       std::uint8_t& at = touched[static_cast<std::size_t>(p)];
@@ -163,7 +163,7 @@ vtkSmartPointer<vtkDataSet> extract_valid_cells(vtkDataSet* data, const Validity
   bool flagged = false;
   for (const char* name : names) flagged = flagged || data->GetPointData()->HasArray(name) != 0 || data->GetCellData()->HasArray(name) != 0;
   if (seen.cells.empty() && !flagged) return data;
-  // without the flags, by which filters would leave out more, or other cells
+  // without the ghost flags, by which filters would omit more cells, or other ones
   vtkSmartPointer<vtkDataSet> plain = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   plain->ShallowCopy(data);
   for (const char* name : names) {

@@ -1,8 +1,8 @@
-/// Which points and cells of a file are data, by VTK's flags (the array vtkGhostType, of any type of number) and by an array that masks.
-///   cell    not where it is HIDDENCELL or REFINEDCELL, is DUPLICATECELL and stands in the file once more, is masked, or has a point that
-///           is HIDDENPOINT or masked: vtkStructuredGrid's and vtkImageData's IsCellVisible, for cells of every kind
-///   point   not where it is HIDDENPOINT or masked, or where all cells that use it are no data, or none does of an unstructured grid
-/// DUPLICATEPOINT, HIGHCONNECTIVITYCELL, LOWCONNECTIVITYCELL and EXTERIORCELL say where a cell belongs, not that it is no data.
+/// Which points and cells of a file are valid data, by VTK's flags (the array vtkGhostType, of any number type) and by a mask array.
+///   cell    invalid if it is HIDDENCELL or REFINEDCELL, is a DUPLICATECELL that occurs elsewhere in the file, is masked, or has a point
+///           that is HIDDENPOINT or masked: like IsCellVisible of vtkStructuredGrid and vtkImageData, for cells of every kind
+///   point   invalid if it is HIDDENPOINT or masked, if all cells that use it are invalid, or if no cell of an unstructured grid uses it
+/// DUPLICATEPOINT, HIGHCONNECTIVITYCELL, LOWCONNECTIVITYCELL and EXTERIORCELL do not make data invalid.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,20 +12,20 @@
 
 namespace catena::vtk {
 
-/// Of one block; 1: data.
+/// Mask of one block; 1: valid.
 struct ValidityMask {
-  std::vector<std::uint8_t> points, cells;  ///< empty: all are
+  std::vector<std::uint8_t> points, cells;  ///< Empty: all are valid.
   bool is_valid_point(vtkIdType i) const { return points.empty() || points[static_cast<std::size_t>(i)] != 0; }
   bool is_valid_cell(vtkIdType i) const { return cells.empty() || cells[static_cast<std::size_t>(i)] != 0; }
 };
 
-/// One a block. `mask`: the name of arrays of points or cells that are zero where there are no data; empty: none.
+/// Returns one mask per block. `mask`: name of point or cell arrays that are zero where there are no data; empty: none.
 std::vector<ValidityMask> make_validity_masks(const ImportedData& opened, const std::string& mask);
 
-/// The cells that are data, without arrays of flags; the block's own data where all are.
+/// Returns the valid cells, without flag arrays; `data` itself if all cells are valid.
 vtkSmartPointer<vtkDataSet> extract_valid_cells(vtkDataSet* data, const ValidityMask& seen);
 
-/// Of a grid's masks: some cell of which all corners are valid is masked of itself.
+/// Whether a grid needs a cell mask: some cell with eight valid corners is masked.
 bool needs_cell_mask(const field::Index3& size, const std::uint8_t* valid, const std::uint8_t* cells);
 
 }  // namespace catena::vtk

@@ -1,4 +1,4 @@
-// What the libraries complain of: VTK tells it to a window, ITK throws.
+// Collects the errors of the libraries: VTK writes them to an output window, ITK throws exceptions.
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 std::string first_complaint;
 
-/// "ERROR: In FILE, line N\nCLASS (ADDRESS): WHAT" is WHAT.
+/// Extracts WHAT from "ERROR: In FILE, line N\nCLASS (ADDRESS): WHAT".
 std::string plain(const std::string& text) {
   const std::size_t at = text.find("): ");
   const std::string what = strip_addresses(one_line(at == std::string::npos ? text : text.substr(at + 3)));

@@ -1,4 +1,5 @@
-/// One search tree for all links and programs that ask for the same things, while something holds it. Off the tick; any thread.
+/// Process-wide cache of search trees, shared by all links and programs built from the same data; a tree lives while something holds it.
+/// Off the tick; any thread.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -8,7 +9,8 @@
 
 namespace catena::haptics {
 
-/// `version` is unique to what the tree is made of, `part` says of which part of it. `make` gives a shared pointer to a Tree.
+/// Returns the cached tree of key (`version`, `part`), or the result of `make()` if there is none. `version` is unique to the data that the
+/// tree is built from; `part` selects a subset of that data. `make` returns a std::shared_ptr<const Tree>.
 template <class Tree, class Make>
 std::shared_ptr<const Tree> cached_bvh(std::uint64_t version, std::size_t part, Make&& make) {
   static std::mutex mutex;

@@ -1,8 +1,9 @@
-/// The closest place of very many small things, anywhere: a static tree of boxes over leaves of a few things each.
-/// A search may take several ticks: it visits at most so many nodes, keeps its stack in SearchState, and goes on with the
-/// probe of then. Compared is  |x - q|^2,  or where the probe is far (16 half extents R from the centre c)  |x - q|^2 - |x - c|^2,
-/// both over R^2, so that nothing overflows and far probes find the place most in their direction.
-/// Built off the tick; `search` runs on the haptic thread: no allocation, lock, or throw. Same bits for the same state and probe.
+/// Global closest-point search over many small elements (segments, points): a static bounding volume hierarchy with a few elements per
+/// leaf. A search may take several ticks: each call visits a bounded number of nodes, keeps its stack in SearchState, and the next call
+/// resumes with its own probe. The search compares |x - q|^2, or, for a probe x further than 16 half extents R from the center c of the
+/// root box, |x - q|^2 - |x - c|^2; both divided by R^2, so that nothing overflows and a far probe finds the point furthest in its
+/// direction.
+/// Built off the tick; `search` runs on the haptic thread: no allocation, lock, or throw. Same state and probe give the same bits.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,19 +16,19 @@
 
 namespace catena::haptics {
 
-/// Plain data; zero is the state before the first search.
+/// Progress of a search, kept between ticks. Plain data; zero bytes are the state before the first search.
 struct SearchState {
-  std::array<std::uint32_t, 40> stack;  ///< nodes still to visit
-  Vec3 probe;                           ///< of the last call
-  std::int32_t depth;
-  std::int32_t visits;      ///< of the last call: its work
-  std::uint32_t best_item;  ///< the thing of the closest place so far
-  bool has_best;            ///< `best` means something
-  bool in_progress;         ///< not through yet
-  bool for_one_probe;       ///< all of it for one probe
+  std::array<std::uint32_t, 40> stack;  ///< nodes still to be visited
+  Vec3 probe;                           ///< probe of the last call
+  std::int32_t depth;                   ///< number of nodes on the stack
+  std::int32_t visits;                  ///< nodes visited by the last call, its work
+  std::uint32_t best_item;              ///< index of the closest element found so far, if has_best
+  bool has_best;                        ///< best_item is valid
+  bool in_progress;                     ///< the search has not finished
+  bool for_one_probe;                   ///< the whole search ran with one and the same probe
 };
 
-/// What is compared: rises with the distance from the probe to q.
+/// Search key of a point q: increases with the distance from the probe to q.
 class DistanceKey {
  public:
   DistanceKey(const Vec3& probe, const Vec3& center, double radius) : probe_(probe), center_(center), scale_(1 / radius) {
@@ -54,10 +55,11 @@ class DistanceKey {
   bool far_ = false;
 };
 
-/// V: what the corners of boxes are kept as, Vec3 or glm::vec3.
+/// The hierarchy. V: type of the box corners, Vec3 or glm::vec3.
 template <class V>
 class ClosestPointBvh {
  public:
+  /// Axis-aligned box; empty by default.
   struct Box {
     V lo{std::numeric_limits<typename V::value_type>::infinity()}, hi{-std::numeric_limits<typename V::value_type>::infinity()};
     bool empty() const { return !(lo.x <= hi.x); }
@@ -70,9 +72,9 @@ class ClosestPointBvh {
   };
 
   ClosestPointBvh() = default;
-  /// At least one leaf, none of them empty, all finite, with an extent whose inverse is finite.
+  /// Builds the tree over the leaf boxes: at least one leaf, none empty, all finite, with an extent whose reciprocal is finite.
   explicit ClosestPointBvh(const std::vector<Box>& leaves) {
-    // padded to a power of two; then upwards
+    // padded to a power of two, then filled bottom-up
     std::size_t count = 1;
     while (count < leaves.size()) count *= 2;
     first_leaf_ = count - 1;
@@ -86,11 +88,11 @@ class ClosestPointBvh {
     radius_ = max_abs(half);
   }
 
-  /// Goes on with an open search or begins one, from the best thing known. A probe that rests is searched for once, whole. Visits at most
-  /// `most_visits` nodes; at least one leaf is seen by the first. Afterwards state.best is the closest thing seen, state.open tells whether
-  /// any is left.
-  ///   place(k)             the closest place of thing k
-  ///   each(leaf, see)      calls see(k) for the things of a leaf
+  /// Resumes the search in progress or begins one, starting from the best element known. For a probe at rest one complete search is made,
+  /// then none. Visits at most `most_visits` nodes; the first search sees at least one leaf. Afterwards state.best_item is the closest
+  /// element seen, and state.in_progress tells whether nodes are left.
+  ///   place(k)             returns the closest point of element k to the probe
+  ///   each(leaf, see)      calls see(k) for every element k of a leaf
   template <class Place, class Each>
   void search(const Vec3& probe, int most_visits, SearchState& state, Place&& place, Each&& each) const noexcept {
     const DistanceKey key(probe, center_, radius_);
@@ -141,8 +143,8 @@ class ClosestPointBvh {
     state.in_progress = state.depth > 0;
   }
 
-  /// Of a state from a file (Constraint::is_valid_state), but for `best`: a search leaves its k-th node at depth k of the tree or below, so
-  /// that its stack never outgrows the tree's height.
+  /// Validates a state from a file (see Constraint::is_sane), except best_item: the k-th node on a search's stack is at depth k of the tree
+  /// or deeper, so that the stack never exceeds the tree's height.
   bool is_sane(const SearchState& state) const noexcept {
     if (!are_valid_bools(state.has_best, state.in_progress, state.for_one_probe)) return false;
     if (state.depth < 0 || state.depth > static_cast<std::int32_t>(state.stack.size())) return false;
@@ -153,7 +155,7 @@ class ClosestPointBvh {
     return true;
   }
 
-  double extent() const noexcept { return 2 * radius_; }  ///< the longest edge of the box around all
+  double extent() const noexcept { return 2 * radius_; }  ///< longest edge of the root box
   std::size_t bytes() const noexcept { return nodes_.size() * sizeof(Box); }
 
  private:

@@ -47,7 +47,7 @@ Result<double> require_level(const json::Node& link, std::string_view key, const
 
 namespace {
 
-/// What `normalise` maps to 0 and 1.
+/// Sets the values that `normalise` maps to 0 and 1.
 Outcome set_scale(const json::Node& node, const std::string& name, HapticTransferFunction& map) {
   if (map.quantity == HapticTransferFunction::Quantity::value) {
     const DisplayRange range = field::display_range(*map.field.scalar);
@@ -70,7 +70,7 @@ Result<Parameter> read_map(const json::Node& node, std::string_view key, json::N
   CATENA_TRY(const std::string name, json::require_string(node, "field"));
   CATENA_TRY(map->field, context.field(*node.find("field"), name));
 
-  // which quantity of the field
+  // quantity of the field that is mapped
   const bool vector = map->field.vector != nullptr;
   CATENA_TRY(const int of, json::get_choice(node, "of", vector ? 2 : 0, {"value", "gradient", "magnitude"}));
   map->quantity = static_cast<HapticTransferFunction::Quantity>(of);
@@ -80,7 +80,7 @@ Result<Parameter> read_map(const json::Node& node, std::string_view key, json::N
   CATENA_TRY(map->normalize, json::get_boolean(node, "normalise", false));
   if (map->normalize) CATENA_CHECK(set_scale(node, name, *map));
 
-  // the points
+  // control points of the map
   const json::Node* points = node.find("map");
   if (points == nullptr) return json::error_at(node, fmt::format("\"{}\" has no \"map\"; [[value, output], ...] was expected", key));
   CATENA_TRY(const auto rows, json::as_rows(*points, "map", 2));
@@ -116,7 +116,7 @@ Result<Parameter> require_parameter(const json::Node& link, std::string_view key
 
 namespace {
 
-/// What reading needs besides: nothing.
+/// Empty schema context: these schemas need none.
 struct Nothing {};
 template <class T>
 using Table = schema::StructSchema<T, const Nothing>;

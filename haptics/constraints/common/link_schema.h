@@ -1,4 +1,4 @@
-/// The field that a link names under a key, of the kind that it needs. `who` is the link in the message: "friction". Off the tick.
+/// Readers of the scene keys that several link types share: fields, levels, parameters, switches, release cues and axes. Off the tick.
 #pragma once
 #include "engine/schema/key.h"
 #include "haptics/chain/parameter.h"
@@ -7,37 +7,40 @@
 
 namespace catena::haptics {
 
-/// The scalar field under `key`; an error names the key's line.
+/// Returns the scalar field that the link names under `key`; an Error names the key's line. `who` names the link type in the message
+/// ("friction").
 Result<field::ScalarFieldPtr> require_scalar_field(const json::Node& link, std::string_view key, std::string_view who,
                                                    const BuildContext& context);
-/// The vector field under `key`; an error names the key's line.
+/// Returns the vector field that the link names under `key`; otherwise as require_scalar_field.
 Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::string_view key, std::string_view who,
                                                    const BuildContext& context);
-/// The link's `level`: a value that the field attains. `key` is the one that names the field.
+/// Returns the link's `level`; an Error where the field does not attain that value. `key` is the key that names the field.
 Result<double> require_level(const json::Node& link, std::string_view key, const field::ScalarField& field);
 
-/// Reads a Parameter of a link: a number, or an object {"field": NAME, "map": [[value, output], ...], "of": "value" |
-/// "gradient" | "magnitude", "normalise": true, "outside": output}. The model is in haptics/chain/parameter.h.
+/// Parameter values: a number, or an object {"field": NAME, "map": [[value, output], ...], "of": "value" | "gradient" | "magnitude",
+/// "normalise": true, "outside": output}. The model is in haptics/chain/parameter.h.
 
-/// The key's value, or `fallback` where it is absent. Every output must lie in `range`.
+/// Returns the Parameter under `key`, or `fallback` if the key is absent. An Error where an output lies outside `range`.
 Result<Parameter> get_parameter(const json::Node& link, std::string_view key, const Parameter& fallback, json::NumberRange range,
                                 const BuildContext& context);
-/// The same of a key that must be there.
+/// Returns the Parameter under a required `key`; an Error where it is absent or an output lies outside `range`.
 Result<Parameter> require_parameter(const json::Node& link, std::string_view key, json::NumberRange range, const BuildContext& context);
 
-/// What every link may say beside its constraint: its switch ("on"), the cue when it is left ("indicate"), the tool's axis ("align"). The
-/// structs and their models are in haptics/chain/program.h.
+/// Keys that every link accepts besides those of its constraint. The structs that they fill and their models are in
+/// haptics/chain/program.h.
+///
+/// Schema of "on", the link's switch.
 schema::Key switch_key();
-/// "indicate".
+/// Schema of "indicate", the release cue.
 schema::Key release_cue_key();
-/// "align".
+/// Schema of "align", the alignment of the tool's axis.
 schema::Key align_key();
 
-/// The "on" of a link or a mode; without it, always on.
+/// Reads "on" of a link or a mode; without it, always on.
 Result<ActivationSwitch> read_switch(const json::Node& holder);
-/// The "indicate" of a link; without it, no cue.
+/// Reads "indicate" of a link; without it, no cue.
 Result<ReleaseCue> read_release_cue(const json::Node& link);
-/// The constraint is asked for an axis: a point has none, and friction and forces have no primitive at all.
+/// Reads "align" of a link. An Error where the constraint has no axis: points have none, friction and forces have no primitive at all.
 Result<Align> read_align(const json::Node& link, const Coupling& coupling, const Constraint& constraint);
 
 }  // namespace catena::haptics

@@ -1,4 +1,4 @@
-/// A place of a box as the bits of its coordinates in turn: neighbours along this order are mostly neighbours in space.
+/// Morton codes: the bits of a point's coordinates, interleaved, so that neighbors in this order are mostly neighbors in space.
 /// G. M. Morton, IBM technical report (1966). Any thread.
 #pragma once
 #include <algorithm>
@@ -9,6 +9,7 @@
 namespace catena::haptics {
 
 inline std::uint64_t spread_bits(std::uint64_t x) {
+  /// Returns the low 21 bits of x with two zero bits between each two of them.
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffff;
   x = (x | x << 16) & 0x1f0000ff0000ff;
@@ -17,7 +18,7 @@ inline std::uint64_t spread_bits(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// `edge`: of the box from `lowest`, > 0.
+/// Returns the 63-bit code of p in the cube with the corner `lowest` and the given `edge` > 0; p is clamped to the cube.
 inline std::uint64_t morton_code(const Vec3& p, const Vec3& lowest, double edge) {
   std::uint64_t code = 0;
   for (int i = 0; i < 3; ++i)

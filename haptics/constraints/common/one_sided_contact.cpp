@@ -8,19 +8,19 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kInFront = 1e-11;  // of L: round-off of a probe in front of what holds it
+constexpr double kInFront = 1e-11;  // of L; round-off allowance for a probe in front of the sheet that holds the proxy
 
 bool is_free(const SideRules& rules, double value) {
   return rules.free == FreeSide::above ? value >= 0 : rules.free == FreeSide::below ? value <= 0 : false;
 }
 
-/// How far the probe is in front of the sheet held, on its free side.
+/// Signed distance of the probe from the held sheet, positive on its free side.
 double in_front(const ContactSurface& surface, const SideRules& rules, const Vec3& probe, const Vec3& proxy) {
   const double above = dot(surface.normal(), probe - proxy);
   return rules.free == FreeSide::above ? above : -above;
 }
 
-/// Whether a hand may have made the last step.
+/// Whether the last probe step is too long for a user's motion (a teleport; see kMaxProbeSpeed).
 bool is_thrown(const ContactSurface& surface, const Vec3& probe, const SideMemory& memory, const LinkState& state) {
   return memory.initialized && norm(probe - memory.probe) > std::max(kLongStepFraction * surface.domain_length(), state.max_probe_step);
 }
@@ -50,7 +50,7 @@ void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, cons
   memory.settled = state.status != LinkStatus::budget;
 }
 
-/// Puts the proxy on what was found, lets go if that is too far, passes the probe through if nothing was.
+/// Moves the proxy to the point found; releases the link if that is too far from the probe; passes the probe through if nothing was found.
 void take(const SurfaceHold& hold, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
   if (!hold.found || !is_finite(hold.proxy)) {
     memory.holding = memory.beyond_body = false;
@@ -70,7 +70,7 @@ void take(const SurfaceHold& hold, const SideRules& rules, const Vec3& probe, Si
   leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
 }
 
-/// One step of the way to the probe from a sheet that holds no more. True: it is there.
+/// Moves the proxy one step toward the probe, from a sheet that no longer holds it. Returns true if it reaches the probe.
 bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
   const Vec3 way = probe - memory.proxy;
   const double far = norm(way), travel = max_proxy_travel(memory, probe, far, state);
@@ -86,8 +86,8 @@ bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkSt
   return false;
 }
 
-/// A one-sided probe on the free side, or where nothing is known of the side: what holds it there, if anything. Held before, the sheet by
-/// which it came in; else one that its last step passed through.
+/// For a one-sided link whose probe is on the free side or on an unknown side: the sheet that still holds the proxy, if any. If the link
+/// was in contact, that is the sheet through which the probe entered; otherwise a sheet that the last probe step crossed.
 SurfaceHold hold_beyond(ContactSurface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory,
                         const LinkState& state) {
   if (is_thrown(surface, probe, memory, state)) return {};
@@ -111,7 +111,7 @@ double max_proxy_travel(const SideMemory& memory, const Vec3& probe, double gap,
 Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context) {
   SideSpec spec;
   if (has_sides) CATENA_CHECK(schema::read_value(free_key(""), link, spec.free));
-  if (link.find("snap") != nullptr) return spec;  // snap.h lets go
+  if (link.find("snap") != nullptr) return spec;  // with "snap", snap.cpp does the release
   CATENA_TRY(spec.release, get_parameter(link, "release", 0.0, json::NumberRange::positive, context));
   return spec;
 }
@@ -138,7 +138,7 @@ void start_on_surface(ContactSurface& surface, const SideRules& rules, const Vec
 
 void advance_on_surface(ContactSurface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
   state.limit = rules.release;
-  // a resting probe, or a proxy that somebody else has moved meanwhile
+  // skip a resting probe, unless the proxy was moved from outside
   const bool untouched = !memory.initialized || bitwise_equal(memory.proxy, state.proxy);
   if (memory.initialized && untouched && memory.settled && bitwise_equal(memory.probe, probe)) {
     leave(memory.proxy, memory.residual, memory.status, state, memory.reason);
@@ -150,7 +150,7 @@ void advance_on_surface(ContactSurface& surface, const SideRules& rules, const V
     state.released = released;
   }
 
-  // on which side, and does a released link take hold again
+  // side of the probe; whether a released link re-engages
   const bool one_sided = rules.free != FreeSide::none;
   SideValue side;
   if (one_sided || state.released) side = surface.evaluate_side(probe);
@@ -175,7 +175,7 @@ void advance_on_surface(ContactSurface& surface, const SideRules& rules, const V
 
   if (memory.gliding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
 
-  // on the free side: free, or beyond a body that holds
+  // on the free side: free, or past the far side of a thin solid that still holds the proxy
   if (free) {
     hold = hold_beyond(surface, rules, probe, memory, state);
     if (!hold.found) {
@@ -189,7 +189,7 @@ void advance_on_surface(ContactSurface& surface, const SideRules& rules, const V
   }
   memory.beyond_body = free;
 
-  // nothing is known of the side here: what is held stays held, what is free stays free unless the step went through a sheet
+  // unknown side: contact continues; a free proxy stays free unless the probe step crossed a sheet
   if (one_sided && !side.is_known && !memory.holding) {
     hold = hold_beyond(surface, rules, probe, memory, state);
     if (!hold.found) {
@@ -203,7 +203,7 @@ void advance_on_surface(ContactSurface& surface, const SideRules& rules, const V
     have_hold = true;
   }
 
-  // hold
+  // in contact
   if (!have_hold) {
     if (memory.holding) {
       hold = surface.slide(probe);

@@ -10,7 +10,7 @@ namespace {
 constexpr double kReleasePart = 2, kMaxSnap = 0.9;
 
 struct SnapMemory {
-  Vec3 hidden{0.0};  ///< the constraint's proxy while apart
+  Vec3 hidden{0.0};  ///< proxy of the inner constraint while the link is released
   bool apart;
 };
 
@@ -45,7 +45,7 @@ class Snap final : public Constraint {
       return stay_apart(memory, distances, probe, LinkStatus::released, state);
     }
 
-    // apart: where is the feature, and is it within reach; a search out of budget has found nothing
+    // released: where the feature is, and whether it is within reach; a search out of budget has found nothing
     state.released = false;
     state.proxy = memory.hidden;
     inner_->seek(probe, state, scratch);
@@ -79,14 +79,14 @@ class Snap final : public Constraint {
     return {spec_.has_snap ? std::fmin(snap, kMaxSnap * release) : kRearmFraction * release, release};
   }
 
-  /// Held: what the constraint says.
+  /// Engaged: takes over the state of the inner constraint.
   static void hold(SnapMemory& memory, const Distances& distances, LinkState& state) noexcept {
     memory.apart = false;
     memory.hidden = state.proxy;
     state.released = state.status == LinkStatus::released;
     if (!(state.limit > 0 && state.limit < distances.release)) state.limit = distances.release;
   }
-  /// Apart: the probe passes; the constraint's own proxy is hidden.
+  /// Released: the probe passes through; the proxy of the inner constraint is kept in the memory.
   static void stay_apart(SnapMemory& memory, const Distances& distances, const Vec3& probe, LinkStatus status, LinkState& state) noexcept {
     memory.apart = true;
     memory.hidden = state.proxy;

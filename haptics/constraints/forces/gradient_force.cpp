@@ -17,7 +17,7 @@ class GradientForce final : public Constraint {
   }
 
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    // at the probe, not the last proxy: a resting hand feels a resting force
+    // sampled at the probe, not at the last proxy: a resting probe gets a constant force
     const double most = displacement_.at(probe, scratch.parameter_cursor, state.evaluations);
     state.residual = 0;
     state.limit = 0;
@@ -42,7 +42,7 @@ class GradientForce final : public Constraint {
   field::ScalarFieldPtr field_;
   Parameter displacement_;
   double sign_;
-  double largest_;  ///< X
+  double largest_;  ///< X: the largest magnitude
 };
 
 Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node& link, const BuildContext& context) {

@@ -5,7 +5,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kRoundOff = 1e-15;  // a gap of so many times the place is none
+constexpr double kRoundOff = 1e-15;  // a gap of less than this times the coordinates counts as zero
 
 class Viscosity final : public Constraint {
  public:

@@ -9,42 +9,42 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
-constexpr double kTurn = 0.02, kBent = 0.3;                        // of the tangent, of the normal over half a step
-constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp turn, if it costs less than that times L
-constexpr double kShort = 1e-3;                                    // of L: so short that the surface may have a crease
-constexpr double kStraight = 1e-14;                                // of L: an error that needs no midpoint
-constexpr double kThreshold = 0.005;                               // of L: default
+constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d; longest and shortest step
+constexpr double kTurn = 0.02, kBent = 0.3;                        // maximum turn of the tangent, and of the normal, over half a step
+constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp turn, taken if it costs less than kCornerError L
+constexpr double kShort = 1e-3;                                    // of L: a step so short that the surface may have a crease
+constexpr double kStraight = 1e-14;                                // of L: error so small that the step needs no midpoint
+constexpr double kThreshold = 0.005;                               // of L: default threshold
 constexpr int kTrials = 32, kSlipRounds = 8;
-constexpr int kForStep = 40;  // fetches that a step and a slide may need
+constexpr int kForStep = 40;  // field samples that a step and a slide may need
 
 struct FrictionSpec {
   field::VectorFieldPtr field;
   bool line = false;
-  double largest = 0;  ///< X
+  double largest = 0;  ///< X: the largest magnitude
   Parameter threshold;
   ContactSpec contact;
 };
 
-/// The tangential field at a place.
+/// The tangential field at a point.
 struct Heading {
   SafeDirection t;
   LinkStatus status = LinkStatus::ok;
-  SampleStatus reason = SampleStatus::ok;  ///< of a status that ends the line
+  SampleStatus reason = SampleStatus::ok;  ///< reason for the status that ends the line
   bool known() const { return t.factor > 0; }
 };
 
 struct FrictionMemory {
   ContactMemory contact;
   Heading heading;  ///< at the proxy
-  Vec3 side;        ///< the last direction: the axis of a line field is turned to it
+  Vec3 side;        ///< the last direction; the axis of a line field is turned to it
   double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
   double bend;      ///< |dd/ds| of the last step, along the surface
-  double arch;      ///< |dn/ds| of it
-  int blocked;      ///< the line ends here towards this sign of d
+  double arch;      ///< |dn/ds| of the last step
+  int blocked;      ///< sign of d in which the line ends here; 0: neither
 };
 
-/// One tick of one link.
+/// One tick of one friction link.
 class FrictionTick {
  public:
   FrictionTick(const FrictionSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
@@ -72,14 +72,14 @@ class FrictionTick {
   }
 
  private:
-  /// Along the streamline, across it, until neither moves.
+  /// Slips along the streamline and across it, alternately, until neither moves the proxy.
   bool slip(double tau, bool& complete) noexcept {
     bool sliding = false;
     for (int round = 0; round < kSlipRounds; ++round) {
       const bool moved = follow(tau, complete);
       if (round > 0 && !moved) return true;
       const double gap = norm(contact_.gap());
-      // once it slides, |e| = tau is kept from both sides
+      // while sliding, |e| = tau is kept from both sides
       sliding = sliding || gap > tau;
       if (!sliding || std::fabs(gap - tau) <= 1e-13 * length_) return true;
       complete = true;
@@ -87,20 +87,20 @@ class FrictionTick {
       if (!contact_.slide_to(tau)) return false;
       arrive(heading_at(contact_.surface_point()));
       if (!memory_.heading.known() || ending_ != LinkStatus::ok) return true;
-      // not there along the line again: the next tick goes on
+      // not converged along the line: resumes in the next tick
       complete = is_even(excess_along(tau)) || norm(contact_.proxy() - before) <= kAlong * length_;
       if (memory_.blocked != 0 || contact_.out_of_budget(kForStep)) return true;
     }
     return true;
   }
-  /// What e has along the line beyond what the threshold allows.
+  /// Amount by which e along the line exceeds what the threshold allows.
   double excess_along(double tau) const noexcept {
     const double f = memory_.heading.t.factor;
     return std::fabs(dot(contact_.gap(), memory_.heading.t.d)) - tau * (1 - f) / f;
   }
   bool is_even(double excess) const noexcept { return !(excess > std::max(kAlong * length_, 4e-16 * norm(contact_.gap()))); }
 
-  /// Follows the streamline until |e.d| <= b. True: it moved.
+  /// Follows the streamline until |e.d| <= b. Returns true if the proxy moved.
   bool follow(double tau, bool& complete) noexcept {
     bool moved = false;
     Reach reach;
@@ -114,7 +114,7 @@ class FrictionTick {
       complete = false;
       if (trials_++ >= kTrials || contact_.out_of_budget(kForStep)) return moved;
       const double rate = memory_.rate > 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
-      // where the line ended in the last tick, near before far
+      // near the end of the line found in the last tick, try short steps first
       if (!moved && reach.longest == 0) reach.longest = (blocked == (g > 0 ? 1 : -1) ? 4 * kShortest : kLongest) * length_;
       const double even = memory_.bend > 0 ? std::max(1.8 * kTurn / memory_.bend, 4 * kShortest * length_) : reach.longest;
       const double size = std::min(std::min(excess / rate, even), reach.longest), h = g > 0 ? size : -size;
@@ -152,7 +152,7 @@ class FrictionTick {
       memory_.arch = norm(to.n - contact_.surface_point().n) / size;
       if (!nearer || beyond > 0.25 * excess) {
         if (slope > rate) memory_.rate = slope;
-        // a corner of the line may be the closest point
+        // the closest point may be a corner of the line
         if (++reach.overshoots > 1) reach.corner = size;
         if ((turn > 3 * kTurn && beyond > 0) || !refuse(reach, 0, size)) {
           memory_.blocked = h > 0 ? 1 : -1;
@@ -171,15 +171,15 @@ class FrictionTick {
     return moved;
   }
 
-  /// How far a step may go, world units; and where a corner of the line is known to lie, ahead of the proxy.
+  /// Maximum length of a step, world units, and where a corner of the line is known to lie ahead of the proxy.
   struct Reach {
     double longest = 0;
-    double corner = 0;   ///< within this distance; 0: none known
-    double turn = 0;     ///< refused last
-    int overshoots = 0;  ///< of the closest point
+    double corner = 0;   ///< distance within which a corner lies; 0: none known
+    double turn = 0;     ///< turn of the last rejected step
+    int overshoots = 0;  ///< number of steps past the closest point
   };
 
-  /// By how much the line turns from the proxy to `to`, seen along the surface; 2 where it ends.
+  /// Angle by which the line turns from the proxy to `to`, as a chord length, seen along the surface; 2 if the line ends there.
   double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
     if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.surface_point().n) > kBent)) return 2;
     const Vec3& here = memory_.heading.t.d;
@@ -187,9 +187,9 @@ class FrictionTick {
     const double size_of_it = norm(flat);
     return size_of_it > 0 ? norm(there.t.d - flat * (1 / size_of_it)) : 2;
   }
-  /// What a step may turn: a corner is crossed where that costs little.
+  /// Maximum turn of a step: a corner is crossed where that costs little.
   double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
-  /// Half the step; a turn that does not lessen with it is a corner. False: too short to go on.
+  /// Halves the step after a rejection; a turn that does not decrease with it is a corner. Returns false if the step is too short to go on.
   bool refuse(Reach& reach, double turn, double size) const noexcept {
     if (reach.corner > 0 || (reach.turn > 0 && turn > 0.9 * reach.turn)) reach.corner = size;
     reach.turn = turn;
@@ -204,7 +204,7 @@ class FrictionTick {
     if (reach.corner > kShortest * length_) reach.longest = std::min(reach.corner, std::max(0.5 * reach.corner, kCornerError * length_));
   }
 
-  /// The line ends here: hold.
+  /// The line ends here: the proxy stays.
   bool stop_at(const Heading& why, double step, bool& complete, bool moved) noexcept {
     memory_.blocked = step > 0 ? 1 : -1;
     complete = true;
@@ -237,7 +237,7 @@ class FrictionTick {
     return {safe_normalize(v.value, spec_.largest, at.n), LinkStatus::ok};
   }
 
-  /// The line ends here because the vector field does, or the surface.
+  /// Heading of a line that ends because the vector field or the surface ends.
   Heading boundary_at(const Vec3& place, field::Cursor& cursor) const noexcept {
     const SampleStatus reason = spec_.field->status_outside(place, cursor);
     return {
@@ -250,12 +250,12 @@ class FrictionTick {
   FrictionMemory& memory_;
   Contact contact_;
   double length_;
-  /// The last step of this tick: where from, and dd/ds. A short step goes on with that.
+  /// The last step of this tick: its start and dd/ds. A short step starts from these.
   struct {
     bool known = false;
     Vec3 from{0.0}, turn{0.0};
   } last_;
-  int trials_ = 0;                      ///< of steps along the line, in this tick
+  int trials_ = 0;                      ///< trial steps along the line in this tick
   LinkStatus ending_ = LinkStatus::ok;  ///< why the line ends, if it does
 };
 

@@ -12,12 +12,12 @@ namespace {
 constexpr double kTouch = 1e-6, kOnLevel = 1e-12, kAccepted = 1e-9, kGapSlack = 1e-13, kNearLevel = 0.02;
 constexpr int kSlideRounds = 12, kPatient = 5, kNewton = 8;
 constexpr int kPatience = 8, kFade = 20;
-constexpr int kForLevel = 12;      // fetches kept for the way back to the level
-constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten the gap
+constexpr int kForLevel = 12;      // field samples reserved for the return to the level
+constexpr double kLevelled = 0.1;  // e.t / |e|; if smaller, sliding does not shorten the gap
 
 bool usable(const LevelPoint& a) { return a.valid && !a.plateau; }
 
-/// LevelSetField::at with one division, in place (a copy would wait for its stores); the same up to rounding.
+/// LevelSetField::at with a single division, writing in place (a copy would stall on its stores); equal up to rounding.
 void fetch(LevelSetField& field, const Vec3& world, LevelPoint& out) noexcept {
   const Vec3 p = field.clamped(world);
   out = LevelPoint{};
@@ -184,7 +184,7 @@ bool Contact::slide_to(double distance) noexcept {
     return std::fabs(probe_point_.distance) <= kAccepted * length() || project_to_level(memory_.surface_point);
   }
 
-  // both conditions at once, from the proxy; from the chord where that is far
+  // solve both conditions together, from the proxy; from the chord if the proxy is far
   const bool near = usable(memory_.surface_point) && norm(e0) - distance <= 0.5 * distance;
   LevelPoint a = memory_.surface_point;
   if (!near) fetch(*field_, probe_ - direction(e0) * distance, a);
@@ -197,7 +197,7 @@ bool Contact::slide_to(double distance) noexcept {
     }
     const Vec3 tangential = e - a.n * across;
     const double along = norm(tangential);
-    // |e + l n - b t| = r
+    // solve |e + l n - b t| = r
     double b = 0;
     if (along > kLevelled * gap) {
       const double level_gap = norm(e + a.n * a.distance), c = (level_gap - distance) * (level_gap + distance);
@@ -209,7 +209,7 @@ bool Contact::slide_to(double distance) noexcept {
     fetch(*field_, a.p + tangential * (along > 0 ? b / along : 0.0) - a.n * a.distance, a);
   }
 
-  // a crease, or a sheet that bends away: on the level at least, and not further off than before
+  // a crease, or a sheet that bends away: at least on the level, and no farther from the probe than before
   if (!usable(a) || !project_to_level(a) || norm(probe_ - a.p) > norm(e0)) return false;
   memory_.surface_point = a;
   return true;

@@ -10,7 +10,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kLeast = 0.001, kMost = 0.01;  // of L: defaults
+constexpr double kLeast = 0.001, kMost = 0.01;  // of L; defaults of the least and largest threshold
 
 struct ModulatedFrictionSpec {
   field::VectorFieldPtr field;
@@ -55,7 +55,7 @@ class ModulatedFriction final : public Constraint {
   double domain_length() const noexcept override { return spec_.contact.length; }
 
  private:
-  /// u of Eqs. 8-9.
+  /// Angle u of Eqs. 8-9 at `at`.
   double angle(const LevelPoint& at, ModulatedFrictionMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
     if (state.evaluations + 2 >= kMaxEvaluations) return memory.angle;
     field::Cursor& cursor = scratch.cursors[1];

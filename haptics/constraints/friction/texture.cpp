@@ -8,7 +8,7 @@
 namespace catena::haptics {
 namespace {
 
-/// -1 at whole t, 1 halfway between.
+/// Triangle wave: -1 at whole t, 1 halfway between.
 double triangle(double t) {
   const double part = t - std::floor(t);
   return std::isfinite(part) ? 1 - 4 * std::fabs(part - 0.5) : 0;

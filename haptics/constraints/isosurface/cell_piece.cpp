@@ -6,7 +6,7 @@
 namespace catena::haptics {
 
 PieceFrame::PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexcept {
-  // nothing held: the span is all of space
+  // no axis held: the span is all of space
   if (held_axes == 0) {
     dimension = 3;
     return;
@@ -48,7 +48,7 @@ PulledBackForce CellPiece::pull_back(const Vec3& f, const Vec3& probe, const Vec
   const double delta = dot(s.n, probe - world(f));
   const auto bent = [&](const Vec3& v) { return frame_.project(hessian_times(f, v)) * (1 / s.slope); };
   if (frame_.dimension == 3) return pull_back_on_surface(s.n, delta, bent, force);
-  // one direction is left: in the span, across n
+  // one direction is left: in the span, perpendicular to n
   const Vec3 other = cross(frame_.basis[0], frame_.basis[1]), t = direction(cross(s.n, other));
   return pull_back_on_curve(t, 1 + delta * dot(t, bent(t)), force);
 }
@@ -74,7 +74,7 @@ bool CellPiece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, V
   }
   out = start + n * best;
   along = best;
-  // as well as the cell's values allow
+  // as accurate as the cell's values allow
   double largest = std::fabs(level_);
   for (const double c : cell_.corner) largest = std::max(largest, std::fabs(c));
   return least <= 1e-14 * largest || least <= 1e-12 * s.slope * mapping_.min_voxel_edge();
@@ -93,10 +93,10 @@ double CellPiece::overshoot(const Vec3& f, int& axis) const noexcept {
 
 namespace {
 
-constexpr double kConverged = 1e-10;  // of L: within a piece
-constexpr double kNearFace = 1e-10;   // voxels: a step out that cannot be shortened into the cell starts on the face
-constexpr double kLeastSlope = 0.87;  // of the last point's: less is a fold
-constexpr double kFlat = 0.25;        // voxels: so far off the level a straight way may end
+constexpr double kConverged = 1e-10;  // of L; convergence within a piece
+constexpr double kNearFace = 1e-10;   // voxels; a step out of the cell that cannot be shortened into it starts on the face
+constexpr double kLeastSlope = 0.87;  // relative to the slope at the last point; less is a fold
+constexpr double kFlat = 0.25;        // voxels; how far off the level a straight path may end
 
 }  // namespace
 
@@ -128,7 +128,7 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
         continue;
       }
 
-      // an inner end of the bracket: the first halving that stays in the cell
+      // inner end of the bracket: the first halving that stays in the cell
       double low = 0, high = 1, v_low = 0, v_high = piece.overshoot(g, axis);
       Vec3 outer = g, within = f;
       bool inner = false;
@@ -136,7 +136,7 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
       int exit_axis;
       const double first = hurried ? std::min(0.5, piece.fraction_inside(f, piece.frame().index_step(mapping, u), exit_axis)) : 0.5;
       for (double alpha = first; alpha > 1e-14 && !field.exhausted(); alpha *= 0.5) {
-        if (!piece.retract(f, u * alpha, s, g)) continue;  // a fold: nearer by there is none
+        if (!piece.retract(f, u * alpha, s, g)) continue;  // a fold: there is no nearer point
         int worst;
         const double v = piece.overshoot(g, worst);
         if (v <= 0) {
@@ -152,7 +152,7 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
         outer = g;
       }
       if (!inner) {
-        // a rounding away from a face, but not on it
+        // off a face only by round-off, but not on it
         for (int a = axis, k = 0; k < 3; ++k, a = (a + 1) % 3) {
           const double face = f[a] < 0.5 ? 0.0 : 1.0;
           if (piece.frame().held[static_cast<std::size_t>(a)] || f[a] == face || std::fabs(f[a] - face) > kNearFace) continue;
@@ -162,8 +162,8 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
         return FollowResult::blocked;
       }
 
-      // land on the face: false position on how far the point is outside, to the last bit; where time is short by Illinois' rule (an
-      // end is halved only where it stays twice), which needs a quarter of the steps
+      // move onto the face: false position on the distance outside, to the last bit; under time pressure with the Illinois rule (an end
+      // value is halved only if it is kept twice), which needs a quarter of the steps
       double a = v_low, b = v_high;
       int stays = 0;
       double along = 0;
@@ -185,7 +185,7 @@ FollowResult follow_piece(const LevelSetField& field, const CellPiece& piece, co
       }
       if (hurried && v_low > -kFaceTolerance) outer = within, v_high = 0;
       if (v_high > 1e-9) {
-        // a fold between: as far as the cell's level goes
+        // a fold in between: go as far as the cell's level does
         accepted = piece.gain(probe, f, within) >= 1e-4 * low * dot(t, u);
         if (accepted) f = within;
         continue;

@@ -9,15 +9,15 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kStill = 1e-13;     // of L: a shorter move is none
-constexpr double kAccepted = 1e-6;   // of L: what may remain where no piece moves any more
-constexpr double kWalkEnded = 3e-8;  // of L: on which a walk has ended
+constexpr double kStill = 1e-13;     // of L; a shorter move counts as none
+constexpr double kAccepted = 1e-6;   // of L; allowed residual where no piece can move any more
+constexpr double kWalkEnded = 3e-8;  // of L; residual at which a walk has ended
 constexpr int kWalkRounds = 600;
 constexpr double kFarAway = 2;        // voxels
-constexpr int kHalvings = 24;         // to find where a way passes its limit
-constexpr double kSmoothTurn = 0.95;  // cosine: a larger turn of the normal from step to step is no smooth surface
+constexpr int kHalvings = 24;         // bisections to find where a path exceeds its limit
+constexpr double kSmoothTurn = 0.95;  // cosine; a larger turn of the normal from step to step means that the surface is not smooth
 
-/// The faces through a point: which axes, and the cells on either side of them.
+/// The cell faces through a point: their axes, and the cells on either side.
 struct Corner {
   unsigned flat = 0, faces = 0;  // bit masks of axes
   CellPoint at;
@@ -30,7 +30,7 @@ struct Corner {
         faces |= 1u << a;
     }
   }
-  /// Bit a of `upper`: the cell that has the point on its lower face a (f = 0).
+  /// The point seen from one of its cells. Bit a of `upper`: the cell that has the point on its lower face a (f = 0).
   CellPoint seen_from(unsigned upper) const {
     CellPoint out = at;
     std::array<std::int32_t*, 3> base{&out.base.x, &out.base.y, &out.base.z};
@@ -51,7 +51,7 @@ struct Corner {
   }
 };
 
-/// The empty set first, then every subset of `mask`, rising.
+/// Visits the empty set first, then every other subset of `mask`, in rising order.
 template <class Visit>
 void for_subsets(unsigned mask, const Visit& visit) {
   unsigned subset = 0;
@@ -61,7 +61,7 @@ void for_subsets(unsigned mask, const Visit& visit) {
   } while (subset != 0);
 }
 
-/// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
+/// Last point of the path from..to over one piece that stays within `limit` and is no farther from the probe than `from`.
 Vec3 cut_short(const LevelSetField& field, const CellPiece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
                const Vec3& from, const Vec3& to) {
   const Vec3 chord = field.trilinear_grid()->mapping().world_from_index_linear * (to - from),
@@ -150,7 +150,7 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
   };
 
   for (int round = 0; round < kWalkRounds; ++round) {
-    // every piece that meets the point: the steepest feasible descent
+    // of all pieces that meet the point, the one with the steepest feasible descent
     const Corner corner(grid.index_box(), at);
     const unsigned own = corner.upper();
     struct {
@@ -186,7 +186,7 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
           if (!(corner.faces >> a & 1u) || (held >> a & 1u)) continue;
           if (here.f[a] == 0 ? d[a] >= 0 : d[a] <= 0) continue;
           feasible = false;
-          // pulled across a face with nothing behind it
+          // pulled across a face with no cell behind it
           if (held == 0 && size > 1e-7 * length && !cells.fetch(corner.seen_from(upper ^ (1u << a)).base)) {
             pulled = true;
             wall = cells.wall_reason;
@@ -219,9 +219,9 @@ WalkResult walk_cells(LevelSetField& field, const PieceFrames& frames, const Vec
       return result;
     }
 
-    // follow it
+    // follow that piece
     CellPoint next = corner.seen_from(best.upper);
-    best.cell = cells.fetch(next.base);  // the others of the round may have taken its place
+    best.cell = cells.fetch(next.base);  // other fetches of this round may have evicted the cell
     if (!best.cell) {
       result.status = LinkStatus::budget;
       return result;

@@ -6,7 +6,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kShrink = 0.35;
-constexpr int kSlow = 12;  // steps
+constexpr int kSlow = 12;  // steps after which convergence counts as slow
 
 }  // namespace
 
@@ -65,7 +65,7 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
   ClosestPointResult answer = ClosestPointResult::out_of_budget;
   double least = 0.1;
   for (int step_count = 0;; ++step_count) {
-    // slow: the surface is nearly a sphere around the probe, and the step hangs on the curvature's last digits
+    // slow: the surface is nearly a sphere around the probe, and the step depends on the last digits of the curvature
     if (step_count >= kSlow && (step_count - kSlow) % 6 == 0) {
       curvature = measure_curvature(field, a);
       least = std::max(0.1 * least, 1e-4);
@@ -81,7 +81,7 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
       break;
     }
 
-    // the Newton step on the tangent plane
+    // Newton step on the tangent plane
     Vec3 t1, t2;
     make_tangent_basis(a.n, t1, t2);
     const auto newton = [&] {
@@ -95,7 +95,7 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
     };
     Vec3 u = newton();
 
-    // shrink until it is accepted
+    // shrink the step until it is accepted
     bool accepted = false;
     double pull = 1;
     LevelPoint c;
@@ -108,7 +108,7 @@ ClosestPointResult closest_point(LevelSetField& field, const Vec3& probe, const 
       c = field.at(a.p + u + a.n * w);
       const double loosest = std::max(std::fabs(a.distance), 0.5 * norm(u));
       if (c.valid && !c.plateau && dot(a.n, c.n) > 0.3 && std::fabs(c.distance) <= loosest) {
-        // the merit's change, by differences so that it stays exact near the goal
+        // change of the merit function, by differences so that it stays exact near convergence
         const Vec3 e2 = probe - c.p;
         const Vec3 change = (a.p - c.p) + c.n * c.distance - a.n * a.distance;
         const Vec3 sum = e + e2 + a.n * a.distance + c.n * c.distance;

@@ -7,11 +7,11 @@ namespace catena::haptics {
 namespace {
 
 constexpr int kMostCells = 160, kSegmentSteps = 64, kDipTrials = 12, kRootHalvings = 60;
-constexpr int kForTheRest = 48;  // fetches kept for what follows a crossing
+constexpr int kForTheRest = 48;  // field samples reserved for the work after a crossing
 
 bool other_side(double a, double b) { return (a < 0) != (b < 0); }
 
-/// The cubic through g at 0, 1/3, 2/3, 1.
+/// Cubic through the values g at 0, 1/3, 2/3, 1.
 struct Cubic {
   double c0, c1, c2, c3;
 
@@ -22,9 +22,9 @@ struct Cubic {
         c3(-4.5 * g[0] + 13.5 * g[1] - 13.5 * g[2] + 4.5 * g[3]) {}
   double at(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
 
-  /// The first place in 0..1 where its sign is not that of `side`; more than 1: none.
+  /// First point in 0..1 where the sign differs from that of `side`; more than 1 if there is none.
   double leaves(double side) const {
-    // the extremes, rising, and the end
+    // the extrema in rising order, and the end
     std::array<double, 3> stops{2, 2, 1};
     const double root = c2 * c2 - 3 * c1 * c3;
     if (root > 0) {
@@ -53,7 +53,7 @@ struct Cubic {
   }
 };
 
-/// The part of a + t d, t in 0..1, in the box of a grid.
+/// Part of a + t d, t in 0..1, inside the box of a grid.
 struct Part {
   double first = 0, last = 1;
 
@@ -71,7 +71,7 @@ struct Part {
   }
 };
 
-/// The next t at which a + t d, now at t, passes a face of a cell.
+/// Next t at which a + t d, from t on, crosses a cell face.
 double next_face(const Vec3& a, const Vec3& d, double t) {
   double next = 2;
   for (int k = 0; k < 3; ++k) {
@@ -119,7 +119,7 @@ LevelSetHit cross_cells(LevelSetField& field, const Vec3& from, const LevelPoint
   return {};
 }
 
-/// A dip of the value between two places on the same side that passes the level, if the tangents leave room for one.
+/// Finds a dip of the value between two points on the same side that crosses the level, if the tangents allow one.
 LevelSetHit cross_dip(LevelSetField& field, LevelPoint a, LevelPoint b) noexcept {
   const double side = a.sigma < 0 ? -1 : 1;
   for (int i = 0; i < kDipTrials && !field.out_of_budget(kForTheRest); ++i) {

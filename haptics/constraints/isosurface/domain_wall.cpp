@@ -6,13 +6,13 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kBefore = 1e-9;      // voxels: where the wall of an invalid cell is held
-constexpr double kLevelSlack = 1e-9;  // of L: as good as on the level
-constexpr double kSomeWay = 1e-6;     // of L: nearer, in a tick
+constexpr double kBefore = 1e-9;      // voxels; distance from the wall of an invalid cell, on the valid side, at which the proxy is held
+constexpr double kLevelSlack = 1e-9;  // of L; as good as on the level
+constexpr double kSomeWay = 1e-6;     // of L; least progress toward the probe in a tick
 constexpr int kOntoLinear = 5;        // Newton steps
-constexpr int kKept = 4;              // fetches, to look at what was found
+constexpr int kKept = 4;              // field samples reserved for checking the result
 
-/// The place's cell, and on the level as its trilinear polynomial has it, or as near as the cell reaches.
+/// Cell point of `place`, moved onto the level of the cell's trilinear polynomial, or as close to it as the cell reaches.
 CellPoint on_linear_level(LevelSetField& field, const Vec3& place) noexcept {
   const field::Mapping& mapping = field.grid()->mapping();
   CellPoint at = to_cell_point(*field.grid(), place);
@@ -31,7 +31,7 @@ CellPoint on_linear_level(LevelSetField& field, const Vec3& place) noexcept {
   return at;
 }
 
-/// From a place that the walk ended in onto the cubic's level; `found` where it is met near by.
+/// Moves the end point of the walk onto the level of the cubic field; `found` is set if the level is met nearby.
 WallResult onto_level(LevelSetField& field, const Vec3& probe, const ClosestPointCriteria& goal, const CellPoint& walked) noexcept {
   const Vec3& f = walked.f;
   const double slack = kLevelSlack * field.length();
@@ -43,7 +43,7 @@ WallResult onto_level(LevelSetField& field, const Vec3& probe, const ClosestPoin
   unsigned held = 0;
   for (int a = 0; a < 3; ++a) {
     if (!(box.hi[a] > box.lo[a]) || (f[a] != 0 && f[a] != 1)) continue;
-    // on the side of the cell that the walk was in
+    // stay in the cell in which the walk ended
     const bool end = place[a] <= box.lo[a] || place[a] >= box.hi[a];
     if (!end) index[a] += f[a] == 0 ? kBefore : -kBefore;
     Vec3 beyond = corner + glm::clamp(f, Vec3(1e-3), Vec3(1 - 1e-3));
@@ -89,7 +89,7 @@ WallResult closest_point_at_walls(LevelSetField& field, const PieceFrames& frame
   WallResult found = onto_level(field, probe, goal, cell);
   const double before = norm(probe - at.p), now = norm(probe - found.point.p);
   if (!found.found || now > before + kLevelSlack * field.length()) return {};
-  // a walk that goes on in the next tick has come some way
+  // a walk that resumes in the next tick must have made some progress
   if (walk.status == LinkStatus::budget && !(before - now > kSomeWay * field.length())) return {};
   found.status = walk.status;
   found.reason = walk.reason;

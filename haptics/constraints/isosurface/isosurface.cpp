@@ -14,28 +14,28 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kSearchRadius = 2;  // of L
-constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
-constexpr int kQuick = 200;          // fetches before a formula asks for the descent
-constexpr int kQuickOfGrids = 60;    // likewise: a cubic grid's cost more, and walls may be the reason
-constexpr int kThrownQuick = 20;     // of those, in a tick with less work
-constexpr int kQuickRefusals = 8;    // in a row, likewise
-constexpr int kSight = 16;           // fetches on the line of sight
-constexpr int kForLevel = 12;        // fetches kept for the way back to the level
-constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
-constexpr int kStepsAlong = 16;      // of a surface, to tell whether two of its places belong together,
-constexpr double kThere = 1e-4;      // of L: which the last of them reaches
+constexpr int kThrownWork = 1536;    // work units of a tick with a teleported probe, and of the ticks that finish its search
+constexpr int kQuick = 200;          // field samples before a formula switches to the descent
+constexpr int kQuickOfGrids = 60;    // likewise for cubic grids, whose samples cost more and where walls may be the cause
+constexpr int kThrownQuick = 20;     // likewise, in a tick limited to kThrownWork
+constexpr int kQuickRefusals = 8;    // rejected steps in a row, likewise
+constexpr int kSight = 16;           // field samples along the line of sight
+constexpr int kForLevel = 12;        // field samples reserved for the return to the level
+constexpr double kOnLevel = 1e-9;    // of L; as good as on the level, to continue from
+constexpr int kStepsAlong = 16;      // steps along a surface that decide whether two of its points are connected
+constexpr double kThere = 1e-4;      // of L; distance that the last of these steps must reach
 
-/// What the link remembers: the rules' part, the point held, the curvature learned.
+/// Memory of the link: the part of the side rules, the held point, the updated curvature.
 struct IsosurfaceMemory {
   SideMemory side;
-  LevelPoint at;        // formulas and cubic grids: the point held
-  LevelPoint seen;      // the last probe whose side was asked for
-  Curvature curvature;  // formulas
-  CellPoint cell;       // linear grids: the point held
+  LevelPoint at;        // formulas and cubic grids: the held point
+  LevelPoint seen;      // the last probe whose side was evaluated
+  Curvature curvature;  // of formulas
+  CellPoint cell;       // linear grids: the held point
   Vec3 normal;
   SurfaceScan scan;
-  bool walled;  // cubic grids: held by a wall
-  double owed;  // of the way that a walk out of budget was allowed and has not gone
+  bool walled;  // cubic grids: held by a domain wall
+  double owed;  // allowed travel that a walk out of budget has not used yet
 };
 
 bool is_long_step(const SideMemory& side, const Vec3& probe, double length) noexcept {
@@ -61,7 +61,7 @@ class LevelSurface final : public ContactSurface {
     const LevelSetHit reached = project(start, kSearchRadius * field_.length());
     if (!reached.found) return {false, probe, 0, memory_.scan.in_progress ? LinkStatus::budget : LinkStatus::no_surface, SampleStatus::ok};
     const SurfaceHold hold = settle(reached.point, probe, Curvature{});
-    // further away than the field says: something nearer may be in sight
+    // farther away than the field value suggests: a nearer sheet may be in line of sight
     const bool far = norm(probe - hold.proxy) > 1.05 * std::fabs(start.distance);
     return field_.trilinear_grid() || !far ? hold : settle_in_sight(start, hold);
   }
@@ -97,17 +97,18 @@ class LevelSurface final : public ContactSurface {
  private:
   LevelPoint look(const Vec3& probe) noexcept { return have_here_ && bitwise_equal(asked_, probe) ? here_ : field_.at(probe); }
 
-  /// The closest point wins over the limit where it is the closest point itself that has moved so far, as deep inside a concave
-  /// surface: what is met now was no nearer before than what is held.
+  /// Whether the closest point itself has moved beyond the travel limit, as deep inside a concave surface, so that it overrides the limit:
+  /// the point met now was no nearer to the last probe than the held point.
   bool has_moved(const Vec3& held, const Vec3& met) const noexcept {
     const Vec3& before = memory_.side.probe;
     return norm(before - met) >= norm(before - held) - kOnLevel * field_.length();
   }
 
-  /// Whether a hand, fast as it may be, makes the probe's step: what holds it must not change to another body.
+  /// Whether the probe step is slow enough for a user's motion (not a teleport), so that the proxy must not change to another surface
+  /// component.
   bool is_of_a_hand(const Vec3& probe) const noexcept { return norm(probe - memory_.side.probe) <= field_.state().max_probe_step; }
 
-  /// Whether steps along the surface lead from one of its places to the other.
+  /// Whether steps along the surface lead from `at` to `to`.
   bool leads_to(LevelPoint at, const LevelPoint& to) noexcept {
     for (int i = 0; i < kStepsAlong && !field_.out_of_budget(kForLevel); ++i) {
       const Vec3 way = to.p - at.p;
@@ -123,7 +124,7 @@ class LevelSurface final : public ContactSurface {
   SurfaceHold slide_grid(const Vec3& probe, double travel) noexcept {
     CellPoint cell = memory_.cell;
     const Vec3 held = world_position(*field_.trilinear_grid(), cell);
-    // a probe that was thrown goes far along the surface first as if it were smooth
+    // a teleported probe: first go far along the surface as if it were smooth
     if (is_long_step(memory_.side, probe, field_.length())) {
       const LevelPoint start = field_.at(held);
       if (start.valid && !start.plateau && !is_of_a_hand(probe)) cell = leap(cell, start, probe);
@@ -152,7 +153,7 @@ class LevelSurface final : public ContactSurface {
     memory_.at = from;
     if (SurfaceHold wall; hold_along(from, probe, wall)) return wall;
 
-    // so far down the surface as it may go
+    // go down the surface as far as allowed
     const Vec3 e = probe - from.p, way = direction(equation::tangential_component(e, from.n));
     LevelPoint at = from;
     for (double step = travel; step > 0.1 * travel && !field_.out_of_budget(kForLevel); step *= 0.5) {
@@ -167,13 +168,13 @@ class LevelSurface final : public ContactSurface {
     return {true, at.p, std::fabs(at.distance), LinkStatus::budget, SampleStatus::ok};
   }
 
-  /// From a point on the level to the closest point.
+  /// Moves from a point on the level to the closest point.
   SurfaceHold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
     if (!field_.trilinear_grid()) return settle_formula(start, probe, curvature, true);
     return settle_grid(to_cell_point(*field_.trilinear_grid(), start.p), start, probe);
   }
 
-  /// From anywhere to the level, without an earlier point. A scan that runs out of budget stays open in the memory.
+  /// Projects any point onto the level, without an earlier point. A scan out of budget stays in progress in the memory.
   LevelSetHit project(const LevelPoint& start, double radius) noexcept {
     SurfaceScan& scan = memory_.scan;
     if (scan.found_nothing && bitwise_equal(scan.probe, start.p)) return {};
@@ -188,7 +189,7 @@ class LevelSurface final : public ContactSurface {
         const LevelSetHit by_axes = search_by_scan(field_, start, true, near);
         if (by_axes.found) return by_axes;
       }
-      // where the march ended it may be much closer to the level
+      // the end of the march may be much closer to the level
       const bool closer = start.valid && reached.point.valid && std::fabs(reached.point.sigma) < std::fabs(start.sigma);
       if (closer) centre = reached.point;
       scan = SurfaceScan{};
@@ -204,7 +205,7 @@ class LevelSurface final : public ContactSurface {
     if (reached.found && goes_on) return met_late(start.p, reached);
     return reached.found ? closed(reached) : reached;
   }
-  /// Of a scan that has taken more than one tick: a probe that rests need not make it again.
+  /// Result of a scan that took more than one tick: it is not repeated for a probe at rest.
   LevelSetHit met_late(const Vec3& probe, const LevelSetHit& reached) noexcept {
     memory_.scan = SurfaceScan{};
     memory_.scan.probe = probe;
@@ -217,8 +218,8 @@ class LevelSurface final : public ContactSurface {
     return reached;
   }
 
-  /// The quick iteration; then down the surface from the better end of it; where that is stuck, and any sheet will do or none is
-  /// held, from a fresh projection.
+  /// Runs the quick iteration; then descends along the surface from its better end; where that is stuck, and any sheet is allowed or none
+  /// is held, starts from a new projection.
   SurfaceHold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
     LevelPoint best = at;
     if (SurfaceHold wall; memory_.walled && hold_along(at, probe, wall)) return wall;
@@ -243,7 +244,7 @@ class LevelSurface final : public ContactSurface {
     return hold_formula(best, again, probe, other);
   }
 
-  /// Where walls of a cubic grid hold it. False: none does, or what is found there is no nearer.
+  /// Holds the proxy along the domain walls of a cubic grid. Returns false if no wall holds it or the point found is no nearer.
   bool hold_along(const LevelPoint& at, const Vec3& probe, SurfaceHold& hold) noexcept {
     if (field_.grid() == nullptr || !usable(at) || field_.out_of_budget(kWallFetches)) return false;
     const WallResult found = closest_point_at_walls(field_, frames_, probe, goal(quick_of_grid()), at, {memory_.at.p, travel_});
@@ -256,7 +257,7 @@ class LevelSurface final : public ContactSurface {
     return true;
   }
 
-  /// From a point between the probe and what is held, if the level is met there.
+  /// Continues from a point between the probe and the held point, if the level is met there.
   SurfaceHold settle_in_sight(const LevelPoint& probe, const SurfaceHold& hold) noexcept {
     const LevelPoint before = memory_.at;
     if (field_.out_of_budget(kSight + 4 * kForLevel)) return hold;
@@ -282,7 +283,7 @@ class LevelSurface final : public ContactSurface {
     SampleStatus reason = SampleStatus::ok;
     if (how != ClosestPointResult::converged) {
       at = relevelled(at);
-      // not there yet is no reason to give up: only where the surface itself does
+      // a lack of convergence is no reason to release: only a broken surface is
       const bool idle = how == ClosestPointResult::stuck || norm(at.p - memory_.at.p) <= 1e-12 * field_.length();
       const bool broken = degenerate(at);
       status = broken || (idle && usable(at) && kink(at, probe)) ? LinkStatus::critical : LinkStatus::budget;
@@ -300,9 +301,9 @@ class LevelSurface final : public ContactSurface {
             kQuickRefusals};
   }
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
-  /// No gradient, not finite, or so flat that the level is lost in round-off.
+  /// Whether the level is unusable here: no gradient, not finite, or so flat that the level is lost in round-off.
   bool degenerate(const LevelPoint& a) const noexcept { return !a.valid || a.plateau || a.round_off > kOnLevel * field_.length(); }
-  /// The normal jumps within 2e-9 L: on the way to the probe, or across what is then no surface.
+  /// Whether the normal jumps within 2e-9 L, on the path to the probe or across the point (then it is no surface).
   bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
     const Vec3 e = probe - a.p;
     return jumps(a.p, direction(equation::tangential_component(e, a.n))) || jumps(a.p, a.n);
@@ -323,7 +324,7 @@ class LevelSurface final : public ContactSurface {
     return reached.found ? reached.point : a;
   }
 
-  /// Towards the closest point as if the surface were smooth; `cell` where that leads to nothing nearer.
+  /// Moves toward the closest point as if the surface were smooth; returns `cell` if that leads to nothing nearer.
   CellPoint leap(const CellPoint& cell, const LevelPoint& start, const Vec3& probe) noexcept {
     const double voxel = field_.voxel_edge();
     const Vec3 e = probe - start.p;
@@ -332,7 +333,7 @@ class LevelSurface final : public ContactSurface {
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
       const LevelSetHit reached = search_along_gradient(field_, at, at.n, 2 * voxel);
-      // a probe behind a sheet is not in front of it
+      // a probe behind a sheet must not be in front of the new one
       const bool same_sheet = !one_sided_ || dot(reached.point.n, probe - reached.point.p) * dot(start.n, e) > 0;
       if (reached.found && reached.point.valid && same_sheet && norm(probe - reached.point.p) < norm(e))
         return to_cell_point(*field_.trilinear_grid(), reached.point.p);
@@ -340,7 +341,7 @@ class LevelSurface final : public ContactSurface {
     return cell;
   }
 
-  /// Far along the surface first, then exactly, cell by cell.
+  /// Goes far along the surface first, then exactly, cell by cell.
   SurfaceHold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
     cell = leap(cell, start, probe);
     const WalkResult walk = walk_cells(field_, frames_, probe, cell);
@@ -358,7 +359,7 @@ class LevelSurface final : public ContactSurface {
   const double tolerance_;
   IsosurfaceMemory& memory_;
   bool one_sided_;
-  double travel_ = std::numeric_limits<double>::infinity();  ///< of this tick, along a wall
+  double travel_ = std::numeric_limits<double>::infinity();  ///< proxy travel limit of this tick, along a wall
   LevelPoint here_, before_;
   Vec3 asked_{0.0};
   bool have_here_ = false;
@@ -373,7 +374,7 @@ class Isosurface final : public Constraint {
     memory_as<IsosurfaceMemory>(state).scan = SurfaceScan{};
     seek(probe, state, scratch);
   }
-  /// As start, but a search that ran out of budget goes on.
+  /// As start, but a search that ran out of budget resumes.
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     IsosurfaceMemory& memory = memory_as<IsosurfaceMemory>(state);
     const SurfaceScan scan = memory.scan;
@@ -412,7 +413,7 @@ class Isosurface final : public Constraint {
     return pull_back_on_surface(at.n, dot(at.n, probe - at.p), bent, f);
   }
   bool has_primitive() const noexcept override { return true; }
-  /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.
+  /// Tangent plane of the level by the value and gradient at `at` (Eq. 6): one field sample.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     const LevelPoint here = LevelSetField(*field_, level_, scratch.cursors[0], state).at(at);
     if (!here.valid || here.plateau) {

@@ -9,11 +9,11 @@ namespace {
 
 constexpr int kRetractions = 6;
 
-/// From a along u and back to the level along a's normal, to |distance| <= slack. False: there is none near by.
+/// Moves from a along u and back to the level along a's normal, to |distance| <= slack. Returns false if the level is not found nearby.
 bool retract(LevelSetField& field, const LevelPoint& a, const Vec3& u, double first, double slack, LevelPoint& c) noexcept {
   const double size = norm(u), most = 2 * size + 2 * std::fabs(a.distance);
   double w = std::min(std::max(first, -most), most);
-  double below = 0, above = 0;  // where sigma has these signs
+  double below = 0, above = 0;  // offsets at which sigma has these signs
   bool has_below = false, has_above = false;
   for (int i = 0; i < kRetractions && !field.out_of_budget(); ++i) {
     c = field.at(a.p + u + a.n * w);
@@ -54,7 +54,7 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
       return ClosestPointResult::converged;
     if (spent()) return ClosestPointResult::out_of_budget;
 
-    // the Newton step, and what it promises
+    // the Newton step and its predicted decrease
     Vec3 t1, t2;
     make_tangent_basis(a.n, t1, t2);
     const Vec3 b1 = curvature.times(t1), b2 = curvature.times(t2);
@@ -70,7 +70,7 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
     const double promised = slope - 0.5 * (m11 * u1 * u1 + 2 * m12 * u1 * u2 + m22 * u2 * u2);
     const bool convex = m11 > 0 && m11 * m22 > m12 * m12;
 
-    // is it kept
+    // does the step achieve it?
     LevelPoint c;
     const double slack = std::max(level_goal, 1e-3 * size);
     bool accepted = false;
@@ -92,12 +92,12 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
       if (ratio < 0.2) trust = 0.4 * size;
       measured = false;
       at = c;
-      // far from what was promised: the curvature has changed
+      // far from the prediction: the curvature has changed
       if (ratio < 0.5 || ratio > 2) curvature = measure_curvature(field, at), measured = true;
       continue;
     }
 
-    // refused: know the curvature, then shorter
+    // rejected: measure the curvature, then shorten the step
     if (!measured) {
       curvature = measure_curvature(field, a);
       measured = true;
@@ -115,7 +115,7 @@ ClosestPointResult descend_on_surface(LevelSetField& field, const Vec3& probe, c
 namespace {
 
 constexpr int kMarchSteps = 64;
-constexpr int kReserve = 32;  // fetches that a scan leaves for what follows
+constexpr int kReserve = 32;  // field samples that a scan leaves for what follows
 
 bool opposite(double a, double b) { return (a <= 0 && b >= 0) || (a >= 0 && b <= 0); }
 
@@ -132,7 +132,7 @@ LevelSetHit find_root_between(LevelSetField& field, LevelPoint a, LevelPoint b) 
   double fa = a.sigma, fb = b.sigma;
   int same_side = 0;
   for (int i = 0; i < 80 && !field.out_of_budget(); ++i) {
-    // Illinois; plain halves where it lags on a steep profile
+    // Illinois; plain bisection where it is slow on a steep profile
     double w = fa / (fa - fb);
     if (i % 4 == 3) w = 0.5;
     if (!(w > 0 && w < 1)) w = 0.5;
@@ -172,7 +172,7 @@ LevelSetHit search_along_gradient(LevelSetField& field, const LevelPoint& start,
     if (!b.valid) return {false, a};
     if (opposite(a.sigma, b.sigma)) return find_root_between(field, a, b);
     if ((std::fabs(b.sigma) > std::fabs(a.sigma) || dot(a.n, b.n) < 0)) {
-      // over a ridge or a valley: shorter steps
+      // across a ridge or a valley: shorter steps
       if (++stalls > 8) return {false, a};
       longest = std::max(0.5 * step, field.march_step());
     }
@@ -200,7 +200,7 @@ LevelSetHit search_by_scan(LevelSetField& field, const LevelPoint& centre, bool 
     if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
     if (field.out_of_budget(kReserve)) break;
     LevelPoint& before = last[static_cast<std::size_t>(k)];
-    // where a scan is taken up again, the ring before
+    // where a scan resumes, sample the previous ring first
     if (!known[static_cast<std::size_t>(k)]) before = ring == 0 ? centre : field.at(on_ring(ring - 1));
     known[static_cast<std::size_t>(k)] = true;
     const LevelPoint here = field.at(wanted);

@@ -5,14 +5,15 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAtRest = 1e-14;                // moves shorter than this are none
-constexpr double kSlack = 2e-14;                 // of a face's outline: closes the seams
-constexpr double kBehind = 4 * kGodObjectGap;    // so far behind a face it still holds: heals what rounding did
-constexpr double kTouching = 8 * kGodObjectGap;  // height and outline of a face that is touched; shorter moves leave none
-constexpr double kSlip = 1e-9;                   // past a vertex: at least so far
+constexpr double kAtRest = 1e-14;              // shorter moves count as none
+constexpr double kSlack = 2e-14;               // tolerance of a face's outline; closes the seams between faces
+constexpr double kBehind = 4 * kGodObjectGap;  // distance behind a face up to which it still holds: tolerates round-off
+// tolerance in height and outline within which a face is touched; shorter moves leave no face
+constexpr double kTouching = 8 * kGodObjectGap;
+constexpr double kSlip = 1e-9;  // least move past a vertex
 constexpr double kAtVertex = 64 * kGodObjectGap;
-constexpr std::size_t kMaxFan = 12;  // faces at a vertex that are tried
-constexpr double kReach = 31;        // of one tick; the mesh is 1 long
+constexpr std::size_t kMaxFan = 12;  // maximum number of faces tried at a vertex
+constexpr double kReach = 31;        // maximum travel in a tick; the mesh has size 1
 
 class Mover {
  public:
@@ -67,8 +68,8 @@ class Mover {
     std::uint32_t face = kNone;
   };
 
-  /// Where several faces bind at a vertex, some of them may end there (a saddle): the way can be open over a face or an edge of its
-  /// fan. What is in that way is seen by the sweep.
+  /// At a vertex where several faces bind, some of them may end (a saddle), so that the path can be free over a face or an edge of the
+  /// vertex's fan. The sweep detects obstacles on that path.
   bool slip_past(const PlaneSolution& at, const Vec3& target) noexcept {
     if (at.count < 2) return false;
     const std::uint32_t face = god_.faces[static_cast<std::size_t>(at.binding[0])];
@@ -106,7 +107,7 @@ class Mover {
   double height(std::uint32_t f, const Vec3& p) const { return outside_ * mesh_.face(f).signed_distance(p); }
   GodObjectMove done(bool complete) const { return {false, complete}; }
 
-  /// From far away to where the way to x enters the box around the mesh. False: it never does, and p is at x.
+  /// Moves a distant p to the point where the path to x enters the box around the mesh. Returns false, with p at x, if it never does.
   bool enter_box(const Vec3& x) noexcept {
     if (max_abs(god_.p) <= 1) return true;
     double in = 0, out = 1;
@@ -135,7 +136,7 @@ class Mover {
       if (!touches(god_.faces[static_cast<std::size_t>(i)])) return false;
     return true;
   }
-  /// Forgets the faces that it has left. Those met since the last real move are kept: around a corner they all count.
+  /// Drops the faces that p has left. Those met since the last real move are kept: around a corner they all count.
   void drop_left() noexcept {
     int kept = 0;
     for (int i = 0; i < god_.count; ++i) {
@@ -173,7 +174,8 @@ class Mover {
           outside_ * mesh_.face(god_.faces[static_cast<std::size_t>(to.binding[static_cast<std::size_t>(i)])]).normal;
   }
 
-  /// Wholly behind a face that is touched: what stays in front of that one never meets it. So convex edges do not stop the slide.
+  /// Whether the face lies wholly behind a touched face: a point in front of that one never meets it. So convex edges do not stop the
+  /// slide.
   bool is_covered(std::uint32_t f) const noexcept {
     for (int i = 0; i < god_.count; ++i) {
       const std::uint32_t a = god_.faces[static_cast<std::size_t>(i)];
@@ -185,7 +187,7 @@ class Mover {
     return false;
   }
 
-  /// The first face in the way to q that is met from its outer side. Where the nodes run out, of a shorter way (part < 1, no face).
+  /// First face on the path to q that is met from its outer side. If the nodes run out, a shorter path (part < 1, no face).
   Hit sweep(const Vec3& q) noexcept {
     double reach = 1;
     for (int attempt = 0; attempt < 3; ++attempt) {
@@ -213,7 +215,7 @@ class Mover {
       hit = {part, f};
       to = at;
     };
-    // beyond the face just left its neighbours are the likely ones: met first, they shorten the way
+    // the neighbors of the face just left are the likely next ones: tested first, they shorten the path
     for (int k = 0; left_ != kNone && k < 3; ++k) meet(mesh_.adjacent_face(left_, k));
     int nodes = nodes_ / 2;
     nodes_ -= nodes;
@@ -225,7 +227,7 @@ class Mover {
   const mesh::TriangleMesh& mesh_;
   double outside_;
   GodObject& god_;
-  std::uint32_t left_ = kNone;  ///< the face that it slid off last
+  std::uint32_t left_ = kNone;  ///< the face that the god-object slid off last
   int nodes_;
 };
 

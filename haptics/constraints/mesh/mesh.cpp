@@ -8,7 +8,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kFarthest = 1e6;  // in the mesh's own frame: a probe beyond is drawn in, towards the mesh
+constexpr double kFarthest = 1e6;  // in the mesh's local frame; a probe beyond is moved in, toward the mesh
 constexpr double kReachOfWalk = 32;
 constexpr double kMeshSearchRadius = 4e6;
 
@@ -28,7 +28,7 @@ mesh::NearestResult nearest_to(const mesh::TriangleMesh& mesh, const Vec3& x, do
   return nearest;
 }
 
-// ---- from both sides ----
+// ---- two-sided contact ----
 
 struct WalkMemory {
   SideMemory side;
@@ -112,7 +112,7 @@ class TwoSidedMesh final : public Constraint {
     out = {Primitive::Kind::plane, state.proxy, mesh_->face(memory.at.face).normal};
     return true;
   }
-  /// Of the face, the edge or the corner that it is on.
+  /// Pull-back on the face, edge or corner on which the proxy lies.
   PulledBackForce pull_back(const Vec3&, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
     const auto& memory = memory_as<WalkMemory>(state);
     const mesh::ClosestPoint& at = memory.at;
@@ -134,16 +134,16 @@ class TwoSidedMesh final : public Constraint {
   SideSpec rules_;
 };
 
-// ---- from one side ----
+// ---- one-sided contact ----
 
 struct GodMemory {
   GodObject god;
   Vec3 probe, proxy;
   double residual;
-  std::uint32_t hint;  ///< a face that was near
+  std::uint32_t hint;  ///< a nearby face, where the search starts
   LinkStatus status;
-  bool fresh;    ///< the rest means something
-  bool settled;  ///< nothing to gain from another tick at the same probe
+  bool fresh;    ///< the other fields are valid
+  bool settled;  ///< converged: another tick at the same probe changes nothing
 };
 
 class OneSidedMesh final : public Constraint {
@@ -176,7 +176,7 @@ class OneSidedMesh final : public Constraint {
       return;
     }
 
-    // let go, or moved by others: which side is the probe on now
+    // released, or moved from outside: determine the side of the probe
     if (state.released || !untouched) {
       const bool free = is_free(probe, memory, state);
       if (state.released && !free) return leave(probe, 0, LinkStatus::released, memory, probe, state);
@@ -229,7 +229,8 @@ class OneSidedMesh final : public Constraint {
  private:
   double outside() const { return rules_.free == FreeSide::above ? 1 : -1; }
 
-  /// By the nearest point: on the free side, or over an open edge. Leaves the god-object there, or at the probe.
+  /// Determines the side by the nearest point. Returns true on the free side, or over an open edge; the god-object is then at the probe,
+  /// otherwise at the nearest point.
   bool is_free(const Vec3& probe, GodMemory& memory, LinkState& state) const noexcept {
     const Vec3 x = own_of(*mesh_, probe, kFarthest);
     memory.god = GodObject{};

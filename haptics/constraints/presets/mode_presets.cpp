@@ -72,7 +72,7 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
     }
   }
 
-  // one node a part
+  // one node per link template
   std::vector<json::Node> links;
   for (const ModePreset::LinkTemplate& part : mode->link_templates) {
     json::Node link;

@@ -11,10 +11,10 @@ struct BoxShape {
   Vec3 center;
   Vec3 half;
   Mat3 world_from_box;  // orthonormal
-  bool catches;         // free above: a thin box is not slipped through
+  bool catches;         // free side above: a thin box must not be tunneled through
 };
 
-/// A side of the box: axis 0..2, sign -1 or +1; sign 0: none.
+/// A face of the box: axis 0..2, sign -1 or +1; sign 0 means none.
 struct Face {
   std::int32_t axis, sign;
 };
@@ -65,7 +65,7 @@ class BoxSurface final : public ContactSurface {
   bool may_tunnel() const noexcept override { return true; }
   double domain_length() const noexcept override { return std::max(kDefaultDomainLength, 2 * max_abs(shape_.half)); }
 
-  /// A face's plane; from outside an edge's line or the corner.
+  /// Plane of the held face; from outside, line of the edge or point of the corner.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     const Vec3 y = to_box(at);
     const SurfaceHold held = slide(at);
@@ -105,7 +105,7 @@ class BoxSurface final : public ContactSurface {
   }
   static int sign_of(double v) { return v < 0 ? -1 : 1; }
 
-  /// The face of largest |y_i| - h_i: nearest from inside, most in front from outside.
+  /// The face of largest |y_i| - h_i: from inside the nearest face, from outside the one of whose plane the point is farthest in front.
   Face nearest_face(const Vec3& y) const {
     int axis = 0;
     for (int i = 1; i < 3; ++i)
@@ -113,7 +113,7 @@ class BoxSurface final : public ContactSurface {
     return {axis, sign_of(y[axis])};
   }
 
-  /// The first face on the way out of the box, if any.
+  /// First face on the path out of the box, sign 0 if there is none.
   Face exit_face(const Vec3& a, const Vec3& b) const {
     Face face{0, 0};
     double first = 2;
@@ -125,7 +125,7 @@ class BoxSurface final : public ContactSurface {
     return face;
   }
 
-  /// The face by which a segment from outside, or from the surface, comes in, if it does.
+  /// The face through which a segment from outside, or from the surface, enters; sign 0 if it does not.
   Face entry_face(const Vec3& a, const Vec3& b) const {
     Face face{0, 0};
     double in = -1, out = 1;
@@ -143,7 +143,7 @@ class BoxSurface final : public ContactSurface {
     return in <= out ? face : Face{0, 0};
   }
 
-  /// The closest point reached from the face held; y in the box's axes.
+  /// Closest point that is reachable from the held face; y in the axes of the box.
   SurfaceHold hold(const Vec3& y) noexcept {
     Face& face = memory_.face;
     Vec3 lateral = beyond(y);

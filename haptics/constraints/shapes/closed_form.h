@@ -1,6 +1,6 @@
-/// A straight piece a..b, the part of `segment` and `polyline`: the foot of the perpendicular, clamped to the ends.
+/// A line segment a..b, part of `segment` and `polyline`, and the constraint of shapes whose closest point is a formula.
 ///   s = d . (x - a);  foot = a where s <= 0, b where s >= |b - a| (both bit for bit), else a + s d
-/// Finite for |x| up to 1e300. Lengths in world units. Any thread; allocates nothing.
+/// Finite for |x| up to 1e300. Lengths in world units. LineSegment: any thread; allocates nothing.
 #pragma once
 #include "engine/base/vec.h"
 #include "haptics/constraints/common/one_sided_contact.h"
@@ -8,43 +8,44 @@
 
 namespace catena::haptics {
 
-/// A straight piece. Plain data.
+/// A line segment. Plain data.
 struct LineSegment {
-  Vec3 a{0.0}, b{0.0};  ///< its ends
-  Vec3 d{0.0};          ///< unit
-  double length = 0;    ///< finite and > 0, or the piece is not usable
+  Vec3 a{0.0}, b{0.0};  ///< its ends, world units
+  Vec3 d{0.0};          ///< unit direction from a to b
+  double length = 0;    ///< |b - a|; finite and > 0, or the segment is not usable
 
   LineSegment() = default;
-  /// From one end to the other.
+  /// Makes the segment between two ends.
   LineSegment(const Vec3& from, const Vec3& to) : a(from), b(to), d(direction(to - from)), length(norm(to - from)) {}
-  /// Whether it has a length and a direction.
+  /// Returns whether the segment has a finite length and a direction.
   bool usable() const noexcept { return length > 0 && std::isfinite(length) && max_abs(d) > 0; }
 
-  /// S of a place: how far along from a, world units; may lie beyond the ends.
+  /// Returns s of a point: its distance along d from a, world units; may lie beyond the ends.
   double along(const Vec3& x) const noexcept { return dot(d, x - a); }
-  int end_of(double s) const noexcept { return s <= 0 ? -1 : s >= length ? 1 : 0; }  ///< -1: a, 1: b, 0: between
-  /// The place at s, clamped to the ends.
+  /// Returns the end that s is at or beyond: -1: a, 1: b, 0: between.
+  int end_of(double s) const noexcept { return s <= 0 ? -1 : s >= length ? 1 : 0; }
+  /// Returns the point at s, clamped to the ends.
   Vec3 at(double s) const noexcept { return s <= 0 ? a : s >= length ? b : a + d * s; }
-  /// The distance of a place from the whole line.
+  /// Returns the distance of a point from the infinite line.
   double distance_from_line(const Vec3& p) const noexcept {
     const Vec3 away = p - a;
     return norm(away - d * dot(d, away));
   }
 };
 
-inline constexpr double kDefaultDomainLength = 4;  ///< L where no field says otherwise: the box -2..2
+inline constexpr double kDefaultDomainLength = 4;  ///< L where no field defines it: the box -2..2
 
-/// A constraint whose closest point is a formula: the rules of surface_side.h around a shape that is plain data. No field fetch.
-///   `ClosedFormConstraint<S>`  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
+/// Constraint whose closest point is a formula: the rules of common/one_sided_contact.h around a shape that is plain data. No field sample.
+///   `ClosedFormConstraint<S>`  S: a ContactSurface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
 ///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start); static
-///                  bool is_valid_state(shape, memory): of memory from a file, see Constraint::is_valid_state.
-///   `FeatureSurface<S>`     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
-/// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
+///                  bool is_sane(shape, memory) validates memory from a file, see Constraint::is_sane.
+///   `FeatureSurface<S>`     a ContactSurface without sides and memory: Shape gives closest(probe), primitive(at) and length().
+/// `seek` is `start` with the memory kept. There is a primitive on the free side too, but none while the link is released.
 /// Haptic thread: no allocation, lock, or throw.
 template <class S>
 class ClosedFormConstraint final : public Constraint {
  public:
-  /// Of a shape that has been checked.
+  /// Makes the constraint of a validated shape.
   ClosedFormConstraint(typename S::Shape shape, const SideSpec& rules) : shape_(std::move(shape)), rules_(rules) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
@@ -102,22 +103,22 @@ class ClosedFormConstraint final : public Constraint {
   SideSpec rules_;
 };
 
+/// Memory of a surface that keeps nothing between ticks.
 struct NoMemory {};
 
-/// A Surface made of a ShapeType that is a point or a curve: nothing is inside or outside.
+/// Surface of a ShapeType that is a point or a curve: it has no inside or outside.
 template <class ShapeType>
 class FeatureSurface final : public ContactSurface {
  public:
-  /// What it is of.
+  /// Shape that the surface is made of.
   using Shape = ShapeType;
-  /// None.
+  /// Nothing is kept between ticks.
   using Memory = NoMemory;
-  /// As ClosedFormConstraint makes it in every tick.
+  /// Made by ClosedFormConstraint in every tick.
   FeatureSurface(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
-  /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
 
-  /// Neither.
+  /// Returns no known side.
   SideValue evaluate_side(const Vec3&) noexcept override { return {}; }
   SurfaceHold project_probe(const Vec3& probe) noexcept override { return shape_.closest(probe); }
   SurfaceHold slide(const Vec3& probe) noexcept override { return shape_.closest(probe); }
@@ -127,9 +128,9 @@ class FeatureSurface final : public ContactSurface {
     return norm(probe - hold.proxy) <= limit ? hold : SurfaceHold{};
   }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
-  /// L of the shape.
+  /// Returns L of the shape.
   double domain_length() const noexcept override { return shape_.length(); }
-  /// The shape's primitive at a place.
+  /// Sets `out` to the shape's primitive near `at`.
   bool primitive(const Vec3& at, Primitive& out) const noexcept {
     out = shape_.primitive(at);
     return true;
@@ -139,7 +140,7 @@ class FeatureSurface final : public ContactSurface {
   const Shape& shape_;
 };
 
-/// The constraint of a shape, for a ConstraintType's `build`.
+/// Makes the constraint of a shape, for a ConstraintType's `build`. Off the tick.
 template <class S>
 std::shared_ptr<const Constraint> make_closed_form(typename S::Shape shape, const SideSpec& rules) {
   return std::make_shared<ClosedFormConstraint<S>>(std::move(shape), rules);

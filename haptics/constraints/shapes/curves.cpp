@@ -9,16 +9,16 @@
 namespace catena::haptics {
 namespace {
 
-constexpr std::uint32_t kRun = 8;  // pieces of a leaf
+constexpr std::uint32_t kRun = 8;  // segments per leaf
 constexpr double kLeastLength = 1e-30;
 constexpr std::size_t kNoLine = ~std::size_t{0};
 
-/// Lines and what finds the closest of them. Piece k leads from point k to the next one.
+/// Lines with the BVH that finds the closest one. Segment k leads from point k to the next one.
 struct LineTree {
   using Tree = ClosestPointBvh<glm::vec3>;
   curves::CurveSetPtr set;
-  std::vector<std::uint32_t> runs;  ///< the first piece of each leaf
-  std::vector<bool> is_last;        ///< point k ends its line
+  std::vector<std::uint32_t> runs;  ///< index of the first segment of each leaf
+  std::vector<bool> is_last;        ///< whether point k ends its line
   Tree tree;
 
   LineTree(curves::CurveSetPtr of, std::size_t line) : set(std::move(of)), is_last(set->points.size(), false) {
@@ -32,7 +32,7 @@ struct LineTree {
     tree = Tree(boxes);
   }
 
-  /// Memory that it takes, from above.
+  /// Upper bound of the memory that a set takes, bytes.
   static double bytes_for(const curves::CurveSet& set) {
     const double most_runs = static_cast<double>(set.points.size()) / kRun + static_cast<double>(set.line_count());
     return most_runs * (4 * sizeof(Tree::Box) + sizeof(Tree::Box) + 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>)) +
@@ -77,7 +77,7 @@ struct FileLines {
     if (way > 0) return lines->is_last[k + 1] ? k : k + 1;
     return k == 0 || lines->is_last[k - 1] ? k : k - 1;
   }
-  /// The line of a piece, as the file counts them.
+  /// Index of the line that contains segment k, in the order of the file.
   int line_of(std::uint32_t k) const noexcept {
     const auto& first = lines->set->line_offsets;
     return static_cast<int>(std::upper_bound(first.begin(), first.end(), k) - first.begin()) - 1;

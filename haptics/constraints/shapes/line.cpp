@@ -6,7 +6,7 @@ namespace catena::haptics {
 namespace {
 
 struct LineShape {
-  Vec3 point, axis;  // axis: unit
+  Vec3 point, axis;  // axis: unit length
 
   SurfaceHold closest(const Vec3& probe) const noexcept {
     const double s = dot(axis, probe - point);

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kPointsOfLeaf = 8;
 
-/// Points in the order of a Morton curve, eight of them a leaf.
+/// Points in the order of a Morton curve, eight per leaf.
 struct PointTree {
   using Tree = ClosestPointBvh<glm::vec3>;
-  Vec3 origin;  ///< of points and tree
+  Vec3 origin;  ///< origin to which points and BVH refer
   std::vector<glm::vec3> points;
   Tree tree;
 
@@ -32,7 +32,7 @@ struct PointTree {
     for (std::size_t i = 0; i < points.size(); ++i) boxes[i / kPointsOfLeaf].add(points[i], points[i]);
     tree = Tree(boxes);
   }
-  /// Memory that it takes, from above.
+  /// Upper bound of the memory that a set takes, bytes.
   static double bytes_for(const curves::PointSet& set) {
     return static_cast<double>(set.points.size()) * (sizeof(glm::vec3) + 16 + 5.0 * sizeof(Tree::Box) / kPointsOfLeaf);
   }

@@ -12,7 +12,7 @@ constexpr double kLeastExtent = 1e-300, kMaxExtent = 1e300;
 
 struct PolylineShape {
   static constexpr int kFirstVisits = 1024, kVisits = 128, kVisitWork = 3, kMostPieces = 4096;
-  /// Of the n-th piece that is walked past: two of them are one.
+  /// Work units for the n-th segment visited by a walk: two segments cost one.
   static constexpr int walk_work(int n) { return n % 2; }
 
   std::vector<LineSegment> pieces;
@@ -31,7 +31,7 @@ struct PolylineShape {
   double extent() const noexcept { return tree.extent(); }
 };
 
-/// Consecutive equal points are one.
+/// Merges consecutive equal points.
 std::vector<Vec3> merged(const std::vector<std::vector<double>>& rows, bool closed) {
   std::vector<Vec3> points;
   for (const auto& row : rows) {

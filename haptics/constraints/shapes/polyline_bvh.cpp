@@ -3,7 +3,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr std::size_t kLeaf = 8;  // pieces
+constexpr std::size_t kLeaf = 8;  // segments per leaf
 
 std::vector<ClosestPointBvh<Vec3>::Box> boxes_of(const std::vector<LineSegment>& pieces) {
   std::vector<ClosestPointBvh<Vec3>::Box> leaves((pieces.size() + kLeaf - 1) / kLeaf);

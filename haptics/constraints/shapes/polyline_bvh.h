@@ -1,4 +1,4 @@
-/// The closest place of a long polyline, anywhere on it: closest_search.h over runs of eight consecutive pieces.
+/// Global closest point of a long polyline: a closest_point_bvh.h over runs of eight consecutive segments.
 #pragma once
 #include <vector>
 
@@ -7,11 +7,13 @@
 
 namespace catena::haptics {
 
+/// The BVH of one polyline; it does not keep the segments.
 class PolylineBvh : public ClosestPointBvh<Vec3> {
  public:
   PolylineBvh() = default;
-  /// Of at least one piece, all finite, with an extent whose inverse is finite.
+  /// Builds it over at least one segment, all finite, with an extent whose reciprocal is finite. Off the tick.
   explicit PolylineBvh(const std::vector<LineSegment>& pieces);
+  /// Runs ClosestPointBvh::search with the same `pieces`; visits at most `most_visits` nodes. Haptic thread.
   void search(const std::vector<LineSegment>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept;
 };
 

@@ -1,11 +1,11 @@
-/// The proxy on straight pieces that follow each other, at the local minimum of the distance to the probe that lies downhill from where
-/// the proxy is (shapes.h, polyline_constraint). Start, `seek` and taking hold again: the closest place anywhere (closest_search.h); the
-/// probe passes, BUDGET, until that search has ended.
-///   Pieces   has(k): of 0 true; piece(k): a LineSegment; neighbour(k, way): the piece after (way 1) or before (-1) it, itself at an open
-///   end;
-///            search, is_valid_state, extent as of ClosestPointBvh; kFirstVisits, kVisits: nodes of the first tick's search and of a later
-///            one's; line_of(k), if it has lines: the one of piece k; kVisitWork, walk_work(n), kMaxInputs: what a visited node and the
-///            n-th piece walked count, and how many a tick walks
+/// The proxy on connected line segments, at the local minimum of the distance to the probe that lies downhill from the proxy (shapes.h,
+/// polyline_constraint). Start, `seek` and re-engagement: the globally closest point (common/closest_point_bvh.h); the probe passes,
+/// BUDGET, until that search has ended.
+///   Pieces   has(k): whether segment k exists, true for k = 0; piece(k): the LineSegment; neighbour(k, way): the segment after (way 1) or
+///            before (way -1) it, or k itself at an open end;
+///            search, is_sane, extent as those of ClosestPointBvh; kFirstVisits, kVisits: nodes of the first tick's search and of a later
+///            one's; line_of(k), if it has lines: index of the line of segment k; kVisitWork, walk_work(n), kMostPieces: work units of a
+///            visited node and of the n-th segment walked, and the maximum number of segments walked per tick
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/constraints/common/closest_point_bvh.h"
@@ -13,14 +13,18 @@
 
 namespace catena::haptics {
 
+/// Surface without sides for the contact rules, over a set of segments `Pieces`.
 template <class Pieces>
 class PolylineTracker final : public ContactSurface {
  public:
   using Shape = Pieces;
+  /// State between ticks.
   struct Memory {
+    /// Progress of the global search.
     SearchState search;
+    /// Index of the segment that the proxy is on.
     std::uint32_t piece;
-    std::int32_t end;  // of the piece: -1, 1, or 0 between
+    std::int32_t end;  // end of that segment that the proxy is at: -1 a, 1 b, 0 between
   };
   PolylineTracker(const Shape& shape, Memory& memory, const SideMemory&) : shape_(shape), memory_(memory) {}
 
@@ -59,7 +63,9 @@ class PolylineTracker final : public ContactSurface {
     return found;
   }
 
+  /// Work units of this tick.
   int work() const noexcept { return work_; }
+  /// Returns the index of the line that the proxy is on.
   int curve() const noexcept requires requires(const Shape& shape) { shape.line_of(0u); }
   { return shape_.line_of(memory_.piece); }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
@@ -80,7 +86,8 @@ class PolylineTracker final : public ContactSurface {
     shape_.search(probe, search.has_best ? Shape::kVisits : Shape::kFirstVisits, search);
     work_ += Shape::kVisitWork * search.visits;
   }
-  /// From a corner both ways may lead nearer: the steeper one; at a tie onwards. Sets k to the piece on that side.
+  /// Leaves a corner for the segment on which the distance decreases faster (at a tie the following one) and sets k to it. Returns the
+  /// direction sign: 1 following, -1 preceding, 0 at an open end.
   int leave_corner(std::uint32_t& k, const Vec3& probe) const {
     const std::uint32_t other = shape_.neighbour(k, memory_.end);
     if (other == k) return 0;

@@ -1,5 +1,5 @@
-/// A plane as the rules of surface_side.h see it: height h(x) = n . (x - point), projection x - n h(x). n is unit.
-/// World units. Haptic thread: no allocation, lock, throw.
+/// Plane and sphere as surfaces for the contact rules of common/one_sided_contact.h. World units.
+/// Haptic thread: no allocation, lock, throw.
 #pragma once
 #include <limits>
 
@@ -7,26 +7,25 @@
 
 namespace catena::haptics {
 
-/// A plane. Plain data.
+/// A plane: height h(x) = n . (x - point), projection x - n h(x), n the unit normal. Plain data.
 struct PlaneShape {
-  Vec3 point, normal;  ///< a place on it; unit, world units
+  Vec3 point, normal;  ///< point of the plane, world units; unit normal
 };
 
-/// The Surface of a plane.
+/// The surface of a plane.
 class PlaneSurface final : public ContactSurface {
  public:
-  /// What it is of.
+  /// Shape that the surface is made of.
   using Shape = PlaneShape;
-  /// None.
+  /// Nothing is kept between ticks.
   using Memory = NoMemory;
-  /// As ClosedFormConstraint makes it in every tick.
+  /// Made by ClosedFormConstraint in every tick.
   PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
-  /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
-  /// Above is where the normal points.
+  /// Returns the signed distance; above is the side that the normal points to.
   SideValue evaluate_side(const Vec3& at) noexcept override { return {height(at), true, false}; }
   SurfaceHold project_probe(const Vec3& probe) noexcept override {
-    // a second projection takes off what rounding left
+    // a second projection removes the rounding error of the first
     Vec3 proxy = probe - normal_ * height(probe);
     proxy = proxy - normal_ * height(proxy);
     return {true, proxy, std::fabs(height(proxy)), LinkStatus::ok};
@@ -39,7 +38,7 @@ class PlaneSurface final : public ContactSurface {
   Vec3 normal() const noexcept override { return normal_; }
   /// L of a scene without fields.
   double domain_length() const noexcept override { return kDefaultDomainLength; }
-  /// Itself.
+  /// Sets `out` to the plane itself, with its origin at the projection of `at`.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     out = {Primitive::Kind::plane, project_probe(at).proxy, normal_};
     return true;
@@ -50,31 +49,30 @@ class PlaneSurface final : public ContactSurface {
   Vec3 point_, normal_;
 };
 
-/// A sphere as the rules of surface_side.h see it; the model is in shapes.h. World units. Haptic thread: no allocation, lock, throw.
+/// A sphere; the model is in shapes.h. Plain data.
 struct SphereShape {
   Vec3 center;    ///< world units
   double radius;  ///< world units
-  /// Free above: a thin sphere is not passed within one tick.
-  bool prevents_tunneling;  // free above: a thin sphere is not passed within one tick
+  /// True with free above: no tunneling through a thin sphere within one tick.
+  bool prevents_tunneling;
 };
 
-/// The Surface of a sphere.
+/// The surface of a sphere.
 class SphereSurface final : public ContactSurface {
  public:
-  /// What it is of.
+  /// Shape that the surface is made of.
   using Shape = SphereShape;
-  /// What it remembers.
+  /// State between ticks.
   struct Memory {
-    /// At the point held; against the way in while a thin sphere is held on its near half.
-    Vec3 normal;  // at the point held; against the way in while a thin sphere is held on its near half
+    /// Unit outward normal at the point held; opposite to the direction of entry while a thin sphere is held on its near half.
+    Vec3 normal;
   };
-  /// As ClosedFormConstraint makes it in every tick.
+  /// Made by ClosedFormConstraint in every tick.
   SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
       : center_(shape.center), radius_(shape.radius), prevents_tunneling_(shape.prevents_tunneling), memory_(memory), side_(side) {}
 
-  /// True.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
-  /// Above is outside.
+  /// Returns the signed distance; above is outside.
   SideValue evaluate_side(const Vec3& at) noexcept override { return {height(at), true, false}; }
 
   SurfaceHold project_probe(const Vec3& probe) noexcept override {
@@ -96,7 +94,7 @@ class SphereSurface final : public ContactSurface {
     if (before <= 0 && after <= 0) return {};
     if (before < 0 || after <= 0 || (before == 0 && !prevents_tunneling_)) return project_probe(probe);
 
-    // both outside: where the segment enters
+    // both outside: the point where the segment enters
     const Vec3 u = from - center_, way = direction(probe - from);
     const double middle = -dot(u, way), apart = norm(u + way * middle);
     if (!(apart < radius_)) return {};
@@ -112,15 +110,15 @@ class SphereSurface final : public ContactSurface {
   }
   Vec3 normal() const noexcept override { return normal_; }
   bool may_tunnel() const noexcept override { return true; }
-  /// L: its diameter, or that of a scene without fields.
+  /// L: the diameter, but at least that of a scene without fields.
   double domain_length() const noexcept override { return std::max(kDefaultDomainLength, 2 * radius_); }
 
-  /// J = (R / d) (I - r r^T), r the unit way from the centre, d the probe's distance from it.
+  /// Returns J^T f with J = (R / d) (I - r r^T), r the unit direction from the center, d the probe's distance from it.
   PulledBackForce pull_back(const Vec3& probe, const Vec3& f) const noexcept {
     const Vec3 r = direction(probe - center_);
     return divide_bounded(f - r * dot(r, f), norm(probe - center_) / radius_);
   }
-  /// The tangent plane where it holds.
+  /// Sets `out` to the tangent plane at the point held; false: the sphere holds no point for `at`.
   bool primitive(const Vec3& at, Primitive& out) noexcept {
     const SurfaceHold hold = slide(at);
     if (!hold.found) return false;

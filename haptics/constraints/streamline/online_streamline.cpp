@@ -15,11 +15,12 @@ using OnlineMode = OnlineStreamlineMemory::Mode;
 // lengths, times L
 constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
 constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15, kCalm = 1e-3, kNear = 0.02;
-constexpr double kRounding = 4 * 2.220446049250313e-16;  ///< times a place's coordinates: far from the origin no place is nearer
-constexpr int kSearches = 2;                             ///< for a zero, a tick
-constexpr int kHalvings = 4;                             ///< on the way to a wall, before the rest is tried as a whole
+/// times the coordinates of a point: rounding error of positions far from the origin
+constexpr double kRounding = 4 * 2.220446049250313e-16;
+constexpr int kSearches = 2;  ///< searches for a zero in a tick
+constexpr int kHalvings = 4;  ///< halvings of a step toward a boundary before the full remaining step is tried
 
-/// One tick of one link.
+/// One tick of one online streamline.
 class OnlineTick {
  public:
   OnlineTick(const OnlineStreamlineSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
@@ -33,7 +34,7 @@ class OnlineTick {
         cursor_(scratch.cursors[0]),
         length_(spec.field->domain_length()) {}
 
-  /// Begins a line at the seed; without a direction there, none begins.
+  /// Begins a line at the seed; does nothing if there is no direction at the seed.
   void begin(const Vec3& seed) noexcept {
     memory_ = OnlineStreamlineMemory{};
     memory_.trust_radius = kFirstTrust * length_;
@@ -51,7 +52,7 @@ class OnlineTick {
   void run() noexcept {
     state_.residual = 0;
     if (memory_.mode == OnlineMode::seeking) {
-      // no line through the last place: pass the probe through until there is one
+      // no line through the last point: pass the probe through until there is one
       if (state_.evaluations == 0) begin(probe_);
       state_.proxy = probe_;
       if (memory_.mode == OnlineMode::seeking) return;
@@ -63,7 +64,7 @@ class OnlineTick {
     march();
   }
 
-  /// There is no direction at a place: says why.
+  /// Sets status and reason for a point without a direction.
   void stop_for(StopReason stop, const Vec3& place) noexcept {
     if (stop == StopReason::outside)
       set_link_status(state_, LinkStatus::boundary, spec_.field->status_outside(place, cursor_));
@@ -85,7 +86,7 @@ class OnlineTick {
     memory_.t = u;
   }
 
-  /// Still held at a zero or at the boundary? Let go when the probe has turned back.
+  /// Whether the proxy is still held at a zero or at the boundary. Releases it when the probe has turned back.
   bool held() noexcept {
     if (memory_.mode == OnlineMode::following) return false;
     if (dot(x_ - memory_.hold_point, memory_.hold_direction) >= 0) {
@@ -104,7 +105,7 @@ class OnlineTick {
     if (!has_entry_) remember_entry(way);
     const Vec3 approach = place - memory_.last_smooth;
     if (mode == OnlineMode::at_zero && max_abs(approach) > 0 && norm(approach) <= kNear * length_) {
-      // let go onto the branch that it came by, not onto one that it has turned to
+      // resume on the branch by which the proxy came, not on one to which it has turned
       memory_.p_resume = memory_.last_smooth;
       memory_.t_resume = memory_.t_last_smooth;
       memory_.hold_direction = dot(approach, memory_.t_last_smooth) < 0 ? -memory_.t_last_smooth : memory_.t_last_smooth;
@@ -123,7 +124,7 @@ class OnlineTick {
     memory_.hold_direction = way * memory_.t;
   }
 
-  /// f_V of Eq. 3 in arc length: from the proxy over way * h; through cells h may become shorter.
+  /// f_V of Eq. 3 in arc length: advances from the proxy by way * h. On a grid of line fields h may become shorter.
   flow::Step advect(double way, double& h) noexcept {
     if (flow_.is_line_field && flow_.field->is_grid()) {
       if (!cells_) cells_.emplace(flow_, cursor_);
@@ -140,7 +141,7 @@ class OnlineTick {
     return step;
   }
 
-  /// Of the proxy's place, in the world and among the grid's voxels, whichever is counted from farther away.
+  /// Rounding error of the proxy's position, in world coordinates or relative to the grid's origin, whichever is larger.
   double rounding() const noexcept {
     return kRounding * std::max(max_abs(state_.proxy), max_abs(state_.proxy - spec_.field->mapping().origin));
   }
@@ -151,7 +152,7 @@ class OnlineTick {
     return false;
   }
 
-  /// Item 5: a zero near by ends the march on it, if it is nearer to the probe.
+  /// Item 5: ends the march at a nearby zero if that is nearer to the probe.
   bool capture(double way) noexcept {
     if (spec_.min_speed > 0 || memory_.zero_searches >= kSearches) return false;
     ++memory_.zero_searches;
@@ -160,17 +161,17 @@ class OnlineTick {
     if (!zero || norm(x_ - *zero) > norm(x_ - state_.proxy)) return false;
     const Vec3 ahead = *zero - state_.proxy;
     const bool forward = way * dot(ahead, memory_.t) >= 0.2 * norm(ahead);
-    if (!forward && dot(ahead, memory_.curvature) > 0) return false;  // round a centre; past a saddle a line bends away from it
+    if (!forward && dot(ahead, memory_.curvature) > 0) return false;  // around a center; past a saddle a line bends away from it
     hold_at(OnlineMode::at_zero, *zero, way);
     return true;
   }
 
-  /// Eq. 3 until the residual of Eq. 2 vanishes, safeguarded: Newton with the curvature, trust radius, bracket, descent.
+  /// Iterates Eq. 3 until the residual of Eq. 2 vanishes, safeguarded: Newton with the curvature, trust radius, bracket, descent.
   void march() noexcept {
-    double limit = memory_.trust_radius;  // longest step from here that may still do
-    double bad = -1;                      // distance ahead at which a step was seen to fail, while > 0
+    double limit = memory_.trust_radius;  // longest step from here that may still succeed
+    double bad = -1;                      // distance ahead at which a step failed; valid while > 0
     double bad_way = 0;
-    int halvings = 0;  // steps taken since, where it failed outside
+    int halvings = 0;  // steps taken since a step failed outside the domain
     for (int i = 0; i < 2 * kMaxEvaluations; ++i) {
       const Vec3 e = x_ - state_.proxy;
       const double g = equation::distance_to_foot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
@@ -216,7 +217,7 @@ class OnlineTick {
       }
       const double grown = tableau_.embedded ? h * flow::step_factor(error, tolerance, 0.5, 4.0) : 2 * h;
 
-      // over the foot: root on the Hermite, one true step onto it
+      // past the foot: root on the Hermite interpolant, then one exact step onto it
       const double g_end = dot(e - step.displacement, step.end_rate);
       if (way * g_end < 0) {
         if (!affordable()) return;
@@ -239,7 +240,7 @@ class OnlineTick {
       }
       accept(step, way * h, grown);
       limit = memory_.trust_radius;
-      // a stage may lie outside though the line does not: now and then the rest is tried as a whole
+      // a stage may lie outside although the line does not: every few steps the full remaining step is tried
       if (halvings > 0) halvings = halvings >= kHalvings ? 0 : halvings + 1;
       if (bad > 0) bad = bad > h ? std::max(bad - h, kSmallest * length_) : -1;
       if (norm(memory_.curvature) * kCapture * length_ > 1 && capture(way)) return;
@@ -247,7 +248,7 @@ class OnlineTick {
     state_.status = LinkStatus::budget;
   }
 
-  /// `step`: a length that leads out.
+  /// Holds the proxy at the boundary. `step`: a length that leads out of the domain.
   void hold_on_boundary(double way, double step) noexcept {
     memory_.p_resume = state_.proxy;
     memory_.t_resume = memory_.t;
@@ -271,13 +272,13 @@ class OnlineTick {
   const flow::Tableau& tableau_;
   flow::Flow flow_;
   Vec3 probe_;
-  Vec3 x_;  ///< the probe, or from afar only its direction, where products would overflow
+  Vec3 x_;  ///< the probe, or only its direction if it is so far away that products would overflow
   LinkState& state_;
   OnlineStreamlineMemory& memory_;
   field::Cursor& cursor_;
   double length_;
   std::optional<CellStepper> cells_;
-  bool has_entry_ = false;  ///< p_resume, t_resume and way are of this approach
+  bool has_entry_ = false;  ///< p_resume, t_resume and way belong to this approach
 };
 
 class OnlineStreamline final : public Constraint {
@@ -289,7 +290,7 @@ class OnlineStreamline final : public Constraint {
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     OnlineTick(spec_, probe, state, scratch).run();
   }
-  /// With a seed it stays on that line, moving along it; without one it takes hold where the hand is.
+  /// With a seed the proxy stays on the line of the seed and moves along it; without one it engages at the probe.
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     OnlineTick tick(spec_, probe, state, scratch);
     const bool fresh = memory_as<OnlineStreamlineMemory>(state).trust_radius == 0;
@@ -302,8 +303,8 @@ class OnlineStreamline final : public Constraint {
            memory.zero_searches >= 0 && memory.zero_searches <= kMaxEvaluations;
   }
   bool has_primitive() const noexcept override { return true; }
-  /// The tangent at the foot of `at`; where the line is held, that point. At the proxy itself the direction is fetched anew,
-  /// for somebody else may have moved it.
+  /// Tangent at the foot of `at`; a point where the line is held at an end. At the proxy itself the direction is sampled again, since the
+  /// proxy may have been moved from outside.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     if (bitwise_equal(at, state.proxy)) return here(at, state, scratch, out);
     LinkState foot = state;
@@ -312,7 +313,7 @@ class OnlineStreamline final : public Constraint {
     out = line_or_point(foot);
     return memory_as<OnlineStreamlineMemory>(foot).mode != OnlineMode::seeking;
   }
-  /// J = t t^T / (1 - kappa N . (x - p)), kappa N by two more fetches along the line; 0 where the line holds it at an end.
+  /// J = t t^T / (1 - kappa N . (x - p)), kappa N by two more samples along the line; 0 where the proxy is held at an end of the line.
   PulledBackForce pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch& scratch) const noexcept override {
     const OnlineStreamlineMemory& memory = memory_as<OnlineStreamlineMemory>(state);
     if (memory.mode == OnlineMode::seeking) return {f};

@@ -1,7 +1,4 @@
-/// Online steps through the cells of a sampled line field. Every stage uses the dyads of the cell that the step starts in, and a step
-/// ends on the face by which it leaves the cell: there the interpolant has a kink, which no embedded error estimate sees, and
-/// neighbouring fibres of noisy data part quickly. So the online proxy stays on the line that is traced and drawn.
-/// Haptic thread: no allocation, lock or throw; at most kMaxHops cells and 13 steps of the method a call.
+/// Online streamline, and its steps through the cells of a sampled line field (CellStepper).
 #pragma once
 #include <memory>
 #include <optional>
@@ -12,12 +9,16 @@
 
 namespace catena::haptics {
 
+/// Integration steps through the cells of a sampled line field. Every stage uses the dyads of the cell that the step starts in, and a
+/// step ends on the face by which it leaves the cell: the interpolant has a kink there, which no embedded error estimate detects, and
+/// neighboring fibers of noisy data diverge quickly. So the online proxy stays on the line that is traced and rendered.
+/// Haptic thread: no allocation, lock or throw; at most kMaxHops cells and 13 steps of the method per call.
 class CellStepper {
  public:
   CellStepper(const flow::Flow& flow, field::Cursor& cursor) : medium_(flow, &cursor), domain_(flow.field->domain_length()) {}
 
-  /// From p over the length h > 0 in the direction way * t (way +1 or -1); h becomes shorter where the step ends on a face.
-  /// World coordinates; `last` is turned as t is. Stop::outside: there is no cell that way.
+  /// Makes one step from p over the length h > 0 in the direction way * t (way +1 or -1); h is reduced where the step ends on a face.
+  /// World coordinates; the returned end_rate has the orientation of t. StopReason::outside: there is no cell in that direction.
   flow::Step step(const flow::Tableau& tableau, const Vec3& p, const Vec3& t, double way, double& h) noexcept {
     const Vec3 motion = way * t;
     int evaluations = 0;
@@ -53,7 +54,7 @@ class CellStepper {
 
  private:
   static constexpr int kMaxHops = 6;
-  static constexpr double kOnFace = 1e-14;  ///< of L: closer to a face than this is on it
+  static constexpr double kOnFace = 1e-14;  ///< fraction of L: a point closer to a face is on it
 
   flow::CellFlowSource medium_;
   double domain_;
@@ -61,36 +62,40 @@ class CellStepper {
 
 /// Online streamline (paper, Eqs. 3-4, safeguarded): integrates from the last proxy toward the probe x in every tick.
 ///   u = v/|v|, g = (x - p).u;  step h = g / max(|1 - kappa N.(x - p)|, 0.1), no longer than the trust radius
-///   g changes sign: root on the step's Hermite, then one true step lands on it; Armijo on |x - p|^2 / 2
-///   a step that turns by more than 60 degrees is halved; tried at 1e-7 L and still turning, or a zero within 1e-4 L: CRITICAL,
-///   held while the probe is beyond it, until it turns back; a step on to where a line field is incoherent: the same, with that
-///   reason; a step that leaves the domain is halved down to 1e-9 L: BOUNDARY, held likewise.
-/// `linear` is Eqs. 1-2 as printed: one Euler step a tick, nothing corrected.
-/// At most kMaxEvaluations evaluations a tick, then BUDGET. Haptic thread: no allocation, lock or throw.
+///   g changes sign: root on the step's Hermite interpolant, then one true step lands on it; Armijo on |x - p|^2 / 2
+///   a step that turns by more than 60 degrees is halved; still turning at 1e-7 L, or a zero within 1e-4 L: CRITICAL, held while the
+///   probe is beyond it, until it turns back; a step to a point where a line field is incoherent: the same, with that reason; a step that
+///   leaves the domain is halved down to 1e-9 L: BOUNDARY, held likewise.
+/// Method `linear` is Eqs. 1-2 as printed: one Euler step per tick, without correction.
+/// At most kMaxEvaluations evaluations per tick, then BUDGET. Haptic thread: no allocation, lock or throw.
+///
+/// Parameters of an online streamline, as a scene states them.
 struct OnlineStreamlineSpec {
   field::VectorFieldPtr field;
   bool is_line_field = false;
   double min_speed = 0;
   flow::Method method = flow::Method::rkf34;
-  double tolerance = 1e-9;   ///< of the embedded error of one step, times L
-  std::optional<Vec3> seed;  ///< none: the probe where the link is switched on
+  double tolerance = 1e-9;   ///< bound of the embedded error of one step, fraction of L
+  std::optional<Vec3> seed;  ///< world units; none: the probe at which the link is switched on
 };
 
-/// What the link remembers.
+/// State of the link between ticks. Positions in world units.
 struct OnlineStreamlineMemory {
+  /// Seeking a point of the field to start from; following the line; held at a zero, at the end of the domain, at an incoherent point.
   enum Mode : std::int32_t { seeking, following, at_zero, at_boundary, at_incoherent };
   Mode mode = seeking;
-  std::int32_t zero_searches = 0;          ///< searches for a zero in this tick
-  SampleStatus reason = SampleStatus::ok;  ///< why it is held, or seeks
+  std::int32_t zero_searches = 0;          ///< number of searches for a zero in this tick
+  SampleStatus reason = SampleStatus::ok;  ///< cause of the hold, or of seeking
   Vec3 t{0.0};                             ///< unit direction at the proxy
-  Vec3 curvature{0.0};                     ///< dt/ds of the last step
-  double trust_radius = 0;                 ///< longest step that the error control takes now, world units
-  Vec3 hold_point{0.0};                    ///< held while (x - hold).way >= 0
+  Vec3 curvature{0.0};                     ///< dt/ds of the last step, 1 / world unit
+  double trust_radius = 0;                 ///< longest step that the error control allows, world units
+  Vec3 hold_point{0.0};                    ///< held while (x - hold_point).hold_direction >= 0
   Vec3 hold_direction{0.0};
-  Vec3 p_resume{0.0}, t_resume{0.0};          ///< where the line goes on from when it is let go
-  Vec3 last_smooth{0.0}, t_last_smooth{0.0};  ///< last place with a radius of curvature above 1e-3 L: before the turn at a saddle
+  Vec3 p_resume{0.0}, t_resume{0.0};          ///< point and direction at which the line continues after the hold
+  Vec3 last_smooth{0.0}, t_last_smooth{0.0};  ///< last point with a radius of curvature above 1e-3 L: before the turn at a saddle
 };
 
+/// Returns the constraint. Off the tick.
 std::shared_ptr<const Constraint> make_online_streamline(const OnlineStreamlineSpec& spec);
 
 }  // namespace catena::haptics

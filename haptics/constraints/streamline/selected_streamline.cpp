@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int32_t kKnotCap = 4096, kKnotsAStep = 2;
 constexpr double kFarSquared = 1e100;
-constexpr double kHugeDistance = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
+constexpr double kHugeDistance = 1e280;  ///< beyond it only the probe's direction counts, since products would overflow
 
 class SelectedStreamline final : public Constraint {
  public:
@@ -33,7 +33,7 @@ class SelectedStreamline final : public Constraint {
     std::size_t k = memory.interval;
     double below = slope_at_knot(k, probe), above = slope_at_knot(k + 1, probe);
 
-    // every place here is equally near (the centre of a circle): stay
+    // all points here are equally near (center of a circle): stay
     const double flat = 1e-13 * curve_->domain_length();
     if (std::fabs(below) <= flat && std::fabs(above) <= flat) return place(memory, k, memory.s, state);
 
@@ -74,7 +74,7 @@ class SelectedStreamline final : public Constraint {
     place(memory, k, theta >= 1 ? b.s : a.s + theta * h, state);
   }
 
-  /// The nearest place of the whole curve.
+  /// Moves the proxy to the nearest point of the whole curve.
   void seek(const Vec3& far_probe, LinkState& state, LinkScratch&) const noexcept override {
     const flow::NearestPoint found = nearest_.find(max_abs(far_probe) > kFarSquared ? direction(far_probe) * kFarSquared : far_probe);
     state.status = LinkStatus::ok;
@@ -85,7 +85,7 @@ class SelectedStreamline final : public Constraint {
 
   bool is_sane(const LinkState& state) const noexcept override { return memory_as<SelectedStreamlineMemory>(state).interval < intervals_; }
   bool has_primitive() const noexcept override { return true; }
-  /// The tangent at the foot of `at`; an open end is a point.
+  /// Tangent at the foot of `at`; a point at an open end.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     LinkState foot = state;
     advance(at, foot, scratch);

@@ -1,8 +1,8 @@
-/// Selected streamline: the proxy is an arc length s on an immutable curve; no field is fetched in a tick (0 evaluations).
-///   g(s) = (x - c(s)) . c'(s);  march knot by knot to where g changes sign, then the root of g on that interval's Hermite.
-/// The root is always bracketed by the interval's two knots, so it does not depend on where the proxy came from: sweeping there
-/// and back gives the same bits. Open ends hold with BOUNDARY or CRITICAL; closed curves wrap. At most 4096 knots a tick, then
-/// BUDGET, and on from there in the next. While a link that snaps is apart it seeks the nearest place of the whole curve
+/// Selected streamline: the proxy is an arc length s on an immutable curve; no field samples in a tick (0 evaluations).
+///   g(s) = (x - c(s)) . c'(s);  march knot by knot to where g changes sign, then the root of g on that interval's Hermite interpolant.
+/// The root is always bracketed by the interval's two knots, so it does not depend on the proxy's history: sweeping back and forth gives
+/// the same bits. Open ends hold with BOUNDARY or CRITICAL; closed curves wrap. At most 4096 knots per tick, then BUDGET, and the march
+/// resumes in the next tick. While a link that snaps is released it seeks the nearest point of the whole curve
 /// (engine/geometry/flow/curve.h). Haptic thread: no allocation, lock or throw.
 #pragma once
 #include "engine/geometry/flow/curve.h"
@@ -10,18 +10,18 @@
 
 namespace catena::haptics {
 
-/// J^T f of the closest point of a traced curve, at s of an interval: J = p' p'^T / (p' . p' - (x - p) . p''), of the cubic that it is on;
-/// 0 at an open end (rules/pull_back.h).
+/// Returns J^T f of the closest point of a traced curve, at s in the given interval: J = p' p'^T / (p' . p' - (x - p) . p''), of the cubic
+/// that it is on; 0 at an open end (common/pull_back.h).
 PulledBackForce pull_back_on_curve(const flow::Curve& curve, std::size_t interval, double s, const Vec3& probe, const Vec3& f) noexcept;
 
-/// What the link remembers.
+/// State of the link between ticks.
 struct SelectedStreamlineMemory {
-  double s = 0;                    ///< arc length of the proxy
-  std::uint64_t interval = 0;      ///< of knots, that s lies in
-  std::int32_t knots_visited = 0;  ///< visited in the last tick: its work
+  double s = 0;                    ///< arc length of the proxy, world units
+  std::uint64_t interval = 0;      ///< index of the knot interval that contains s
+  std::int32_t knots_visited = 0;  ///< knots visited in the last tick: its work
 };
 
-/// The constraint that holds its probe on a curve. Off the tick.
+/// Returns the constraint that holds its probe on a curve. Off the tick.
 std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve);
 
 }  // namespace catena::haptics

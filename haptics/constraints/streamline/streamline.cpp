@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 7> kMethods{"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"};
 constexpr std::array<std::string_view, 2> kFollow{"selected", "online"};
 
-/// An online line needs a direction at its seed before the first tick.
+/// Checks that an online line has a direction at its seed.
 Outcome check_seed(const json::Node& where, const OnlineStreamlineSpec& spec, const std::string& name) {
   field::Cursor cursor;
   Vec3 u;
@@ -40,7 +40,7 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
   spec.field = field;
   CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.is_line_field));
   CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::NumberRange::non_negative));
-  // neighbouring fibres of noisy data part quickly: what is not stated is chosen so that online and selected agree to 1e-6 L
+  // neighboring fibers of noisy data diverge quickly: the defaults are such that online and selected agree to 1e-6 L
   const bool cells = spec.is_line_field && field->is_grid();
   CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", cells ? 1e-13 : 1e-9, json::NumberRange::positive));
   if (!(spec.tolerance < 1))

@@ -10,16 +10,16 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kFarthestProbe = 1e100;  // squares of what lies beyond lose their meaning
-constexpr double kNearer = 0.7;           // of the distance of the core held: one nearer than that takes its place
+constexpr double kFarthestProbe = 1e100;  // beyond it squares lose precision
+constexpr double kNearer = 0.7;           // fraction of the distance to the held core below which a nearer core replaces it
 
 struct CoreMemory {
-  Vec3 probe{0.0};       ///< the last one
-  Vec3 core{0.0};        ///< the place on the core, or on the way to it
-  Vec3 axis{0.0};        ///< of the core there, unit
-  std::uint32_t line;    ///< of the cores
-  bool holding = false;  ///< core and axis mean something
-  bool fresh = false;    ///< `probe` means something
+  Vec3 probe{0.0};       ///< the last probe
+  Vec3 core{0.0};        ///< the proxy's point on the core, or on the path to it
+  Vec3 axis{0.0};        ///< unit axis of the core at that point
+  std::uint32_t line;    ///< index of the core
+  bool holding = false;  ///< core and axis are valid
+  bool fresh = false;    ///< `probe` is valid
 };
 
 class VortexCore final : public Constraint {
@@ -68,7 +68,7 @@ class VortexCore final : public Constraint {
     out = {Primitive::Kind::line, memory.core, memory.axis};
     return true;
   }
-  /// Of the core, J; on the wall of a tube of radius r, e from the core to the probe: J + (r / |e|) (I - e e^T / |e|^2) (I - J).
+  /// J of the core; on the wall of a tube of radius r, with e from the core to the probe: J + (r / |e|) (I - e e^T / |e|^2) (I - J).
   PulledBackForce pull_back(const Vec3& probe, const Vec3& f, LinkState& state, LinkScratch&) const noexcept override {
     const CoreMemory& memory = memory_as<CoreMemory>(state);
     if (!memory.holding || state.status == LinkStatus::free || state.status == LinkStatus::budget) return {f};
@@ -90,7 +90,7 @@ class VortexCore final : public Constraint {
   double domain_length() const noexcept override { return length_; }
 
  private:
-  /// There is no core here, every place is one, or the core held has been let go for another one.
+  /// Passes the probe through: there is no core here, every point is one, or the held core was released for another one.
   void pass(const Vec3& probe, LinkState& state) const noexcept {
     state.proxy = probe;
     state.residual = 0;
@@ -101,13 +101,13 @@ class VortexCore final : public Constraint {
                       cores_->holds_everywhere ? SampleStatus::parallel : SampleStatus::ok);
   }
 
-  /// The nearest place of one core.
+  /// Nearest point of one core.
   flow::NearestPoint on_line(std::uint32_t line, const Vec3& probe) const noexcept {
     return (by_line_.empty() ? *nearest_ : by_line_[line]).find(probe, search_);
   }
 
-  /// The nearest place of the core held, or of all where none is held or another one is much nearer: sets line, proxy and status. False:
-  /// nothing is within `search`, or the core held has been let go for another one.
+  /// Finds the nearest point of the held core, or of all cores if none is held or another one is much nearer; sets line, proxy and status.
+  /// Returns false if nothing is within `search`, or the held core was released for another one.
   bool find(const Vec3& probe, CoreMemory& memory, LinkState& state) const noexcept {
     flow::NearestPoint found = nearest_->find(probe, search_);
     state.other_work += found.work;
@@ -134,7 +134,7 @@ class VortexCore final : public Constraint {
     return true;
   }
 
-  /// CellFinder the tube the hand moves freely; beyond, it is held on its wall.
+  /// Inside the tube the probe moves freely; outside, the proxy is held on the tube's wall.
   void leave_tube(const Vec3& probe, LinkState& state) const noexcept {
     if (!(radius_ > 0)) return;
     const Vec3 e = probe - state.proxy;
@@ -149,7 +149,7 @@ class VortexCore final : public Constraint {
 
   flow::VortexCoresPtr cores_;
   std::optional<flow::NearestOnCurve> nearest_;
-  std::vector<flow::NearestOnCurve> by_line_;  ///< of more than one core
+  std::vector<flow::NearestOnCurve> by_line_;  ///< one per core; empty for a single core
   double radius_, search_, length_;
 };
 

@@ -75,14 +75,14 @@ namespace {
 
 constexpr std::size_t kFrame = 16;
 constexpr std::uint8_t kNibble = 0x41;
-constexpr std::size_t kChipBuffer = 256;  ///< bytes on their way to the host
+constexpr std::size_t kChipBuffer = 256;  ///< capacity of the chip's buffer toward the host, bytes
 constexpr std::size_t kControlsKept = 4096;
 
 void put_int16(std::vector<std::uint8_t>& to, int value) {
   for (int shift = 0; shift < 16; shift += 4) to.push_back(static_cast<std::uint8_t>(kNibble + (value >> shift & 15)));
 }
 
-// four nibbles, low one first; false where a byte is no nibble
+// Decodes four nibbles, the low one first. Returns false if a byte is not a nibble.
 bool get_int16(const std::uint8_t* from, int& value) {
   unsigned bits = 0;
   for (unsigned i = 0; i < 4; ++i) {
@@ -157,7 +157,7 @@ bool EmulatedFalcon::control(const UsbControl& request) {
 }
 
 void EmulatedFalcon::bulk_out(std::span<const std::uint8_t> bytes) {
-  std::vector<std::uint8_t> answer;  // of the boot ROM
+  std::vector<std::uint8_t> answer;  // bytes that the boot ROM sends back
   for (const std::uint8_t byte : bytes) {
     if (!plugged_) return;
     ++out_bytes_;
@@ -192,7 +192,7 @@ void EmulatedFalcon::receive(std::uint8_t byte) {
     frame_.clear();
     return;
   }
-  // out of step: start again at the next framing byte
+  // out of sync: start again at the next framing byte
   const auto next = std::find(frame_.begin() + 1, frame_.end(), '<');
   bad_bytes_ += static_cast<std::uint64_t>(next - frame_.begin());
   frame_.erase(frame_.begin(), next);
@@ -250,7 +250,7 @@ void EmulatedFalcon::answer_frame() {
 
 void EmulatedFalcon::send(const std::vector<std::uint8_t>& bytes) {
   if (faults_.silent || bytes.empty()) return;
-  // a host that does not read loses what the chip cannot hold
+  // a host that does not read loses what the chip cannot buffer
   std::size_t waiting = bytes.size();
   for (const auto& chunk : to_host_) waiting += chunk.size();
   if (waiting > kChipBuffer)

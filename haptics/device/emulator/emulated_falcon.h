@@ -1,7 +1,7 @@
-/// The boot ROM of the emulated Falcon's processor: wakes on a handshake, echoes a boot stream, starts what it has loaded.
+/// The boot ROM of the emulated Falcon's processor: responds to a handshake, echoes a boot stream, starts the loaded program.
 ///   1. at 9600 baud  0A 43 0D -> 0A 44 2C 0D   2. at 142857 baud, DTR low  41 -> 41   3. every image byte is echoed
 /// Boot stream: LSB-first 16-bit words: key 0x08AA, 8 reserved, entry (high, low), blocks {size, address high, low, data}, size 0.
-/// A stream with another key, or one that was damaged on the wire, never starts: reset and load again.
+/// A stream with another key, or one that was corrupted in transfer, never starts: reset and load again.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +14,13 @@
 
 namespace catena::haptics {
 
+/// Baud-rate divisors of the FTDI chip.
 inline constexpr std::uint16_t kBaud9600 = 0x4138, kBaudBoot = 0x15, kBaudRunning = 0x02;
 
-/// Reads a boot stream byte by byte.
+/// Parser of a boot stream, byte by byte.
 class BootStreamReader {
  public:
+  /// Whether more bytes are expected, the stream is complete, or it is invalid.
   enum class State { reading, complete, bad };
   State feed(std::uint8_t byte);
   std::size_t words() const { return words_; }
@@ -31,17 +33,19 @@ class BootStreamReader {
   int low_byte_ = -1;
 };
 
+/// The boot ROM.
 class EmulatedBootRom {
  public:
+  /// Faults to inject.
   struct Faults {
-    int ignored_handshakes = 0;           ///< so many handshakes get no answer
+    int ignored_handshakes = 0;           ///< number of handshakes without an answer
     bool leading_zero = false;            ///< the answer starts with a 00, as on some systems
-    std::deque<std::size_t> echo_errors;  ///< one an attempt: the image byte that is damaged; npos: none in that attempt
+    std::deque<std::size_t> echo_errors;  ///< one per attempt: index of the image byte that is corrupted; npos: none in that attempt
   };
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 
   void reset();
-  /// What the ROM answers to a byte that came at this baud rate.
+  /// Appends to `answer` the ROM's response to a byte received at this baud rate.
   void receive(std::uint8_t byte, std::uint16_t baud, bool dtr, std::vector<std::uint8_t>& answer);
   bool started() const { return state_ == State::started; }  ///< the loaded program runs
 
@@ -60,75 +64,81 @@ class EmulatedBootRom {
   bool damaged_ = false;
 };
 
-/// A Novint Falcon without hardware, seen from its USB endpoints: the FTDI chip (control requests, packets of 64 bytes with two
-/// bytes of modem status, baud rates), the boot ROM, the firmware's I/O frames, the mechanism. No libusb in it: tests put the
-/// real libusb in front of it, and EmulatedTransport the driver alone.
+/// A Novint Falcon without hardware, at the level of its USB endpoints: the FTDI chip (control requests, packets of 64 bytes with two
+/// bytes of modem status, baud rates), the boot ROM, the firmware's I/O frames, the mechanism. It does not use libusb: tests put the
+/// real libusb in front of it, and EmulatedTransport only the driver.
 ///   frame to the device:  '<' 3 x int16 motors, control, 'A', '>'      from it:  '<' 3 x int16 encoders, bits, 'A', '>'
-///   (an int16 is four bytes 0x41 + nibble, low nibble first). Each frame moves the mechanism on by `seconds_per_frame`.
-/// Deterministic: what it does depends only on what it is sent. Not thread-safe: its owner locks. ImageWriteResult from the protocol's
-/// description, not from the driver. Faults are made on demand: see EmulatedFaults.
+///   (an int16 is four bytes 0x41 + nibble, low nibble first). Each frame advances the mechanism by `seconds_per_frame`.
+/// Deterministic: its behavior depends only on what it is sent. Not thread-safe: its owner locks. Written from the protocol's
+/// description, independently of the driver. Faults are injected on demand: see EmulatedFaults.
+///
+/// Options of an EmulatedFalcon.
 struct EmulatedFalconOptions {
-  bool firmware = true;  ///< runs already; else the boot ROM waits for an image
+  bool firmware = true;  ///< the firmware runs already; false: the boot ROM waits for an image
   bool homed = false;
   double seconds_per_frame = 1e-3;
   EmulatedMechanism::Counts power_on_offset{700, -450, 300};
 };
 
+/// A USB control request.
 struct UsbControl {
   std::uint8_t request_type = 0, request = 0;
   std::uint16_t value = 0, index = 0;
   friend bool operator==(const UsbControl&, const UsbControl&) = default;
 };
 
-/// What becomes of one reply frame on its way to the host.
+/// Fault applied to one reply frame on its way to the host.
 struct ReplyFault {
+  /// What happens to the frame; n is byte_count.
   enum class Kind {
     none,
     split,     ///< after n bytes, over two packets
-    join,      ///< waits for the next reply, and comes in its packet
+    join,      ///< delayed, and sent in the packet of the next reply
     truncate,  ///< only the first n bytes
-    garbage,   ///< n bytes that belong to nothing before it, framing bytes among them
+    garbage,   ///< n foreign bytes before it, framing bytes among them
     drop
   };
   Kind kind = Kind::none;
   std::size_t byte_count = 0;
 };
 
+/// Faults to inject.
 struct EmulatedFaults {
-  std::deque<ReplyFault> replies;            ///< one a reply, in order; none after the last
-  bool silent = false;                       ///< the processor says nothing, the chip goes on
-  bool garbage_at_wrong_baud = false;        ///< else a wrong baud rate is heard as nothing
-  std::uint64_t unplug_after_out_bytes = 0;  ///< > 0: gone once so many bytes have come
+  std::deque<ReplyFault> replies;            ///< one per reply, in order; none after the last
+  bool silent = false;                       ///< the processor sends nothing, the chip continues
+  bool garbage_at_wrong_baud = false;        ///< false: bytes at a wrong baud rate are ignored
+  std::uint64_t unplug_after_out_bytes = 0;  ///< > 0: unplugged after so many bytes were received
 };
 
+/// The emulated Falcon.
 class EmulatedFalcon {
  public:
   static constexpr std::uint16_t kVendor = 0x0403, kProduct = 0xcb48;
   static constexpr std::uint8_t kEndpointOut = 0x02, kEndpointIn = 0x81;
   static constexpr std::size_t kPacket = 64, kPayload = 62;
 
-  /// One I/O frame, as the device saw it: what it was sent, and what it answered.
+  /// One I/O frame as seen by the device: the command received, and the answer.
   struct Exchange {
     EmulatedMechanism::Counts motors{}, encoders{};
     Vec3 position_m{0.0};  ///< of the grip, when the encoders were read
-    Vec3 force_n{0.0};     ///< of the motors, where the grip was when they came
+    Vec3 force_n{0.0};     ///< of the motors, at the position of the grip when the command was received
     unsigned control = 0;  ///< bits: 1 homing, 2 green, 4 blue, 8 red
     unsigned homed = 0;
   };
 
   explicit EmulatedFalcon(const EmulatedFalconOptions& options = {});
 
-  // the wire
+  // USB endpoints
   bool control(const UsbControl& request);  ///< false: STALL
   void bulk_out(std::span<const std::uint8_t> bytes);
   bool has_payload() const { return !to_host_.empty(); }
-  std::size_t bulk_in(std::span<std::uint8_t, kPacket> packet);  ///< one packet: 2 bytes of status, and what there is
+  std::size_t bulk_in(std::span<std::uint8_t, kPacket> packet);  ///< one packet: 2 bytes of status, and the payload available
   void halt(std::uint8_t endpoint) { halted_[endpoint == kEndpointIn] = true; }
   void clear_halt(std::uint8_t endpoint) { halted_[endpoint == kEndpointIn] = false; }
   bool halted(std::uint8_t endpoint) const { return halted_[endpoint == kEndpointIn]; }
   bool plugged() const { return plugged_; }
   void unplug() { plugged_ = false; }
-  /// Without power in between the firmware and the homing are lost, and the boot ROM waits.
+  /// Plugs the device in. Without power in between the firmware and the homing are lost, and the boot ROM waits.
   void plug(bool power_kept);
 
   EmulatedFaults& faults() { return faults_; }
@@ -136,17 +146,17 @@ class EmulatedFalcon {
   EmulatedMechanism& mechanism() { return mechanism_; }
   const EmulatedMechanism& mechanism() const { return mechanism_; }
 
-  // what has happened
+  // counters and state, for tests
   const std::vector<UsbControl>& controls() const { return controls_; }
   const Exchange& last_exchange() const { return last_exchange_; }
-  std::uint64_t frames() const { return frames_; }        ///< whole frames that came
-  std::uint64_t bad_bytes() const { return bad_bytes_; }  ///< that came and belonged to no frame, while the firmware ran
+  std::uint64_t frames() const { return frames_; }        ///< complete frames received
+  std::uint64_t bad_bytes() const { return bad_bytes_; }  ///< received bytes that belonged to no frame, while the firmware ran
   std::uint64_t out_bytes() const { return out_bytes_; }
   std::uint64_t overruns() const { return overruns_; }  ///< replies lost because the host did not read
   int latency_ms() const { return latency_ms_; }
   std::uint16_t baud() const { return baud_; }
   bool running() const { return running_; }
-  /// Called for every frame that came, in the caller of bulk_out.
+  /// Sets a function that is called for every frame received, on the thread that calls bulk_out.
   void set_exchange_observer(std::function<void(const Exchange&)> observer) { observer_ = std::move(observer); }
 
  private:
@@ -158,9 +168,9 @@ class EmulatedFalcon {
   EmulatedMechanism mechanism_;
   EmulatedBootRom boot_rom_;
   EmulatedFaults faults_;
-  std::deque<std::vector<std::uint8_t>> to_host_;  ///< each is a packet's payload, or more
-  std::vector<std::uint8_t> pending_reply_;        ///< a reply that waits for the next one
-  std::vector<std::uint8_t> frame_;                ///< what has come of one
+  std::deque<std::vector<std::uint8_t>> to_host_;  ///< each is one packet's payload, or more
+  std::vector<std::uint8_t> pending_reply_;        ///< reply that is delayed until the next one
+  std::vector<std::uint8_t> frame_;                ///< received bytes of an incomplete frame
   std::vector<UsbControl> controls_;
   std::function<void(const Exchange&)> observer_;
   Exchange last_exchange_;

@@ -19,7 +19,7 @@ void sleep_until_ns(std::int64_t at) noexcept {
 
 }  // namespace
 
-// on a grid of its own where it is kept, so that the mean rate is right
+// Waits for the emulated bus. The deadlines form a grid as long as they are met, so that the mean rate is right.
 void EmulatedTransport::wait_for_bus(int ms) noexcept {
   if (!paced_) return;
   const std::int64_t now = now_ns(), wait = std::int64_t{1000000} * ms, next = last_ns_ + wait;
@@ -110,7 +110,7 @@ void list_emulated_falcon(std::vector<DeviceInfo>& to) {
 
 namespace {
 
-/// "still:process:FILE.csv" and its parts.
+/// Parts of a detail such as "still:process:FILE.csv".
 struct EmulatedDetail {
   bool still = false, process = false, known = false;
   std::string table;

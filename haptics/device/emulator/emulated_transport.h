@@ -1,6 +1,6 @@
-/// The driver's bytes straight to the emulated Falcon, without libusb: `catena feel SCENE --device emulated-falcon` runs the
-/// real driver over it on any machine. Each read brings what waits, or after the latency time the chip's idle packet.
-/// `paced`: a reply comes no earlier than a millisecond after the last one, as over the bus. Any thread; the lock is its own.
+/// Transport from the driver directly to the emulated Falcon, without libusb: `catena feel SCENE --device emulated-falcon` runs the
+/// real driver over it on any machine. Each read returns the bytes available, or after the latency time the chip's idle packet.
+/// `paced`: a reply comes no earlier than a millisecond after the last one, as over the bus. Any thread; it locks the device.
 #pragma once
 #include <functional>
 #include <memory>
@@ -15,13 +15,14 @@
 
 namespace catena::haptics {
 
-/// A device and the lock around it.
+/// An emulated device and its lock.
 struct SharedEmulatedFalcon {
   explicit SharedEmulatedFalcon(const EmulatedFalconOptions& options = {}) : device(options) {}
   std::mutex mutex;
   EmulatedFalcon device;
 };
 
+/// Transport of one emulated device.
 class EmulatedTransport final : public usb::Transport {
  public:
   EmulatedTransport(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
@@ -39,6 +40,7 @@ class EmulatedTransport final : public usb::Transport {
   std::int64_t last_ns_ = 0;
 };
 
+/// Opens EmulatedTransport objects for one emulated device.
 class EmulatedTransportSource final : public usb::TransportSource {
  public:
   EmulatedTransportSource(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
@@ -50,24 +52,25 @@ class EmulatedTransportSource final : public usb::TransportSource {
   bool paced_;
 };
 
-/// The device type "emulated-falcon": the real Falcon driver over the emulator, with a hand that homes it and moves gently
-/// around the workspace, for machines without the hardware; "emulated-falcon:still": with one that then rests, as the self-test's
-/// pushes expect. Where settings.firmware is stated the device has none yet, and boots that file.
+/// The device type "emulated-falcon": the real Falcon driver over the emulator, with a simulated user who homes it and moves gently
+/// around the workspace, for machines without the hardware; "emulated-falcon:still": with a user who then rests, as the pushes of the
+/// self-test expect. Where settings.firmware is stated, the emulated device has no firmware yet, and boots that file.
 
-/// Pulls the grip out and pushes it in (homing), pulls it out once more (arming), then goes round and round: 14 s, of which the
-/// last 8 repeat.
+/// Returns a user who pulls the grip out and pushes it in (homing), pulls it out once more (arming), then moves around in the workspace:
+/// 14 s, of which the last 8 repeat.
 EmulatedUser gentle_user();
-/// Homes and arms the same way, then rests at z = 0.12 m from 3 s on.
+/// Returns a user who homes and arms the same way, then rests at z = 0.12 m from 3 s on.
 EmulatedUser resting_user();
 
+/// Appends the entries of this device type.
 void list_emulated_falcon(std::vector<DeviceInfo>& to);
-/// `detail`: empty or "still"; then, or alone, "process" or "process:FILE.csv": the emulated device is in a process of its own
-/// (haptics/device/process), which writes what its motors push to FILE. `observer`, which may be empty, hears every exchange, on the
-/// driver's thread; not of a process.
+/// Opens the device. `detail`: empty or "still"; then, or alone, "process" or "process:FILE.csv": the emulated device runs in a separate
+/// process (haptics/device/process), which writes the force of its motors to FILE. `observer`, which may be empty, is called for every
+/// exchange, on the driver's thread; not with "process".
 Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, const DeviceSettings& settings,
                                                      std::function<void(const EmulatedFalcon::Exchange&)> observer);
 
-/// The FILE of such a detail; empty: none.
+/// Returns the FILE of such a detail; empty: none.
 std::string emulated_falcon_table_path(const std::string& detail);
 
 }  // namespace catena::haptics

@@ -21,7 +21,7 @@ void sleep_until(std::int64_t at_ns) {
 }
 
 bool has_gone(int lifeline) {
-  pollfd line{lifeline, POLLIN, 0};  // the program says nothing on it: only its end is heard
+  pollfd line{lifeline, POLLIN, 0};  // the program sends nothing on it: only its end is detected
   return ::poll(&line, 1, 0) > 0;
 }
 
@@ -31,7 +31,7 @@ class Host {
  public:
   Host(DevicePage& page, Device& device) : page_(page), device_(device), last_order_ns_(now_ns()) {}
 
-  /// One period: the newest order to the device, its newest pose to the program.
+  /// Runs one period: sends the newest force command to the device and publishes its newest pose to the program.
   void cycle(bool gone) {
     const std::int64_t now = now_ns();
     const bool fresh = page_.commands.acquire();
@@ -43,11 +43,12 @@ class Host {
       silent_ = true;
       ++page_.takeovers;
     }
-    // the program goes on, and knows: its force ramps in
+    // the program has resumed and acknowledged the takeover: its force ramps in
     if (silent_ && fresh && order.acknowledged_takeovers == page_.takeovers) silent_ = false;
     hold(gone || stopped || silent_);
     if (!held_ && fresh) device_.write(order.output);
-    if (!held_ && !fresh && pushes(order.output)) device_.write(order.output);  // as fresh as the limit on silence says
+    // written again: a command stays fresh until silence_timeout_ms
+    if (!held_ && !fresh && pushes(order.output)) device_.write(order.output);
     page_.poses.publish({device_.read(), now});
     page_.zero_force_confirmed = held_ && device_.zero_force_confirmed() ? 1 : 0;
   }

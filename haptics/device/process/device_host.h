@@ -1,15 +1,15 @@
-/// The process's side of a device that is held by a process of its own (page.h): the loop between the page and the device.
+/// Process side of a device that is held by a separate process (device_page.h): the loop between the shared page and the device.
 #pragma once
 #include "haptics/device/process/device_page.h"
 
 namespace catena::haptics::process {
 
-/// Fills the page's description.
+/// Copies the device's capabilities to the shared page.
 void describe_device(const DeviceCapabilities& device, DeviceDescription& to);
 
-/// Serves the program until its end of the socket `lifeline` closes; then, without a force, until the device has confirmed its zero and
-/// 100 ms more (at most 2 s), so that who watches the device sees it. One period of the page's rate at a time; no allocation, except for
-/// the device's status text, 10 times a second.
+/// Serves the program until its end of the socket `lifeline` closes; then, with zero force, until 100 ms after the device has confirmed its
+/// zero (at most 2 s), so that a watchdog of the device sees it. Runs one cycle per period of the page's rate; no allocation, except for
+/// the device's status text, once per 100 cycles (10 times a second at 1 kHz).
 void serve_device(DevicePage& page, int lifeline, Device& device);
 
 }  // namespace catena::haptics::process

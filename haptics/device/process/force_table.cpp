@@ -16,17 +16,17 @@ namespace catena::haptics::process {
 
 namespace {
 
-constexpr std::int64_t kPiece = 1 << 20;  // some 20 s of a force that changes every millisecond
+constexpr std::int64_t kPiece = 1 << 20;  // bytes; about 20 s of a force that changes every millisecond
 constexpr std::int64_t kAhead = kPiece / 2;
 constexpr std::int64_t kLongestRow = 128;
 
-/// Blocks for the first `bytes` of the file, whose size stays. The code of errno; 0: they are there.
+/// Reserves the first `bytes` of the file without changing its size. Returns 0 or an errno code.
 int reserve(int descriptor, std::int64_t bytes) {
   const auto limit = resource_limit(RLIMIT_FSIZE);
   if (limit && *limit < static_cast<unsigned long long>(bytes)) return EFBIG;
   while (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, bytes) != 0) {
     if (errno == EINTR) continue;
-    return errno == EOPNOTSUPP || errno == ENOSYS ? 0 : errno;  // a file system that reserves nothing: rows are written as they come
+    return errno == EOPNOTSUPP || errno == ENOSYS ? 0 : errno;  // a file system without reservation: rows are written as they come
   }
   return 0;
 }
@@ -36,7 +36,7 @@ int reserve(int descriptor, std::int64_t bytes) {
 Result<FileDescriptor> open_force_table(const std::string& path) {
   if (path.empty()) return FileDescriptor(::open("/dev/null", O_WRONLY | O_CLOEXEC));
   const auto cannot = [&](int code) { return system_error(path + ": cannot write", code); };
-  // without waiting: nothing may read from a pipe
+  // non-blocking: a pipe may have no reader
   struct stat about {};
   const bool was_there = ::stat(path.c_str(), &about) == 0;
   if (was_there && !S_ISREG(about.st_mode))
@@ -77,7 +77,7 @@ void ForceTable::add(const Vec3& force_n) {
   append_row(row);
 }
 
-/// Whether a row that is not the beginning or the end of a push may be written.
+/// Whether there is space for a row that does not begin or end a period of force (those rows are always written).
 bool ForceTable::reserve_space() {
   if (reserved_ == 0) return true;
   if (error_ != 0) return false;

@@ -1,6 +1,6 @@
-// The program `catena-device`: holds a haptic device for catena, which starts it and gives it the page (descriptor 3,
-// haptics/device/process/device_page.h), the lifeline (descriptor 4) and the table that it writes (descriptor 5). It has a session of its
-// own, hears no signal that can be blocked, and outlives the program by as long as it takes to let the device go.
+// The program `catena-device`: runs a haptic device for catena, which starts it and passes it the shared memory page (descriptor 3,
+// haptics/device/process/device_page.h), the lifeline (descriptor 4) and the force table that it writes (descriptor 5). It has a session of
+// its own, blocks all signals that can be blocked, and outlives the program only as long as it takes to release the device.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -20,7 +20,7 @@ namespace {
 using namespace catena::haptics;
 
 constexpr int kPage = 3, kLifeline = 4, kTable = 5;
-constexpr int kPriority = 83;  // before the servo: it mostly sleeps
+constexpr int kPriority = 83;  // above the servo: this process mostly sleeps
 
 int usage() {
   std::fputs("catena-device: a part of catena, which starts it\n", stderr);
@@ -45,7 +45,7 @@ int main() {
   if (page.magic != process::DevicePage::kMagic || page.version != process::DevicePage::kVersion) return usage();
   sched_param parameter{};
   parameter.sched_priority = kPriority;
-  sched_setscheduler(0, SCHED_FIFO, &parameter);  // where that is permitted
+  sched_setscheduler(0, SCHED_FIFO, &parameter);  // if permitted
 
   process::ForceTable table(kTable, page.table_error);
   const std::string name = page.device;

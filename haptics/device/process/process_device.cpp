@@ -33,7 +33,7 @@ Error cannot_start(const std::string& device, const std::string& why) {
   return Error{device + ": the process that holds the device cannot be started: " + why, true};
 }
 
-/// The page's memory, mapped here; its size is sealed, so that neither side can take it from under the other.
+/// Mapping of the shared memory page. Its size is sealed, so that neither side can truncate it.
 class SharedPage {
  public:
   static Result<SharedPage> make(const std::string& device) {
@@ -78,7 +78,7 @@ class ProcessDevice final : public Device {
     capabilities_.max_torque_nm = is.max_torque_nm;
     capabilities_.mechanics = is.mechanics;
   }
-  /// The end of the lifeline is the end of the force; the process is waited for, so that its table is whole.
+  /// Closing the lifeline ends the force; the destructor waits for the process, so that its table is complete.
   ~ProcessDevice() override {
     lifeline_.close();
     process_.wait(kEndS);
@@ -96,7 +96,7 @@ class ProcessDevice final : public Device {
     }
     input.age_s += 1e-9 * static_cast<double>(std::max<std::int64_t>(0, now_ns() - pose.written_ns));
     const std::uint32_t takeovers = page_.takeovers.load(std::memory_order_acquire);
-    // once, so that the force ramps in
+    // reported lost once per takeover, so that the force ramps in
     if (input.age_s > kLostS || takeovers != seen_takeovers_) input.status = DeviceStatus::lost;
     seen_takeovers_ = takeovers;
     return input;
@@ -146,7 +146,7 @@ Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const
   if (!fits(page.device, device) || !fits(page.firmware, settings.firmware))
     return Error{device + ": its name, or that of its firmware, is too long for a process of its own"};
   CATENA_TRY(const FileDescriptor table, process::open_force_table(log));
-  // a process that does not start writes nothing
+  // if the process does not start, remove the empty table
   bool starts = false;
   const std::shared_ptr<void> tidy(nullptr, [&](void*) {
     if (!starts && !log.empty()) ::unlink(log.c_str());
@@ -160,7 +160,7 @@ Result<std::unique_ptr<Device>> open_in_process(const std::string& device, const
     const int given[] = {memory.fd(), theirs.get(), table.get()};
     CATENA_TRY(HelperProcess started, HelperProcess::start(helper_path("catena-device"), given));
     process.emplace(std::move(started));
-  }  // the process holds the only other end: its death is heard
+  }  // the process has the only other end: its death is detected
   pollfd line{ours.get(), POLLIN, 0};
   int heard = 0;
   do heard = ::poll(&line, 1, kOpenMs);

@@ -11,9 +11,9 @@ namespace catena::haptics::usb {
 namespace {
 
 static_assert(std::atomic<FalconState>::is_always_lock_free);
-constexpr int kSliceMs = 50;                              // how long the thread may not hear that it shall end
+constexpr int kSliceMs = 50;                              // longest delay until the thread notices that it must end
 constexpr int kTuneAfter = 3;                             // cycles without a frame until the line is set up again
-constexpr int kLookEvery = 500, kStartAgainEvery = 1000;  // cycles: whether the watchdog process lives; when it could not be started
+constexpr int kLookEvery = 500, kStartAgainEvery = 1000;  // cycles between checks of the watchdog process; and after a failed start
 constexpr std::uint8_t kOutEndpoint = 0x02;
 
 bool take_realtime(int priority) noexcept {
@@ -31,10 +31,10 @@ DeviceCapabilities Falcon::nominal_capabilities() {
   c.workspace_m = 0.06;
   c.workspace_center_m = kFalconWorkspaceCenter;
   c.button_count = 4;
-  // Novint's data sheet: more than 2 lbf. All directions: 6.1 N at the centre, 4.5 N in the cube's corners; more is clamped
+  // Novint's data sheet: more than 2 lbf. In all directions: 6.1 N at the center, 4.5 N in the corners of the cube; more is clamped.
   c.max_force_n = 8.9;
-  // Assumed, no identification at hand: mass and damping as in the stability table, little friction. The encoder step is
-  // derived (one axis' count at z = 110 mm); the delay is one to two round trips of the bus.
+  // Assumed, not identified: mass and damping as in the stability table, little friction. The encoder step is derived (one axis' count at z
+  // = 110 mm); the delay is one to two round trips of the bus.
   c.mechanics = {.mass_kg = 0.159, .damping_ns_per_m = 0.5, .friction_n = 0.1, .encoder_step_m = 37.7e-6, .delay_s = 2e-3};
   return c;
 }
@@ -63,9 +63,9 @@ Falcon::Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, s
 Falcon::~Falcon() {
   quit_ = true;
   if (thread_.joinable()) thread_.join();
-  if (watchdog_) watchdog_->quit();  // there is no thread that could have pushed
+  if (watchdog_) watchdog_->quit();  // no thread has run that could have output force
   watchdog_.reset();
-  transport_.reset();  // before its source
+  transport_.reset();  // must be destroyed before its source
 }
 
 Outcome Falcon::start_watchdog() {
@@ -89,9 +89,9 @@ DeviceInput Falcon::read() noexcept {
   input.position_m = pose.position_m;
   input.buttons = pose.buttons;
   input.age_s = pose.sampled_ns == 0 ? 0 : 1e-9 * static_cast<double>(now_ns - pose.sampled_ns);
-  // the I/O thread has taken the force away meanwhile: the servo must not go on where it was
+  // the I/O thread has cut the force meanwhile: the servo must ramp it in
   const bool let_go = last_push_ns_ != 0 && 1e-9 * static_cast<double>(now_ns - last_push_ns_) >= options_.command_timeout_s;
-  // so has the watchdog process
+  // likewise for the watchdog process
   const std::uint64_t takeovers = takeovers_.load(std::memory_order_acquire);
   const bool taken = takeovers != acknowledged_takeovers_;
   acknowledged_takeovers_ = takeovers;
@@ -112,7 +112,7 @@ void Falcon::write(const DeviceOutput& output) noexcept {
 }
 
 void Falcon::resume() noexcept {
-  // what was written before the stop must not come back
+  // a command from before the stop must not take effect
   last_push_ns_ = 0;
   force_commands_.publish({Vec3(0.0), options_.clock(), acknowledged_takeovers_});
   stopped_.store(false);
@@ -186,7 +186,7 @@ void Falcon::set_problem(const std::string& text) {
   problem_ = text;
 }
 
-// newest order into front(); false: none for too long
+// Takes the newest force command into front(). Returns false if there has been none for command_timeout_s.
 bool Falcon::has_fresh_command() noexcept {
   force_commands_.acquire();
   const ForceCommand& order = force_commands_.front();
@@ -206,7 +206,7 @@ void Falcon::run() noexcept {
   }
 }
 
-// A packet out. One with a force that was held up on its way, by a stop of the program at this very place, is followed by a zero.
+// Sends a packet. If a packet with force was delayed on its way, because the program was stopped just here, a zero-force packet follows.
 bool Falcon::send(FalconSession& session, bool forces) noexcept {
   watchdog::SharedPage* page = watchdog_memory_ ? &watchdog_memory_->page() : nullptr;
   if (page != nullptr) {
@@ -223,8 +223,8 @@ bool Falcon::send(FalconSession& session, bool forces) noexcept {
   return true;
 }
 
-// The watchdog process has taken the force away: a zero from here, too, then the device is this program's again. What the device has
-// answered meanwhile is of a time that is over.
+// After the watchdog process has cut the force: sends a zero-force packet from here, too, and takes the device back. What the device sent
+// meanwhile is outdated and discarded.
 bool Falcon::handle_takeover(FalconSession& session, Ftdi& ftdi) noexcept {
   if (!watchdog_memory_ || watchdog_memory_->page().holder.load(std::memory_order_acquire) == watchdog::Holder::program) return false;
   session.release_force();
@@ -235,13 +235,13 @@ bool Falcon::handle_takeover(FalconSession& session, Ftdi& ftdi) noexcept {
   return true;
 }
 
-// There is a watchdog, or none is wanted; one that has died is started again.
+// Whether the watchdog process runs, or none is required. Restarts one that has died.
 bool Falcon::ensure_watchdog(FalconSession& session) noexcept {
   if (!watchdog_memory_) return true;
   if (--cycles_until_check_ > 0) return watchdog_ != nullptr;
   cycles_until_check_ = kLookEvery;
   if (watchdog_ && watchdog_->is_alive()) return true;
-  // starting one takes its time: not with a force on
+  // starting one takes time: not while force is on
   session.release_force();
   increment(watchdog_restarts_);
   const Outcome started = start_watchdog();
@@ -253,7 +253,7 @@ bool Falcon::ensure_watchdog(FalconSession& session) noexcept {
   return static_cast<bool>(started);
 }
 
-// until the device is lost, or the end
+// Runs until the device is lost or the thread must end.
 void Falcon::run_session() noexcept {
   Ftdi ftdi(*transport_, counters_.ftdi);
   FalconSession session(ftdi, counters_, options_.force_gain, options_.clock, pose_.position_m);
@@ -270,7 +270,7 @@ void Falcon::run_session() noexcept {
       homed_.store(session.homed(), std::memory_order_relaxed);
       publish(session.pose());
     } else if (++silent == kTuneAfter) {
-      // setting up may take a second: not with a force on
+      // setting up may take a second: not while force is on
       session.release_force();
       publish(session.pose());
       increment(counters_.ftdi.retries);
@@ -292,7 +292,7 @@ void Falcon::run_session() noexcept {
   publish(pose_);
 }
 
-// waits for the device, opens it, starts its firmware: all that open() does, over and over
+// Waits for the device, opens it and starts its firmware: like open(), repeatedly.
 void Falcon::wait_for_reconnect() noexcept {
   bool arrived = false;
   for (int waited = 0; waited < options_.reconnect_poll_ms && !arrived && !quit_; waited += kSliceMs)

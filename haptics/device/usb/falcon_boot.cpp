@@ -59,7 +59,7 @@ Result<std::vector<std::uint8_t>> read_falcon_image(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     return Error{one_line(path) + ": is no file; a Falcon firmware image was expected"};
-  // before anything large is read
+  // check the size before anything large is read
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > kFalconImageMaxBytes)
     return error_at(path, kFalconImageMaxBytes, fmt::format("too long, {} bytes; at most {} were expected", size, kFalconImageMaxBytes));
@@ -73,7 +73,7 @@ namespace {
 
 constexpr int kBootWriteMs = 500, kBootReadMs = 100;
 constexpr int kProbeReads = 10, kProbeReadMs = 20;
-constexpr int kHandshakeReads = 4, kEchoIdleReads = 20;  // an idle device sends a packet each 16 ms
+constexpr int kHandshakeReads = 4, kEchoIdleReads = 20;  // an idle device sends a packet every 16 ms
 
 Error unplugged(UsbError error) {
   return Error{fmt::format("Falcon: {} while its firmware was being started; plug it in again", to_string(error))};
@@ -83,7 +83,7 @@ struct Step {
   bool done = false;
   bool cancelled = false;
   UsbError error = UsbError::none;
-  std::string what{};  ///< why not
+  std::string what{};  ///< reason for a failure
 };
 Step failed(std::string what) { return {.what = std::move(what)}; }
 Step failed(UsbError error, std::string_view where) { return {.error = error, .what = fmt::format("{} {}", to_string(error), where)}; }
@@ -94,7 +94,7 @@ bool given_up(const FalconBootOptions& options) { return options.should_abort &&
 #define CATENA_USB(call, where) \
   if (const UsbError usb_error = (call); usb_error != UsbError::none) return failed(usb_error, where)
 
-// (1)-(2): the boot loader answers
+// Steps (1)-(2): handshake with the boot loader.
 Step shake_hands(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.purge(), "at the boot mode");
   CATENA_USB(ftdi.set_latency_ms(16), "at the boot mode");
@@ -124,7 +124,7 @@ Step shake_hands(Ftdi& ftdi, const FalconBootOptions& options) {
   return failed(fmt::format("the boot loader did not answer {} hand shakes", options.max_handshakes));
 }
 
-// (3): the loader listens for an image
+// Step (3): the loader is ready for an image.
 Step ready_for_image(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.dtr_low(), "before the image");
   CATENA_USB(ftdi.set_baud(FtdiBaud::image_140000), "before the image");
@@ -135,14 +135,14 @@ Step ready_for_image(Ftdi& ftdi, const FalconBootOptions& options) {
     std::span<const std::uint8_t> payload;
     const UsbError error = ftdi.read(payload, kBootReadMs);
     if (error != UsbError::none && error != UsbError::timeout) return failed(error, "before the image");
-    // what is left of a hand shake may come before it
+    // remains of a handshake may precede it
     for (const std::uint8_t byte : payload)
       if (byte == kAsk[0]) return {.done = true};
   }
   return failed("the boot loader did not ask for the image");
 }
 
-// (4): chunk by chunk, each byte comes back
+// Step (4): sends the image chunk by chunk; the loader echoes each byte.
 Step send_image(Ftdi& ftdi, std::span<const std::uint8_t> image, int attempt, const FalconBootOptions& options) {
   std::size_t sent = 0, echoed = 0;
   while (echoed < image.size()) {
@@ -168,10 +168,10 @@ Step send_image(Ftdi& ftdi, std::span<const std::uint8_t> image, int attempt, co
   return {.done = true};
 }
 
-// firmware answers an I/O packet by a frame; a boot loader that echoes it does not run
+// Checks whether the firmware runs: firmware answers an I/O packet with a frame; a boot loader echoes it.
 Step look(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(enter_falcon_run_mode(ftdi), "at the run mode");
-  // all three LEDs: as a frame it would be three buttons at once, so that an echo is told from an answer
+  // all three LEDs: read as a frame, this would be three buttons at once, so that an echo differs from an answer
   const FalconPacket ask = encode_command({.control = kFalconRed | kFalconGreen | kFalconBlue});
   FalconFramer framer;
   UsbError last = UsbError::none;
@@ -232,7 +232,7 @@ Outcome falcon_boot(Ftdi& ftdi, std::span<const std::uint8_t> image, const Falco
     if (step.done) return Done{};
     if (step.cancelled) return Error{"Falcon: given up while its firmware was being sent"};
     if (step.error == UsbError::disconnected) return unplugged(step.error);
-    // twice a hundred hand shakes without an answer: nobody is there
+    // twice a hundred handshakes without an answer: no device
     if (silent == 2) return Error{fmt::format("Falcon: {}; unplug it, power and USB, wait a moment, and plug it in again", step.what)};
   }
   return Error{

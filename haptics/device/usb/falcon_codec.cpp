@@ -23,7 +23,7 @@ FalconCounts get_counts(std::span<const std::uint8_t, kFalconPacketBytes> bytes)
   return counts;
 }
 
-// what may stand at each place of a device's frame
+// Whether a byte may occur at position `at` of a device's frame.
 bool fits(std::size_t at, std::uint8_t byte) noexcept {
   if (at == 0) return byte == kFirst;
   if (at <= 12) return byte >= kZero && byte < kZero + 16;
@@ -85,7 +85,7 @@ bool FalconFramer::push(std::uint8_t byte, FalconFrame& frame) noexcept {
     ++dropped_bytes_;
     return false;
   }
-  // inside: only byte 14 can hide the start of another one, and then `byte` is its second
+  // inside: only byte 14 can be the start of another frame, and then `byte` is its second
   ++resyncs_;
   const bool restart = buffered_ == 15 && bytes_[14] == kFirst;
   dropped_bytes_ += restart ? 14 : buffered_;

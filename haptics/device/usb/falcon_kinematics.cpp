@@ -6,13 +6,13 @@
 namespace catena::haptics::usb {
 namespace {
 
-// metres
+// meters
 constexpr double kA = 0.060, kB = 0.1025, kC = 0.01443, kDE = 0.01125 + 0.01125, kF = -0.025, kR = 0.040, kS = -0.02309;
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kAngleAtZero = 35 * kRadians, kAnglePerCount = 0.0364347 * kRadians;
 constexpr Vec3 kStart{0, 0, 0.11};
 constexpr double kConverged = 1e-12;  // rad
-constexpr double kNear = 1e-6;        // rad, on the way
+constexpr double kNear = 1e-6;        // rad, in intermediate steps
 constexpr int kSteps = 16, kHalves = 12, kParts = 16;
 
 struct Leg {
@@ -22,10 +22,10 @@ const std::array<Leg, 3> kLegs = {{{std::cos(105 * kRadians), std::sin(105 * kRa
                                    {std::cos(-15 * kRadians), std::sin(-15 * kRadians)},
                                    {std::cos(-135 * kRadians), std::sin(-135 * kRadians)}}};
 
-// p in a leg's own frame, and the length of its parallelogram seen in the leg's plane
+// p in a leg's own frame, and the length of its parallelogram in the leg's plane.
 struct InLeg {
   double u_c, w;              // u + c, w
-  double length, dlength_dv;  // L, dL/dv; not a number out of reach
+  double length, dlength_dv;  // L, dL/dv; NaN out of reach
 };
 
 InLeg in_leg(const Leg& leg, const Vec3& p) noexcept {
@@ -58,7 +58,7 @@ bool falcon_inverse_kinematics(const Vec3& position_m, Vec3& angles) noexcept {
 
 namespace {
 
-// rows: d theta_i / dp
+// Rows: d theta_i / dp.
 bool inverse_jacobian(const Vec3& position_m, const Vec3& angles, Mat3& rad_per_metre) noexcept {
   for (int i = 0; i < 3; ++i) {
     const Leg& leg = kLegs[static_cast<std::size_t>(i)];
@@ -86,7 +86,7 @@ bool falcon_jacobian(const Vec3& position_m, const Vec3& angles, Mat3& metres_pe
 
 namespace {
 
-// Newton from p, whose angles are `at`; each step the longest half of a half of it that stays within reach and comes nearer.
+// Newton from p, whose angles are `at`; each step is halved until it stays within reach and comes nearer.
 bool newton(const Vec3& angles, double within, Vec3& p, Vec3& at) noexcept {
   double left = max_abs(angles - at);
   for (int step = 0; step < kSteps && left > within; ++step) {
@@ -113,7 +113,7 @@ bool falcon_forward_kinematics(const Vec3& angles, Vec3& position_m) noexcept {
   if (!falcon_inverse_kinematics(kStart, start_angles)) return false;
   Vec3 p = kStart, at = start_angles;
   bool found = newton(angles, kConverged, p, at);
-  // at the rim: along the straight way of the angles, so that Newton keeps to the branch of the mechanism
+  // at the rim: along a straight line in the angles, so that Newton stays on the mechanism's branch
   if (!found) {
     p = kStart;
     at = start_angles;
@@ -122,7 +122,7 @@ bool falcon_forward_kinematics(const Vec3& angles, Vec3& position_m) noexcept {
       found =
           newton(start_angles + (angles - start_angles) * (static_cast<double>(part) / kParts), part < kParts ? kNear : kConverged, p, at);
   }
-  // beyond the singular rim the mechanism would be another one
+  // beyond the singular rim the solution belongs to another branch of the mechanism
   Mat3 jacobian;
   found = found && falcon_jacobian(p, at, jacobian) && glm::determinant(jacobian) < 0;
   if (found) position_m = p;

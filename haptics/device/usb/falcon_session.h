@@ -1,11 +1,11 @@
-/// One opened Falcon whose firmware runs: a packet out, packets in until a frame, and what the frames mean. No thread of its
-/// own, no clock but the one it is given, so that a test plays it cycle by cycle. I/O thread.
+/// One opened Falcon whose firmware runs: one packet out, packets in until a frame, and the interpretation of the frames. It has no thread
+/// and uses only the clock that it is given, so that a test can run it cycle by cycle. I/O thread.
 ///   homing:  the homing bit in every packet, red, zero force, until all three axes are homed in three frames in a row; the
 ///            origin jumps at that moment
-///   waiting: blue, zero force, until the grip has been further out than 0.170 m: the hand holds it, and knows
-///   ready:   green while forces flow, blue while they do not
-/// A frame that jumps further than a hand can is believed only when the next one agrees. A pose out of reach, or a frame that
-/// is suddenly not homed, holds the last position and stops the forces in that cycle.
+///   arming:  blue, zero force, until the grip has been further out than 0.170 m: so the user holds it, and is aware of it
+///   ready:   green while forces are active, blue while they are not
+/// A frame that jumps further than a user can move (1000 counts) is accepted only when the next one agrees. A pose out of reach, or a frame
+/// that is suddenly not homed, keeps the last position and stops the forces in that cycle.
 #pragma once
 #include "haptics/device/usb/falcon_codec.h"
 #include "haptics/device/usb/falcon_kinematics.h"
@@ -13,11 +13,12 @@
 
 namespace catena::haptics::usb {
 
+/// State of the device: not plugged in, firmware being loaded, homing, waiting for the grip to be pulled out, operational.
 enum class FalconState : std::uint8_t { absent, booting, homing, arming, ready };
 
-/// What the I/O thread tells the haptic thread.
+/// Pose that the I/O thread passes to the haptic thread.
 struct FalconPose {
-  Vec3 position_m{0.0};  ///< the last good one
+  Vec3 position_m{0.0};  ///< the last valid one
   FalconCounts encoders{};
   std::uint32_t buttons = 0;
   FalconState state = FalconState::booting;
@@ -25,21 +26,22 @@ struct FalconPose {
   std::int64_t sampled_ns = 0;
 };
 
-/// ImageWriteResult by the I/O thread, read by any.
+/// Counters written by the I/O thread, read by any thread.
 struct FalconCounters {
   FtdiCounters ftdi;
   std::atomic<std::uint64_t> cycles{0}, frames{0}, bad_cycles{0}, resyncs{0}, dropped_bytes{0};
   std::atomic<std::uint64_t> jumps{0}, out_of_reach{0}, saturated{0}, stale_commands{0}, uploads{0}, disconnects{0}, reconnects{0};
 };
 
-inline constexpr Vec3 kFalconWorkspaceCenter{0, 0, 0.125};  ///< of the comfortable workspace, metres
-inline constexpr double kFalconArmingZ = 0.170;             ///< metres
+inline constexpr Vec3 kFalconWorkspaceCenter{0, 0, 0.125};  ///< center of the comfortable workspace, meters
+inline constexpr double kFalconArmingZ = 0.170;             ///< z of the grip that arms the device, meters
 
+/// The session of one opened device.
 class FalconSession {
  public:
   using Clock = std::int64_t (*)();
 
-  /// `last_position_m`: the position to hold until there is one.
+  /// `last_m`: position to report until there is a valid one, meters.
   FalconSession(Ftdi& ftdi, FalconCounters& counters, double force_gain, Clock clock, const Vec3& last_m = kFalconWorkspaceCenter)
       : ftdi_(ftdi),
         counters_(counters),
@@ -47,20 +49,21 @@ class FalconSession {
         clock_(clock),
         pose_{.position_m = last_m, .state = FalconState::homing} {}
 
+  /// Result of a cycle.
   enum class Cycle : std::uint8_t { frame, no_frame, disconnected };
-  /// One packet each way. `force_n` counts only where `forces` and the state allow it.
+  /// Sends one packet and receives until a frame. `force_n` is applied only if `forces` and the state allow it.
   Cycle cycle(const Vec3& force_n, bool forces) noexcept { return send(force_n, forces) ? receive() : Cycle::disconnected; }
-  /// The two halves. False: the device is gone.
+  /// The two halves of cycle(). send returns false if the device is disconnected.
   bool send(const Vec3& force_n, bool forces) noexcept;
   Cycle receive() noexcept;
-  /// Zero force, all LEDs off; the last packet before closing. A time-out is tried again.
+  /// Sends the shutdown packet, the last one before closing: zero force, all LEDs off. Repeated on a timeout.
   void send_shutdown() noexcept;
-  /// Zero force until the next good frame: after cycles without one.
+  /// Sends zero force until the next valid frame: after cycles without a frame.
   void release_force() noexcept;
 
   const FalconPose& pose() const { return pose_; }
   std::uint8_t homed() const { return homed_; }  ///< bits 0-2, of the last frame
-  /// The last packet was a zero, and the device has it.
+  /// Returns whether the last packet had zero force and was transferred to the device.
   bool zero_force_confirmed() const { return acknowledged_ && sent_.motors == FalconCounts{}; }
 
  private:
@@ -81,7 +84,7 @@ class FalconSession {
   FalconCounts last_encoders_{};
   bool has_encoders_ = false;
   std::uint8_t homed_ = 0;
-  int homed_run_ = 0, unhomed_run_ = 0;  ///< frames in a row
+  int homed_run_ = 0, unhomed_run_ = 0;  ///< number of frames in a row
   Mat3 meters_per_rad_{0.0};
 };
 

@@ -27,7 +27,7 @@ UsbError Ftdi::record_error(UsbError error) noexcept {
 
 UsbError Ftdi::control(std::uint8_t request, std::uint16_t value) noexcept {
   UsbError error = record_error(transport_.control(request, value));
-  // a stalled control request is over with the next one
+  // a stalled control request is cleared by the next one
   if (error == UsbError::stall || error == UsbError::timeout) {
     increment(counters_.retries);
     error = record_error(transport_.control(request, value));
@@ -48,7 +48,7 @@ UsbError Ftdi::write(std::span<const std::uint8_t> bytes, int timeout_ms) noexce
       increment(counters_.packets_out);
       return UsbError::none;
     }
-    // a part only: the rest once more
+    // a partial transfer: send the rest again
     const UsbError error = record_error(moved.error);
     if (error == UsbError::stall) {
       if (const UsbError cleared = record_error(transport_.clear_halt(UsbEndpoint::out)); cleared != UsbError::none) return cleared;
@@ -69,7 +69,7 @@ UsbError Ftdi::read(std::span<const std::uint8_t>& payload, int timeout_ms) noex
     increment(counters_.retries);
     moved = transport_.read(packet_, timeout_ms);
   }
-  // what came before a timeout came
+  // data received before a timeout is valid
   const std::size_t bytes = std::min(moved.bytes, packet_.size());
   if (bytes > 2) {
     payload = std::span<const std::uint8_t>(packet_).subspan(2, bytes - 2);

@@ -47,7 +47,7 @@ struct HandleClose {
 };
 using HandlePtr = std::unique_ptr<libusb_device_handle, HandleClose>;
 
-// a device of the id: its handle and file, or libusb's code why it cannot be opened
+// A device of the given id: its handle and file descriptor, or libusb's error code if it cannot be opened.
 struct Candidate {
   DevicePtr device;
   HandlePtr handle;
@@ -59,7 +59,7 @@ void on_pollfd(int fd, short events, void* at) {
   if ((events & POLLOUT) != 0) *static_cast<int*>(at) = fd;
 }
 
-// libusb tells of the file that it opens, and waits for (POLLOUT: a transfer is complete); it has no other way to ask
+// libusb announces the file that it opens and polls (POLLOUT: a transfer is complete) only by this callback.
 int open_with_file(libusb_context* context, libusb_device* device, libusb_device_handle*& handle, int& fd) {
   libusb_set_pollfd_notifiers(context, on_pollfd, nullptr, &fd);
   const int code = libusb_open(device, &handle);
@@ -116,7 +116,7 @@ std::vector<Candidate> candidates(libusb_context* context, const UsbId& id) {
 }
 
 int claim(libusb_device_handle* handle) {
-  libusb_set_auto_detach_kernel_driver(handle, 1);  // where the system has no such thing, nothing is to be detached
+  libusb_set_auto_detach_kernel_driver(handle, 1);  // on systems without it there is nothing to detach
   return libusb_claim_interface(handle, kInterface);
 }
 
@@ -169,7 +169,7 @@ UsbError LibusbTransport::control(std::uint8_t request, std::uint16_t value) noe
 
 UsbTransferResult LibusbTransport::write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept {
   int moved = 0;
-  // libusb asks for a pointer that it could write through, and does not for OUT
+  // libusb takes a non-const pointer, but does not write for OUT
   const int code = libusb_bulk_transfer(handle_, kOut, const_cast<unsigned char*>(bytes.data()), static_cast<int>(bytes.size()), &moved,
                                         static_cast<unsigned>(timeout_ms));
   return {to_error(code), static_cast<std::size_t>(std::max(moved, 0))};
@@ -186,7 +186,7 @@ UsbError LibusbTransport::clear_halt(UsbEndpoint endpoint) noexcept {
   return to_error(libusb_clear_halt(handle_, endpoint == UsbEndpoint::out ? kOut : kIn));
 }
 
-// ---- where it comes from ----
+// ---- transport source ----
 
 LibusbTransportSource::LibusbTransportSource(UsbId id, int index) : id_(std::move(id)), index_(index) {
   auto context = make_context();

@@ -1,5 +1,5 @@
-/// The bytes over libusb: finds, opens and claims a device, hears of its coming (hotplug where libusb has it, else by looking),
-/// and turns libusb's errors into UsbError. One thread at a time for each object.
+/// Transport over libusb: finds, opens and claims a device, detects when it is plugged in (hotplug where libusb supports it, else by
+/// polling), and converts libusb's errors to UsbError. One thread at a time for each object.
 #pragma once
 #include <atomic>
 #include <string>
@@ -12,24 +12,26 @@ struct libusb_device_handle;
 
 namespace catena::haptics::usb {
 
+/// Identification of a USB device.
 struct UsbId {
   std::uint16_t vendor = 0, product = 0;
-  std::string product_string;  ///< as the device says it; empty: any
+  std::string product_string;  ///< as reported by the device; empty: any
 };
 inline const UsbId kFalconUsbId{0x0403, 0xcb48, "FALCON HAPTIC"};
 
-/// One of the bus.
+/// A device found on the bus.
 struct UsbDeviceInfo {
   bool can_open = false;
   std::string detail;  ///< where it is, or why it cannot be opened and what to do
 };
-/// Those of this id, in the order in which LibusbTransportSource counts them.
+/// Returns the devices of this id, in the order of LibusbTransportSource's index.
 Result<std::vector<UsbDeviceInfo>> list_usb(const UsbId& id);
 
+/// An opened device with interface 0 claimed.
 class LibusbTransport final : public Transport {
  public:
-  /// Takes a device node that is open already (interface 0 is claimed; the descriptor stays the caller's). Devices are not
-  /// enumerated then: libusb keeps that for every context that this process makes later, so open what is found by id before.
+  /// Wraps a device node that is already open (interface 0 is claimed; the caller keeps the descriptor). It disables the enumeration of
+  /// devices, for every context that this process makes later: open devices that are found by id first.
   static Result<std::unique_ptr<LibusbTransport>> wrap(int fd);
   ~LibusbTransport() override;
   LibusbTransport(const LibusbTransport&) = delete;
@@ -47,10 +49,10 @@ class LibusbTransport final : public Transport {
 
   std::shared_ptr<libusb_context> context_;
   libusb_device_handle* handle_;
-  int fd_;  ///< libusb's own
+  int fd_;  ///< owned by libusb
 };
 
-/// The n-th device of an id on the bus, again and again.
+/// Opens the device with the given index among those of an id on the bus, repeatedly.
 class LibusbTransportSource final : public TransportSource {
  public:
   explicit LibusbTransportSource(UsbId id, int index = 0);
@@ -65,9 +67,9 @@ class LibusbTransportSource final : public TransportSource {
  private:
   UsbId id_;
   int index_;
-  std::shared_ptr<libusb_context> context_;  ///< null: libusb does not start here
+  std::shared_ptr<libusb_context> context_;  ///< null: libusb cannot be initialized
   std::string context_error_;
-  int hotplug_ = 0;  ///< libusb's handle of the callback
+  int hotplug_ = 0;  ///< libusb's handle of the hotplug callback
   std::atomic<bool> arrived_{false};
 };
 

@@ -11,7 +11,7 @@ namespace catena::haptics::usb {
 namespace {
 
 constexpr int kMost = 16;
-constexpr int kIoPriority = 82;  // before the servo's own thread: it mostly waits for the bus
+constexpr int kIoPriority = 82;  // above the servo's own thread: it mostly waits for the bus
 
 }  // namespace
 

@@ -32,19 +32,19 @@ Error no_watchdog(const std::string& why) {
 class WatchdogProcess final : public ExternalWatchdog {
  public:
   WatchdogProcess(pid_t child, int lifeline) : child_(child), lifeline_(lifeline) {}
-  /// Without quit() it is the end of the lifeline that the process hears.
+  /// Without quit(), the process detects the end of the lifeline.
   ~WatchdogProcess() override {
     close(lifeline_);
     for (int i = 0; i < kEndMs; ++i) {
-      if (waitpid(child_, nullptr, WNOHANG) != 0) return;  // it has ended, or is none of ours to wait for
+      if (waitpid(child_, nullptr, WNOHANG) != 0) return;  // it has ended, or is not a child of this process
       const timespec nap{0, 1000000};
       nanosleep(&nap, nullptr);
     }
-    // still writes: a device that does not answer. It goes on until the device is gone
+    // still writing: a device that does not answer; the watchdog continues until the device is disconnected
   }
   bool is_alive() noexcept override {
     pollfd line{lifeline_, POLLIN, 0};
-    return poll(&line, 1, 0) == 0;  // it says nothing after it was ready: only its end is heard
+    return poll(&line, 1, 0) == 0;  // after "ready" the process sends nothing: only its end is detected
   }
   void quit() noexcept override { [[maybe_unused]] const auto sent = send(lifeline_, &watchdog::kQuit, 1, MSG_NOSIGNAL); }
 
@@ -53,7 +53,8 @@ class WatchdogProcess final : public ExternalWatchdog {
   int lifeline_;
 };
 
-/// The descriptors at 3, 4, 5; nothing else but stderr; no signal of this program's is ignored or blocked there.
+/// Starts the process with `usb`, `page` and `lifeline` as descriptors 3, 4 and 5, this program's stderr, and /dev/null as stdin and
+/// stdout. No other descriptor is inherited; all signals have their default action and are unblocked.
 int spawn(const std::string& path, int usb, int page, int lifeline, pid_t& child) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -95,7 +96,7 @@ Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path,
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return no_watchdog(std::strerror(errno));
   FileDescriptor ours(pair[0]);
   FileDescriptor theirs(pair[1]);
-  // out of the way of 3, 4 and 5
+  // keep descriptors 3, 4 and 5 free
   const FileDescriptor usb(fcntl(transport.descriptor(), F_DUPFD_CLOEXEC, kFirstFree)),
       page(fcntl(memory.fd(), F_DUPFD_CLOEXEC, kFirstFree));
   FileDescriptor lifeline(fcntl(theirs.get(), F_DUPFD_CLOEXEC, kFirstFree));
@@ -103,7 +104,7 @@ Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path,
   pid_t child = 0;
   if (const int code = spawn(path, usb.get(), page.get(), lifeline.get(), child); code != 0)
     return no_watchdog(fmt::format("{}: {}", path, std::strerror(code)));
-  // the process holds the only other end: its death is heard
+  // the process has the only other end: its death is detected
   theirs.close();
   lifeline.close();
   auto process = std::make_unique<WatchdogProcess>(child, ours.get());

@@ -1,5 +1,5 @@
-/// A driver's side of the watchdog process (haptics/watchdog): the page that both see, and the process as something that is started for
-/// an open device and told to end. Not on the haptic thread; the page's numbers are for any.
+/// A driver's side of the watchdog process (haptics/watchdog): the shared memory page, and the process that is started for an open device
+/// and ended with it. Not on the haptic thread; the page's atomic values may be used on any thread.
 #pragma once
 #include <sys/types.h>
 
@@ -13,10 +13,10 @@
 
 namespace catena::haptics::usb {
 
-/// The shared page. Its size is sealed: nobody can take it from under the other.
+/// The shared memory page. Its size is sealed, so that neither process can truncate it while the other uses it.
 class WatchdogSharedMemory {
  public:
-  /// `off`: the packet that takes the force away, for bulk OUT `endpoint`.
+  /// Makes the page. `off`: zero-force packet, for bulk OUT `endpoint`.
   static Result<std::unique_ptr<WatchdogSharedMemory>> make(std::uint8_t endpoint, std::span<const std::uint8_t> off);
   ~WatchdogSharedMemory();
   WatchdogSharedMemory(const WatchdogSharedMemory&) = delete;
@@ -31,17 +31,19 @@ class WatchdogSharedMemory {
   watchdog::SharedPage* page_;
 };
 
-/// Something that watches one open device. Destroyed without quit() it takes the force away: as if the program were gone.
+/// A watchdog of one open device. If it is destroyed without quit() it cuts the force, as if the program had exited.
 class ExternalWatchdog {
  public:
   virtual ~ExternalWatchdog() = default;
   virtual bool is_alive() noexcept = 0;
-  virtual void quit() noexcept = 0;  ///< the motors have had their zero: it ends at once, and writes nothing
+  /// Ends the watchdog at once, without a packet: the driver has already sent zero force.
+  virtual void quit() noexcept = 0;
 };
 
+/// Starts a watchdog for an open device and its shared page; an Error where it cannot be started.
 using WatchdogLauncher = std::function<Result<std::unique_ptr<ExternalWatchdog>>(Transport&, const WatchdogSharedMemory&)>;
 
-/// Starts the program at `path` in a session of its own; waits until it watches.
+/// Returns a launcher that starts the program at `path` in a session of its own and waits until it watches.
 WatchdogLauncher make_watchdog_launcher(const std::string& path);
 
 }  // namespace catena::haptics::usb

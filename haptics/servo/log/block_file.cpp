@@ -157,7 +157,7 @@ bool BlockFile::write(BlockType type, std::string_view payload) {
 }
 
 bool BlockFile::sync() {
-  // pipes and terminals know no sync
+  // pipes and terminals cannot be synced
   if (error_ == 0 && ::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) error_ = errno;
   return error_ == 0;
 }
@@ -195,7 +195,7 @@ bool BlockReader::read_header(std::uint64_t at, BlockHeader& head) {
   return source_->read(at, bytes, kHeadBytes) && is_head(bytes, head);
 }
 
-// Moves on to the next place where a block's own 32 bytes are good.
+// Advances to the next position at which the 32 header bytes of a block are valid.
 bool BlockReader::find_next_header() {
   std::string window;
   BlockHeader head;

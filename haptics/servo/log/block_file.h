@@ -1,4 +1,4 @@
-/// Where a log's bytes come from: a file, or memory. Off the tick.
+/// Input and output of a log as blocks (format.h): byte sources, the writer of blocks and the reader of blocks. Off the tick.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,42 +9,47 @@
 
 namespace catena::haptics::log {
 
-/// Bytes with random access. One thread.
+/// Source of bytes with random access. One thread.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
-  virtual std::uint64_t size() const = 0;  ///< as it was when it was opened
-  /// False where the bytes cannot be read.
+  /// Returns the number of bytes, as it was when the source was opened.
+  virtual std::uint64_t size() const = 0;
+  /// Reads `bytes` bytes at `offset` into `to`. Returns false if they cannot all be read.
   virtual bool read(std::uint64_t offset, void* to, std::size_t bytes) = 0;
 };
 
-/// A regular file. An error names it.
+/// Opens a regular file. The Error names it.
 Result<std::unique_ptr<ByteSource>> open_file_source(const std::string& path);
-std::unique_ptr<ByteSource> make_memory_source(std::string_view bytes);  ///< which outlive it
+/// Returns a source of bytes in memory, which must outlive it.
+std::unique_ptr<ByteSource> make_memory_source(std::string_view bytes);
 
-/// The writing end of a log: whole blocks, each with one write(2), straight into the file under its own name, so that what is
-/// written survives the death of the process at any moment. `sync` (fdatasync) makes it survive the machine's, too.
-/// The first failure is kept; after it nothing is written. One thread.
+/// Writer of the blocks of a log: each whole block is written with one write(2) directly to the file under its final name, so that it
+/// survives the end of the process at any moment. `sync` (fdatasync) makes it survive a failure of the machine, too.
+/// The first error is kept; after it nothing is written. Owns the file descriptor. One thread.
 class BlockFile {
  public:
-  /// Replaces what is there, unless another process is writing it. Writes the preamble.
+  /// Creates the file, or replaces an existing one, and writes the preamble. An Error if the file is an input of this program, cannot be
+  /// written, or is being recorded into by another process.
   static Result<BlockFile> create(const std::string& path);
-  /// Takes the file over; `other` is closed then.
+  /// Takes over the file of `other`, which is left without one.
   BlockFile(BlockFile&& other) noexcept;
   BlockFile& operator=(BlockFile&&) = delete;
   ~BlockFile();
 
-  /// Appends a block; false: it could not, see error().
+  /// Appends a block; returns false on failure, see error().
   bool write(BlockType type, std::string_view payload);
-  /// Brings what was written to the disk; false: see error().
+  /// Flushes the file to the disk; returns false on failure, see error().
   bool sync();
-  /// Closes the file; false: see error().
+  /// Closes the file; returns false on failure, see error().
   bool close();
-  void discard();  ///< closes and removes it: not even its header could be written
-  /// Whether something could not be written.
+  /// Closes and removes the file, if not even its header could be written.
+  void discard();
+  /// Returns whether an operation has failed.
   bool failed() const { return error_ != 0; }
-  Error error() const;  ///< "FILE: cannot write: No space left on device"
-  /// ImageWriteResult so far.
+  /// Returns the first error, such as "FILE: cannot write: No space left on device"; empty if there was none.
+  Error error() const;
+  /// Returns the number of bytes written so far.
   std::uint64_t bytes() const { return bytes_; }
 
  private:
@@ -56,32 +61,32 @@ class BlockFile {
   std::uint64_t sequence_ = 0, bytes_ = 0;
 };
 
-/// The blocks of a log one after the other, damaged ones passed over (format.h). Every byte is looked at a bounded number of times, and
-/// no more memory is taken than a block has bytes in the file. Off the tick.
+/// Reader of the blocks of a log in order, which skips damaged ones (format.h). Every byte is read a bounded number of times, and no more
+/// memory is used than the block has bytes in the file. Off the tick.
 class BlockReader {
  public:
-  /// Of a log's bytes, from the first on.
+  /// Creates a reader of a log whose preamble has been checked; it starts at the first block.
   explicit BlockReader(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
 
-  /// What next() came to.
+  /// Result of next().
   enum class ReadResult {
-    block,
-    damaged,   ///< one or more blocks are passed over
+    block,     ///< a good block
+    damaged,   ///< one or more damaged blocks were skipped
     end,       ///< the file ends with the last block
-    truncated  ///< what follows is no complete block
+    truncated  ///< the rest of the file is no complete block
   };
-  /// Goes to the next good block.
+  /// Advances to the next block.
   ReadResult next();
 
-  // of the last block found
-  /// What it holds.
+  // properties of the last block found
+  /// Returns the type of the block.
   BlockType type() const { return static_cast<BlockType>(header_.type); }
-  /// Its number, from 0.
+  /// Returns the sequence number of the block, from 0.
   std::uint64_t sequence() const { return header_.sequence; }
-  /// Its bytes, until the next call.
+  /// Returns the payload of the block, valid until the next call of next().
   std::string_view payload() const { return payload_; }
 
-  /// Where the bytes come from.
+  /// Returns the source of the bytes.
   ByteSource& source() { return *source_; }
 
  private:

@@ -9,12 +9,12 @@
 
 namespace catena::haptics::log {
 
-// What a program brings along has grown: write it, read it, say so in format.h and raise kVersion.
+// If an assertion fails, one of these structs has changed: write and read the new fields, describe them in format.h and raise kVersion.
 static_assert(sizeof(DeviceLimits) == 88 && sizeof(Coupling) == 56);
 
 namespace {
 
-// One list of the numbers for both directions: `each` sees them in the order of the format.
+// One list of the numbers for both directions: calls `each` for them in the order of the format.
 template <class P, class F>
 void each_number(P& p, const F& each) {
   for (auto* v : {&p.limits.max_stiffness_n_per_m, &p.limits.max_rotational_stiffness_nm_per_rad, &p.limits.max_force_n,
@@ -65,7 +65,7 @@ struct GetNumber {
   }
 };
 
-/// What must agree for the bytes of a state to mean the same.
+/// Hash of the record layouts that must agree for the bytes of a state to have the same meaning.
 std::uint64_t state_layout() {
   Fnv1a layout;
   for (const std::size_t size : {sizeof(ChainState), sizeof(LinkState), sizeof(Ramp), sizeof(UnaccountedEnergy), sizeof(PassivityState),

@@ -1,4 +1,4 @@
-/// What a log tells beside its ticks: the header, the programs, gaps and the end; to bytes and back. Off the tick.
+/// Contents of a log besides its ticks (header, programs, state, gaps, end) and their conversion to and from bytes. Off the tick.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,103 +8,106 @@
 
 namespace catena::haptics::log {
 
-/// A plug-in that was loaded: its constraints may run in the ticks.
+/// Plug-in that was loaded during the recording; its constraints may have run in the ticks.
 struct LogPlugin {
-  std::string file;                ///< its name, without its folder
-  std::uint64_t hash = 0;          ///< FNV-1a-64 of the file
-  std::vector<std::string> types;  ///< types of links that it gave
+  std::string file;                ///< file name, without the folder
+  std::uint64_t hash = 0;          ///< FNV-1a-64 hash of the file
+  std::vector<std::string> types;  ///< names of the constraint types that it added
 };
 
-/// What was known before the first tick.
+/// Header of a log: everything that is known before the first tick.
 struct LogHeader {
-  std::string scene_path;            ///< as the user gave it
-  std::string working_folder;        ///< of relative paths; empty: filled in by the writer
-  std::string scene_text;            ///< the file as it was read
-  std::vector<std::string> fields;   ///< --field NAME=FILE[:GRID]
-  std::string device;                ///< its name
-  std::string catena_version;        ///< that recorded
-  double rate_hz = 1000;             ///< of the servo
-  std::int64_t started_unix_ns = 0;  ///< 0: filled in by the writer
-  std::string about{};               ///< what it was recorded for, one line; empty: nothing is known
-  std::vector<LogPlugin> plugins{};  ///< none in recordings of before there were plug-ins
+  std::string scene_path;            ///< path of the scene as the user specified it
+  std::string working_folder;        ///< folder to which relative paths refer; empty: set by the writer
+  std::string scene_text;            ///< text of the scene file as it was read
+  std::vector<std::string> fields;   ///< arguments of --field, NAME=FILE[:GRID]
+  std::string device;                ///< name of the device
+  std::string catena_version;        ///< version of Catena that recorded the log
+  double rate_hz = 1000;             ///< nominal rate of the servo
+  std::int64_t started_unix_ns = 0;  ///< start time, nanoseconds since 1970 (UTC); 0: set by the writer
+  std::string about{};               ///< purpose of the recording, one line; empty: unknown
+  std::vector<LogPlugin> plugins{};  ///< loaded plug-ins; empty also in recordings of versions without plug-in support
 };
 
-/// All of a program that its scene's text does not say, or that the program may have got elsewhere (a fitted workspace, a ramp).
+/// Properties of a haptic program that its scene text does not contain or that may come from elsewhere (a fitted workspace, a ramp).
+/// Coupling::force is not stored; it comes from the scene text.
 struct LogProgram {
-  /// A link of the program.
+  /// Link of the program.
   struct Link {
-    std::string name;             ///< its name
-    std::uint64_t spec_hash = 0;  ///< as in Link::recipe
+    std::string name;             ///< name of the link
+    std::uint64_t spec_hash = 0;  ///< as in haptics::Link
   };
   std::uint64_t epoch = 0;                ///< as in HapticProgram
-  std::uint64_t first_tick = 0;           ///< the tick that it runs from
-  bool is_known = true;                   ///< false: the log does not say what ran here; the links are named link_1 ..
-  std::optional<std::string> scene_text;  ///< none: the header's
-  DeviceLimits limits;                    ///< of the device
-  Coupling coupling;                      ///< how the links made a force
+  std::uint64_t first_tick = 0;           ///< first tick that it runs
+  bool is_known = true;                   ///< false: the log does not contain the program; its links are named link_1, link_2 ..
+  std::optional<std::string> scene_text;  ///< scene text; none: the header's
+  DeviceLimits limits;                    ///< limits of the device
+  Coupling coupling;                      ///< coupling of probe and links
   double meters_per_unit = 1;             ///< as in HapticProgram
   Vec3 workspace_origin{0.0};             ///< as in HapticProgram
   Mat3 workspace_rotation{1.0};           ///< as in HapticProgram
-  std::vector<Link> links;                ///< in the order of the chain
-  /// A widget of the program.
+  std::vector<Link> links;                ///< links in the order of the program
+  /// Widget of the program.
   struct Widget {
-    std::string name;            ///< its name
+    std::string name;            ///< name of the widget
     std::uint32_t revision = 0;  ///< as in widget::Spec
-    widget::Pose pose;           ///< when the program was made
-    double value = 0;            ///< isolevel
+    widget::Pose pose;           ///< pose when the program was built
+    double value = 0;            ///< isolevel widget: its value
   };
-  std::vector<std::string> modes;  ///< names of modes
-  std::vector<Widget> widgets;     ///< in the order of the program
+  std::vector<std::string> modes;  ///< names of the modes
+  std::vector<Widget> widgets;     ///< widgets in the order of the program
 
-  /// Names in the order of the ticks' columns.
+  /// Returns the names of the links, in the order of the ticks' columns.
   std::vector<std::string> link_names() const;
-  /// Names in the order of the ticks' columns.
+  /// Returns the names of the widgets, in the order of the ticks' columns.
   std::vector<std::string> widget_names() const;
 };
 
-/// Ticks that the log does not hold.
+/// Range of ticks that are missing in the log.
 struct LogGap {
-  /// Why they are not there.
+  /// Cause of the gap: the writer could not keep up with the ticks; the log is damaged there.
   enum class Cause { overrun, damaged };
-  std::uint64_t first_tick = 0, ticks = 0;  ///< the first that is missing, and how many
-  Cause cause = Cause::overrun;             ///< why
-  std::string description() const;          ///< "ticks 5 to 9 are lost: ..."
+  std::uint64_t first_tick = 0, ticks = 0;  ///< first missing tick and number of missing ticks
+  Cause cause = Cause::overrun;             ///< cause of the gap
+  /// Returns one line, "ticks 5 to 9 are lost: ...".
+  std::string description() const;
 };
 
-/// What the writer wrote at the end.
+/// End of a log, written when the recording was finished.
 struct LogEnd {
-  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;  ///< ticks in the log, ticks lost, number of the last, hash (StateHash)
+  /// Number of ticks in the log, number of ticks lost, number of the last tick in the log, hash of the ticks in the log (StateHash).
+  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;
 };
 
-/// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`. Its bytes are the file's: they are to be
-/// run only after validate_state (haptics/chain/validate_state.h) with the program.
+/// Start of a log that begins while the servo runs: the state of the chain after `tick`. The state has the bytes of the file; check it with
+/// validate_state (haptics/chain/validate_state.h) and the program before running ticks from it.
 struct LogState {
-  std::uint64_t tick = 0;           ///< the tick before the log's first
-  std::optional<ChainState> chain;  ///< none: the program that recorded keeps its state in another way
+  std::uint64_t tick = 0;           ///< number of the tick before the log's first
+  std::optional<ChainState> chain;  ///< state; none: it was recorded by a build of Catena with another state layout
 };
 
-/// What the log tells of a program; none: its scene text is the header's.
+/// Returns what the log stores of a program. `scene_text`: scene text of the program; none: the header's.
 LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text);
 
-/// The payload of the block.
+/// Returns the payload of the header block.
 std::string to_bytes(const LogHeader& header);
-/// The payload of the block.
+/// Returns the payload of the program block.
 std::string to_bytes(const LogProgram& program);
-/// The payload of the block.
+/// Returns the payload of the state block.
 std::string to_bytes(const ChainState& state);
-/// The payload of the block.
+/// Returns the payload of the gap block.
 std::string to_bytes(const LogGap& gap);
-/// The payload of the block.
+/// Returns the payload of the end block.
 std::string to_bytes(const LogEnd& end);
-/// Nothing where the bytes are none of these.
+/// Parses the payload of a header block; returns nothing if the bytes are invalid.
 std::optional<LogHeader> parse_header(std::string_view bytes);
-/// Nothing where the bytes are none of these.
+/// Parses the payload of a program block; returns nothing if the bytes are invalid.
 std::optional<LogProgram> parse_program(std::string_view bytes);
-/// Nothing where the bytes are none of these.
+/// Parses the payload of a state block; returns nothing if the bytes are invalid.
 std::optional<LogState> parse_state(std::string_view bytes);
-/// Nothing where the bytes are none of these.
+/// Parses the payload of a gap block; returns nothing if the bytes are invalid.
 std::optional<LogGap> parse_gap(std::string_view bytes);
-/// Nothing where the bytes are none of these.
+/// Parses the payload of an end block; returns nothing if the bytes are invalid.
 std::optional<LogEnd> parse_end(std::string_view bytes);
 
 }  // namespace catena::haptics::log

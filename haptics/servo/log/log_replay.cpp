@@ -10,7 +10,7 @@ namespace catena::haptics::log {
 
 namespace {
 
-// The program that was built, if it has the links that the log names.
+// The built program with the spec hashes of the log, if it has the links that the log names.
 Result<std::shared_ptr<const HapticProgram>> with_recorded_recipes(const HapticProgram& built, const LogProgram& recorded) {
   HapticProgram program = built;
   bool same = program.widgets.size() == recorded.widgets.size() && program.links.size() == recorded.links.size() &&
@@ -32,7 +32,7 @@ Result<std::shared_ptr<const HapticProgram>> with_recorded_recipes(const HapticP
   return std::shared_ptr<const HapticProgram>(std::make_shared<HapticProgram>(std::move(program)));
 }
 
-// The log says where it begins, and which links of the next program keep their state: neither is trusted.
+// Checks the start tick and the initial state that the log states: neither is trusted.
 Outcome check_at(std::uint64_t tick, const HapticProgram& program, const ChainState& state) {
   const Outcome sane = validate_state(program, state);
   if (!sane) return Error{"before tick " + std::to_string(tick) + ": " + sane.error().message};

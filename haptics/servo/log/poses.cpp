@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPosesABlock = 100'000;
 
-/// In the order of the format.
+/// Calls `each` for the numbers of a pose, in the order of the format.
 template <class Pose, class F>
 void each_tracked_number(Pose& pose, const F& each) {
   for (int a = 0; a < 3; ++a) each(pose.position_m[a]);

@@ -1,6 +1,6 @@
-/// What a headset knows of its person beside the probe: where head, hands and gaze are when a picture is shown, as its runtime predicted
-/// them. An optional part of a recording (format.h, POSES): a recording without a headset has none, and is as it was before there were any.
-/// Metres of room, a tracker's axes; the gaze looks along its -z.
+/// Poses of the user in a session with a headset, besides the probe: head, hands and gaze at the time when a frame is displayed, as
+/// predicted by the runtime. Optional part of a recording (format.h, POSES); a recording without a headset has none. Meters of the stage
+/// space, axes of the runtime; the gaze direction is -z.
 #pragma once
 #include <array>
 #include <optional>
@@ -12,37 +12,38 @@
 
 namespace catena::haptics::log {
 
-/// What a headset tracks.
+/// Part of the user that a headset tracks.
 enum class TrackedPart : std::size_t { head, left_hand, right_hand, gaze };
-inline constexpr std::size_t kTrackedPartCount = 4;  ///< How many they are.
-const char* to_string(TrackedPart part);             ///< head, left_hand, right_hand, gaze
+inline constexpr std::size_t kTrackedPartCount = 4;  ///< number of tracked parts
+/// Returns head, left_hand, right_hand or gaze.
+const char* to_string(TrackedPart part);
 
-/// One pose.
+/// Pose of a tracked part.
 struct TrackedPose {
-  Vec3 position_m{0.0};                 ///< metres of the room
-  Quat orientation{kIdentityRotation};  ///< room from part, unit
+  Vec3 position_m{0.0};                 ///< position in the stage space, meters
+  Quat orientation{kIdentityRotation};  ///< rotation from the axes of the part to the stage space, unit
   bool operator==(const TrackedPose&) const = default;
 };
 
-/// Of one picture.
+/// Poses of one frame of the headset.
 struct LogPoses {
-  std::uint64_t tick = 0;         ///< the newest tick that was known when the picture was begun
-  std::int64_t predicted_ns = 0;  ///< when it was to be shown, on the runtime's clock: what the poses are of
-  std::array<std::optional<TrackedPose>, kTrackedPartCount> parts{};  ///< none: not tracked
+  std::uint64_t tick = 0;         ///< newest tick that had been received when the frame was started
+  std::int64_t predicted_ns = 0;  ///< predicted display time to which the poses refer, on the runtime's clock, nanoseconds
+  std::array<std::optional<TrackedPose>, kTrackedPartCount> parts{};  ///< pose of each part; none: not tracked
   bool operator==(const LogPoses&) const = default;
 
-  /// The pose of a part.
+  /// Returns the pose of a part.
   std::optional<TrackedPose>& operator[](TrackedPart part) { return parts[static_cast<std::size_t>(part)]; }
 };
 
-/// The payload of the block.
+/// Returns the payload of a poses block.
 std::string to_bytes(const std::vector<LogPoses>& poses);
-/// Nothing where the bytes are none, or a number is not finite.
+/// Parses the payload of a poses block; returns nothing if the bytes are invalid or a number is not finite.
 std::optional<std::vector<LogPoses>> parse_poses(std::string_view bytes);
 
-/// As a table: tick, predicted_ns, then head_x,y,z,qw,qx,qy,qz and so on for each part; empty where a part was not tracked.
+/// Returns the header line of the CSV table: tick, predicted_ns, then head_x,y,z,qw,qx,qy,qz and so on for each part.
 std::string poses_csv_header();
-/// One row, without a line end.
+/// Appends one row with its line end; the columns of a part that is not tracked are empty.
 void append_poses_csv(std::string& line, const LogPoses& poses);
 
 }  // namespace catena::haptics::log

@@ -64,7 +64,7 @@ LogEvent LogReader::next() {
           break;
       }
       if (blocks_.sequence() < next_sequence_) {
-        mark_damaged();  // a block for the second time
+        mark_damaged();  // a duplicate block
         continue;
       }
       if (blocks_.sequence() > next_sequence_) mark_damaged();
@@ -105,7 +105,7 @@ std::optional<LogEvent> LogReader::read_program() {
   }
   program_ = std::move(*program);
   has_program_ = program_.is_known;
-  if (!has_program_) return std::nullopt;  // its ticks say how many links it has
+  if (!has_program_) return std::nullopt;  // without a program the number of links of a tick is unknown
   return LogEvent::program;
 }
 
@@ -117,7 +117,7 @@ std::optional<LogEvent> LogReader::read_ticks() {
                     count <= blocks_.payload().size() && first <= ~std::uint64_t{0} - count;
   constexpr std::size_t kHead = 28;
   const RecordLayout shape{static_cast<int>(links & 0xff), static_cast<int>(widgets & 0xff)};
-  // all of it is looked at before any of it is told
+  // validate the whole block before any of it is reported
   RecordWords words{};
   LogTick tick;
   bool good = sane;
@@ -136,7 +136,7 @@ std::optional<LogEvent> LogReader::read_ticks() {
     return report_gap_before(first);
   }
   if (!has_program_ || program_.epoch != epoch || program_.links.size() != links || program_.widgets.size() != widgets) {
-    // its block is damaged, or nobody told the writer
+    // the program's block is damaged, or the writer did not get the program
     if (has_program_ || program_.is_known) mark_damaged();
     program_ = {};
     program_.epoch = epoch;

@@ -1,4 +1,4 @@
-/// Reads a log, whole or cut off at any byte: programs, ticks and gaps in their order. Memory: one block. Off the tick.
+/// Reads a log, complete or truncated at any byte: programs, ticks and gaps in their order. Uses the memory of one block. Off the tick.
 ///   CATENA_TRY(LogReader log, LogReader::open(path));
 ///   for (LogEvent e = log.next(); e != LogEvent::done; e = log.next()) if (e == LogEvent::tick) use(log.tick());
 #pragma once
@@ -11,45 +11,49 @@
 
 namespace catena::haptics::log {
 
-/// What next() came to.
+/// Event returned by LogReader::next().
 enum class LogEvent {
-  program,  ///< takes over with the next tick
+  program,  ///< a program takes over with the next tick
   state,    ///< the log begins after tick state().tick
-  tick,
-  gap,    ///< ticks that are not there
-  poses,  ///< of some pictures of a headset; those of a session without one have none
-  done
+  tick,     ///< a tick
+  gap,      ///< ticks are missing
+  poses,    ///< poses of some frames of a headset
+  done      ///< end of the log
 };
 
-/// A log that is being read. One thread.
+/// Reader of a log. One thread.
 class LogReader {
  public:
-  /// The error says what is wrong with the file's first bytes.
+  /// Opens a file and reads its header. An Error if it cannot be read, is no recording, or has another version or byte order or a damaged
+  /// header.
   static Result<LogReader> open(const std::string& path);
-  static Result<LogReader> open(std::unique_ptr<ByteSource> source,
-                                const std::string& name);  ///< The same of any source; `name` begins every message.
+  /// Opens a log from any source; every error message starts with `name`.
+  static Result<LogReader> open(std::unique_ptr<ByteSource> source, const std::string& name);
 
-  /// What was known before the first tick.
+  /// Returns the header.
   const LogHeader& header() const { return header_; }
-  /// Goes on to the next event.
+  /// Advances to the next event.
   LogEvent next();
-  const LogProgram& program() const { return program_; }  ///< that of the ticks that follow
-  /// After LogEvent::tick.
+  /// Returns the program of the ticks that follow.
+  const LogProgram& program() const { return program_; }
+  /// Returns the tick; after LogEvent::tick.
   const LogTick& tick() const { return tick_; }
-  const RecordWords& record_words() const { return record_words_; }  ///< the same tick (record.h)
-  /// After LogEvent::gap.
+  /// Returns the record of the same tick (record.h).
+  const RecordWords& record_words() const { return record_words_; }
+  /// Returns the gap; after LogEvent::gap.
   const LogGap& gap() const { return gap_; }
-  /// After LogEvent::state.
+  /// Returns the state from which the log begins; after LogEvent::state.
   const LogState& state() const { return state_; }
-  /// After LogEvent::poses.
+  /// Returns the poses; after LogEvent::poses.
   const std::vector<LogPoses>& poses() const { return poses_; }
 
-  /// Number of the newest tick so far.
+  /// Returns the number of the last tick so far, missing ones included.
   std::uint64_t last_tick() const { return last_tick_; }
-  /// Once done: the end that the writer wrote; none: the log was cut off.
+  /// Returns the end block, after LogEvent::done; none: the log is truncated.
   const std::optional<LogEnd>& end() const { return end_; }
-  bool damaged() const { return damaged_; }  ///< some block was not as it was written
-  /// Once done, one line: "ends cleanly with tick 5", "cut off after tick 5", and whether it is damaged.
+  /// Returns whether damage has been found so far.
+  bool damaged() const { return damaged_; }
+  /// Returns one line, after LogEvent::done: "ends cleanly with tick 5" or "cut off after tick 5", and whether the log is damaged.
   std::string end_summary() const;
 
  private:
@@ -77,7 +81,7 @@ class LogReader {
   bool has_program_ = false, damaged_ = false, finished_ = false, reprocess_block_ = false;
   std::uint64_t next_sequence_ = 1, last_tick_ = 0;
 
-  // the block of ticks that is being read
+  // block of ticks that is being read
   std::string_view records_;
   std::uint32_t records_left_ = 0;
   RecordLayout layout_;

@@ -8,7 +8,7 @@
 
 namespace catena::haptics::log {
 
-// What a tick takes and gives has grown: give it words in record.h and raise kVersion.
+// If an assertion fails, the input or output of a tick has changed: add words for it in record.h and raise kVersion.
 static_assert(sizeof(ProbeSample) == 80 && sizeof(LinkReport) == 168 && sizeof(WidgetReport) == 96 && sizeof(HapticState) == 3024);
 
 namespace {
@@ -245,7 +245,7 @@ std::string packed_link_difference(const std::string& link, std::uint64_t a, std
   return said(link + "_evaluations", evaluations(a), evaluations(b));
 }
 
-/// Recordings of before there were reasons say none.
+/// Compares packed links; recordings of older versions have no reasons.
 bool same_packed_link(std::uint64_t recorded, std::uint64_t replayed) {
   const std::uint64_t all_but_reason = ~std::uint64_t{0} >> 8;
   return recorded == replayed || (byte_of(recorded, 7) == 0 && ((recorded ^ replayed) & all_but_reason) == 0);

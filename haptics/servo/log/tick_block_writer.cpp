@@ -38,13 +38,13 @@ void TickBlockWriter::begin(const Tick& tick) {
 }
 
 void TickBlockWriter::add(const Tick& tick, std::span<const std::uint64_t> words) {
-  CATENA_ASSERT(tick.number > last_ && tick.layout.is_valid());  // one log, one run of the servo
+  CATENA_ASSERT(tick.number > last_ && tick.layout.is_valid());  // one log covers one run of the servo
   if (tick.number != last_ + 1) add_gap(tick.number);
   if (count_ > 0 && !(tick.layout == first_.layout)) flush();
   begin(tick);
   last_ = tick.number;
   compress_record(words, previous_words_, records_);
-  unpack_tick(previous_words_, tick.layout, unpacked_);  // before_ is this record now
+  unpack_tick(previous_words_, tick.layout, unpacked_);  // previous_words_ is this record from here on
   hash_.add(unpacked_.output);
   ++count_;
   if (records_.size() >= kFullBlock) flush();

@@ -1,5 +1,4 @@
-/// RecordWords from one thread to another, neither ever waits: the writer is told when there is no room. All memory is taken, and
-/// touched, at the start. One message is put whole or not at all.
+/// Ring buffer from the haptic thread to the writer's thread of a log, and the conversion of ticks to blocks.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -16,13 +15,16 @@
 
 namespace catena::haptics::log {
 
+/// Ring buffer of 64-bit words between one producer thread and one consumer thread. Wait-free: a push without enough space fails. All
+/// memory is allocated and touched by the constructor. A message is pushed as a whole or not at all.
 class SpscRing {
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
  public:
+  /// Creates a ring of at least this size, rounded up to a power of two words.
   explicit SpscRing(std::size_t bytes) : words_(std::bit_ceil(std::max<std::size_t>(bytes, 64) / 8), 0), mask_(words_.size() - 1) {}
 
-  /// Writer's thread. False: no room, nothing was put.
+  /// Pushes a message. Returns false if there is not enough space; then nothing is pushed. Producer thread.
   bool try_push(std::span<const std::uint64_t> message) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     if (words_.size() - (head - seen_tail_) < message.size()) {
@@ -36,8 +38,9 @@ class SpscRing {
     return true;
   }
 
-  /// Reader's thread: how many words there are, and the next ones of them (`out` is at most that long).
+  /// Returns the number of words that can be popped. Consumer thread.
   std::size_t available() const noexcept { return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_relaxed); }
+  /// Pops the next words into `out`, which must not be longer than available(). Consumer thread.
   void pop(std::span<std::uint64_t> out) noexcept {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
     const std::size_t at = tail & mask_, first = std::min(out.size(), words_.size() - at);
@@ -50,31 +53,39 @@ class SpscRing {
   std::vector<std::uint64_t> words_;
   std::size_t mask_;
   alignas(64) std::atomic<std::uint64_t> head_{0};
-  std::uint64_t seen_tail_ = 0;  ///< the writer's
+  std::uint64_t seen_tail_ = 0;  ///< tail as last read by the producer
   alignas(64) std::atomic<std::uint64_t> tail_{0};
 };
 
-/// Ticks in their order -> blocks of a log: batches, programs where they take over, gaps where ticks are missing. The writer's thread.
+/// Converts ticks in their order to blocks of a log: batches of ticks, programs where they take over, gaps where ticks are missing.
+/// Writer's thread.
 class TickBlockWriter {
  public:
-  /// What is known of the program of this epoch; before the first tick also of the one that it took over from.
+  /// Returns what is known of the program of this epoch; before the first tick, preceded by the first program if that is another one.
   using ProgramLookup = std::function<std::vector<LogProgram>(std::uint64_t epoch)>;
+  /// Creates a writer to the file; `programs_of` is called when the epoch changes.
   TickBlockWriter(BlockFile file, ProgramLookup programs_of);
 
+  /// Identification of a tick.
   struct Tick {
-    std::uint64_t number = 0, epoch = 0;
-    RecordLayout layout;
+    std::uint64_t number = 0, epoch = 0;  ///< number of the tick; epoch of its program
+    RecordLayout layout;                  ///< layout of its record
   };
-  /// `words`: pack() of this tick. NumberArray rise; a jump is a gap.
+  /// Adds a tick. `words`: its record, from pack_tick(). Tick numbers increase; a jump is written as a gap.
   void add(const Tick& tick, std::span<const std::uint64_t> words);
-  /// The log begins while the servo runs: the state before its first tick. Before any tick.
+  /// Writes the state before the first tick, if the log begins while the servo runs. Call it before any tick.
   void begin_after(const ChainState& state);
-  void flush();                         ///< what is there becomes a block
-  void end(std::uint64_t newest_tick);  ///< the last tick that there was, in the log or lost; closes the file
+  /// Writes the ticks collected so far as a block.
+  void flush();
+  /// Writes the rest and the end block, and closes the file. `newest_tick`: last tick of the servo, in the log or lost.
+  void end(std::uint64_t newest_tick);
 
+  /// Returns the file.
   BlockFile& file() { return file_; }
-  std::uint64_t ticks() const { return ticks_; }             ///< in complete blocks
-  std::uint64_t last_tick() const { return last_written_; }  ///< of these
+  /// Returns the number of ticks in complete blocks.
+  std::uint64_t ticks() const { return ticks_; }
+  /// Returns the number of the last tick in a complete block.
+  std::uint64_t last_tick() const { return last_written_; }
 
  private:
   void add_gap(std::uint64_t next);
@@ -82,7 +93,7 @@ class TickBlockWriter {
 
   BlockFile file_;
   ProgramLookup find_programs_;
-  Tick first_;  ///< of the block that is being filled
+  Tick first_;  ///< first tick of the block that is being filled
   std::uint32_t count_ = 0;
   std::string records_;
   RecordWords previous_words_{};

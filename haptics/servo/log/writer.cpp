@@ -23,7 +23,7 @@ namespace catena::haptics::log {
 
 namespace {
 
-// A message of the ring: tick, epoch, links, then the record.
+// A message of the ring: tick, epoch, number of links, then the record.
 constexpr std::size_t kMessageHead = 3;
 using Message = std::array<std::uint64_t, kMessageHead + kMaxRecordWords>;
 
@@ -39,11 +39,11 @@ struct LogWriter::Impl {
 
   // haptic thread
   Message message{};
-  ChainState start;        ///< before the first tick, where that is not the servo's; the first message tells of it
-  bool has_start = false;  ///< until the writer's thread has seen it
+  ChainState start;        ///< state before the first tick if that is not the servo's initial state; announced by the first message
+  bool has_start = false;  ///< until the writer's thread has read it
   std::atomic<std::uint64_t> newest_tick{0}, ring_lost{0}, ticks_before{0};
 
-  // frame side -> writer's thread
+  // frame thread -> writer's thread
   std::mutex mutex;
   std::condition_variable wake;
   std::map<std::uint64_t, LogProgram> programs;
@@ -66,7 +66,7 @@ struct LogWriter::Impl {
 std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
   const std::lock_guard lock(mutex);
   std::vector<LogProgram> found;
-  // a change before the first tick is a change, too
+  // a change of program before the first tick counts, too
   if (first_epoch && *first_epoch != epoch) found.push_back(programs.at(*first_epoch));
   first_epoch.reset();
   const auto wanted = programs.find(epoch);
@@ -76,7 +76,7 @@ std::vector<LogProgram> LogWriter::Impl::programs_of(std::uint64_t epoch) {
     return found;
   }
   found.push_back(std::move(wanted->second));
-  programs.erase(programs.begin(), std::next(wanted));  // older ones have run, or never will
+  programs.erase(programs.begin(), std::next(wanted));  // older programs have run, or never will
   return found;
 }
 

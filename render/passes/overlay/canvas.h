@@ -1,5 +1,5 @@
-/// What the overlay pass draws: shapes and glyphs in pixels of the whole picture, in painter's order. Places are continuous: the centre
-/// of pixel (i, j) is at (i + 0.5, j + 0.5), y down. Built anew for every frame. Frame thread.
+/// Drawing list of the overlay pass: shapes and glyphs in pixels of the whole image, in painter's order. Positions are continuous: the
+/// center of pixel (i, j) is at (i + 0.5, j + 0.5), y down. Rebuilt for every frame. Frame thread.
 #pragma once
 #include <array>
 #include <optional>
@@ -14,64 +14,79 @@
 
 namespace catena::render {
 
+/// Color and opacity of a shape.
 struct Paint {
   Color color;
   double alpha = 1;
 };
 
+/// Axis-aligned rectangle: upper left corner and size, pixels.
 struct Rect {
   double x = 0, y = 0, width = 0, height = 0;
 };
 
+/// Style of a text on the canvas.
 struct CanvasTextStyle {
   double size_pt = 12;
   bool bold = false;
-  bool rotated = false;  ///< reads upwards
+  bool rotated = false;  ///< runs from bottom to top
+  /// nullopt: Overlay::color, else the foreground color.
   std::optional<Color> color{};
 };
 
-/// The share of a box's width and height at which its anchor lies.
+/// Returns the position of an anchor in a box, as fractions of its width and height (0 to 1, y down).
 Vec2 anchor_fraction(Anchor anchor);
 
+/// List of overlay shapes in drawing order, with the packet's scale, font and colors.
 class Canvas {
  public:
   Canvas(const FramePacket& packet, Typesetter& typesetter);
 
-  Vec2 size() const { return size_; }  ///< of the whole picture
-  double px(double points) const { return scale_ * points; }
-  double hairline_width() const;                            ///< the width of a thin line: whole pixels, at least one
-  Color foreground() const { return foreground_; }          ///< what is readable on the background
-  Color contrast_color() const { return contrast_color_; }  ///< and what is not
+  Vec2 size() const { return size_; }                         ///< size of the whole image, pixels
+  double px(double points) const { return scale_ * points; }  ///< converts points to pixels
+  double hairline_width() const;                              ///< width of a thin line, pixels: whole pixels, at least one
+  Color foreground() const { return foreground_; }            ///< dark or white, whichever is readable on the background
+  Color contrast_color() const { return contrast_color_; }    ///< white or black, the opposite of foreground()
 
+  /// Returns the color of a text: its own, else the overlay's text color, else foreground().
   Color text_color(const std::optional<Color>& own) const { return own ? *own : text_color_ ? *text_color_ : foreground_; }
-  static Color outline_color(const Color& text);  ///< black or white: what sets a text off
+  static Color outline_color(const Color& text);  ///< black or white, whichever contrasts with the text color
 
-  /// Width and height of a text, pixels; of a rotated one as it lies in the picture.
+  /// Returns width and height of a text, pixels; for a rotated text, of its rotated box.
   TextExtent measure(std::string_view text, const CanvasTextStyle& look) const;
 
+  /// Adds a box. `radius`: corner radius; `stroke`: line width of an outline, 0: filled; pixels.
   void box(const Rect& rect, const Paint& paint, double radius = 0, double stroke = 0);
+  /// Adds a line; `width` in pixels.
   void line(const Vec2& from, const Vec2& to, double width, const Paint& paint);
-  /// Colours from the low end of the rectangle's length (left, or bottom if `upright`) to the high one.
+  /// Adds a color ramp along the rectangle's length, from the low end (left, or bottom if `upright`) to the high end.
   void ramp(const Rect& rect, bool upright, std::span<const shared::OverlayStop> stops);
+  /// Adds a shaded cylinder, seen from the side.
   void tube(const Vec2& from, const Vec2& to, double radius, const Color& color);
+  /// Adds a shaded cone, seen from the side; nothing if base and tip coincide.
   void cone(const Vec2& base, const Vec2& tip, double radius, const Color& color);
-  /// Half axes along `axis` (unit) and across it.
+  /// Adds an ellipse with half axis `along` in the direction `axis` (unit vector) and half axis `across` perpendicular to it, pixels.
+  /// `ball`: shaded as a sphere.
   void ellipse(const Vec2& centre, const Vec2& axis, double along, double across, const Color& color, bool ball);
-  /// The text's anchor point lies at `at`.
+  /// Adds a text whose anchor point lies at `at`.
   void text(std::string_view text, const Vec2& at, Anchor anchor, const CanvasTextStyle& look);
 
-  /// From here on: hidden where an opaque surface lies before `depth` in the pixel of `at`; none: always drawn.
+  /// Occlusion test of a shape: hidden where an opaque surface lies in front of `depth` (view depth minus the reference depth, world units)
+  /// at the pixel of `position`.
   struct OcclusionTest {
     Vec2 position{0.0};
     double depth = 0;
   };
+  /// Sets the occlusion test for all shapes added from here on; nullopt: always visible.
   void set_occlusion_test(const std::optional<OcclusionTest>& hiding) { occlusion_test_ = hiding; }
 
-  /// Rasterises the glyphs that are new. The shapes in pixels of the packet's picture.
+  /// Rasterizes the glyphs that are not in the atlas yet, and returns the shapes in pixels of the packet's image.
   const std::vector<shared::OverlayShape>& finish();
+  /// Returns the color stops of the ramps.
   const std::vector<shared::OverlayStop>& stops() const { return stops_; }
 
  private:
+  /// Glyph whose position in the atlas is set by finish().
   struct PendingGlyph {
     std::size_t shape;
     const Font* font;
@@ -93,35 +108,40 @@ class Canvas {
   std::vector<PendingGlyph> pending_glyphs_;
 };
 
-// ---- the overlay's items as shapes on a canvas; places of scalar bars are worked out apart, so that they can be checked ----
+// Overlay items as shapes on a canvas. Layouts are computed separately, so that they can be tested.
 
-/// Where one bar lies, in pixels of the whole picture. The colours fill `ramp` (whole pixels); the low value is at its left end, or at
-/// its bottom if upright.
+/// Layout of one scalar bar, pixels of the whole image. The colors fill `ramp` (whole pixels); the low value is at its left end, or at its
+/// bottom if upright.
 struct BarLayout {
   Rect ramp;
   bool upright = true;
   Vec2 title{0.0};
   Anchor title_anchor = Anchor::center;
 };
-/// Bars on one side are stacked from the picture's edge inwards; below a title if they lie at the top.
+/// Returns the layouts of the bars. Bars on one side are stacked from the edge of the image inwards, and below a title at the top.
 std::vector<BarLayout> layout_scalar_bars(const Canvas& canvas, const Overlay& overlay);
-/// Where a value lies along a bar: the coordinate across the tick mark, pixels.
+/// Returns the position of a value along the bar: the pixel coordinate along its length at which the tick mark lies.
 double tick_position(const BarLayout& place, const ScalarBarItem& bar, double value);
 
+/// Adds the scalar bars and legends to the canvas.
 void draw_scalar_bars(Canvas& canvas, const Overlay& overlay);
+/// Adds the texts at image positions.
 void draw_texts(Canvas& canvas, const Overlay& overlay);
+/// Adds the haptic status panel.
 void draw_status(Canvas& canvas, const StatusItem& status);
-/// `reference_depth`: where the opaque depths are counted from.
+/// Adds the labels at world positions. `reference_depth`: view depth from which the opaque depths are counted, world units.
 void draw_labels(Canvas& canvas, const Overlay& overlay, const Camera& camera, double reference_depth);
+/// Adds the orientation marker.
 void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker, const Camera& camera);
-/// The centre of the marker and the length of its arrows, pixels of the whole picture.
+/// Layout of the orientation marker: center and arrow length, pixels of the whole image.
 struct MarkerLayout {
   Vec2 center{0.0};
   double arrow_length = 0;
 };
+/// Returns the layout of the orientation marker.
 MarkerLayout layout_orientation_marker(const Canvas& canvas, const OrientationMarkerItem& marker);
 
-/// Free space at the picture's edge.
+/// Margin at the edge of the image.
 inline constexpr double kMarginPt = 12;
 
 }  // namespace catena::render

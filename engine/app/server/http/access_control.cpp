@@ -12,10 +12,10 @@ namespace catena::http {
 
 namespace {
 
-constexpr std::size_t kLongestName = 255;  // of a machine
+constexpr std::size_t kLongestName = 255;  // maximum length of a host name
 
 struct HostParts {
-  std::string name, port;  ///< in small letters, without brackets; digits or empty
+  std::string name, port;  ///< lower case, without brackets; digits or empty
 };
 
 HostParts parts_of(std::string_view host) {

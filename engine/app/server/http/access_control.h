@@ -1,10 +1,10 @@
-/// Who may see the page: whoever knows the token, which is printed once and exchanged for a cookie, and comes through a page of this very
-/// server. Three checks, each for an attack of its own:
-///   token, cookie   another user or program of this machine, which reaches the port but has not read the terminal
-///   Host            a stranger's page whose name is made to mean this machine (DNS rebinding): a name that was not given is refused;
-///                   numbers of an address cannot be rebound
-///   Origin          a stranger's page that opens a WebSocket here with the browser's own cookie: only this server's page may
-/// Pure but for the making of secrets; any thread. Nothing here allocates on the word of who asks.
+/// Decides who may see the page: a browser that has the token, which is printed and exchanged for a cookie, and that sends its requests
+/// from a page of this server. Three checks, each against one attack:
+///   token, cookie   another user or program of this computer that can reach the port but has not read the terminal
+///   Host            a foreign page whose name is made to resolve to this computer (DNS rebinding): names that were not configured are
+///                   rejected; numeric addresses cannot be rebound
+///   Origin          a foreign page that opens a WebSocket here with the browser's own cookie: only this server's page may
+/// Pure except for the generation of secrets; any thread. Memory use is bounded whatever the headers contain.
 #pragma once
 #include <string>
 #include <string_view>
@@ -14,28 +14,31 @@
 
 namespace catena::http {
 
-/// 128 random bits of the operating system as 32 hexadecimal digits.
+/// Returns 128 random bits from the operating system as 32 hexadecimal digits.
 std::string generate_secret();
-/// Equal, in a time that does not tell where they differ.
+/// Compares two strings in a time that does not depend on where they differ.
 bool constant_time_equal(std::string_view a, std::string_view b);
 
+/// The secrets and host names of one server; checks the headers of requests.
 class AccessControl {
  public:
-  /// `names`: what a browser may call this machine beside "localhost" and the numbers of an address.
+  /// `names`: host names of this server, in addition to "localhost" and numeric addresses.
   explicit AccessControl(std::vector<std::string> names);
 
+  /// The token of the URL.
   const std::string& token() const { return token_; }
 
-  /// The header Host: "localhost:8642", "127.0.0.1", "[::1]:8642", or one of the names, with any port (an `ssh -L` has one of its own).
+  /// Checks the header Host: "localhost:8642", "127.0.0.1", "[::1]:8642", or one of the names, with any port (an `ssh -L` tunnel has its
+  /// own).
   bool allows_host(std::string_view host) const;
-  /// The header Origin of a WebSocket: the page came from the very address that the WebSocket goes to. No Origin: refused.
+  /// Checks the header Origin of a WebSocket request: the page has the address that the WebSocket connects to. Without an Origin: false.
   static bool allows_origin(std::string_view origin, std::string_view host);
-  /// A target "/?token=..." with the right token.
+  /// Whether a request target is "/?token=..." with the right token.
   bool has_token(std::string_view target) const;
-  /// The header Cookie has the cookie that set_cookie_header gave.
+  /// Whether the header Cookie contains the cookie of set_cookie_header().
   bool has_cookie(std::string_view cookies, std::string_view host) const;
-  /// The header Set-Cookie: HttpOnly, SameSite=Strict. Its name has the port that the browser uses, for cookies of one machine are shared
-  /// by its ports.
+  /// The value of the header Set-Cookie: HttpOnly, SameSite=Strict. The cookie's name contains the port that the browser uses, because
+  /// browsers share cookies between the ports of a host.
   std::string set_cookie_header(std::string_view host) const;
 
  private:

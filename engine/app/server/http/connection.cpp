@@ -90,7 +90,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     finish();
   }
 
-  /// To be kept, not shown, whatever is in it.
+  /// Sends a file as a download, which the browser stores and does not display, whatever its content.
   void send_file(const ServerState::OfferedFile& offered) {
     boost::system::error_code error;
     begin(file_, http::status::ok, "application/octet-stream");
@@ -102,7 +102,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     send_more();
   }
 
-  /// However long all of it takes: what is not taken for kRequestTimeoutS ends it.
+  /// Sends the next part. The total time is unlimited, but the connection ends if one part takes longer than kRequestTimeoutS.
   void send_more() {
     stream_.expires_after(std::chrono::seconds(kRequestTimeoutS));
     http::async_write_some(stream_, *sender_, [self = shared_from_this()](boost::system::error_code error, std::size_t) {

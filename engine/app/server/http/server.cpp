@@ -41,7 +41,7 @@ struct Server::Impl {
         serve_connection(hub, std::move(socket));
         return accept();
       }
-      // no descriptors left, or the like: others may end soon
+      // for instance no free descriptors: retry, since other connections may end
       again.expires_after(std::chrono::milliseconds(100));
       again.async_wait([this](boost::system::error_code stopped) {
         if (!stopped) accept();
@@ -67,7 +67,7 @@ Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
   boost::system::error_code error;
   const asio::ip::address address = asio::ip::make_address(options.address, error);
   if (error) return Error{in_quotes(options.address) + ": expected an address in numbers, such as 127.0.0.1 or ::1"};
-  // it stands in a header
+  // the value is placed in a header
   const std::string& framed = options.frame_ancestor;
   const bool is_origin = framed.starts_with("http://") || framed.starts_with("https://");
   constexpr const char* kOfOrigins = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.:/-[]";
@@ -117,7 +117,7 @@ std::vector<ViewerEvent> Server::wait_for_events(double wait_s) {
   }
   if (!news.empty())
     asio::post(hub.io, [&hub] {
-      const auto viewers = hub.viewers;  // one that reads on may leave
+      const auto viewers = hub.viewers;  // a copy: a viewer that resumes reading may disconnect
       for (const auto& [id, viewer] : viewers) viewer->resume();
     });
   return news;

@@ -1,5 +1,5 @@
-/// What the connections of a server share. The network thread owns all of it but `news`, which is locked. Part of engine/app/server/http
-/// alone: it has Boost in it.
+/// State shared by the connections of a server. Only the network thread uses it, except `events` (under `mutex`) and `ready_viewers`
+/// (atomic). Private to engine/app/server/http, because it includes Boost.
 #pragma once
 #include <array>
 #include <atomic>
@@ -20,6 +20,7 @@ namespace catena::http {
 class ViewerConnection;
 using Bytes = std::shared_ptr<const std::string>;
 
+/// The shared state.
 struct ServerState {
   explicit ServerState(const ServerOptions& wanted) : options(wanted), access(wanted.host_names) {}
 
@@ -30,19 +31,22 @@ struct ServerState {
   std::map<ViewerId, std::shared_ptr<ViewerConnection>> viewers;
   ViewerId last_viewer = 0;
   struct OfferedFile {
-    std::string target, path{};  ///< of a request, "/NAME"; of the file, empty: none
+    /// The file that pages can download. `target`: of the request, "/NAME"; `path`: of the file, empty: none.
+    std::string target, path{};
   } offered_file;
 
   std::mutex mutex;
   std::condition_variable event_posted;
-  std::vector<ViewerEvent> events;    ///< under `mutex`
-  std::atomic<int> ready_viewers{0};  ///< viewers that take a picture
+  std::vector<ViewerEvent> events;    ///< Guarded by `mutex`
+  std::atomic<int> ready_viewers{0};  ///< Number of viewers that can be sent a frame at once
 
+  /// Adds an event and wakes the caller of Server::wait_for_events().
   void post_event(ViewerEvent one);
+  /// Recounts ready_viewers.
   void update_ready_viewers();
 };
 
-/// One connection, counted as long as it lives.
+/// Counts one connection during its lifetime.
 class ConnectionGuard {
  public:
   explicit ConnectionGuard(ServerState& hub) : hub_(hub) { ++hub_.connections; }
@@ -54,7 +58,7 @@ class ConnectionGuard {
   ServerState& hub_;
 };
 
-/// Reads one request, answers it, and ends; a request for the WebSocket becomes a viewer.
+/// Serves one connection: reads one request, answers it, and closes; a request for the WebSocket becomes a ViewerConnection.
 void serve_connection(ServerState& hub, boost::asio::ip::tcp::socket socket);
 
 }  // namespace catena::http

@@ -45,7 +45,7 @@ void ViewerConnection::resume() {
   if (std::exchange(paused_, false)) read();
 }
 
-// ---- from the viewer ----
+// ---- messages from the viewer ----
 
 void ViewerConnection::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) { self->on_read(error); });
@@ -91,7 +91,7 @@ void ViewerConnection::disconnect() {
   boost::beast::get_lowest_layer(socket_).socket().close(ignored);
 }
 
-// ---- to the viewer ----
+// ---- messages to the viewer ----
 
 void ViewerConnection::write() {
   const std::size_t ready = frames_in_flight_ < kMaxFramesInFlight ? kSlotCount : kSlotCount - 1;

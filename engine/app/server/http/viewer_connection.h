@@ -1,4 +1,4 @@
-/// ViewerConnection is the WebSocket of one viewer. Network thread. Part of engine/app/server/http alone: it has Boost in it.
+/// ViewerConnection is the WebSocket of one viewer. Network thread. Private to engine/app/server/http, because it includes Boost.
 #pragma once
 #include <array>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -12,17 +12,19 @@
 
 namespace catena::http {
 
+/// The connection keeps itself alive while an operation is pending.
 class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
   ViewerConnection(ServerState& hub, boost::asio::ip::tcp::socket socket, std::unique_ptr<ConnectionGuard> counted);
-  /// Answers the request; then the viewer has come, until it leaves.
+  /// Accepts the WebSocket request; then the viewer is connected until the connection ends.
   void accept(Request request);
-  /// In the place of what waits in that slot.
+  /// Queues a message, in place of one that waits in the same slot.
   void enqueue(Slot slot, Bytes bytes);
-  /// What the viewer said has been taken: more is read where nothing was for that reason.
+  /// Call when the pending messages have been processed: continues reading if it was paused.
   void resume();
+  /// Whether a frame would be sent at once.
   bool is_ready_for_frame() const { return !slots_[kSlotCount - 1] && frames_in_flight_ < kMaxFramesInFlight; }
 
  private:
@@ -41,8 +43,8 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   std::array<Bytes, kSlotCount> slots_;
   Bytes writing_;
   ViewerId id_ = 0;
-  int frames_in_flight_ = 0;          ///< pictures
-  std::size_t pending_messages_ = 0;  ///< messages that were not taken yet
+  int frames_in_flight_ = 0;          ///< Frames that were sent and not yet acknowledged as shown
+  std::size_t pending_messages_ = 0;  ///< Messages that have not been processed yet
   bool paused_ = false;
 };
 

@@ -12,7 +12,7 @@
 namespace catena::app::analysis {
 namespace {
 
-/// Each answer that was given: `add(subject, question's name, answer)`.
+/// Calls `add(subject, question's name, answer)` for each answer that was given.
 template <class Add>
 void for_each_answer(const study::Study& study, const std::vector<SubjectAnswers>& answers, const Add& add) {
   for (const SubjectAnswers& a : answers)

@@ -1,4 +1,4 @@
-/// What the subjects answered to the study's questions: counted where answers were offered, listed where any text was.
+/// The subjects' answers to the study's questions: choices are counted, free text is listed.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,18 +7,21 @@
 
 namespace catena::app::analysis {
 
+/// The answers of one subject.
 struct SubjectAnswers {
   int subject = 1;
-  std::vector<std::string> answers;  ///< to the study's first questions: who was cut off has not answered the rest
+  std::vector<std::string> answers;  ///< To the study's first questions; an interrupted session has not answered the rest
 };
 
-/// Of these subjects of a data folder; whoever answered nothing is not there.
+/// Reads the answers of these subjects from a data folder; subjects without answers are omitted.
 Result<std::vector<SubjectAnswers>> read_questionnaires(const study::Study& study, const std::string& folder,
                                                         const std::vector<int>& subjects);
 
-std::string answers_csv(const study::Study& study, const std::vector<SubjectAnswers>& answers);  ///< "subject,question,answer"
-std::string answers_json(const study::Study& study,
-                         const std::vector<SubjectAnswers>& answers);  ///< a list of objects with the same members
-std::string answers_html(const study::Study& study, const std::vector<SubjectAnswers>& answers);  ///< a section; "" where nobody answered
+/// CSV table "subject,question,answer".
+std::string answers_csv(const study::Study& study, const std::vector<SubjectAnswers>& answers);
+/// JSON list of objects with the same members.
+std::string answers_json(const study::Study& study, const std::vector<SubjectAnswers>& answers);
+/// HTML section; empty if nobody answered.
+std::string answers_html(const study::Study& study, const std::vector<SubjectAnswers>& answers);
 
 }  // namespace catena::app::analysis

@@ -46,7 +46,7 @@ struct Reading {
   }
 };
 
-/// Whether the trial is kept; counts it.
+/// Returns whether the trial is accepted, and counts the reason if it is not.
 bool keep(const study::TrialRow& row, const study::Limits& limits, Rejections& counts) {
   ++counts.trials;
   const bool error = row.error_mm > limits.reject_error_mm, time = row.time_s > limits.reject_time_s;
@@ -63,7 +63,7 @@ bool keep(const study::TrialRow& row, const study::Limits& limits, Rejections& c
   return false;
 }
 
-/// Values of kept trials of one cell.
+/// Errors and times of the accepted trials of one task/condition pair.
 struct Kept {
   std::vector<double> errors, times;
 };
@@ -79,7 +79,7 @@ void fill(const Kept& kept, Cell& cell) {
   if (const auto s = statistics::summarize(kept.times)) set(Quantity::time, s->mean), set(Quantity::time_deviation, s->sd);
   std::vector<double> x, y;
   for (std::size_t i = 0; i < kept.errors.size(); ++i) {
-    if (!(kept.errors[i] > 0 && kept.times[i] > 0)) continue;  // no logarithm
+    if (!(kept.errors[i] > 0 && kept.times[i] > 0)) continue;  // the logarithm is undefined
     x.push_back(std::log(kept.times[i]));
     y.push_back(std::log(kept.errors[i]));
   }

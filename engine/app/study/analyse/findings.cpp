@@ -1,4 +1,4 @@
-/// Each finding of the study file, held against what these data say. A finding over several tasks or conditions is supported where all of
+/// Tests each finding of the study file against the data. A finding over several tasks or conditions is supported where all of
 /// them support it; the numbers of each are given.
 #include <fmt/format.h>
 
@@ -15,10 +15,11 @@ using study::Alternative;
 using study::Finding;
 using study::TestKind;
 
-// Intervals that overlap say nothing where they had to. Large: J. Cohen, Statistical Power Analysis for the Behavioral Sciences, 1988.
+// Overlapping intervals are inconclusive without enough power. Large difference: J. Cohen, Statistical Power Analysis for the Behavioral
+// Sciences, 1988.
 constexpr double kLargeDifference = 0.8, kLeastPower = 0.8;
 
-/// What the parts of a finding say, gathered.
+/// Collects the results of the parts of a finding.
 struct Parts {
   int all = 0, borne_out = 0, untested = 0;
   std::vector<std::string> numbers;
@@ -52,20 +53,20 @@ Quantity quantity_of(const Finding& f) {
   return f.uses_deviations ? (time ? Quantity::time_deviation : Quantity::error_deviation) : (time ? Quantity::time : Quantity::error);
 }
 
-/// Significant, and the first mean on that side of the second.
+/// Returns whether the difference is significant with the first mean on the expected side of the second; std::nullopt if untested.
 std::optional<bool> first_is(const PairedComparison& paired, Alternative expect) {
   if (!paired.test) return std::nullopt;
   return paired.corrected_p < kAlpha && (expect == Alternative::lower) == (paired.test->difference < 0);
 }
 
-/// The power of a paired t-test of `n` subjects for a large difference: P(|T| > t), T noncentral with delta = d sqrt(n).
+/// Power of a paired t-test of `n` subjects for a large difference: P(|T| > t), T noncentral with delta = d sqrt(n).
 double power_of(double n) {
   if (n < 2) return 0;
   const double df = n - 1, delta = kLargeDifference * std::sqrt(n), t = statistics::t_quantile(1 - 0.5 * kAlpha, df);
   return statistics::noncentral_t_survival(t, df, delta) + statistics::noncentral_t_cdf(-t, df, delta);
 }
 
-/// A correlation that is another's opposite is no weaker one.
+/// Returns whether the second correlation is significant with the opposite sign of the first: such a correlation is not a weaker one.
 bool is_reversed(const statistics::CorrelationDifference& x) {
   const double df = x.n - 2, t = x.second * std::sqrt(df / (1 - x.second * x.second));
   return x.first * x.second < 0 && statistics::two_sided_p(t, df) < kAlpha;
@@ -84,7 +85,7 @@ struct Judge {
         const PairedComparison* p = find_item(analysis.condition_comparisons, [&](const PairedComparison& x) {
           return x.quantity == quantity_of(f) && x.second == TaskCondition{t, c};
         });
-        // the condition lower: the baseline, which is first, higher
+        // the baseline comes first in the pair: "condition lower" means "baseline higher"
         parts.add(first_is(*p, f.alternative == Alternative::lower ? Alternative::higher : Alternative::lower),
                   task_name(t) + ": " + comparison_text(study, *p));
       }
@@ -132,7 +133,7 @@ struct Judge {
     return parts.judged();
   }
 
-  /// Of each place the one of `items` there: whether it bears the finding out, and what it says.
+  /// Evaluates the item of `items` at each task/condition pair of the finding: whether it supports the finding, and its numbers.
   template <class Item, class Holds, class Words>
   FindingResult at_places(const Finding& f, const std::vector<Item>& items, const Holds& holds, const Words& words) const {
     Parts parts;
@@ -161,7 +162,7 @@ struct Judge {
         [](const Difference& x) { return fmt::format("r = {:.3f}, baseline {:.3f}, z = {:.2f}", x.second, x.first, x.z); });
   }
 
-  /// Gains of a task over those of every other one, paired over the subjects; a family of its own.
+  /// Compares the gains of a task with those of every other one, paired over the subjects; a test family of its own.
   FindingResult largest(const Finding& f) const {
     Parts parts;
     const Quantity q = quantity_of(f);

@@ -7,7 +7,7 @@
 namespace catena::app::analysis {
 namespace {
 
-/// Corrects the p-values of those that have one.
+/// Corrects the p-values of the items that have one.
 template <class Item, class P>
 void correct_family(std::vector<Item>& family, const P& p_of) {
   std::vector<double> p;
@@ -33,7 +33,7 @@ void keep_result(Item& item, Result<T>&& result) {
     item.skip_reason = result.error().message;
 }
 
-/// Mean errors and times of the subjects that have all of them in the places, one after the other: error, time, error, time ...
+/// Mean errors and times of the subjects with data in all the task/condition pairs, in sequence: error, time, error, time ...
 std::vector<std::vector<double>> measures(const Analysis& analysis, const std::vector<TaskCondition>& places, std::vector<int>* left_out) {
   std::vector<std::vector<double>> columns(2 * places.size());
   for (std::size_t s = 0; s < analysis.subjects.size(); ++s) {

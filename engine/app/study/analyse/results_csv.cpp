@@ -1,4 +1,4 @@
-/// The tables: a number that cannot be had is an empty cell, which R and Python read as missing.
+/// Writes the tables of results: a missing number is an empty cell, which R and Python read as missing.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ void add_place(CsvTable& table, const Study& study, const TaskCondition& place) 
   table.add(study.conditions[static_cast<std::size_t>(place.condition)].name);
 }
 
-/// "7 12"
+/// Formats a list such as "7 12".
 std::string numbers_text(const std::vector<int>& numbers) {
   std::string text;
   for (const int n : numbers) text += (text.empty() ? "" : " ") + std::to_string(n);

@@ -14,7 +14,7 @@ std::string number_cell(const std::string& text) { return "<td class=\"n\">" + e
 std::string number_cell(double value) { return number_cell(format_short(value)); }
 std::string interval_cell(double low, double high) { return number_cell(format_short(low) + " .. " + format_short(high)); }
 
-/// A header row: names of columns of numbers begin with a blank.
+/// A header row: names of numeric columns begin with a blank.
 std::string table_head(const std::vector<std::string>& names) {
   std::string text = "<div class=\"wide\"><table><tr>";
   for (const std::string& name : names)
@@ -25,7 +25,7 @@ constexpr const char* kTableEnd = "</table></div>\n";
 
 std::string csv_note(const char* name) { return fmt::format("<p class=\"note\">As a table: <code>{}</code></p>\n", name); }
 
-/// "2, 7 and 12"
+/// Formats a list such as "2, 7 and 12".
 std::string numbers_words(const std::vector<int>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -33,7 +33,7 @@ std::string numbers_words(const std::vector<int>& numbers) {
   return text;
 }
 
-/// A line a part.
+/// Table cell with one line per part of the finding.
 std::string parts_cell(const FindingResult& judged) {
   std::string text = "<td class=\"told\">" + (judged.supported_count.empty() ? "" : escape_html(judged.supported_count) + "<br>");
   for (std::size_t i = 0; i < judged.details.size(); ++i) text += (i > 0 ? "<br>" : "") + escape_html(judged.details[i]);
@@ -144,7 +144,7 @@ std::string list_of(const std::vector<std::string>& lines) {
   return text + "</ul>\n";
 }
 
-/// Where one condition lost many more trials than another, those that are left are not alike.
+/// Warning for conditions that lost many more trials than others: their remaining trials are not comparable.
 std::string uneven_shares(const Study& study, const Analysis& analysis) {
   constexpr double kUneven = 0.1;
   std::vector<std::string> lines;
@@ -174,7 +174,7 @@ std::string limits_words(const Study& study) {
   return text;
 }
 
-/// In short: how much data there is, and what it says.
+/// Summary: the amount of data and the main results.
 std::string summary(const Study& study, const Analysis& analysis, const DataSource& source) {
   const Rejections all = analysis.total_rejections();
   int counts[3] = {};

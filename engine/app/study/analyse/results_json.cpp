@@ -6,7 +6,7 @@
 namespace catena::app::analysis {
 namespace {
 
-/// An object, member by member, on one line.
+/// Writes an object on one line, member by member.
 class Members {
  public:
   Members& word(const char* key, const std::string& value) { return raw(key, json_string(value)); }
@@ -75,7 +75,7 @@ std::string json_of(const Study& study, const CorrelationChange& x) {
   return m.number("z", x.result->z).number("p", x.result->p).number("p_holm", x.corrected_p).text();
 }
 
-/// A list with a line an item.
+/// Writes a list with one line per item.
 template <class Items, class Print>
 std::string lines(const Items& items, const Print& print) {
   std::string text;

@@ -11,14 +11,14 @@
 namespace catena::app::analysis {
 namespace {
 
-constexpr int kShapes[] = {7, 9, 5, 13, 11, 15};  ///< of gnuplot's points: filled ones
+constexpr int kShapes[] = {7, 9, 5, 13, 11, 15};  ///< gnuplot point types: filled ones
 
 std::string look(int condition) {
   return fmt::format("pt {} ps 0.7 lw 1.6 lc rgb '{}'", kShapes[static_cast<std::size_t>(condition) % std::size(kShapes)],
                      plot_color(condition));
 }
 
-/// One picture of the means of a quantity: the tasks side by side, in each the conditions.
+/// Adds one plot of the means of a quantity: the tasks side by side, with the conditions within each.
 void add_means_plot(const Study& study, const Analysis& analysis, Quantity q, const std::vector<int>& tasks, const std::string& title,
                     const std::string& axis, const std::string& file, Plots& plots) {
   const int conditions = static_cast<int>(study.conditions.size());
@@ -47,7 +47,7 @@ void add_means_plot(const Study& study, const Analysis& analysis, Quantity q, co
   plots.files.push_back(file);
 }
 
-/// Two places of a straight line over the range of x.
+/// Data rows of two points of a straight line over the range of x.
 std::string line_rows(const std::vector<double>& x, const std::vector<double>& y) {
   const auto line = statistics::regression(x, y);
   if (!line) return {};

@@ -1,12 +1,13 @@
-/// `catena info --cost`: what a scene, or a data file as `render` shows it, will load, mirror, create, evaluate a tick and draw a frame,
-/// with bytes and expected times, and with --measure what was then measured. Bytes are those that the functions that allocate would take.
-/// Expected times are counts of work times a unit cost, or sums of parts, which are measured here and now:
-///   a formula on its grid   nodes x what a node of the same formula took on a lattice of 64^3
-///   a mirror                bytes x what a byte of a mirror of 128^3 took
-///   a file                  what loading it took just now
-///   a tick                  one without links + what each link adds that is alone in its chain, on a standard walk through the scene
-///   a frame                 a start + rows x what a row took: of strips of the picture, some of 1 row and some of 8
-/// What has no model has no expected time. Frame thread.
+/// Command `catena info --cost`: predicted cost of a scene, or of a data file as shown by `render`: loading, uploading, creating objects,
+/// evaluating a tick and rendering a frame, in bytes and expected time, and with --measure the measured values. Bytes are those that the
+/// allocating functions would allocate. Expected times are an operation count times a unit cost, or sums of parts, which are measured when
+/// the command runs:
+///   a formula on its grid   nodes x time per node of the same formula on a sampling grid of 64^3
+///   a GPU-resident grid     bytes x time per byte of uploading a grid of 128^3
+///   a file                  time of loading it
+///   a tick                  a tick without links + what each link adds when alone in its chain, on a standard path through the scene
+///   a frame                 a start-up time + rows x time per row, from strips of the image, some of 1 row and some of 8
+/// Rows without a model have no expected time. Frame thread.
 #pragma once
 #include <memory>
 #include <optional>
@@ -20,29 +21,33 @@
 
 namespace catena::app {
 
+/// Memory and time; nothing where unknown.
 struct ResourceCost {
   std::optional<double> bytes, ms;
 };
 
+/// One row of the cost table.
 struct CostRow {
-  std::string stage;  ///< load, shape, mirror, create, tick, frame
+  std::string stage;  ///< One of: load, shape, mirror (upload to the GPU), create, tick, frame.
+  /// Name of the item, and its operation count or size as text.
   std::string name, work;
   ResourceCost expected, measured;
 };
 using CostTable = std::vector<CostRow>;
 
-/// The fields that the scene has loaded and sampled, by now: each is loaded again from the file of the scene, measured twice.
+/// Adds the fields that the scene has loaded or sampled so far; each is loaded again from the scene's file, and a second time with
+/// `measure`. An Error if that fails.
 Outcome add_load_costs(const std::string& path, const scene::Scene& scene, bool measure, CostTable& table);
-/// Meshes, curves and tables of points that the scene has loaded, each loaded again as above; and the shapes that a frame draws, traced
-/// lines among them, with the bytes that their places take.
+/// Adds the meshes, curves and point tables that the scene has loaded, each loaded again as above, and the shapes of a frame, including
+/// traced lines, with the bytes of their vertices. An Error if loading fails.
 Outcome add_shape_costs(const scene::Scene& scene, const render::FramePacket& packet, bool measure, CostTable& table);
-/// Links and their fetches on a walk through the box of what is loaded.
+/// Adds the links and their fetches on a path through the bounding box of the loaded data.
 void add_tick_costs(const scene::Scene& scene, const haptics::HapticProgram& program, bool measure, CostTable& table);
-/// ResidencyManager, passes and a picture of the packet at `balanced`, as that quality stands: without the search that `render` makes for
-/// its error. An error is the device's.
+/// Adds GPU-resident grids, passes and a frame of the packet at quality `balanced`, without the search for its error that `render` does. An
+/// Error is a failure of the GPU.
 Outcome add_frame_costs(const render::FramePacket& packet, bool measure, CostTable& table);
 
-/// Prints the table, or one JSON object on one line.
+/// Prints the table, or one JSON object on one line. An Error if the scene cannot be loaded.
 Outcome print_costs(const std::string& path, bool json, bool measure);
 
 }  // namespace catena::app

@@ -17,9 +17,10 @@ namespace catena::app {
 namespace {
 
 constexpr int kRepeats = 7, kMirrors = 3;
-constexpr std::uint32_t kStrips = 12, kLow = 1, kHigh = 8;  // of the picture; rows of a strip
+constexpr std::uint32_t kStrips = 12, kLow = 1, kHigh = 8;  // strips per image; rows of a short and of a tall strip
 
-/// Milliseconds a byte, of a mirror of 128^3; in the middle of a few, for memory that is new takes longer than what was just given back.
+/// Upload time in milliseconds per byte, for a grid of 128^3; the median of several, since newly allocated memory takes longer than memory
+/// just freed.
 Result<double> mirror_unit(render::vk::Device& device, bool float32) {
   CATENA_TRY(const field::AnyField formula, field::make_analytic("marschner-lobb"));
   CATENA_TRY(const field::AnyField grid, field::try_sample_on_grid(formula, 128, -1, 1));
@@ -46,7 +47,7 @@ Outcome add_mirrors(render::Renderer& renderer, const render::FramePacket& packe
     table.push_back(std::move(row));
   }
   std::set<std::tuple<std::uint64_t, bool>> seen;
-  std::optional<double> units[2];  // of 16 and of 32 bits, measured once
+  std::optional<double> units[2];  // for 16 and for 32 bits, measured at most one time each
   const auto add = [&](const field::ScalarGrid& grid) -> Outcome {
     const render::ResidencyOptions options = render::residency_options(packet, settings, grid);
     if (!seen.insert({grid.version(), options.use_float32}).second) return Done{};
@@ -73,7 +74,7 @@ Outcome add_mirrors(render::Renderer& renderer, const render::FramePacket& packe
   return Done{};
 }
 
-/// Of strips of so many rows all over the picture, the quicker of two rounds.
+/// Time to render strips of `rows` rows distributed over the image, the faster of two rounds.
 Result<double> strips_ms(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings,
                          std::uint32_t rows) {
   const render::TilePlan plan{packet.width, packet.height, 1, packet.width, rows, 0};
@@ -85,7 +86,7 @@ Result<double> strips_ms(render::Renderer& renderer, const render::FramePacket& 
       CATENA_CHECK(renderer.draw(render::make_tile_packet(packet, plan, plan.area(0, row)), settings));
     }
     const double ms = ms_since(start);
-    // the first round makes pipelines
+    // the first round creates pipelines and does not count
     if (round > 0) quickest = round == 1 ? ms : std::min(quickest, ms);
   }
   return quickest;

@@ -8,9 +8,9 @@
 namespace catena::app {
 namespace {
 
-constexpr int kLattice = 64;  // nodes an axis, that a formula is timed on: so many that all cores take part
+constexpr int kLattice = 64;  // nodes per axis of the grid on which a formula is timed: enough to use all cores
 
-/// Of sampling a formula at `resolution`^3 nodes.
+/// Expected time of sampling a formula at `resolution`^3 nodes, milliseconds; std::nullopt if it cannot be sampled.
 std::optional<double> expected_ms(const scene::FieldSource& source) {
   double quickest = 0;
   for (int k = 0; k < 3; ++k) {
@@ -23,14 +23,14 @@ std::optional<double> expected_ms(const scene::FieldSource& source) {
   return quickest * nodes / (double(kLattice) * kLattice * kLattice);
 }
 
-/// Loads a field of a scene of which nothing is loaded, and samples it where it is drawn from a grid.
+/// Loads one field of a scene of which nothing is loaded, and samples it if it is rendered from a grid.
 Result<ResourceCost> load_once(const std::string& path, const std::string& name, bool sampled) {
-  field::clear_cache();  // a series keeps its steps
+  field::clear_cache();  // otherwise a series would reuse its cached steps
   const std::int64_t opened = now_ns();
   CATENA_TRY(scene::Scene fresh, open_scene(path));
   const scene::Entity e = scene::find_field(fresh, name);
   const json::Node where = fresh.entities.get<scene::FieldSource>(e).where;
-  // a data file is loaded when it is opened, a scene's when they are asked for
+  // a data file is loaded when it is opened, the fields of a scene when they are first requested
   const std::int64_t start = is_scene_file(path) ? now_ns() : opened;
   CATENA_CHECK(scene::resolve_field(fresh, e, where));
   const scene::FieldSource& source = fresh.entities.get<scene::FieldSource>(e);

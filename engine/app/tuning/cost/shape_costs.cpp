@@ -9,7 +9,7 @@
 namespace catena::app {
 namespace {
 
-/// The row of a file's shape that the scene has loaded: what it holds, and what loading it again takes.
+/// Adds the row of a loaded shape file: its size, and the time to load the file.
 template <class Shape, class Load>
 Outcome add_file(const std::string& name, const Shape& shape, const std::string& work, bool measure, const Load& load, CostTable& table) {
   CostRow row{"load", name, work, {double(shape.bytes()), {}}, {}};
@@ -27,7 +27,7 @@ Outcome add_file(const std::string& name, const Shape& shape, const std::string&
   return Done{};
 }
 
-/// A row of what a frame draws of one kind, where there is any.
+/// Adds a row for the primitives of one kind that a frame renders, if there are any.
 void add_shape(const char* name, std::size_t count, std::size_t parts, const char* what, std::size_t bytes, CostTable& table) {
   if (count > 0) table.push_back({"shape", name, fmt::format("{} of {} {}", count, parts, what), {double(bytes), {}}, {}});
 }

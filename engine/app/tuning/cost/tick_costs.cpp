@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kTicks = 1500, kWalks = 5;
 
-/// Slowly on a closed curve about the middle of a box.
+/// Slow probe path along a closed curve about the center of a box.
 std::vector<haptics::ProbeSample> closed_walk(const Vec3& middle, const Vec3& half) {
   std::vector<haptics::ProbeSample> walk;
   for (int k = 0; k < kTicks; ++k) {
@@ -24,7 +24,7 @@ std::vector<haptics::ProbeSample> closed_walk(const Vec3& middle, const Vec3& ha
 }
 
 struct Walked {
-  double ns = 0;  ///< a tick
+  double ns = 0;  ///< nanoseconds per tick
   std::vector<double> fetches, work;
 };
 
@@ -48,7 +48,7 @@ Walked walk_through(const haptics::HapticProgram& program, const std::vector<hap
   return walked;
 }
 
-/// The same with only some of the links; `widgets`: they are the widgets' own.
+/// The same program with only some of its links; `widgets`: these links belong to widgets.
 haptics::HapticProgram with_links(const haptics::HapticProgram& program, std::vector<haptics::Link> links, bool widgets = false) {
   haptics::HapticProgram some = program;
   some.links = std::move(links);

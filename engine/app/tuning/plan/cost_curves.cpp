@@ -1,4 +1,5 @@
-/// Curves of the hand: which links leave their setting open, what of a curve agrees with what a link says, and the tick without them.
+/// Cost curves of the haptics: links with open settings, agreement of a curve with a link's stated keys, and the tick time without these
+/// links.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +16,7 @@ constexpr const char *kRestId = "hand-rest", *kRest = "the tick without the link
 
 using tradeoff::StreamlineSetting;
 
-/// Whether the setting is what the link says, as far as it says anything.
+/// Returns whether the setting agrees with the keys that the link states.
 bool agrees(const StreamlineSetting& setting, const json::Node& link) {
   const json::Node *follow = link.find("follow"), *method = link.find("method"), *tolerance = link.find("tolerance");
   if (follow != nullptr && (follow->string == "selected") != setting.is_selected) return false;
@@ -23,10 +24,10 @@ bool agrees(const StreamlineSetting& setting, const json::Node& link) {
   return tolerance == nullptr || !setting.tolerance || std::fabs(*setting.tolerance - tolerance->number) <= 1e-9 * tolerance->number;
 }
 
-/// Where there is a choice. A link on the seed of a widget has no line before it is felt.
+/// Settings to choose from; empty if there is no choice. A link on the seed of a widget has no line until it is in contact.
 std::vector<StreamlineSetting> open_settings(const json::Node& link) {
   std::vector<StreamlineSetting> open = tradeoff::streamline_settings(link);
-  // fixed steps have no tolerance: they err by the hand's speed and way, of which a curve knows one
+  // fixed steps have no tolerance: their error depends on probe speed and path, and a curve is measured for only one motion
   const bool asks_for_method = link.find("method") != nullptr;
   std::erase_if(open, [&](const StreamlineSetting& setting) {
     return !agrees(setting, link) || (!asks_for_method && !setting.is_selected && !setting.tolerance);
@@ -35,7 +36,7 @@ std::vector<StreamlineSetting> open_settings(const json::Node& link) {
   return open;
 }
 
-/// The keys that the link does not have already.
+/// Keys of the setting that the link does not state.
 LinkKeys new_keys(const StreamlineSetting& setting, const json::Node& link) {
   LinkKeys keys = setting.keys;
   std::erase_if(keys, [&](const auto& key) { return link.find(key.first) != nullptr; });
@@ -48,7 +49,7 @@ std::vector<tradeoff::NamedLink> open_links(const scene::Scene& scene) {
   return links;
 }
 
-/// The source of the link's field where it may become cubic: a line field's axes stay linear.
+/// Source of the link's field if its interpolation may become cubic, otherwise nullptr: a line field's axes stay linear.
 scene::FieldSource* open_source(scene::Scene& scene, const json::Node& link) {
   const json::Node *name = link.find("field"), *kind = link.find("kind");
   if (name == nullptr || (kind != nullptr && kind->string == "line")) return nullptr;
@@ -60,7 +61,7 @@ scene::FieldSource* open_source(scene::Scene& scene, const json::Node& link) {
 
 std::string cubic_curve_id(const std::string& link) { return "hand-cubic-streamline-" + link; }
 
-/// The curve of a link once more, with cubic cells: only where both floors are known are they compared.
+/// Measures the link's curve with cubic interpolation as well: the two are compared only if both discretization errors are known.
 void add_cubic(tradeoff::Workload& subject, const tradeoff::NamedLink& link, std::vector<Curve>& curves) {
   scene::FieldSource* source = open_source(subject.scene, link.node);
   if (source == nullptr || !(curves.back().discretization_error > 0)) return;

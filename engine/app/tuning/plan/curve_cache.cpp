@@ -29,7 +29,7 @@ constexpr const char* kKey = "key";
 
 bool is_sane(double value) { return std::isnan(value) || (std::isfinite(value) && value >= 0); }
 
-/// NumberArray that a measurement can have.
+/// Returns whether all numbers of the curve are possible results of a measurement.
 bool is_sane(const Curve& curve) {
   const auto point = [](const tradeoff::Point& p) {
     return is_sane(p.error) && is_sane(p.work) && is_sane(p.bytes) && is_sane(p.time.median) && is_sane(p.time.lower_quartile) &&

@@ -1,8 +1,8 @@
-/// Where measured curves are kept from run to run, so that a plan is made at once the next time: one file a key in
-/// $XDG_CACHE_HOME/catena/plans (else ~/.cache/catena/plans). Each is a report of `catena tradeoff` (tradeoff/report), which makes a page
-/// of it, too. All of it can be deleted at any time. A file that is damaged, is none of ours or belongs to another key is said in one
-/// sentence and never believed: what its points stand for is looked up among the settings that this program offers (eye_plan.h,
-/// hand_plan.h). Files are written whole or not at all; where nothing can be written, nothing is kept. Any thread.
+/// Cache of measured curves, so that the next run tunes without measuring: one file per key in $XDG_CACHE_HOME/catena/plans (else
+/// ~/.cache/catena/plans). Each file is a report of `catena tradeoff` (tradeoff/report), which can make a page of it. All files can be
+/// deleted at any time. A file that is damaged, foreign or of another key is rejected with one message; the settings of its points are
+/// looked up among those that this program offers (image_tuning.h, tick_tuning.h). Files are written atomically; if nothing can be written,
+/// nothing is cached. Any thread.
 #pragma once
 #include <functional>
 #include <optional>
@@ -17,17 +17,18 @@ namespace catena::app::plan {
 
 using tradeoff::Curve;
 
-/// What determines curves, as a hash of 16 digits: the machine (processor, cores, threads that draw), the build of this program, and what
-/// is added.
+/// Key of cached curves, a hash of 16 hexadecimal digits: the system (processor, cores, rendering threads), the build of this program, and
+/// everything that is added.
 class CurveKey {
  public:
-  /// `sense`: eye or hand.
+  /// `sense`: "eye" for image curves, "hand" for tick curves.
   explicit CurveKey(std::string_view sense);
   CurveKey& add(std::string_view words);
   CurveKey& add(double number);
-  /// The scene's text but for what is wanted of it ("plan", "quality"), its step in time, and the files that it names: their names, sizes,
-  /// times of change, and the bytes at their ends; of a folder those of what lies in it.
+  /// Adds the scene's text except its targets ("plan", "quality"), its time step, and the files that it refers to: name, size, modification
+  /// time, and the first and last 64 KiB; for a folder, the same of the files in it.
   CurveKey& add(const scene::Scene& scene, std::string_view text);
+  /// Returns the 16 hexadecimal digits.
   std::string text() const;
 
  private:
@@ -35,18 +36,20 @@ class CurveKey {
   std::uint64_t hash_;
 };
 
+/// Reads and writes the files of cached curves.
 class CurveCache {
  public:
-  /// The user's own folder; empty where there is no home: nothing is kept.
+  /// Uses the user's own cache folder; if there is no home folder, nothing is cached.
   CurveCache();
   explicit CurveCache(std::string folder) : folder_(std::move(folder)) {}
 
-  /// What is kept under the key, if `fits` says that this program can use it. `told`: gets the sentence where a file is there and is not
-  /// believed.
+  /// Returns the curves cached under the key if the file is valid and `fits` accepts them; else nothing. `told` receives a message if a
+  /// file exists but is rejected.
   std::optional<std::vector<Curve>> find(const std::string& key, const std::function<bool(const std::vector<Curve>&)>& fits,
                                          std::string& told) const;
-  /// An error says why it could not be kept.
+  /// Writes the curves under the key; `source` names the scene. An Error if they cannot be written.
   Outcome store(const std::string& key, const std::string& source, const std::vector<Curve>& curves) const;
+  /// Returns the path of the key's file; empty if nothing is cached.
   std::string path_of(const std::string& key) const { return folder_.empty() ? std::string() : folder_ + "/" + key + ".json"; }
 
  private:

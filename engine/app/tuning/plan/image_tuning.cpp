@@ -17,14 +17,14 @@
 namespace catena::app::plan {
 namespace {
 
-constexpr double kErrorsS = 60, kTimesS = 6;  // at most for errors, and about for times
-constexpr std::uint32_t kFloorWidth = 256;    // of the picture that the data's own error is looked up in
-constexpr int kRounds = 5;                    // of times
-constexpr double kOwn = std::numbers::sqrt2;  // measured by the reference's own error: the least that tells
-constexpr double kHolds = 1.15;               // of a time: a setting that is there stays within it
-constexpr double kAsQuick = 1.1;              // of a time: what takes fewer bytes may take so much longer
+constexpr double kErrorsS = 60, kTimesS = 6;  // seconds: maximum for measuring errors, approximate for measuring times
+constexpr std::uint32_t kFloorWidth = 256;    // pixels: width of the image in which the discretization error is measured
+constexpr int kRounds = 5;                    // timed rounds
+constexpr double kOwn = std::numbers::sqrt2;  // factor on the reference's own error: smallest error that can be measured
+constexpr double kHolds = 1.15;               // factor on a time target: the current setting stays while it is within this
+constexpr double kAsQuick = 1.1;              // factor on a time: a setting with fewer bytes may take this much longer
 
-/// Small, as one eye sees it.
+/// A small copy of the packet with the view of one eye.
 render::FramePacket small(render::FramePacket packet) {
   if (!packet.eyes.empty()) packet.view = packet.eyes.front();
   packet.eyes.clear();
@@ -53,7 +53,7 @@ std::vector<render::RenderSettings> candidate_image_settings(const render::Quali
       all.back().texel_format = format;
     }
   };
-  // coarse pictures may do with the light of the cell's gradient, which the ladder leaves out
+  // coarse settings may use the shading by the cell's gradient, which the quality levels omit
   if (kind.can_draw_fast && kind.is_shaded)
     for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0}) all.push_back(render::fast_level(step, 4, -1, -1));
   std::ranges::for_each(render::quality_levels(kind), each_format);
@@ -104,7 +104,7 @@ Result<ImageCurve> measure_image_curve(render::Renderer& renderer, const render:
   const std::int64_t start = now_ns();
   const auto share = [&](std::size_t done) { return double(done) / double(all.size()); };
   std::size_t count = 0;
-  // errors: what is more exact than can be told is left out, but for one (of each format of voxels)
+  // errors: of the settings below the resolvable error only one is measured (one for each texel format)
   double best = std::numeric_limits<double>::infinity();
   const auto go_on = [&](double last) {
     at(0.1 + 0.5 * share(count));
@@ -116,7 +116,7 @@ Result<ImageCurve> measure_image_curve(render::Renderer& renderer, const render:
   };
   CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, go_on));
   curve.reference = "converged rays through a lattice of pixels";
-  // nor is what rounding to 8 bits hides. Of a measured error that is less than the root of two of that, most is the reference's own
+  // the rounding to 8 bits also limits the resolvable error; most of an error below sqrt(2) times the larger limit is the reference's own
   curve.reference_error = kOwn * std::max(errors.reference_rmse, render::kMinReportedRmse);
   std::vector<tradeoff::TimedRun> repeats;
   for (std::size_t i = 0; i < errors.rmse.size(); ++i) {
@@ -127,7 +127,7 @@ Result<ImageCurve> measure_image_curve(render::Renderer& renderer, const render:
     made.settings.push_back(all[i]);
     repeats.push_back([&, i]() -> Result<double> {
       at(0.6 + 0.4 * share(i));
-      // voxels of another format than the last picture's are put on the device first, which does not count
+      // a change of the texel format uploads the grids first, which does not count
       const render::RenderSettings& last = all[i > 0 ? i - 1 : errors.rmse.size() - 1];
       if (all[i].texel_format != last.texel_format) CATENA_CHECK(renderer.draw(packet, all[i]));
       CATENA_TRY(const double ms, render::measure_render_ms(renderer, packet, all[i]));
@@ -166,7 +166,7 @@ void ImageTuning::set_targets(const scene::TuningTargets& wanted) {
 }
 
 void ImageTuning::choose_setting() {
-  // the curve as it would be measured now
+  // the curve scaled to the times observed in rendering
   Curve expected = curve_.curve;
   for (std::size_t i = 0; i < expected.points.size(); ++i) {
     tradeoff::Timing& time = expected.points[i].time;
@@ -177,7 +177,7 @@ void ImageTuning::choose_setting() {
   current_ = picked_.point = prefer_fewer_bytes(std::max(0, picked_.point));
 }
 
-/// The same rays on voxels of another format, where these take fewer bytes, do as well and are about as quick.
+/// Finds a setting with the same rays in another texel format that takes fewer bytes, with sufficient accuracy and about the same time.
 int ImageTuning::prefer_fewer_bytes(int point) const {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   const std::vector<tradeoff::Point>& points = curve_.curve.points;
@@ -199,7 +199,7 @@ void ImageTuning::record_frame_time(double ms) {
   const int before = current_;
   const tradeoff::PickedPoint was = picked_;
   choose_setting();
-  // it stays while it will do and nothing is much quicker: else settings would come and go
+  // hysteresis: the setting stays while it meets the target and no other is much faster
   const double told = tradeoff::min_resolvable_error(curve_.curve),
                error = std::max(told, curve_.curve.points[static_cast<std::size_t>(before)].error);
   const bool stays =

@@ -1,4 +1,5 @@
-/// Linear or cubic cells as a plan's choice: which fields leave it open, and how one becomes cubic. Off the tick.
+/// Choice between linear and cubic interpolation in a tuning: which fields leave it open, and how a field becomes cubic. Not for the haptic
+/// thread.
 #pragma once
 #include <string>
 
@@ -9,14 +10,14 @@ namespace catena::app::plan {
 
 inline constexpr const char* kInterpolationKey = "interpolation";
 
-/// A grid from one file, read linearly, for which the scene does not say how.
+/// Returns whether the field is a grid from a single file, read linearly, whose interpolation the scene does not state.
 bool is_interpolation_unset(const scene::FieldSource& source);
 
-/// From now on it is read so, and what was loaded is, too. What the eye had made of it is made again. Where the memory for a cubic's
-/// ghosts is missing it stays as it is, and the error says so.
+/// Switches the field to cubic interpolation, including the data loaded so far; its grids for rendering are discarded and rebuilt. An Error
+/// if there is no memory for the ghost cells of a cubic grid; the field is then unchanged.
 Outcome set_cubic_interpolation(scene::FieldSource& source);
 
-/// "/fields/NAME" in the scene's text.
+/// Returns the JSON pointer of a field in the scene's text, "/fields/NAME".
 std::string field_pointer(const std::string& name);
 
 }  // namespace catena::app::plan

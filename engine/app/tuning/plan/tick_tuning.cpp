@@ -16,11 +16,11 @@ namespace catena::app::plan {
 namespace {
 
 constexpr const char* kKeys[] = {"follow", "method", "tolerance"};
-constexpr double kFarOff = 10;         ///< of the error on the measured way: that anywhere else is said
-constexpr std::size_t kFarColumn = 2;  ///< of a point's `more` (measure/hand/streamline.cpp)
-constexpr double kWorthIt = 0.5;       ///< of what linear cells leave open, cubic ones leave less
+constexpr double kFarOff = 10;  ///< factor on the error along the measured path: above it the error anywhere along the line is reported
+constexpr std::size_t kFarColumn = 2;  ///< column of a point's extra values (measure/haptics/streamline.cpp)
+constexpr double kWorthIt = 0.5;       ///< maximum ratio of cubic to linear discretization error that makes cubic worth its cost
 
-/// The links of a scene's text by their names: "/chain/2".
+/// Maps the names of the chain's links to their JSON pointers, such as "/chain/2".
 Result<std::map<std::string, std::string>> places_of_links(const json::Node& root) {
   std::map<std::string, std::string> places;
   const json::Node* chain = root.find("chain");
@@ -31,7 +31,7 @@ Result<std::map<std::string, std::string>> places_of_links(const json::Node& roo
   return places;
 }
 
-/// At the place of the object, for messages.
+/// Adds a member with the object's file and line, which messages refer to.
 void add_member(json::Node& object, const std::string& key, json::Node value) {
   value.file = object.file, value.line = object.line, value.label = key;
   object.members.emplace_back(key, std::move(value));
@@ -41,7 +41,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What the fields that `wanted` picks leave open becomes cubic; linear where there is no memory for it.
+/// Makes the fields that `wanted` selects cubic if their interpolation is unset; linear if there is not enough memory.
 template <class Wanted>
 void make_open_ones_cubic(scene::Scene& scene, const Wanted& wanted) {
   scene.entities.each<scene::FieldSource>([&](scene::Entity entity, scene::FieldSource& source) {
@@ -50,7 +50,7 @@ void make_open_ones_cubic(scene::Scene& scene, const Wanted& wanted) {
   });
 }
 
-/// Whether the scene has come to say itself what the plan would.
+/// Returns whether the scene states one of the keys that the tuning would set.
 bool is_pinned(const json::Node& link, const LinkKeys& keys) {
   return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return link.find(key.first) != nullptr; });
 }
@@ -130,13 +130,13 @@ void TickTuning::set_targets(const scene::TuningTargets& wanted) {
     for (const TunedLink& link : links_) meets_target_ = meets_target_ && link.meets_target;
     return;
   }
-  // the least error for which the tick is quick enough; where none is, the quickest tick
+  // the least error at which the tick is fast enough; if there is none, the fastest tick
   const std::vector<double> errors = error_breakpoints();
   const double most = 1e3 * wanted.max_tick_us.value_or(0);
   double quickest = 0, least = -1;
   for (const double error : errors) {
     Choice choice = pick(error);
-    if (choice.ns <= most) least = error;  // they fall
+    if (choice.ns <= most) least = error;  // errors are in descending order
     if (quickest == 0 || choice.ns < quickest) quickest = choice.ns, adopt(std::move(choice));
   }
   meets_target_ = least >= 0;

@@ -1,12 +1,13 @@
-/// The hand's plan: how each streamline link is followed, from measured curves of error against time (tradeoff/measure/hand).
-///   hand_error=E  for each link the cheapest setting whose error is at most E, or the data's own if that is greater
-///   max_tick_us=T   the least error of the worst link for which the whole tick takes T microseconds at most
-/// Errors are the greatest distance of a link's proxy from the converged line, world units; the time of a tick is that of the tick without
-/// these links, and what each of them adds. A link that says how it is followed ("follow", "method", "tolerance") keeps what it says.
-/// Below the error that linear cells leave in the data, a sampled field that does not state its "interpolation" becomes cubic where that
-/// is known to leave less than half of it: for all links of the field, and for the eye.
-/// The plan is made before the first tick and written into the links as if the scene had said it: the program, a recording and its replay
-/// know nothing of curves and clocks. Off the tick.
+/// Tick tuning: the choice of the integration method of each streamline link from measured curves of error against time
+/// (tradeoff/measure/haptics).
+///   hand_error=E  for each link the cheapest setting whose error is at most E, or at most the discretization error if that is larger
+///   hand_time=T   the least error of the worst link for which the whole tick takes at most T microseconds
+/// An error is the largest distance of a link's proxy from the converged line, world units. The time of a tick is the time without these
+/// links plus what each of them adds. A link that states its method ("follow", "method", "tolerance") keeps it.
+/// If the target lies below the error of linear interpolation, a sampled field that does not state its "interpolation" becomes cubic if
+/// that is known to leave less than half of that error: for all links of the field, and for rendering.
+/// The tuning is made before the first tick and written into the links as if the scene had stated it; the program, a recording and its
+/// replay are independent of curves and clocks. Not for the haptic thread.
 #pragma once
 #include <map>
 #include <optional>
@@ -20,36 +21,40 @@
 
 namespace catena::app::plan {
 
-/// Keys of a link as JSON text: {"method", "\"dp54\""}.
+/// Keys of a link and their values as JSON text: {"method", "\"dp54\""}.
 using LinkKeys = std::vector<std::pair<std::string, std::string>>;
 
-/// A link that leaves its setting open, and what is known of each; once with linear cells and, where the field leaves that open, once more
-/// with cubic ones.
+/// A link that leaves its setting open, with its measured curve: one entry for linear interpolation and, where the field leaves that open,
+/// another for cubic.
 struct LinkCurve {
   std::string link, field;
   bool is_cubic = false;
-  double length = 1;           ///< L of its field, world units: the curve's errors are shares of it
-  double ticks_per_ms = 1;     ///< the curve's times are of a millisecond
-  Curve curve;                 ///< only what agrees with what the link says
-  std::vector<LinkKeys> keys;  ///< one a point
+  double length = 1;           ///< Length L of the field's domain, world units; errors of the curve are in units of L.
+  double ticks_per_ms = 1;     ///< Servo ticks per millisecond: the curve's times are per millisecond of simulated time.
+  Curve curve;                 ///< Only the points compatible with what the link states.
+  std::vector<LinkKeys> keys;  ///< One per point.
 };
 
+/// The curves of all links that leave their setting open.
 struct TickCurves {
   std::vector<LinkCurve> links;
-  double base_tick_ns = 0;   ///< a tick without those links
-  double empty_tick_ns = 0;  ///< a tick without any: it is in each link's time
+  double base_tick_ns = 0;   ///< Time of a tick without those links.
+  double empty_tick_ns = 0;  ///< Time of a tick without any link; included in the time of each link's curve.
 };
 
-/// What one link gets.
+/// The setting chosen for one link.
 struct TunedLink {
   std::string link, setting;
   LinkKeys keys;
-  double error = 0;           ///< expected, world units
-  double error_anywhere = 0;  ///< of the line that is traced once, anywhere along it; world units; 0: of what is not traced, or not known
-  double discretization_error = 0;  ///< the data's own, or what the reference can tell; world units
+  double error = 0;  ///< Expected, world units.
+  /// Error anywhere along the line that is traced in advance, world units; 0: not traced in advance, unknown, or not much larger than
+  /// `error`.
+  double error_anywhere = 0;
+  double discretization_error = 0;  ///< Resolvable error: discretization error or error of the reference, whichever is larger; world units.
   bool at_floor = false, meets_target = true;
 };
 
+/// The settings chosen for the targets, with expected error and time. An empty tuning has no links.
 class TickTuning {
  public:
   TickTuning() = default;
@@ -57,34 +62,38 @@ class TickTuning {
 
   bool is_empty() const { return links_.empty(); }
   const std::vector<TunedLink>& links() const { return links_; }
-  /// The fields that become cubic.
+  /// Fields that are switched to cubic interpolation.
   const std::vector<std::string>& cubic_fields() const { return cubic_fields_; }
-  double expected_error() const;  ///< of the worst link, world units, on ways like the measured one
-  /// The same wherever the hand goes, where that is much more: small errors grow along a line, and in a chaotic flow to the size of the
-  /// flow, so that a far pass of a line that was traced once may be anywhere.
+  double expected_error() const;  ///< Error of the worst link, world units, on paths like the measured one.
+  /// Error of the worst link wherever the probe goes, world units; larger than expected_error() only where it is much larger. Small errors
+  /// grow along a line, in a chaotic flow up to the size of the flow, so that distant parts of a line traced in advance may lie anywhere.
   double error_anywhere() const;
+  /// Expected time per tick, microseconds.
   double expected_us() const { return 1e-3 * tick_ns_; }
   bool meets_target() const { return meets_target_; }
   const scene::TuningTargets& targets() const { return targets_; }
+  /// Replaces the targets and chooses again.
   void set_targets(const scene::TuningTargets& wanted);
 
-  /// From the fastest to the most exact: the errors at which what is chosen changes, falling.
+  /// Errors at which the choice changes, in descending order: from the fastest setting to the most exact one.
   std::vector<double> error_breakpoints() const;
 
-  /// Into the links and fields of a scene that was just read; into its text. What has come to say it itself keeps what it says.
+  /// Writes the settings into the links and fields of a scene that was just loaded. Links and fields that state a setting keep it.
   void apply(scene::Scene& scene) const;
+  /// The same for the scene's text, which is returned; `file` names it in messages. An Error if the text cannot be parsed.
   Result<std::string> apply(const std::string& text, const std::string& file) const;
 
-  /// "plan hand_error=1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us", and what could not be had.
+  /// Returns "plan hand_error=1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us a tick", with a remark if the target
+  /// cannot be met.
   std::string summary() const;
 
  private:
   struct Choice {
     std::vector<TunedLink> links;
-    std::vector<std::string> cubic_fields;  ///< fields
-    double ns = 0;                          ///< of the tick
+    std::vector<std::string> cubic_fields;  ///< Fields switched to cubic interpolation.
+    double ns = 0;                          ///< Expected time of the tick, nanoseconds.
   };
-  /// For the error.
+  /// Returns the cheapest choice whose error does not exceed `error`, world units.
   Choice pick(double error) const;
   std::vector<std::string> choose_cubic_fields(double error) const;
   void adopt(Choice choice);
@@ -97,12 +106,13 @@ class TickTuning {
   bool meets_target_ = true;
 };
 
-/// What the recording's text says of how links are followed and fields are read, for a scene from outside whose plan leaves it open.
+/// Applies the integration settings and interpolations stated in a recording's scene text to a scene given separately that leaves them
+/// open. An Error if the text cannot be parsed.
 Outcome apply_recorded_settings(const std::string& recorded_text, scene::Scene& scene);
 
-/// Measures the links that leave their setting open. `left_out` gets a sentence for each that cannot be measured.
+/// Measures the links that leave their setting open. Workload::skipped receives a sentence for each link that cannot be measured.
 Result<std::vector<Curve>> measure_tick_curves(tradeoff::Workload& subject);
-/// What those curves, or kept ones, are of this scene; nothing where they do not fit it.
+/// Matches measured or cached curves with the links of the scene; nothing if they do not fit it. `rate_hz`: rate of the servo.
 std::optional<TickCurves> to_tick_curves(scene::Scene& scene, const std::vector<Curve>& curves, double rate_hz);
 
 }  // namespace catena::app::plan

@@ -49,7 +49,7 @@ std::optional<double> TrackingErrorMonitor::max_error(scene::Scene& scene) const
       if (link.name != track.link) continue;
       const auto stated = tradeoff::resolve_link_streamline(scene, link);
       if (!stated) continue;
-      // what is traced once may be held anywhere along it
+      // with a precomputed line the proxy may be anywhere along it
       const double length = stated->field->domain_length(), far = std::clamp(1.1 * track.path_length, kTraced * length, kLongest * length);
       const auto line = flow::trace(stated->flow, stated->seed, tradeoff::converged_trace_options(far));
       if (!line) continue;

@@ -12,7 +12,7 @@
 namespace catena::app::plan {
 namespace {
 
-/// Only a note: what cannot be kept is measured the next time again.
+/// Stores the curves in the cache. A failure is only reported: the curves are then measured in the next run.
 void keep(const CurveCache& store, const std::string& key, const std::string& source, const std::vector<Curve>& curves,
           const MessageCallback& tell) {
   if (const Outcome kept = store.store(key, source, curves); !kept) tell("plan: the curves are not kept: " + kept.error().message);
@@ -76,7 +76,7 @@ Result<ImageTuning> tune_image(render::Renderer& renderer, const render::FramePa
     CATENA_TRY(curve, measure_image_curve(renderer, packet, kind, [&](double done) { progress.update(done); }));
     keep(store, key.text(), work.scene.path, {curve->curve}, tell);
   }
-  // of the whole picture
+  // scaled from the sample to the whole image
   for (tradeoff::Point& point : curve->curve.points) {
     point.time.lower_quartile /= work.image_share, point.time.median /= work.image_share, point.time.upper_quartile /= work.image_share;
   }

@@ -1,5 +1,5 @@
-/// A plan from the wishes to the settings: what is wanted ("plan" of a scene, --plan), curves out of the store or measured with a line of
-/// progress, and what a person is told of both. `tell`: one line each.
+/// Tuning from targets to settings: resolves the targets ("plan" of a scene, --plan), takes the curves from the cache or measures them with
+/// a progress line, and reports both to the user. `tell` receives one line per message.
 #pragma once
 #include <functional>
 #include <memory>
@@ -15,31 +15,35 @@ namespace catena::app::plan {
 
 using MessageCallback = std::function<void(const std::string& line)>;
 
-/// The scene's wishes; of an eye or a hand that the words of --plan speak of, theirs. An Error: the words are none.
+/// Returns the scene's targets; where `words` (the value of --plan) has image targets or haptic targets, those replace the scene's. An
+/// Error if `words` cannot be parsed.
 Result<scene::TuningTargets> resolve_targets(const scene::Scene& scene, const std::string& words);
-/// Of a command that draws nothing: words that speak of the eye are an Error.
+/// The same for a command that renders nothing: image targets in `words` are an Error.
 Result<scene::TuningTargets> resolve_tick_targets(const scene::Scene& scene, const std::string& words);
 
-/// The scene file's text; empty of a data file.
+/// Returns the text of the scene file; empty for a data file.
 Result<std::string> read_scene_text(const scene::Scene& scene);
 
-/// What a picture is measured under.
+/// The conditions under which an image is measured.
 struct ImageTuningInput {
   const scene::Scene& scene;
-  std::string scene_text;                 ///< the scene's
-  std::vector<std::string> options = {};  ///< of the command line that change what is drawn
-  double image_share = 1;                 ///< of the whole picture, which `packet` is a tile of: times count so much less
+  std::string scene_text;                 ///< Text of the scene file; empty for a data file.
+  std::vector<std::string> options = {};  ///< Command line options that change the image.
+  double image_share = 1;                 ///< Fraction of the full image that `packet` covers (a tile); measured times are divided by it.
 };
-/// `store`: null: the user's own.
+/// Returns the image tuning of the packet, from cached curves or measured ones. `store`: the curve cache; null: the user's own. An Error if
+/// rendering fails.
 Result<ImageTuning> tune_image(render::Renderer& renderer, const render::FramePacket& packet, const scene::TuningTargets& wanted,
                                const ImageTuningInput& work, const MessageCallback& tell, const CurveCache* store = nullptr);
 
-/// The scene is as it was afterwards. `rate_hz`: of the servo.
+/// Returns the tuning of the scene's streamline links, empty if it has no chain. The scene is left unchanged. `text`: the scene's text;
+/// `rate_hz`: rate of the servo; `store`: as above. An Error if the curves cannot be measured.
 Result<TickTuning> tune_ticks(scene::Scene& scene, const std::string& text, const scene::TuningTargets& wanted, double rate_hz,
                               const std::vector<std::string>& options, const MessageCallback& tell, const CurveCache* store = nullptr);
 
-/// All of it for a command: nothing where no hand_error or max_tick_us is wanted, or no link leaves its setting open (which is told); else
-/// the plan, told, and applied to the scene. `text`: the scene's, where the caller has it; else it is read where it is needed.
+/// Tunes the links for a command, applies the result to the scene and reports it. Returns nothing if there is no target max_proxy_error or
+/// max_tick_us, or if no link leaves its setting open (which is reported). `text`: the scene's text; without it, the file is read if
+/// needed.
 Result<std::optional<TickTuning>> tune_links(scene::Scene& scene, const std::string& text, const scene::TuningTargets& wanted,
                                              double rate_hz, const std::vector<std::string>& options, const MessageCallback& tell);
 Result<std::optional<TickTuning>> tune_links(scene::Scene& scene, const scene::TuningTargets& wanted, double rate_hz,

@@ -30,7 +30,7 @@ std::string plot_preamble(int width, int height) {
 std::string log_tics(char axis, double lo, double hi) {
   constexpr std::size_t kEnough = 3;
   if (!(lo > 0 && hi > lo) || hi / lo > 1e3) return fmt::format("set {}tics autofreq\n", axis);
-  // ever finer numbers of each decade, the first set that has enough of them on the axis
+  // increasingly dense ticks per decade: the first set with enough of them on the axis is used
   const std::vector<std::vector<double>> finer{{1}, {1, 3}, {1, 2, 5}, {1, 1.5, 2, 3, 4, 5, 6, 8}};
   for (const std::vector<double>& digits : finer) {
     std::vector<double> tics;
@@ -40,7 +40,7 @@ std::string log_tics(char axis, double lo, double hi) {
     if (tics.size() < kEnough) continue;
     return listed_tics(axis, tics);
   }
-  // a narrow axis: even steps, one by one, since on a logarithmic axis gnuplot multiplies by a step
+  // a narrow axis: explicit ticks at equal steps, since on a logarithmic axis gnuplot multiplies by a step
   const double step = std::pow(10.0, std::floor(std::log10((hi - lo) / 2)));
   std::vector<double> tics;
   for (const double wide : {5 * step, 2 * step, step, 0.5 * step}) {

@@ -10,7 +10,7 @@
 namespace catena::app {
 namespace {
 
-// gnuplot writes black in two ways: both become the page's ink
+// gnuplot writes black in two ways: both are replaced by the page's text color
 constexpr const char* kHead = R"html(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>)html";
 constexpr const char* kStyle = R"html(</title><style>

@@ -1,20 +1,21 @@
-/// A report as one page of HTML that opens without a network, in light and dark: what the pages of `tradeoff` and `study analyse` share.
+/// Building blocks of a self-contained HTML report page (no network access, light and dark mode), shared by `tradeoff` and `study analyse`.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace catena::app {
 
-/// All up to the first heading. Classes of the style: `n` a cell with a number, `wide` around a table that may scroll, `plots`, `why` a
-/// sentence that matters, `note` small print, `chosen` a row that matters.
+/// Returns the page up to the first heading; `title` is escaped. CSS classes: `n` a table cell with a number, `wide` a scrollable block
+/// around a table, `plots` a row of plots, `why` a highlighted sentence, `note` small print, `chosen` a highlighted table row.
 std::string html_page_head(const std::string& title);
+/// Returns the closing tags of the page.
 std::string html_page_end();
-/// Pictures (SVG of gnuplot's) side by side.
+/// Returns a block with the plots (SVG text from gnuplot) side by side.
 std::string plots_row(const std::vector<std::string>& plots);
 
-/// Text that is not ours, on one line, with its markup escaped.
+/// Returns untrusted text joined to one line, with its markup escaped.
 std::string escape_html(const std::string& text);
-/// "1.2e-06", "0", "-" for what was not measured.
+/// Returns the number in short form ("1.2e-06", "0"), or "-" if it is not finite (not measured).
 std::string format_short(double value);
 
 }  // namespace catena::app

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kMissing = 127;
 
-/// gnuplot's exit code, its messages thrown away; kMissing where there is no such program.
+/// Runs gnuplot without its messages and returns its exit code; kMissing if the program is not installed.
 int run_gnuplot(const std::string& folder, const std::string& script) {
   const pid_t child = ::fork();
   if (child < 0) return kMissing;
@@ -78,7 +78,7 @@ ResultsDir::~ResultsDir() { remove_staging(); }
 void ResultsDir::remove_staging() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
-  if (created_) fs::remove(path_, ignored);  // only while it is empty
+  if (created_) fs::remove(path_, ignored);  // succeeds only if the folder is empty
   staging_.clear();
   lock_.reset();
   created_ = false;
@@ -116,7 +116,7 @@ Outcome ResultsDir::add(const std::string& name, std::string_view text) {
     return file.commit();
   };
   if (const Outcome written = write(); !written) {
-    // by the name that it was to have: the folder of unfinished files goes
+    // reported with the final name: the temporary directory is removed
     Error error = written.error();
     if (error.message.starts_with(staging_)) error.message.replace(0, staging_.size(), path_);
     return error;
@@ -149,7 +149,7 @@ Result<std::vector<std::string>> ResultsDir::draw_svg(const std::string& script,
   if (run_gnuplot(staging_, "draw.gp") != 0) return drawn;
   for (const std::string& name : pictures) {
     CATENA_TRY(const std::string text, read_text_file(staging_ + "/" + name, "a picture of gnuplot's"));
-    // without the lines before the picture, which a page may not have within it
+    // without the lines before the <svg> element, which an HTML page must not contain
     const auto begin = text.find("<svg");
     if (begin != std::string::npos) drawn.push_back(text.substr(begin));
   }

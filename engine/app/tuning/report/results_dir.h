@@ -1,6 +1,6 @@
-/// Where the tables, plots and the page of a run go: a folder that gets all of them or none.
-/// They are made in a folder beside their places, DIR/tables.part<pid>-<random> (engine/base/output_file.h), and renamed at the end. What a
-/// run that was killed left there is removed by the next, by the lock that it does not hold any more.
+/// Output folder for the tables, plots and HTML page of a run, written atomically: the folder gets all of the files or none.
+/// The files are first written to a temporary folder inside it, DIR/tables.part<pid>-<random> (engine/base/output_file.h), and moved by
+/// commit(). A temporary folder that a killed run left behind is removed by the next run, which recognizes it by its released lock.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace catena::app {
 
-/// A CSV in the making: words and numbers that read back exactly.
+/// A CSV table under construction, with text and numbers; the numbers read back exactly.
 class CsvTable {
  public:
   explicit CsvTable(const std::string& header) : text_(header + "\n") {}
@@ -26,35 +26,38 @@ class CsvTable {
   bool at_row_start_ = true;
 };
 
-/// Text as a cell: a table of Catena's knows no quotes, so commas become semicolons.
+/// Returns text usable as a table cell: one line, with commas replaced by semicolons, since Catena's tables have no quoting.
 std::string csv_text(std::string text);
 
+/// Collects the files of one run and commits them together. Movable; the destructor removes files that were not committed.
 class ResultsDir {
  public:
-  /// An error where it could not be written; what that is tried with is gone again, so that a run that is ended leaves nothing.
+  /// Checks that the folder can be written to, creating it for the test and removing it afterwards, so that an aborted run leaves nothing.
+  /// An Error if `path` is empty, a file, or not writable.
   static Result<ResultsDir> open(const std::string& path);
   ~ResultsDir();
   ResultsDir(ResultsDir&& other) noexcept;
   ResultsDir& operator=(ResultsDir&&) = delete;
 
+  /// Writes a file to the temporary folder. An Error if it cannot be written.
   Outcome add(const std::string& name, std::string_view text);
-  /// Runs the program gnuplot on a script that was added, then adds the plots that it names. Where gnuplot is missing or fails
-  /// there are none; says so in a line.
+  /// Runs gnuplot on a script that was added and adds the plots it writes. If gnuplot is missing or fails, prints one line and adds none.
+  /// An Error if gnuplot succeeds but a file of `plots` is missing.
   Outcome add_plots(const std::string& script, const std::vector<std::string>& plots);
-  /// Draws pictures of text (SVG) with gnuplot for a page, and keeps neither the script nor them as files. Empty where gnuplot is missing
-  /// or fails.
+  /// Renders plots with gnuplot and returns their SVG text for an HTML page; neither the script nor the files in `pictures` are kept.
+  /// Returns an empty list if gnuplot is missing or fails.
   Result<std::vector<std::string>> draw_svg(const std::string& script, const std::vector<std::string>& pictures);
-  /// Everything to its place.
+  /// Moves all files to the output folder. An Error if a target is an input file or a folder, or cannot be written.
   Outcome commit();
   const std::vector<std::string>& file_names() const { return names_; }
 
  private:
   explicit ResultsDir(std::string path) : path_(std::move(path)) {}
-  /// Creates both folders where they are missing.
+  /// Creates the output folder if it is missing, and the temporary folder. An Error if the system refuses.
   Outcome create_staging();
   void remove_staging();
   std::string path_, staging_;
-  std::optional<FolderLock> lock_;  ///< of staging_
+  std::optional<FolderLock> lock_;  ///< Lock on staging_.
   bool created_ = false;
   std::vector<std::string> names_;
 };

@@ -12,7 +12,7 @@
 namespace catena::app {
 namespace {
 
-/// As the kernel calls it; "unknown" where it does not say.
+/// Processor name as reported by the kernel, or "unknown".
 std::string processor_name() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);)

@@ -1,4 +1,4 @@
-/// Where a report comes from.
+/// Description of the system and the build that a report was made with.
 #pragma once
 #include <string>
 #include <utility>
@@ -6,7 +6,7 @@
 
 namespace catena::app {
 
-/// Version, build, processor, cores, and the UTC date; the rest is added by who knows it.
+/// Returns name and value of: version, build, processor, cores, UTC date. The caller appends what else it knows.
 std::vector<std::pair<std::string, std::string>> system_info();
 
 }  // namespace catena::app

@@ -1,7 +1,7 @@
 /// Figure 2: a streamline of the field `circle` with a radius of 50 mm, followed at 1 kHz by a probe on it.
-///   figure2-drift.csv   laps at three speeds, every method: how far the proxy is off the streamline
-///   figure2-path.csv    where the proxy of the linear method goes
-///   figure2-tremor.csv  a hand that holds still but for a tremor of 1 mm at 10 Hz along the line
+///   figure2-drift.csv   laps at three speeds, every method: distance of the proxy from the streamline
+///   figure2-path.csv    path of the proxy of the linear method
+///   figure2-tremor.csv  a probe at rest except for a tremor of 1 mm at 10 Hz along the line
 #include <cmath>
 #include <numbers>
 

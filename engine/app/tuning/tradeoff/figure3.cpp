@@ -1,11 +1,12 @@
-/// Figure 3: a penetrable surface (free above, lets go at 0.05) and a curve that meets it at an angle. The probe goes along the
+/// Figure 3: a penetrable surface (free above, releases at 0.05) and a curve that meets it at an angle. The probe moves along the
 /// curve, from the free side in, 0.2 m/s at 1 kHz.
 ///   flat    a line of the field `uniform` through the level set of the field `plane`
 ///   curved  a helix of the field `helix` through the level set |x| = 1 of the field `sphere`
-///   figure3-release.csv  for every scene, angle and method: the probe's depth at release, and how far the proxies are off
+///   figure3-release.csv  for every scene, angle and method: the probe's depth at release, and the distances of the proxies
 ///   figure3-series.csv   flat, 30 degrees: every tick
-///                        (off_curve_at_release_depth: when the probe is as deep as the release distance)
-/// One proxy: both residuals are its own. Chain: the curve's is of the curve's proxy, the surface's of the surface's proxy.
+///                        (off_curve_at_release_depth: when the probe depth equals the release distance)
+/// One proxy: both residuals are those of this proxy. Chain: the curve's residual is that of the curve's proxy, the surface's that of the
+/// surface's proxy.
 #include <cmath>
 #include <numbers>
 
@@ -23,12 +24,12 @@ constexpr double kAngles_deg[] = {5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60,
 constexpr double kSeriesAngle_deg = 30;
 constexpr const char* kFigure3Methods[] = {"chain", "pipe", "balance", "closest", "linear"};
 
-/// A curve by its arc length s, 0 where it meets the surface, negative inside; and what there is to measure.
+/// A curve by its arc length s, 0 where it meets the surface, negative inside; and the scene in which it is measured.
 struct Case {
   std::string name, fields, surface;
   bool helix = false;
   double angle = 0;
-  double radius = 0, height = 0;  // the helix, and where it meets the sphere
+  double radius = 0, height = 0;  // of the helix; height at which it meets the sphere
 
   Vec3 at(double s) const {
     if (!helix) return {s * std::cos(angle), 0, s * std::sin(angle)};
@@ -37,7 +38,7 @@ struct Case {
   }
   double depth(const Vec3& p) const { return helix ? 1 - norm(p) : -p.z; }
   double off_surface(const Vec3& p) const { return std::fabs(depth(p)); }
-  /// The distance of a place near at(s).
+  /// Distance from the curve of a point near at(s).
   double off_curve(const Vec3& p, double s) const {
     if (!helix) return std::hypot(p.y, std::cos(angle) * p.z - std::sin(angle) * p.x);
     double theta = theta_at(s);
@@ -90,7 +91,7 @@ TickSimulation hand_for(const Case& c, const std::string& method) {
                         c.surface + R"(, "free": "above", "release": )" + to_text(kRelease) + "}]}");
 }
 
-/// Steps along the curve until the probe is well past the release depth, or as deep as a helix goes.
+/// Ticks until the probe is well past the release depth, or as deep as a helix goes.
 int ticks_of(const Case& c) {
   int k = 0;
   for (; k < 20000; ++k) {

@@ -1,8 +1,8 @@
-/// Energy of a chain: what a slow closed loop of the hand gains, by the angle between two links, by the paper's sum of pulls and by virtual
-/// work (haptics/chain/virtual_work.h). An ellipse of the hand near where the two meet; how fast it is passed does not count. The work is a
-/// trapezoid rule over the loop, refined until half the step changes it by less than 1e-10 K gap^2; gap is the largest distance of the hand
-/// from the last proxy.
-///   energy.csv  links, angle in degrees, force: paper or conservative; gain by K gap^2, and what bounds of the derivatives leave out of it
+/// Energy of a chain: the gain over a slow closed loop of the probe, by the angle between two links, by the paper's sum of pulls and by
+/// virtual work (haptics/chain/virtual_work.h). The loop is an ellipse near the intersection of the links; its speed does not matter. The
+/// work is a trapezoid rule over the loop, refined until half the step changes it by less than 1e-10 K gap^2; gap is the largest distance
+/// of the probe from the last proxy.
+///   energy.csv  links, angle in degrees, force: paper or conservative; gain and omitted work (due to bounded derivatives), both by K gap^2
 #include <fmt/format.h>
 
 #include <cmath>
@@ -61,7 +61,7 @@ const Pair kPairs[] = {
      }},
 };
 
-/// An ellipse beside where they meet, in a plane that none of them is in.
+/// Point on an ellipse near the intersection, in a plane that contains neither link; `part`: fraction of a lap, 0 to 1.
 Vec3 place_of_hand(double part) {
   const double u = 2 * std::numbers::pi * part;
   return Vec3(1.1, 0.05, 0.1) + Vec3(1, 0, 0.3) * (0.2 * std::cos(u)) + Vec3(0.2, 0.6, 0.9) * (0.2 * std::sin(u));
@@ -79,7 +79,7 @@ Gain gain_of(const std::string& chain, const char* force) {
                                     kPairStiffness, force, chain));
     double work = 0, gap = 0, left_out = 0;
     Vec3 last(0.0), last_force(0.0);
-    // one lap to arrive, one that counts
+    // one lap to settle, one that is measured
     for (int k = 0; k <= 2 * n; ++k) {
       const Vec3 x = place_of_hand(static_cast<double>(k % n) / n);
       const HapticState& out = hand.step(1e-3 * k, x);
@@ -93,7 +93,7 @@ Gain gain_of(const std::string& chain, const char* force) {
       last_force = out.force_n;
     }
     const double unit = kPairStiffness * gap * gap;
-    // the sum over chords errs by the square of the step: half the step takes three quarters of it away
+    // the error of the chord sum is proportional to the square of the step: halving the step removes three quarters of it
     const double gain = work / unit;
     const bool converged = std::fabs(gain - before) <= kConvergedWork;
     result = {std::isnan(before) ? gain : gain + (gain - before) / 3, left_out / unit};

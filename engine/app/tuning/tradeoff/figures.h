@@ -1,4 +1,4 @@
-/// What the figures of `catena tradeoff` share: the hand of a scene written as text.
+/// Figures of `catena tradeoff --figure N` and what they share.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,11 +10,12 @@
 
 namespace catena::app {
 
-/// A scene written as text and the hand that feels it: the very tick of `replay`, step by step.
+/// Haptic simulation of a scene given as text: runs the same tick as `replay`, step by step.
 class TickSimulation {
  public:
-  /// The text is ours: a mistake in it is a bug.
+  /// `scene`: trusted scene text; an invalid one is a programming error (assertion).
   explicit TickSimulation(const std::string& scene);
+  /// Runs one tick at time `t_s` with the probe at a world position; the returned state is valid until the next call.
   const HapticState& step(double t_s, const Vec3& probe) {
     haptics::tick(*program_, {t_s, probe, 0}, *state_, *scratch_, out_);
     return out_;
@@ -27,17 +28,18 @@ class TickSimulation {
   HapticState out_;
 };
 
-/// "[x, y, z]" as a scene file has it.
+/// Returns "[x, y, z]" in the format of a scene file.
 std::string vector_to_json(const Vec3& v);
 
-/// A figure's gnuplot script: `about` as its first line, how its tables are read and its plots look, then `body`.
+/// Returns the gnuplot script of a figure: `about` as a comment in its first line, settings for the tables and the look of the plots, then
+/// `body`.
 std::string make_figure_script(const std::string& about, std::string_view body);
 
-/// The figures that `catena tradeoff --figure N` measures: tables, a gnuplot script, plots.
-///   2  drift of the linear follow mode and of higher-order methods from the streamline (section 4)
-///   3  a penetrable surface and a curve: the baselines' one proxy beside the chain (section 5)
-///   stiffness  the largest spring that a device can show, by damping, rate and delay, beside the passive limit
-///   energy     what a closed loop of the hand gains from two links, by their angle, by both forces
+/// The figures that `catena tradeoff --figure N` measures; each adds tables, a gnuplot script and plots to the folder.
+///   2  drift from the streamline, for the linear follow mode and for higher-order methods (section 4)
+///   3  a penetrable surface and a curve: the single proxy of the baselines compared with the chain (section 5)
+///   stiffness  the largest spring that a device can render, by damping, rate and delay, compared with the passivity limit
+///   energy     energy gained by a closed probe path on two links, by the angle between them, for both force methods
 Outcome figure2(ResultsDir& folder);
 Outcome figure3(ResultsDir& folder);
 Outcome figure_stiffness(ResultsDir& folder);

@@ -25,7 +25,7 @@ using tradeoff::Curve;
 using tradeoff::Report;
 using tradeoff::Workload;
 
-/// No output is one of the inputs.
+/// Returns an Error if an output is also an input.
 Outcome check_files(const MeasureOptions& options, IoConflictChecker files) {
   files.add_input(options.compare);
   files.add_input(options.probe);
@@ -34,7 +34,7 @@ Outcome check_files(const MeasureOptions& options, IoConflictChecker files) {
   return files.check();
 }
 
-/// All that the scene has, in the order of the registry.
+/// Runs all measurements that apply to the scene, in the order of the registry.
 Result<Report> measure(const MeasureOptions& options) {
   CATENA_TRY(scene::Scene scene, open_scene(options.source, options.fields, {}, options.grid));
   CATENA_CHECK(check_files(options, IoConflictChecker(scene)));
@@ -56,7 +56,7 @@ Result<Report> measure(const MeasureOptions& options) {
   report.source = std::filesystem::path(options.source).filename().string();
   report.metadata = system_info();
   const bool sees = std::any_of(all.begin(), all.end(), [&](const auto& m) { return wanted(m) && std::string_view(m.category) == "eye"; });
-  constexpr double kBefore = 3;  // of what a measurement takes: to open the eye
+  constexpr double kBefore = 3;  // in units of one measurement: the effort of preparing the renderer
   ProgressLine progress("tradeoff", static_cast<double>(all.size()) + kBefore);
   double done = 0;
   if (sees) {

@@ -1,4 +1,4 @@
-/// `catena tradeoff SCENE|FILE`: all curves of a scene, as a page, tables and JSON.
+/// Command `catena tradeoff SCENE|FILE`: measures all curves of a scene and writes them as an HTML page, CSV tables and JSON.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,17 +7,19 @@
 
 namespace catena::app {
 
+/// Options of the command line.
 struct MeasureOptions {
   std::string source, output, compare, probe, grid;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
-  std::vector<std::string> only;    ///< names of measurements; empty: all
+  std::vector<std::string> only;    ///< Names of measurements to run; empty: all.
   bool quick = false, thorough = false;
 };
 
-/// A source that is a report is not measured again: its page is made. Prints what was written.
+/// Runs the command and prints the result and the files written. If the source is itself a report, nothing is measured and only its page is
+/// made. An Error if the source cannot be read or measured, or the output cannot be written.
 Outcome measure_tradeoffs(const MeasureOptions& options);
 
-/// The names that `only` may have.
+/// Returns the valid names for MeasureOptions::only.
 std::vector<std::string> measurement_names();
 
 }  // namespace catena::app

@@ -1,10 +1,10 @@
-/// Figure "stiffness": the largest spring that a device can show, against its damping, the servo's rate, the delay and the
-/// virtual damping. TrialResult with the very tick and the simulated mechanism: a plane, a mass of 0.159 kg let go 1 mm from it.
+/// Figure "stiffness": the largest spring stiffness that a device can render, against its damping, the servo's rate, the delay and the
+/// virtual damping. Measured with the actual tick and the simulated mechanism: a plane, a mass of 0.159 kg released 1 mm from it.
 ///   stiffness-damping.csv  the device's own damping, at 1, 2 and 4 kHz, and at 1 kHz with a period of delay
 ///   stiffness-delay.csv    the delay, 0.5 N s/m at 1 kHz
 ///   stiffness-virtual.csv  the coupling's damping, 0.5 N s/m at 1 kHz without and with a period of delay
 /// Columns: passive, the derived limit 2 b / (T + 2 t_d) (haptics/device/mass_model.h); stable, the largest spring at which
-/// the swing dies away; controlled, the largest of a rising row (steps of a quarter) at which the passivity controller still
+/// the oscillation decays; controlled, the largest of an increasing series (steps of a quarter) at which the passivity controller still
 /// keeps the energy within 5 % of what the spring had at the start.
 #include <cmath>
 #include <numbers>
@@ -58,7 +58,7 @@ haptics::SimulatedDeviceParameters mechanism_of(const Setting& setting) {
   return p;
 }
 
-/// The mass on the plane's spring: the largest energy of each of eight windows of a swing and a half.
+/// The mass on the plane's spring: the largest energy in each of eight windows of one and a half oscillations.
 class Swing {
  public:
   Swing(const Setting& setting, double stiffness, bool controlled)

@@ -19,7 +19,7 @@ namespace {
 using schema::Role;
 using schema::ValueType;
 
-/// The field if it can be loaded and is of that kind.
+/// The named field if it can be loaded and has the requested kind (vectors or scalars).
 field::AnyField use(scene::Scene& scene, const std::string& name, bool vectors) {
   auto field = scene::resolve_field(scene, name, json::Node{});
   if (!field || (field->vector != nullptr) != vectors) return {};
@@ -31,7 +31,7 @@ std::string level_at(const field::ScalarField& field, const Vec3& probe) {
   const DisplayRange range = field::display_range(field);
   const double lo = range.lo, hi = range.hi, here = field.sample(probe, cursor).value;
   const double middle = std::isfinite(lo + hi) ? 0.5 * (lo + hi) : std::isfinite(lo) ? lo + 1 : std::isfinite(hi) ? hi - 1 : 0;
-  // six digits: a level is a choice, not a measurement
+  // rounded to six digits: a level is a choice, not a measurement
   const double level = std::isfinite(here) && here > lo && here < hi ? here : middle;
   const double rounded = round_to_digits(level, 6);
   return scene::to_json(rounded > lo && rounded < hi ? rounded : level);
@@ -104,7 +104,7 @@ std::vector<std::string> list_point_set_names(const scene::Scene& scene) { retur
 
 namespace {
 
-/// "0.1 L" as a number, or JSON text; empty: it is words.
+/// Returns "0.1 L" as a number, or JSON text; empty if the input is neither and is taken as plain text.
 std::string length_or_json(const std::string& begin, double length) {
   if (begin.ends_with(" L"))
     if (const auto share = parse_double(std::string_view(begin).substr(0, begin.size() - 2))) return scene::to_json(*share * length);
@@ -117,7 +117,7 @@ std::string first_level(scene::Scene& scene, const json::Node& link, const Vec3&
   const field::AnyField field = use(scene, name->string, false);
   if (!field.scalar) return {};
   field::Cursor cursor;
-  // what is felt is what is seen
+  // use the level of the visible surface, so that haptics and image agree
   const std::string seen = visible_surface_level(scene, name->string, field.scalar->sample(probe, cursor).value);
   return seen.empty() ? level_at(*field.scalar, probe) : seen;
 }
@@ -135,7 +135,7 @@ std::string first_vector(const schema::Key& key, const Vec3& probe, double lengt
   return text.empty() ? scene::to_json(probe) : text;
 }
 
-/// The name of a field, a mesh or curves that fit, as JSON text.
+/// Name of a field, mesh or curves of the given role, as JSON text.
 std::string first_name(scene::Scene& scene, Role role) {
   if (role == Role::mesh) {
     const auto meshes = list_mesh_names(scene);
@@ -178,7 +178,7 @@ std::string default_key_value(scene::Scene& scene, const schema::Key& key, const
 
 Result<std::string> make_link_json(scene::Scene& scene, std::string_view type, const Vec3& probe, double length,
                                    const std::vector<std::pair<std::string, std::string>>& given) {
-  // a name that is free
+  // find an unused name
   std::vector<std::string> taken{"t", "probe", "force"};
   scene.entities.each<scene::Link>([&](scene::Entity, const scene::Link& link) { taken.push_back(link.name); });
   const std::string name =
@@ -211,7 +211,7 @@ std::vector<scene::Document::Edit> make_add_key_edits(scene::Scene& scene, const
   const std::string value = default_key_value(scene, key, row.node, probe, length);
   if (value.empty()) return {};
   std::vector<scene::Document::Edit> edits{{row.pointer(key.name), value}};
-  // a surface is one at a level
+  // a surface key must come with a level
   if (key.name != "surface" || row.node.find("level") != nullptr) return edits;
   json::Node link = row.node;
   if (auto surface = json::parse(value, "surface")) link.members.emplace_back("surface", std::move(*surface));

@@ -1,8 +1,8 @@
-/// The one way in which panels edit the scene: an edit is noted, with the words that the menu of undo has for it, and done when the
-/// interface of this frame has been made. Until then nothing that a panel refers to changes: every edit reads the scene again. An edit
-/// that is not possible is said in one line and changes nothing. Pointers are RFC 6901, values JSON text (engine/scene/to_json.h).
-///   context.edits.set("/isosurfaces/0/opacity", scene::text_of(0.4), "opacity");   // a step of undo of its own
-///   context.edits.drag("/isosurfaces/0/level", scene::text_of(0.4), "isolevel");   // one step until the pointer is pressed again
+/// Edits of the scene by panels. An edit is recorded with its undo label and executed after the GUI of this frame is complete; until then
+/// nothing that a panel refers to changes, since every edit reads the scene again. An edit that is not possible is reported in one line and
+/// changes nothing. Pointers are RFC 6901, values JSON text (engine/scene/to_json.h).
+///   context.edits.set("/isosurfaces/0/opacity", scene::to_json(0.4), "opacity");   // an undo step of its own
+///   context.edits.drag("/isosurfaces/0/level", scene::to_json(0.4), "isolevel");   // one undo step until the next press of the pointer
 ///   context.edits.remove("/isosurfaces/0/opacity", "opacity");
 /// Frame thread.
 #pragma once
@@ -12,19 +12,20 @@
 
 namespace catena::app {
 
-/// A number that is being typed: taken when the person is done, for a surface that follows each digit would jump under the hand.
+/// A number being typed; applied when the user is done, because a surface that follows every digit would jump under the probe.
 struct TypedInput {
   std::string pointer;
-  Vec3 values{0.0};          ///< of a single one the first
-  int last_typed_frame = 0;  ///< when they were last typed at
+  Vec3 values{0.0};          ///< A single number is in the first component.
+  int last_typed_frame = 0;  ///< GUI frame of the last key.
 };
 
-/// What lasts from frame to frame.
+/// State kept from frame to frame.
 struct EditState {
-  int gesture = 0;  ///< counts what the pointer or the keyboard takes hold of: names drags
+  int gesture = 0;  ///< Counts presses of pointer or keyboard; identifies the undo group of a drag.
   TypedInput typed;
 };
 
+/// Records edits as commands. `what`: undo label.
 class Edits {
  public:
   Edits(Commands& commands, EditState& state) : commands_(commands), state_(state) {}
@@ -37,10 +38,10 @@ class Edits {
     commands_.push_back(Edit{std::move(edits), what, what + " " + std::to_string(state_.gesture)});
   }
 
-  /// A link that lies on that item (feel.h).
+  /// Adds a link that lies on that item (haptic_binding.h).
   void bind_haptics(const std::string& item) { commands_.push_back(BindHaptics{item}); }
 
-  /// An item of a list, with what hangs on it (removal.h).
+  /// Removes an item of a list with everything that refers to it (remove_item.h).
   void remove_item(const std::string& item, const std::string& what) { commands_.push_back(RemoveItem{item, what}); }
 
   EditState& state() { return state_; }

@@ -16,12 +16,12 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kSnapShare = 0.02;  // of the diagonal of all lines or points
+constexpr double kSnapShare = 0.02;  // fraction of the diagonal of all lines or points
 
 /// "isosurfaces" of "isosurfaces[2]".
 std::string part_of(const std::string& item) { return item.substr(0, item.find('[')); }
 
-/// The side of a level on which the eye is: by the gradient where it was pointed at, or else by the field's corners, which are outside.
+/// Side of a level on which the camera is: by the gradient at the picked point, otherwise by the field's corners, which count as outside.
 const char* side_of_eye(const field::ScalarField& field, double level, const std::optional<Vec3>& at, const Vec3& eye) {
   field::Cursor cursor;
   if (at) {
@@ -33,7 +33,7 @@ const char* side_of_eye(const field::ScalarField& field, double level, const std
   return above > 0 ? "above" : "below";
 }
 
-/// What an item gives to the link that lies on it: keys and JSON text; and its words.
+/// Keys, as JSON text, that an item contributes to the link on it, and the label shown for it.
 struct Given {
   std::vector<std::pair<std::string, std::string>> keys;
   std::string words;
@@ -41,7 +41,7 @@ struct Given {
   bool is_label = false;
 };
 
-/// [a-z][a-z0-9_]* of a label's name.
+/// Converts a label's name to a field name that matches [a-z][a-z0-9_]*.
 std::string field_name_of(const std::string& label) {
   std::string name;
   for (const char c : label)
@@ -49,7 +49,8 @@ std::string field_name_of(const std::string& label) {
   return !name.empty() && name[0] >= 'a' && name[0] <= 'z' ? name : "label_" + name;
 }
 
-/// The surface of the label at a place of a label map; none where there is none. `smooth`: of the surface; none: the usual.
+/// Link keys for the surface of the label at a point of a label map; std::nullopt where there is none. `smooth`: smoothing of the surface;
+/// if absent, the default.
 std::optional<Given> given_by_label(const scene::Scene& scene, const std::string& map_name, const Vec3& at, std::optional<double> smooth) {
   const scene::Entity entity = scene::find_field(scene, map_name);
   const scene::LabelMap* map = entity ? scene::find_label_map(scene, entity) : nullptr;
@@ -105,7 +106,7 @@ Result<Given> given_by(scene::Scene& scene, const scene::Volume& volume, const s
   if (!here.inside || !std::isfinite(here.value)) return Error{"volume " + name + " has no value at the place that is pointed at"};
   if (!(field.scalar->min_value() < field.scalar->max_value()))
     return Error{"volume " + name + " has one value everywhere: no surface to feel"};
-  // four digits: a level is a choice, not a measurement
+  // rounded to four digits: a level is a choice, not a measurement
   const double rounded = round_to_digits(here.value, 4);
   const bool fits = rounded > field.scalar->min_value() && rounded < field.scalar->max_value();
   const double level = fits ? rounded : here.value;
@@ -147,7 +148,7 @@ Result<Given> given_by(const scene::Scene& scene, const scene::Slice& slice) {
                "slice " + entity_name(scene, slice.color_by.field)};
 }
 
-/// The side of the face at that place on which the eye is, "above" where its normal points; without a place: outside.
+/// Side of the mesh face at the picked point on which the camera is, "above" where its normal points; without a point: outside.
 const char* side_of_eye(const mesh::TriangleMesh& mesh, const std::optional<Vec3>& at, const Vec3& eye) {
   if (!at) return "above";
   int budget = static_cast<int>(std::min<std::size_t>(4 * mesh.triangles().size() + 64, 1 << 30));
@@ -228,7 +229,7 @@ std::string find_bound_link(const scene::Scene& scene, const HapticBinding& thin
 TextEdits make_binding_edits(scene::Scene& scene, const std::string& item, const HapticBinding& thing) {
   TextEdits edits;
   if (thing.new_field) edits.push_back({thing.new_field->first, thing.new_field->second});
-  // another label of a map is another thing
+  // a different label of the same map counts as a different item
   const std::vector<std::string> before = thing.is_label ? std::vector<std::string>() : find_links_on(scene, item);
   const auto link = json::parse(thing.link_json, "link");
   if (before.empty() || !link) {

@@ -20,7 +20,7 @@ std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, d
   auto from = std::lower_bound(sorted.begin(), sorted.end(), lo, [](float v, double edge) { return v < edge; });
   float most = 0;
   for (int i = 0; i < bars; ++i) {
-    // the last one holds its upper edge
+    // the last bar includes its upper edge
     const double edge = i + 1 == bars ? std::nextafter(hi, HUGE_VAL) : symlog_interpolate(lo, hi, (i + 1.0) / bars, linear_below);
     const auto to = std::lower_bound(from, sorted.end(), edge, [](float v, double e) { return v < e; });
     heights[static_cast<std::size_t>(i)] = std::log1p(static_cast<float>(to - from));
@@ -47,7 +47,7 @@ SortedSamples HistogramCache::find_or_request(scene::Scene& scene, scene::Entity
   const scene::FieldSource& source = scene.entities.get<scene::FieldSource>(field);
   const field::AnyField& any = source.rendered.get() != nullptr ? source.rendered : source.loaded;
   if (any.get() == nullptr || !any.get()->is_grid()) return nullptr;
-  // the transfer functions may have asked for them already, or be glad of them later
+  // reuse the sample that the transfer functions may have cached, or cache it for them
   const auto* sample = scene.cache.has<scene::ValueSample>(field) ? &scene.cache.get<scene::ValueSample>(field) : nullptr;
   if (sample != nullptr && sample->grid == any.get()) return sample->sorted;
   const std::uint64_t version = any.get()->version();
@@ -71,7 +71,7 @@ SortedSamples HistogramCache::find_or_request(scene::Scene& scene, scene::Entity
   try {
     job_->thread = std::jthread(sort);
   } catch (const std::system_error&) {
-    job_.reset();  // without a histogram for now
+    job_.reset();  // no histogram until the next request
   }
   return nullptr;
 }
@@ -86,7 +86,7 @@ void HistogramCache::prune(const scene::Scene& scene) {
 }
 
 namespace {
-constexpr double kNarrowest = 1e-12;  // of the values' size
+constexpr double kNarrowest = 1e-12;  // relative to the magnitude of the values
 constexpr double kWidest = 1e300;
 }  // namespace
 

@@ -1,5 +1,5 @@
-/// HistogramCache keeps the values of fields for histograms: a sorted sample, made once a field version by a thread of its own, so that no
-/// frame waits. It has at most about 2 million floats a field; those of fields that are gone go with them. Frame thread.
+/// Cache of field values for histograms: a sorted sample per field version, computed on a separate thread so that no frame waits. At most
+/// about 2 million floats per field; those of removed fields are discarded. Frame thread.
 #pragma once
 #include <array>
 #include <atomic>
@@ -14,17 +14,19 @@ namespace catena::app {
 
 using SortedSamples = std::shared_ptr<const std::vector<float>>;
 
-/// Heights 0..1 by the logarithm of the count in `bars` parts of lo..hi, equal on a scale (engine/base/symlog_scale.h); all 0 where there
-/// is nothing to show.
+/// Returns bar heights 0 to 1, by the logarithm of the count in `bars` intervals of lo..hi that are equal on the scale
+/// (engine/base/symlog_scale.h); all 0 if there is nothing to show.
 std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, double hi, int bars, double linear_below = 0);
-/// The value below which `share` of the values lie; 0 of none.
+/// Returns the value below which the fraction `share` of the values lies; 0 for an empty list.
 double quantile_of_sorted(const std::vector<float>& sorted, double share);
 
+/// Owns the cached samples and the thread that computes the next ones.
 class HistogramCache {
  public:
-  /// Nullptr until they are there. A vector field's are its magnitudes; a formula's those of the grid that is drawn.
+  /// Returns the sorted values, or nullptr until they are available; requests them. For a vector field its magnitudes, for a formula the
+  /// values of the rendered grid.
   SortedSamples find_or_request(scene::Scene& scene, scene::Entity field);
-  /// Forgets the fields that the scene no longer has.
+  /// Discards the values of fields that are not in the scene.
   void prune(const scene::Scene& scene);
   bool is_busy() const { return job_ != nullptr; }
 
@@ -33,7 +35,7 @@ class HistogramCache {
     std::uint64_t version = 0;
     SortedSamples values;
     std::atomic<bool> done = false;
-    std::jthread thread;  ///< last: joined before the rest goes
+    std::jthread thread;  ///< Last member: joined before the others are destroyed.
   };
   void collect();
 
@@ -41,24 +43,25 @@ class HistogramCache {
   std::unique_ptr<Job> job_;
 };
 
-/// PlotTransform says where values lie in a plot of the interface: value to x, alpha to y, and back. Pixels, y down. Alphas are drawn by
-/// their square roots, because those of a volume are mostly small. Pure, any thread.
+/// Mapping between values and positions in a plot of the GUI: value to x, alpha to y, and back. Pixels, y down. Alpha is plotted by its
+/// square root, because the alphas of a volume are mostly small. Pure, any thread.
 struct PlotTransform {
   double left = 0, top = 0, right = 1, bottom = 1;
-  double lo = 0, hi = 1;    ///< values at the left and right edges, lo < hi
-  double linear_below = 0;  ///< the scale between them (engine/base/symlog_scale.h)
+  double lo = 0, hi = 1;    ///< Values at the left and right edges, lo < hi.
+  double linear_below = 0;  ///< Linear part of the scale between them (engine/base/symlog_scale.h).
 
   double to_x(double value) const;
-  double value_at(double x) const;          ///< within lo..hi
-  double rounded_value_at(double x) const;  ///< the same, rounded to a part of a pixel
+  double value_at(double x) const;          ///< Result within lo..hi.
+  double rounded_value_at(double x) const;  ///< The same, rounded to a fraction of a pixel.
   double to_y(double alpha) const;
-  double alpha_at(double y) const;  ///< within 0..1
+  double alpha_at(double y) const;  ///< Result within 0..1.
 };
 
-/// A range that a plot can have: rising, finite, and not too narrow for doubles to be told apart in it. Of a single value: about it.
+/// Returns a valid range for a plot: increasing, finite, and wide enough for doubles to be distinguishable. For a single value: a range
+/// around it.
 std::array<double, 2> make_plot_range(double lo, double hi);
 
-/// The shortest number near `value`: within a part in `parts` of the span lo..hi, so that a file does not fill with digits no hand has set.
+/// Returns the shortest number near `value`, within 1/`parts` of the span lo..hi, so that files do not fill with meaningless digits.
 double round_within(double value, double lo, double hi, double parts = 2000);
 
 }  // namespace catena::app

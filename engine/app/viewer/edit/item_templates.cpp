@@ -20,7 +20,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kBall = 0.35;  // its radius by the shortest edge of the domain
+constexpr double kBall = 0.35;  // radius as a fraction of the shortest edge of the domain
 constexpr int kSeeds = 60;
 
 struct Domain {
@@ -51,7 +51,7 @@ double default_level(const field::ScalarField& field, const std::vector<float>& 
   return level >= field.min_value() && level <= field.max_value() ? level : middle;
 }
 
-/// The level at which a link of the chain lies on the field: what is seen is what is felt.
+/// Takes the level at which a link of the chain lies on the field, so that the visible surface matches the haptic one. False: no such link.
 bool take_felt_level(const scene::Scene& scene, scene::Entity field, scene::Isosurface& surface) {
   const auto felt = json::parse(first_link_level(scene, entity_name(scene, field)), "level");
   if (!felt) return false;
@@ -134,7 +134,7 @@ std::string make_item_json(const scene::Scene& scene, scene::Entity field, const
 
 namespace {
 
-/// The field of a surface that is drawn, or else the first scalar one.
+/// Field of a visible isosurface, or else the first scalar field.
 scene::Entity field_of_isolevel(const scene::Scene& scene) {
   scene::Entity field;
   scene.entities.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
@@ -187,9 +187,9 @@ std::string free_among(std::set<std::string>& taken, const std::string& name) {
   return free;
 }
 
-/// A file that is named from `from`, as it is named from `to`.
+/// Rewrites a file name that is relative to folder `from` so that it is relative to folder `to`.
 std::string named_from(const fs::path& from, const fs::path& to, const std::string& file) {
-  // a scene that was named without its folder is in the current one
+  // a scene path without a folder lies in the current one
   std::error_code code;
   const fs::path here = fs::current_path(code);
   const fs::path whole = (here / from / file).lexically_normal(), near = whole.lexically_relative((here / to).lexically_normal());

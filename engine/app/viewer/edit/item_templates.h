@@ -1,5 +1,4 @@
-/// These functions make what "show this field as .." adds to the scene: an item with defaults that show something, as JSON text. Pure, any
-/// thread.
+/// Templates of new items: "show this field as ..", as JSON text with defaults that show something. Pure, any thread.
 #pragma once
 #include <string>
 #include <utility>
@@ -11,40 +10,40 @@
 
 namespace catena::app {
 
+/// The kinds of items that show a field.
 enum class ShowAs { volume, isosurface, slice, streamlines, glyphs };
 
-/// Where it goes: "/volumes/-" and so on.
+/// Returns where the new item is added: "/volumes/-" and so on.
 std::string new_item_pointer(ShowAs as);
-/// "volume" and so on, for the menu of undo.
+/// Returns "volume" and so on, for the undo label.
 const char* to_string(ShowAs as);
-/// A scalar field as a volume, an isosurface and a slice, a vector field as a slice (its magnitude), streamlines and glyphs.
+/// Returns whether a field can be shown that way: a scalar field as volume, isosurface and slice; a vector field as slice (its magnitude),
+/// streamlines and glyphs.
 bool can_show(const field::AnyField& field, ShowAs as);
 
-/// The isosurface lies where a link of the chain lies on the field, or else half way between the 2nd and the 98th percentile of `sorted`
-/// (empty: of the field's range), the slice across z through the middle of the domain, the seeds in a ball around it; the
-/// glyphs stand on the first slice that is there, or else in the domain. `values`: of the
-/// field as it is drawn.
+/// Returns the item as JSON text. The isosurface gets the level of a link that lies on the field, or else the middle between the 2nd and
+/// the 98th percentile of `sorted` (if empty: of the field's range); the slice is across z through the center of the domain; the seeds are
+/// in a ball around the center; the glyphs are on the first slice there is, or else in the domain. `values`: the field as rendered.
 std::string make_item_json(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
                            const std::vector<float>& sorted);
 
-/// These functions make a widget to begin with, as JSON text for "/widgets/-": it stands in the middle of all that is there and has a
-/// quarter of its size. Frame thread.
+/// Templates of widgets, as JSON text for "/widgets/-": in the center of the scene's bounds, a quarter of their size. Frame thread.
 
-/// "cutting_plane", "seed", ...
+/// Returns the types: "cutting_plane", "seed", ...
 std::vector<std::string> list_widget_types();
-/// An error where the scene has no field that an isolevel could stand on.
+/// Returns the widget. An Error if it needs a field for its isolevel and the scene has none.
 Result<std::string> make_widget_json(const scene::Scene& scene, const std::string& type, const Bounds& bounds);
 
-/// This file makes a data file join an open scene: what the file's own scene would hold (a field and a volume or lines, or a mesh) becomes
-/// edits of the open one's text. Pure, any thread.
+/// A data file merged into an open scene: the content of the file's own scene (a field and a volume or lines, or a mesh) as edits of the
+/// open scene's text. Pure, any thread.
 struct MergedFile {
   std::vector<scene::Document::Edit> edits;
-  /// Names in the file's own scene, and in the open one, where they differ if they were taken.
+  /// Names in the file's own scene and their names in the open one, which differ if the name was taken.
   std::vector<std::pair<std::string, std::string>> renames;
 };
 
-/// `added_path` is where the text of `added` stands: its relative names start there; they are stated relative to the open scene's folder
-/// if they lie within, else absolute.
+/// Returns the edits. `added_path`: location of the text `added`, to which its relative file names refer; they become relative to the open
+/// scene's folder if they are inside it, else absolute. An Error if a text cannot be parsed.
 Result<MergedFile> make_merge_edits(const std::string& open_text, const std::string& open_path, const std::string& added_text,
                                     const std::string& added_path);
 

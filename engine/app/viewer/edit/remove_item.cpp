@@ -21,7 +21,7 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
-/// A key that names an item of a list by its index.
+/// A key that refers to an item of a list by its index.
 struct IndexKey {
   const char *holder, *key, *list;  ///< "scalar_bars", "slice", "slices"
 };
@@ -31,7 +31,7 @@ constexpr IndexKey kIndexKeys[] = {
     {"glyphs", "on/slice", "slices"},     {"glyphs", "on/isosurface", "isosurfaces"}};
 constexpr const char* kPlaneKeys[] = {"point", "normal", "axis", "at", "widget"};
 
-/// The plane of a slice, for glyphs.
+/// The plane of a slice, as JSON text for glyphs.
 std::string plane_of(const json::Node& slice) {
   std::string text;
   for (const char* key : kPlaneKeys)
@@ -40,7 +40,7 @@ std::string plane_of(const json::Node& slice) {
   return "{\"plane\": {" + text + "}}";
 }
 
-/// All that goes when the items in `gone` do, themselves included; glyphs that stay without their slice are noted in `edits`.
+/// Adds to `gone` all items that depend on those in it; glyphs that lose their slice but stay get its plane through `edits`.
 void add_hangers(const json::Node& root, std::vector<Place>& gone, TextEdits& edits) {
   for (std::size_t g = 0; g < gone.size(); ++g) {
     const Place lost = gone[g];
@@ -59,7 +59,7 @@ void add_hangers(const json::Node& root, std::vector<Place>& gone, TextEdits& ed
   }
 }
 
-/// Later indices are as many less as items before them go.
+/// Renumbers references by index: each is reduced by the number of removed items before it.
 void add_renumbered(const json::Node& root, const std::vector<Place>& gone, TextEdits& edits) {
   for (const IndexKey& index : kIndexKeys) {
     const json::Node* holders = root.find(index.holder);
@@ -83,13 +83,13 @@ TextEdits edits_without(const std::string& text, std::vector<Place> gone) {
   if (!root) return edits;
   add_hangers(*root, gone, edits);
   add_renumbered(*root, gone, edits);
-  // from the end, so that indices hold
+  // removed from the end, so that the remaining indices stay valid
   std::ranges::sort(gone, [](const Place& a, const Place& b) { return a.list != b.list ? a.list < b.list : a.index > b.index; });
   for (const Place& place : gone) edits.push_back({place.pointer(), std::nullopt});
   return edits;
 }
 
-/// Of "slices[1]".
+/// List and index of an item such as "slices[1]".
 std::vector<Place> place_of(const std::string& item) {
   const std::size_t open = item.find('[');
   if (open == std::string::npos) return {};
@@ -111,7 +111,7 @@ bool is_at(const scene::Scene& scene, const scene::Isosurface& surface, const js
   return surface.level_widget && widget != nullptr && widget->string == entity_name(scene, surface.level_widget);
 }
 
-/// Whether a surface that is drawn, another than `item`, is the one of the link.
+/// Returns whether a visible surface other than `item` is the surface of the link.
 bool is_drawn_beside(const scene::Scene& scene, const std::string& item, const json::Node& link) {
   const std::string field = scene::level_field_name(link);
   bool found = false;
@@ -164,7 +164,7 @@ Rule rule_of_named(const char* key, const std::string& name) {
   };
 }
 
-/// How many items of the kind show the same.
+/// Number of items of the kind that show the same data.
 template <class T, class Same>
 bool is_shown_twice(const scene::Scene& scene, const Same& same) {
   int count = 0;
@@ -172,7 +172,7 @@ bool is_shown_twice(const scene::Scene& scene, const Same& same) {
   return count > 1;
 }
 
-/// None: no link lies on it that does not lie on something else, too.
+/// The rule that finds the links on the item; an empty rule if every such link also lies on something else.
 Rule rule_of(scene::Scene& scene, const std::string& item) {
   if (const auto surface = find_item<scene::Isosurface>(scene, item)) return rule_of(scene, item, *surface);
   if (const auto volume = find_item<scene::Volume>(scene, item)) {

@@ -13,7 +13,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kGap = 1e-4;  // of the plot: neighbours are not nearer, unless they were
+constexpr double kGap = 1e-4;  // fraction of the plot: minimum distance of neighbors, unless they were closer before the edit
 
 template <class Points>
 bool rises(const Points& points) {
@@ -21,15 +21,15 @@ bool rises(const Points& points) {
   return std::adjacent_find(points.begin(), points.end(), falls) == points.end();
 }
 
-/// Where a point between `below` and `above` (either may lack) goes if it is wanted at `value`; none: no room.
+/// Position of a point between `below` and `above` (either may be null) when it is moved to `value`; std::nullopt if no space is left.
 std::optional<double> between(const double* below, const double* above, const PlotTransform& frame, double value) {
   if (!std::isfinite(value)) return std::nullopt;
-  // on the plot's scale
+  // in the coordinates of the plot's scale
   const auto place = [&](double v) { return symlog(v, frame.linear_below); };
   const double lo = place(frame.lo), hi = place(frame.hi), gap = kGap * (hi - lo);
   const double least = below ? place(*below) + gap : lo, most = above ? place(*above) - gap : hi;
   double to = std::clamp(place(value), least, std::max(least, most));
-  // where there is no room: the only neighbour lies beyond the plot, or two are close
+  // no space: the only neighbor lies beyond the plot, or two neighbors are too close
   if (!(least <= most)) to = !above ? least : !below ? most : 0.5 * place(*below) + 0.5 * place(*above);
   if (to != place(value)) value = symlog_inverse(to, frame.linear_below);
   if ((below && !(*below < value)) || (above && !(value < *above)) || !std::isfinite(value)) return std::nullopt;
@@ -66,7 +66,7 @@ bool take_out(Points& points, std::size_t index) {
 
 double usable(double alpha) { return std::isfinite(alpha) ? std::clamp(alpha, 0.0, kMaxAlpha) : 0.0; }
 
-/// The points to either side of a value and how far it is between them on their scale.
+/// The points on either side of a value and their distance on the plot's scale.
 template <class Points>
 auto around(const Points& points, double value, double linear_below) {
   struct Pieces {
@@ -185,14 +185,14 @@ void add_mapping(const std::string& at, const scene::ValueMapping& mapping, Text
 
 void add_colors(const std::string& at, const TransferEdit& edit, TextEdits& edits) {
   edits.push_back({at + "/color", edit.color_map.empty() ? scene::to_json(edit.colors) : scene::to_json(std::string_view(edit.color_map))});
-  // a range beside a table is an error of the scene's
+  // a range next to a table is an error of the scene
   std::optional<std::string> range;
   if (!edit.color_map.empty() && edit.has_range)
     range = scene::to_json(std::array<double, 2>{edit.colors.front().value, edit.colors.back().value});
   edits.push_back({at + "/range", range});
 }
 
-/// All that the transfer function is, and nothing else that says it.
+/// Edits that write the complete transfer function and remove all other keys that describe it.
 TextEdits all_of(const scene::Volume& volume, const TransferEdit& edit) {
   const std::string at = item_pointer(volume.where);
   TextEdits edits{{at + "/transfer", std::nullopt}, {at + "/extinction", std::nullopt}};

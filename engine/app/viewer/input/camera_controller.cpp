@@ -9,7 +9,7 @@
 namespace catena::app {
 
 namespace {
-constexpr double kLongestStepS = 0.1;  // a slow picture is no leap
+constexpr double kLongestStepS = 0.1;  // maximum time step: a slow frame causes no jump
 }
 
 scene::Camera to_scene_camera(const render::View& v) { return {v.position, v.target, v.up, v.fovy_deg, v.orthographic, v.height, true}; }

@@ -1,4 +1,4 @@
-/// Eye moves the view as commands, held keys and the turntable say, and the scene's camera with it. Frame thread.
+/// Moves the view by commands, held keys and the turntable, and keeps the scene's camera equal to it. Frame thread.
 #pragma once
 #include "engine/app/viewer/input/camera_motion.h"
 #include "engine/app/viewer/input/haptic_session.h"
@@ -7,24 +7,25 @@
 
 namespace catena::app {
 
-/// As the scene states it.
+/// Returns the view as a camera of the scene.
 scene::Camera to_scene_camera(const render::View& view);
 
+/// Refers to navigation and scene, which must outlive it.
 class CameraController {
  public:
   CameraController(Navigation& controls, SceneModel& scene, const HapticSession& hand)
       : navigation_(controls), scene_(scene), haptic_session_(hand) {}
 
-  /// The place in a scene that has just become the one that is shown.
+  /// Adopts the initial view, probe and bounds of a scene that has just become the visible one.
   void adopt_scene(const LoadedScene& loaded);
-  /// From now on the camera is where the controls have it (a fitted one would follow the cursor).
+  /// Stores the current view as the scene's camera (a fitted camera would follow the cursor).
   void pin_camera();
-  /// A command of the eye, in a picture of that width / height; true: the view has changed.
+  /// Executes a camera command for an image of width / height `aspect`. Returns true if the view has changed.
   bool handle(Action action, double aspect);
-  /// Flight by the keys that are held, and the turntable, by the time since the last call. True: the view has changed.
+  /// Advances flight by held keys and the turntable by the time since the last call. Returns true if the view has changed.
   bool update(const FlyKeys& keys);
 
-  /// The person has moved the view since it was read or saved.
+  /// Returns whether the view differs from that of the last read or save.
   bool has_unsaved_view() const;
   void mark_saved() { saved_view_ = navigation_.view; }
 
@@ -33,8 +34,8 @@ class CameraController {
   SceneModel& scene_;
   const HapticSession& haptic_session_;
   Flight flight_;
-  std::int64_t last_update_ns_ = 0;  ///< 0: it has not been asked to move yet
-  render::View saved_view_;          ///< that the scene's text has, or began with
+  std::int64_t last_update_ns_ = 0;  ///< 0: update() has not been called.
+  render::View saved_view_;          ///< The view in the scene's text, or the initial one.
 };
 
 }  // namespace catena::app

@@ -13,7 +13,7 @@ namespace {
 constexpr double kFast = 4, kZoomRate = 1;  // per second
 constexpr double kPathPoleAngle = 0.02;
 
-/// The integral of a value that settles from v to w, and the value at the end.
+/// Integral over the time step of a value that converges from v to w, and the value at its end.
 template <class T>
 T settle(T& v, const T& w, double dt_s) {
   const double rest = std::exp(-dt_s / kFlyTimeConstantS);

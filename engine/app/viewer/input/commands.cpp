@@ -13,20 +13,20 @@ namespace {
 enum class Held : std::uint8_t { no, yes, any };
 
 struct KeyPress {
-  int key = 0;  ///< GLFW's number, or kQuestionMark; 0: none
+  int key = 0;  ///< GLFW key number, or kQuestionMark; 0: none
   Held control = Held::no, shift = Held::any;
-  bool told = true;  ///< in the list of keys
+  bool told = true;  ///< shown in the list of keys
 };
-/// No key: keyboards have it in different places.
+/// Matched by the character, not by a key: keyboard layouts place it differently.
 constexpr int kQuestionMark = '?';
 
 struct CommandRow {
-  std::optional<Action> action{};  ///< none: what the pointer, or the device, does
-  const char* menu = nullptr;      ///< nullptr: it is in no menu; of an axis, as render::axis_view takes it
-  KeyPress stroke{}, other{};      ///< either asks for it
-  const char* section = nullptr;   ///< of the list of keys; nullptr: on the line of the row above
-  const char* does = nullptr;      ///< nullptr: the list does not name it
-  const char* by = nullptr;        ///< where it is no key
+  std::optional<Action> action{};  ///< none: the row describes the pointer or the device
+  const char* menu = nullptr;      ///< nullptr: in no menu; for an axis view, the axis in the format of render::axis_view
+  KeyPress stroke{}, other{};      ///< either triggers the action
+  const char* section = nullptr;   ///< section of the list of keys; nullptr: same line as the row above
+  const char* does = nullptr;      ///< description; nullptr: not in the list
+  const char* by = nullptr;        ///< input shown in the list if it is not a key
 };
 
 constexpr const char *kEye = "The eye", *kHand = "The hand", *kScene = "The scene", *kWindow = "The window";
@@ -107,7 +107,7 @@ constexpr bool may_meet(Held a, Held b) { return a == b || a == Held::any || b =
 constexpr bool may_meet(const KeyPress& a, const KeyPress& b) {
   return a.key != 0 && a.key == b.key && may_meet(a.control, b.control) && may_meet(a.shift, b.shift);
 }
-/// Every action has one row, and every stroke asks for one action.
+/// Returns whether every action has exactly one row and every key press triggers at most one action.
 constexpr bool is_sound() {
   for (int i = 0; i <= static_cast<int>(Action::toggle_forces); ++i)
     if (std::ranges::count(kCommandRows, std::optional(static_cast<Action>(i)), &CommandRow::action) != 1) return false;
@@ -144,7 +144,7 @@ std::string stroke_words(const KeyPress& stroke) {
     case GLFW_KEY_ESCAPE:
       return text + "Esc";
     default:
-      return text + static_cast<char>(stroke.key);  // letters, digits and "?" are their own numbers
+      return text + static_cast<char>(stroke.key);  // letters, digits and "?" equal their key numbers
   }
 }
 

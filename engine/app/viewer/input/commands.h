@@ -1,7 +1,7 @@
-/// A Command is anything that a person can ask of the window. A key, a menu entry, a button of a panel and a dropped file push a Command
-/// into one queue; Session::carry_out applies it, in order, after every stroke and every frame of the interface. What needs no more than
-/// its name is an Action, described once in the table of commands.cpp: its menu entry, its keys and its line in the list of keys come from
-/// there. To add one: a name below, a row of the table, a case in session_input.cpp. Frame thread.
+/// Commands of the window: everything that a user can trigger. Keys, menu entries, panel buttons and dropped files push a Command into one
+/// queue; Session::execute applies it, in order, after every key press and every GUI frame. A command without parameters is an Action,
+/// described in one row of the table in commands.cpp, which defines its menu entry, its keys and its line in the key list. To add one: a
+/// name below, a row of the table, a case in session_input.cpp. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,8 +14,9 @@
 
 namespace catena::app {
 
+/// Commands without parameters.
 enum class Action : std::uint8_t {
-  // the program
+  // Program.
   open,
   save,
   save_as,
@@ -24,12 +25,12 @@ enum class Action : std::uint8_t {
   quit,
   undo,
   redo,
-  // the window
+  // Window.
   toggle_panels,
   toggle_fullscreen,
   toggle_help,
   dismiss,
-  // the eye
+  // Camera.
   reset_view,
   fit_view,
   view_along_plus_x,
@@ -46,71 +47,74 @@ enum class Action : std::uint8_t {
   play_time_steps,
   next_time_step,
   previous_time_step,
-  // the hand
+  // Probe and device.
   toggle_probe_mode,
   register_device,
   toggle_forces,
 };
 
-// what needs more than a name
+// Commands with parameters.
 
-/// Edits of the scene's text that are one, all of them or none (edit/edits.h). Those with the same `drag` that follow each other are one
-/// step of undo.
+/// A group of edits of the scene's text, all or none (edit/edits.h). Consecutive edits with the same undo_group form one undo step.
 struct Edit {
   TextEdits edits;
-  std::string undo_label, undo_group{};  ///< what: for the menu of undo
+  std::string undo_label, undo_group{};  ///< undo_label: shown in the menu.
 };
+/// Opens a file in place of the scene.
 struct OpenFile {
   std::string path;
 };
-/// ImportedData, or asked about where it could join the scene.
+/// Opens a dropped file, or asks the user if it could be added to the scene.
 struct DropFile {
   std::string path;
 };
-/// To "A file was dropped".
+/// Choices of the dialog "A file was dropped".
 enum class DroppedFileChoice : std::uint8_t { add, open, cancel };
+/// Saves the scene to a path.
 struct SaveAs {
   std::string path;
 };
-/// The dialog was cancelled: what should follow the save does not.
+/// The Save As dialog was canceled; so is what should follow the save.
 struct CancelSave {};
-/// To "Before this scene is left".
+/// Choices of the dialog "Before this scene is left".
 enum class UnsavedChangesChoice : std::uint8_t { save, discard, cancel };
-/// To "The file is not as it was read".
+/// Choices of the dialog "The file is not as it was read".
 enum class FileConflictChoice : std::uint8_t { overwrite, take_disk_version, save_as, cancel };
-/// To "Unsaved changes of an earlier run".
+/// Choices of the dialog "Unsaved changes of an earlier run".
 enum class RecoveryChoice : std::uint8_t { restore, discard, later };
+/// Sets the stereo mode.
 struct SetStereoMode {
   scene::StereoMode mode;
 };
-/// Of a picture at rest, from now on.
+/// Sets the quality of refined frames.
 struct SetQuality {
   Quality quality;
 };
-/// The error of the picture at rest is looked at: asked with every frame that shows it.
+/// Requests the error of the refined frame; issued with every GUI frame that shows it.
 struct EstimateImageError {};
-/// What the plan's settings cost is measured now: the window stands still meanwhile.
+/// Measures the cost curves of the tuning; the window does not respond meanwhile.
 struct MeasureCosts {};
-/// How far the hand's proxies are off their lines: asked with every frame that shows it.
+/// Requests the tracking error of the proxies; issued with every GUI frame that shows it.
 struct ObserveTrackingError {};
-/// A link of the chain that lies on that item, "isosurfaces[0]" (edit/feel.h).
+/// Adds a link that lies on the item, "isosurfaces[0]" (edit/haptic_binding.h).
 struct BindHaptics {
   std::string item;
 };
-/// That item goes, with what hangs on it (edit/removal.h); `what`: for the menu of undo.
+/// Removes the item with everything that refers to it (edit/remove_item.h).
 struct RemoveItem {
   std::string item, undo_label;
 };
-/// Another device that holds the probe.
+/// Replaces the device that moves the probe.
 struct SelectDevice {
   std::string name;
 };
-/// In time.
+/// Shows a time step.
 struct ShowTimeStep {
   int step;
 };
+/// Starts or stops a recording.
 struct SetRecording {
-  std::string path;  ///< .catlog of every tick from now on; empty: no more
+  std::string path;  ///< Path of a .catlog with every tick from the next one on; empty: stop recording.
 };
 
 using Command = std::variant<Action, Edit, OpenFile, DropFile, DroppedFileChoice, SaveAs, CancelSave, UnsavedChangesChoice,
@@ -118,18 +122,18 @@ using Command = std::variant<Action, Edit, OpenFile, DropFile, DroppedFileChoice
                              ObserveTrackingError, BindHaptics, RemoveItem, SelectDevice, ShowTimeStep, SetRecording>;
 using Commands = std::vector<Command>;
 
-/// What a stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and ask for nothing.
+/// Returns the action of a key event that is not text input of the GUI. `fly`: in fly mode, letters and arrows have no action.
 std::optional<Action> find_action(const KeyEvent& event, bool fly);
-/// The words of the action's menu entry; its first stroke ("Ctrl+Shift+S").
+/// Return the text of an action's menu entry, and its first shortcut ("Ctrl+Shift+S").
 const char* menu_label(Action action);
 std::string shortcut_label(Action action);
 
-/// One thing that a key or a button does.
+/// A line of the key list: section, keys, and what they do.
 struct KeyHelp {
   std::string section, keys, description;
 };
 const std::vector<KeyHelp>& key_list();
-/// The same for the terminal.
+/// Returns the key list as text for the terminal.
 std::string key_help();
 
 }  // namespace catena::app

@@ -24,7 +24,7 @@ std::vector<std::string> names_of(const haptics::HapticProgram& program) {
   return names;
 }
 
-/// The last proxy that something holds away from the hand.
+/// The last proxy that is held away from the probe; std::nullopt if there is none.
 std::optional<Vec3> held_place(const HapticState& felt) {
   std::optional<Vec3> place;
   for (int i = 0; i < felt.link_count; ++i) {
@@ -34,7 +34,7 @@ std::optional<Vec3> held_place(const HapticState& felt) {
   return place;
 }
 
-/// Whether a picture of `now` would differ from one of `before`.
+/// Returns whether a frame of `now` would differ from a frame of `before`.
 bool looks_different(const HapticState& before, const HapticState& now) {
   if (before.tick == 0 || before.probe != now.probe || before.force_n != now.force_n) return true;
   for (int i = 0; i < now.link_count; ++i) {
@@ -79,7 +79,7 @@ Outcome HapticSession::open_device(const scene::Scene& scene) {
   std::string name = options_.device;
   if (name.empty() && scene.device) {
     CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));
-    // what is simulated would only keep the hand off the probe
+    // a simulated device would only keep the user from moving the probe with the mouse
     if (haptics::is_hardware(settings.type)) name = settings.type;
   }
   if (name.empty()) name = options_.use_xr_controller ? kController : "mouse";
@@ -101,7 +101,7 @@ void HapticSession::update_link_names(scene::Scene& scene) {
   scene.entities.get<scene::Cursor>(scene.cursor).names = link_names_;
 }
 
-/// A mouse begins at the probe: it has been made where nothing is known of the workspace yet.
+/// Takes over the device. A mouse starts at the probe: it was created before the workspace was known.
 void HapticSession::adopt_device(HapticDeviceSetup hand, const scene::Scene& scene, const Vec3& probe) {
   device_ = std::move(hand);
   mouse_ = nullptr;
@@ -116,7 +116,7 @@ void HapticSession::make_servo() {
   servo.rate_hz = device_.settings.rate_hz;
   servo.forces_enabled = options_.start_with_forces || is_mouse() || device_.device->capabilities().max_force_n <= 0;
   servo.realtime = options_.realtime;
-  if (is_mouse()) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
+  if (is_mouse()) servo.realtime.lock_memory = false;  // a mouse exerts no force: a page fault does no harm
   servo.sink = recording_.sink();
   forces_enabled_ = servo.forces_enabled;
   forces_suspended_ = false;
@@ -180,7 +180,7 @@ Outcome HapticSession::record(const std::string& path, RecordedScene scene, cons
 
 Outcome HapticSession::stop_recording() {
   if (!recording_.is_recording()) return Done{};
-  // a servo that does not let go is stopped: its recording must not be written to any more
+  // a servo that does not release the sink is stopped: nothing may write to its recording from here on
   if (servo_ && !servo_->set_sink(nullptr)) {
     servo_->stop();
     CATENA_CHECK(servo_->start());
@@ -225,7 +225,7 @@ Outcome HapticSession::publish(scene::Scene& scene, const std::string& text) {
 bool HapticSession::pull_state(scene::Scene& scene) {
   const HapticState before = latest_state_;
   if (!servo_->receive(latest_state_)) return false;
-  // a state of an older program speaks of other links
+  // a state of an older program refers to other links
   if (latest_state_.program_epoch != program_->epoch) return false;
   scene::update_cursor(scene, latest_state_);
   scene.entities.get<scene::Cursor>(scene.cursor).pseudo_haptic = device_.device->capabilities().max_force_n <= 0;
@@ -252,7 +252,7 @@ void HapticSession::set_forces_enabled(bool on) {
 
 bool HapticSession::suspend_forces(bool off) {
   if (device_.device->capabilities().max_force_n <= 0) return true;
-  // the state of the program that was handed over last
+  // whether the state belongs to the program that was handed over last
   const bool newest = latest_state_.program_epoch == program_->epoch;
   if (off != forces_suspended_ && (off || newest)) {
     forces_suspended_ = off;

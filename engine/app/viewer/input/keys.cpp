@@ -11,7 +11,7 @@ namespace {
 
 bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-/// A key that makes text; the others come after GLFW_KEY_ESCAPE.
+/// Returns whether the key produces text; key numbers from GLFW_KEY_ESCAPE on do not.
 bool makes_text(const KeyEvent& event) { return event.key < GLFW_KEY_ESCAPE && !event.control && !event.alt; }
 
 }  // namespace

@@ -13,9 +13,9 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kTurnPerHeight = std::numbers::pi;  // a drag over the window's height
+constexpr double kTurnPerHeight = std::numbers::pi;  // radians for a drag over the window's height
 constexpr double kZoomPerNotch = 0.9;
-constexpr double kDepthPerNotch = 0.01;  // of the height of what the picture shows where the hand is
+constexpr double kDepthPerNotch = 0.01;  // fraction of the height of the visible area at the probe's depth
 constexpr double kPoleAngle = 0.02;      // radians
 
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
@@ -35,9 +35,9 @@ void pan(render::View& view, const Input& input) {
   view.target += shift;
 }
 
-/// The depth of what the hand of a mouse is on: `now` where nothing says another.
+/// Depth of the surface under the probe of a mouse; `now` if no surface is there.
 double depth_beneath(const Navigation& controls, const render::Camera& camera, const Input& input, double now) {
-  constexpr double kNear = 0.05;  // of the depth: what is seen is what holds
+  constexpr double kNear = 0.05;  // fraction of the depth: the visible surface counts as the one in contact
   const auto under = controls.pointer_hit ? render::project(camera, *controls.pointer_hit) : std::nullopt;
   const auto held = controls.last_proxy ? render::project(camera, *controls.last_proxy) : std::nullopt;
   if (under && (!held || std::abs(under->z - held->z) <= kNear * held->z + 1.5 * std::abs(controls.wheel_depth))) return under->z;
@@ -48,7 +48,7 @@ double depth_beneath(const Navigation& controls, const render::Camera& camera, c
 void move_hand(Navigation& controls, const Input& input) {
   const render::Camera camera = to_scene_camera(controls.view, input);
   auto place = render::project(camera, controls.probe);
-  if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
+  if (!place) place = render::project(camera, controls.view.target);  // the probe was behind the camera: bring it back into the image
   if (!place) return;
   const double notch = kDepthPerNotch * camera.height * render::pixel_size(camera, place->z);
   if (!controls.probe_mode) {
@@ -58,14 +58,14 @@ void move_hand(Navigation& controls, const Input& input) {
   }
   const Vec3 ahead = -1.0 * camera.back, pushed = notch * input.wheel * ahead;
   const double by_wheel = dot(compliant_motion(pushed, controls.force_n, controls.max_force_n), ahead);
-  // the depth that the push counts from
+  // depth from which the wheel's push is measured
   double base = place->z - controls.wheel_depth;
   if ((input.dx != 0 || input.dy != 0) && controls.buttons == 0) base = depth_beneath(controls, camera, input, base);
   controls.wheel_depth += by_wheel;
   controls.probe = render::unproject(camera, input.x + input.dx, input.y + input.dy, base + controls.wheel_depth);
 }
 
-/// Along an axis, all in the picture; the angle and the projection stay.
+/// Views the scene along an axis so that all of it is in the image; keeps the angle and the projection.
 void look_along(Navigation& controls, std::string_view axis, double aspect) {
   auto view = render::axis_view(controls.bounds, aspect, axis, controls.view.fovy_deg);
   view->orthographic = controls.view.orthographic;
@@ -90,7 +90,7 @@ void orbit(render::View& view, double yaw, double pitch) {
   if (!(distance > 0) || max_abs(up) == 0) return;
   Vec3 back = direction(view.position - view.target);
   if (norm(cross(up, back)) < 1e-6) {
-    // right over the pole: step off it first
+    // exactly at the pole: move off it first
     const Vec3 side = std::fabs(up.x) < 0.9 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
     back = rotated(back, direction(cross(up, side)), kPoleAngle);
   }
@@ -160,7 +160,7 @@ NavigationChanges apply(Navigation& controls, const Input& input) {
     zoom(controls.view, std::pow(kZoomPerNotch, input.wheel));
     changed.view = true;
   }
-  // neither eye nor hand leaves the world
+  // keep camera and probe within representable coordinates
   if (!is_possible(controls.view)) controls.view = view_before;
   if (!is_finite(controls.probe) || max_abs(controls.probe) > kMaxCameraCoordinate) controls.probe = hand_before;
   return changed;

@@ -1,10 +1,10 @@
-/// Navigation say what mouse and keys do, apart from any window: plain input goes in, a new view and a new place of the hand come out.
+/// Navigation with mouse and keys, independent of the window: plain input is converted to a new view and a new probe position.
 ///   orbit: left drag     pan: middle drag, or shift and left drag     zoom: wheel
-///   hand:  right drag, or control held: motion on the plane through the probe parallel to the picture, wheel for depth
-///   hand mode (H): the hand is under the pointer, as deep as what is seen there, and the wheel pushes it in from there (Navigation::push);
-///          the left button (anywhere the space bar) is the device's button 1, and while it is down the depth stays
-///   In hand mode the mouse pushes harder the harder it is held back: the wheel against the force moves the hand less (yielding).
-///   fly (V): left drag looks about, wheel changes the pace; the keys are camera_paths.h's
+///   probe: right drag, or control held: motion in the plane through the probe parallel to the image, wheel for depth
+///   probe mode (H): the probe is under the pointer, at the depth of the pointer hit, and the wheel pushes it further in
+///          (Navigation::wheel_depth); the left button (in any mode the space bar) is the device's button 1, and while it is down the
+///          depth stays. The wheel moves the probe less against the force (compliant_motion)
+///   fly (V): left drag looks around, wheel changes the speed; the keys are FlyKeys (camera_motion.h)
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,64 +18,67 @@ namespace catena::app {
 
 enum class Action : std::uint8_t;  // commands.h
 
-/// A piece of input: what begins it, a stroke or a button, and the motion until the next such thing. Coordinates of the window, or of the
-/// picture's area in it (y down); differences since the last piece.
+/// An input segment: the key or button event it begins with, and the motion until the next such event. Coordinates of the window, or of the
+/// image area in it (y down); differences since the last segment.
 struct Input {
-  double width = 1, height = 1;  ///< of the window, or the area
-  double x = 0, y = 0;           ///< of the pointer where the piece begins
+  double width = 1, height = 1;  ///< Size of the window, or of the area.
+  double x = 0, y = 0;           ///< Position of the pointer at the beginning of the segment.
   double dx = 0, dy = 0, wheel = 0;
-  bool left = false, middle = false, right = false;  ///< held
+  bool left = false, middle = false, right = false;  ///< Buttons held down.
   bool shift = false, control = false, space = false;
-  std::optional<KeyEvent> key_event;         ///< with which the piece begins
-  bool needs_redraw = false;                 ///< the window system lost the picture
-  std::vector<std::string> dropped_files{};  ///< files
+  std::optional<KeyEvent> key_event;         ///< The event that begins the segment.
+  bool needs_redraw = false;                 ///< The window system has lost the image.
+  std::vector<std::string> dropped_files{};  ///< Paths.
 };
 
+/// State of view and probe.
 struct Navigation {
-  render::View view, home;  ///< home: what R goes back to
-  Bounds bounds;            ///< of all that is drawn; empty: nothing can be fitted
-  Vec3 probe{0.0};          ///< world units
+  render::View view, home;  ///< Current view, and the view that reset_view returns to.
+  Bounds bounds;            ///< Bounds of everything visible, world units; empty: nothing can be fitted.
+  Vec3 probe{0.0};          ///< World units.
+  /// Buttons of the device, bit by bit.
   std::uint32_t buttons = 0;
   bool probe_mode = false;
-  Vec3 force_n{0.0};       ///< on the hand, world axes
-  double max_force_n = 0;  ///< 0: the mouse yields to nothing
-  // A mouse says nothing of depth. In hand mode it is that of what lies under the pointer; where the chain holds the hand elsewhere in
-  // depth, or nothing is there, it goes over to the held place's, by the share (pixels moved) / kDepthBlendPixels; else it stays.
-  std::optional<Vec3> pointer_hit{};  ///< the place that is seen under the pointer at the end of the motion
-  std::optional<Vec3> last_proxy{};   ///< where the chain holds the hand
-  double wheel_depth = 0;             ///< of the wheel, along the view, beyond that depth; world units
+  Vec3 force_n{0.0};       ///< Force on the user, world axes.
+  double max_force_n = 0;  ///< Maximum force; 0: no resistance.
+  // A mouse has no depth. In probe mode the depth is that of the pointer hit; where the chain holds the probe at another depth, or there is
+  // no hit, it changes to that of the last proxy by the fraction (pixels moved) / kDepthBlendPixels; otherwise it stays.
+  std::optional<Vec3> pointer_hit{};  ///< Point visible under the pointer at the end of the motion.
+  std::optional<Vec3> last_proxy{};   ///< Proxy at which the chain holds the probe; nothing if it is not in contact.
+  double wheel_depth = 0;             ///< Depth added by the wheel, along the view; world units.
   static constexpr double kDepthBlendPixels = 60;
   bool fly = false;
-  double fly_speed = 1;    ///< times kFlyDiagonalsPerS
-  bool turntable = false;  ///< the eye turns by itself
+  double fly_speed = 1;    ///< Factor on kFlyDiagonalsPerS.
+  bool turntable = false;  ///< The camera rotates by itself.
 };
 
-/// What an input changed.
+/// The changes made by an input.
 struct NavigationChanges {
   bool view = false, probe = false;
   bool any() const { return view || probe; }
 };
 
+/// Applies an input segment and returns what changed.
 NavigationChanges apply(Navigation& controls, const Input& input);
-/// Hand mode begins: the hand goes onto what is under the pointer, if that is known.
+/// Starts probe mode: moves the probe to the pointer hit, if there is one.
 void begin_probe_mode(Navigation& controls);
-/// What a command of the eye makes of the view, in a picture of that width / height; true: the view is another. Those of all other
-/// commands, and those that need something to look at where there is nothing, change nothing.
+/// Applies a camera command for an image of width / height `aspect`; returns true if it changes the view. Other commands, and those that
+/// need bounds when there are none, change nothing.
 bool apply(Navigation& controls, Action action, double aspect);
-/// Whoever takes hold of the view ends the turntable.
+/// Return whether an input or command stops the turntable.
 bool stops_turntable(const Input& input);
 bool stops_turntable(Action action);
 
-/// What is left of a motion of the hand in hand mode: the part against the force counts less, down to a quarter at the greatest force. Out
-/// of the thing that pushes, and along it, the hand goes with the mouse.
+/// Returns a motion of the probe reduced by the force: the part against the force is scaled down, to a quarter at the maximum force. Motion
+/// along the surface and out of it is not reduced.
 Vec3 compliant_motion(const Vec3& motion, const Vec3& force_n, double max_force_n);
 
-/// Turns the eye about the target: `yaw` about the view's up, `pitch` (radians, upwards) short of the poles.
+/// Rotates the camera about the target: `yaw` about the view's up, `pitch` upwards, radians; stops short of the poles.
 void orbit(render::View& view, double yaw, double pitch);
-/// The eye's distance (orthographic: the picture's height) times `factor`.
+/// Scales the camera's distance (orthographic: the image height) by `factor`.
 void zoom(render::View& view, double factor);
 
-/// Between perspective and orthographic, with the same size of things in the target's plane.
+/// Toggles between perspective and orthographic, keeping the size of objects in the target's plane.
 void toggle_projection(render::View& view);
 
 }  // namespace catena::app

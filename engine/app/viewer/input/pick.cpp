@@ -17,7 +17,7 @@ struct Marched {
   RaySpan span;
   field::Cursor cursor{};
 
-  /// Extinction at the ray's place; nothing outside the span, the domain and the mask.
+  /// Extinction at a point of the ray; zero outside the span, the domain and the mask.
   double sigma(const render::Ray& ray, double t) {
     if (t < span.enter || t > span.exit) return 0;
     const field::ScalarSample s = item->grid->sample(ray.origin + t * ray.direction, cursor);
@@ -30,7 +30,7 @@ struct Marched {
 
 bool is_extreme(render::Projection p) { return p == render::Projection::maximum || p == render::Projection::minimum; }
 
-/// The place of a projection's value.
+/// Point at which a projection takes its value.
 std::optional<PickHit> pick_extreme(const render::VolumeItem& item, const render::Ray& ray, const RaySpan& span, double step) {
   field::Cursor cursor;
   const double sign = item.projection == render::Projection::maximum ? 1 : -1;
@@ -71,7 +71,7 @@ std::optional<PickHit> pick_volume(const render::FramePacket& packet, const rend
   if (marched.empty()) return std::nullopt;
   const double step = std::max(0.5 * edge, (all.exit - all.enter) / kMaxSteps);
 
-  // a projection stands for its whole ray: the first one that shows anything
+  // a projection stands for its whole ray: the first one with a visible value is taken
   for (const Marched& m : marched)
     if (is_extreme(m.item->projection))
       if (const auto place = pick_extreme(*m.item, ray, m.span, step)) return place;

@@ -1,4 +1,4 @@
-// What a ray meets first of the solid things of a packet.
+// Intersection of a ray with the opaque items of a packet.
 #include <cmath>
 
 #include "engine/app/viewer/input/pick.h"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxSolidSteps = 8000, kBisections = 48;
 
-/// The nearest so far.
+/// The nearest hit found so far.
 struct Nearest {
   const render::Ray& ray;
   double t;
@@ -86,12 +86,12 @@ void meet(Nearest& nearest, const render::MeshItem& item, const RaySpan& span) {
   }
 }
 
-/// As an endless cylinder, where the ray enters it between the piece's ends (or within a radius of them).
+/// Intersects the infinite cylinder, accepted where the ray enters it between the segment's ends (or within a radius of them).
 void meet_piece(Nearest& nearest, const Vec3& a, const Vec3& b, double radius, std::uint32_t id, const RaySpan& span) {
   const Vec3 d = nearest.ray.direction, along = b - a, from = nearest.ray.origin - a;
   const double length2 = dot(along, along);
   if (!(length2 > 0)) return;
-  // across the piece
+  // components perpendicular to the segment
   const Vec3 across = d - dot(d, along) / length2 * along, start = from - dot(from, along) / length2 * along;
   const double aa = dot(across, across), ab = dot(across, start), c = dot(start, start) - radius * radius, root = ab * ab - aa * c;
   if (!(aa > 0) || !(root >= 0)) return;
@@ -104,7 +104,7 @@ void meet(Nearest& nearest, const render::TubeItem& item, const RaySpan& span) {
     meet_piece(nearest, item.points[i], item.points[i + 1], item.radius, item.id, span);
 }
 
-/// The shaft, and the head as a cylinder half as wide as its base.
+/// Tests the shaft, and the head as a cylinder half as wide as its base.
 void meet(Nearest& nearest, const render::GlyphItem& item, const RaySpan& span) {
   for (const render::Glyph& glyph : item.glyphs) {
     const double length = norm(glyph.tip - glyph.tail);
@@ -114,7 +114,7 @@ void meet(Nearest& nearest, const render::GlyphItem& item, const RaySpan& span) 
   }
 }
 
-/// The ray's first place on each ball, or its second where the clip planes cut the first away.
+/// First intersection with each sphere, or the second where the clip planes cut the first away.
 void meet(Nearest& nearest, const render::SpheresItem& item, const RaySpan& span) {
   const Vec3 d = nearest.ray.direction;
   const double dd = dot(d, d);

@@ -1,4 +1,4 @@
-/// The piece of a ray that lies in half spaces and in a field's domain. Lengths along a unit direction, world units. Pure, any thread.
+/// The part of a ray that lies within half spaces and a field's domain. Lengths along a unit direction, world units. Pure, any thread.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -11,12 +11,13 @@ namespace catena::app {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// An interval of ray lengths.
 struct RaySpan {
   double enter = 0, exit = kInfinity;
   bool is_empty() const { return !(enter < exit); }
 };
 
-/// Where the ray lies within the half space that a plane keeps.
+/// Restricts the span to the half space that the clip plane keeps.
 inline void clip_to_plane(RaySpan& span, const render::Ray& ray, const Plane& plane) {
   const double rate = dot(plane.normal, ray.direction), start = dot(plane.normal, ray.origin - plane.point);
   if (rate == 0) {
@@ -28,6 +29,7 @@ inline void clip_to_plane(RaySpan& span, const render::Ray& ray, const Plane& pl
   }
 }
 
+/// Returns the span within the index box of the field; empty if the ray misses it.
 inline RaySpan domain_span(const field::Field& field, const render::Ray& ray) {
   const Vec3 o = field.mapping().index_from_world(ray.origin), d = field.mapping().index_from_world_linear * ray.direction;
   const field::Box& box = field.index_box();

@@ -54,7 +54,7 @@ Result<std::unique_ptr<TrackedHead>> TrackedHead::open(const std::string& words,
     haptics::ServoOptions options;
     options.rate_hz = self->device_.settings.rate_hz;
     options.forces_enabled = false;
-    options.watchdog_s = 0;  // it never pushes
+    options.watchdog_s = 0;  // a head tracker exerts no force
     options.realtime = {.fifo = false, .lock_memory = false, .cpu = haptics::RealtimeOptions::kUnbound};
     self->servo_ = std::make_unique<haptics::Servo>(*self->device_.device, std::move(program), options);
     return self;

@@ -1,8 +1,8 @@
-/// "--head": where a person's head is before a screen of the scene, so that the window shows what lies behind it (a fish tank).
-///   FILE.csv, recorded:FILE.csv   t,x,y,z in world units, played from its first row on by the time that passes, as `render --head` goes
-///   along
-///                                 it (render/frame/camera_path.h); it rests at its end
-///   DEVICE                        a name of haptics/device/registry.h: its place, by the scene's "workspace", read by a thread of its own
+/// Head tracking, option "--head": the position of the user's head in front of a display screen of the scene, so that the window shows the
+/// scene behind it (fish tank VR).
+///   FILE.csv, recorded:FILE.csv   t,x,y,z in world units, played in real time from the first row, as in `render --head`
+///                                 (render/frame/camera_path.h); the last position is kept
+///   DEVICE                        a name of haptics/device/registry.h: its position, by the scene's "workspace", read by its own thread
 /// Frame thread.
 #pragma once
 #include <memory>
@@ -15,42 +15,42 @@
 
 namespace catena::app {
 
-/// The head that is shown, of one that is tracked.
-///   follows   at once, to the bit
-///   lost      not known, or not before the screen (render/stereo/stereo_views.h): it stays where it is
-///   leaps     by more than kJumpDiagonals + kFast dt screen diagonals since the last picture, or after it was lost: it glides there in
-///   kGlideS, the
-///             difference fading as 1 - u^2 (3 - 2u)
+/// Smoothing of a tracked head position.
+///   tracked   followed immediately and exactly
+///   lost      unknown, or not in front of the screen (render/stereo/stereo_views.h): the last position is kept
+///   jump      a motion of more than kJumpDiagonals + kMaxDiagonalsPerS dt screen diagonals since the last frame, or any after a loss: a
+///             glide of kGlideS, the difference fading as 1 - u^2 (3 - 2u)
 class SmoothedHead {
  public:
   static constexpr double kJumpDiagonals = 0.05, kMaxDiagonalsPerS = 5, kMaxStepS = 0.2, kGlideS = 0.3;
 
-  /// `screen`: before which it is.
+  /// `screen`: the screen in front of which the head is.
   explicit SmoothedHead(const scene::DisplayScreen& screen) : screen_(screen) {}
-  /// Each picture, `t_s` rising. Nothing before it was known for the first time.
+  /// Call once per frame with increasing `t_s`. Returns the smoothed position; nothing before the first tracked one.
   std::optional<Vec3> update(double t_s, const std::optional<Vec3>& tracked);
   bool is_lost() const { return is_lost_; }
 
  private:
   scene::DisplayScreen screen_;
   std::optional<Vec3> smoothed_, tracked_;
-  Vec3 glide_offset_{0.0};  ///< from the tracked one, when it began to glide
+  Vec3 glide_offset_{0.0};  ///< Difference to the tracked position at the start of the glide.
   double glide_start_s_ = -1e300, last_s_ = 0;
   bool is_lost_ = false;
 };
 
+/// Owns the source of head positions: a table or a device with its own servo.
 class TrackedHead {
  public:
-  /// `words`: as --head has them. Errors: a file that is no such table, a first place that is not before the screen, a device that cannot
-  /// be opened, or a scene without the workspace that a device needs.
+  /// Opens the source; `words`: value of --head. An Error for an invalid table, a first position that is not in front of the screen, a
+  /// device that cannot be opened, or a scene without the "workspace" that a device needs.
   static Result<std::unique_ptr<TrackedHead>> open(const std::string& words, const scene::Scene& scene);
   ~TrackedHead();
 
-  /// The device begins; a table is played from that time on.
+  /// Starts the device; a table is played from this time on. An Error if the device cannot be started.
   Outcome start(double t_s);
-  /// Where it is shown now.
+  /// Returns the smoothed position; nothing if it has never been known.
   std::optional<Vec3> position_at(double t_s) { return smoothed_.update(t_s, tracked_position(t_s)); }
-  /// It is lost, or not before the screen, since the last call that said so; once for each time.
+  /// Returns true if the head was lost since the last loss was reported: one report per loss.
   bool take_lost();
 
  private:

@@ -1,4 +1,4 @@
-// The links in their order: what each does now, and its keys.
+// Panel of the chain: the links in their order, the status of each, and its keys.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -23,7 +23,7 @@ ImVec4 color_of(LinkStatus status, bool active) {
   return {1, 0.7f, 0.35f, 1};
 }
 
-/// A status in plain words, and what it means, for the pointer.
+/// Plain text of a status, and its explanation for the tooltip.
 struct StatusWords {
   const char *plain, *meaning;
 };
@@ -61,7 +61,7 @@ void draw_live(const LinkReport& link, const std::string& name, double most_n, c
                   link.residual, link.weight, link.stiffness_n_per_m, static_cast<int>(link.evaluations)));
 }
 
-/// The length of everything, for keys that begin as a part of it.
+/// Characteristic length of the scene, the default base of keys given as a fraction of it.
 double length_of(const PanelContext& context) {
   const double edge = context.scene.bounds.longest_edge();
   return edge > 0 ? edge : 4;
@@ -83,7 +83,7 @@ void draw_name_choice(PanelContext& context, const ChainRow& row, const schema::
     context.edits.set(row.pointer(key.name), scene::to_json(chosen), key.name);
 }
 
-/// One key that the link states.
+/// Draws one key that the link states.
 void draw_stated(PanelContext& context, const ChainRow& row, const schema::Key& key, const json::Node& value, double length) {
   const std::string pointer = row.pointer(key.name);
   const bool number = value.kind == json::Kind::number, word = value.kind == json::Kind::string;
@@ -148,10 +148,10 @@ void draw_keys(PanelContext& context, const ChainRow& row) {
   ImGui::EndCombo();
 }
 
-/// What is to be done to the list, after it was drawn.
+/// A change of the list, carried out after the list has been drawn.
 struct Move {
   std::size_t row;
-  int by;  ///< -1, 1; 0: goes
+  int by;  ///< -1 or 1: move up or down; 0: remove
 };
 
 std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::size_t count, double most_n) {

@@ -24,7 +24,7 @@ std::optional<std::string> choose_color_map(const std::string& now, const char* 
       const std::string word(name);
       const ImVec2 at = ImGui::GetCursorScreenPos();
       if (ImGui::Selectable(("##" + word).c_str(), word == base)) chosen = word + (reversed ? "_r" : "");
-      // the map itself beside its name
+      // a preview of the color map next to its name
       const float height = ImGui::GetTextLineHeight();
       ImDrawList* list = ImGui::GetWindowDrawList();
       const auto points = scene::make_color_map(name, 0, 1);
@@ -61,7 +61,7 @@ std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now
 void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by) {
   const auto& table = by.colors;
   const scene::NamedColors& named = by.named;
-  // the item has the keys itself, or its "color_by" has them
+  // the item has the keys itself, or inside its "color_by"
   const std::string pointer = item_pointer(item) + (by.where.label == "color_by" ? "/color_by" : "");
   const bool file = by.where.find("transfer") != nullptr;
   ImGui::PushID("scale");
@@ -113,7 +113,7 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const std::string& choice = choices[i];
       if (!ImGui::Selectable(choice.c_str(), choice == now) || choice == now) continue;
-      // as a word with keys beside it, as it was written once: those go; a stated range or table lies elsewhere for other values
+      // "color_by" given as a name with the keys next to it: those keys are removed; a stated range or table does not fit other values
       TextEdits change{{pointer + "/range", std::nullopt}, {pointer + "/transfer", std::nullopt}};
       if (choice == alone) {
         change.push_back({pointer + "/color_by", std::nullopt});
@@ -174,7 +174,7 @@ bool histogram_slider(PanelContext& context, const char* id, const SortedSamples
   list->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
   draw_histogram_bars(frame, values, ImGui::GetColorU32(ImGuiCol_Text, 0.35f));
 
-  // from where the pointer went down; with Ctrl a tenth of the way
+  // relative to the position of the press; with Ctrl at a tenth of the speed
   AppearanceState& look = context.state.appearance;
   bool moved = false;
   const ImGuiIO& io = ImGui::GetIO();

@@ -1,5 +1,5 @@
-/// This file has the parts that the panels of the scene's look share beside the plain items of edit_items.h: the colours of values, and
-/// histograms. Frame thread, between Gui::begin and end.
+/// Widgets shared by the panels for the appearance of the scene, in addition to property_widgets.h: color scales and histograms. Frame
+/// thread, between Gui::begin and end.
 #pragma once
 #include <imgui.h>
 
@@ -15,26 +15,28 @@
 
 namespace catena::app {
 
-/// The colours of an item that colours by values: a map's name, reversed or not, its range, its scale.
+/// Draws the color scale of an item colored by values: color map, reversed or not, range, mapping.
 void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by);
-/// Those of an item that has one colour ("color") or the colours of values ("color_by"): a field's, or one of the `quantities` that it
-/// knows itself.
+/// Draws the colors of an item that has either one color ("color") or is colored by values ("color_by"): those of a field, or one of its
+/// own `quantities`.
 void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item, const Color& color,
                  const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities);
-/// A combo of the maps' names. The name chosen, "_r" with it.
+/// Draws a combo box of the color maps. Returns the chosen name, with "_r" if reversed; nothing if unchanged.
 std::optional<std::string> choose_color_map(const std::string& now, const char* otherwise);
-/// A combo of the scales between points, and what is linear of symlog (`linear_below`: as it is drawn). What was chosen.
+/// Draws a combo box of the scales between points, and the linear part of symlog (`linear_below`: its resolved value). Returns the choice;
+/// nothing if unchanged.
 std::optional<scene::ValueMapping> choose_mapping(const scene::ValueMapping& now, double linear_below);
 
-/// The length `key` of an item, from 0, which takes it out of the text, to `most`.
+/// Draws a slider for the length `key` of an item, from 0, which removes the key from the text, to `most`.
 void edit_auto_length(Edits& edits, const char* key, const json::Node& item, double value, double most, const char* hint);
 
-/// Grey bars of how often values occur.
+/// Draws the histogram as bars.
 void draw_histogram_bars(const PlotTransform& frame, const SortedSamples& values, ImU32 color);
-/// A histogram with a line at the value, which the pointer moves; with Ctrl finely. True while it moves.
+/// Draws a histogram with a line at the value, moved by the pointer, and finely (a tenth) with Ctrl. Returns true while it is being moved.
 bool histogram_slider(PanelContext& context, const char* id, const SortedSamples& values, double lo, double hi, const Color& color,
                       double& value);
 
+/// Converts a color for ImGui.
 inline ImU32 to_imgui_color(const Color& c, float alpha = 1) { return ImGui::GetColorU32(ImVec4(c.r, c.g, c.b, alpha)); }
 
 }  // namespace catena::app

@@ -1,4 +1,4 @@
-// Points from tables, and curves from files: one colour, those of the directions, or those of values; their plain keys.
+// Panel of points from tables and curves from files: one color, colors by direction or by value; and their plain keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/scene/visibility.h"

@@ -1,4 +1,4 @@
-// What holds the probe, how its servo does, and what else could.
+// Panel of the device: the device that moves the probe, the state of its servo, and the other available devices.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -11,13 +11,13 @@ namespace catena::app {
 namespace {
 
 void draw_choice(PanelContext& context) {
-  static std::vector<haptics::DeviceInfo> found;  // the bus is looked at when the list opens, not with every picture
+  static std::vector<haptics::DeviceInfo> found;  // the bus is scanned when the list opens, not in every frame
   const std::string& now = context.haptic_session.device_name();
   if (ImGui::BeginCombo("##device", now.c_str(), ImGuiComboFlags_HeightLarge)) {
     if (ImGui::IsWindowAppearing()) found = haptics::list_devices();
     for (const haptics::DeviceInfo& info : found) {
-      if (info.name.find(".csv") != std::string::npos) continue;  // needs a file: --device
-      // the window itself is the mouse's
+      if (info.name.find(".csv") != std::string::npos) continue;  // needs a file name: option --device
+      // the mouse is always present
       const bool present = info.available || info.name == "mouse";
       if (ImGui::Selectable(info.name.c_str(), info.name == now, present ? 0 : ImGuiSelectableFlags_Disabled))
         context.push_command(SelectDevice{info.name});

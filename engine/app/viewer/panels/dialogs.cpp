@@ -1,4 +1,4 @@
-// What is told or asked above everything else.
+// Modal dialogs: messages and questions above all other panels.
 #include <imgui.h>
 
 #include <ctime>
@@ -35,7 +35,7 @@ void draw_help(ViewState& state) {
   ImGui::End();
 }
 
-/// Begins the modal of that title while `wanted`; true: draw into it, then EndPopup.
+/// Begins the modal of that title while `wanted`. True: the caller draws its content and calls EndPopup.
 bool begin_question(const char* title, bool wanted) {
   if (wanted && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   centre_next();
@@ -50,7 +50,7 @@ bool button(const char* label, ImGuiKey_ key) {
   return pressed || by_key;
 }
 
-/// A button that answers the question: the command is asked for, and the question goes.
+/// Draws a button that answers the dialog: requests the command and closes the dialog.
 void answer(PanelContext& context, const char* label, ImGuiKey_ key, Command command) {
   if (!button(label, key)) return;
   context.push_command(std::move(command));
@@ -161,7 +161,7 @@ void draw_dropped(PanelContext& context, bool wanted) {
 
 void draw_dialogs(PanelContext& context) {
   if (context.state.show_help) draw_help(context.state);
-  // one question at a time
+  // one dialog at a time
   const ViewState& state = context.state;
   draw_unsaved(context);
   draw_changed(context, state.dialogs.file_conflict && !state.dialogs.unsaved_changes);

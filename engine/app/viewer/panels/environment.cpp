@@ -1,4 +1,4 @@
-// What stands around the things: background, help for the eye, stereo, projection, title.
+// Panel of the environment: background, visual aids, stereo, projection, title.
 #include <cstring>
 
 #include "engine/app/viewer/panels/color_widgets.h"
@@ -8,7 +8,7 @@ namespace catena::app {
 
 namespace {
 
-/// The object that stands at a top-level key.
+/// JSON text of the object at a top-level key; std::nullopt if there is none.
 std::optional<std::string> stated_object(const PanelContext& context, const std::string& key) {
   const auto root = json::parse(context.scene.document().text(), "scene");
   const json::Node* node = root ? root->find(key) : nullptr;
@@ -16,7 +16,7 @@ std::optional<std::string> stated_object(const PanelContext& context, const std:
   return json::serialize_node(*node);
 }
 
-/// A top-level key that is true, false or an object. What stood there comes back when it is switched on again.
+/// Edits a top-level key that is true, false or an object. Switching it back on restores the object that it had.
 void edit_aid(PanelContext& context, Edits& edits, const char* label, const std::string& key, bool on, const char* hint) {
   const std::string pointer = "/" + key;
   const bool clicked = ImGui::Checkbox(label, &on);

@@ -1,4 +1,4 @@
-// What is where: under the pointer, at the probe, at the last proxy.
+// Panel of field values: under the pointer, at the probe, at the last proxy.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -41,7 +41,7 @@ void draw_values(PanelContext& context) {
   ImGui::TableHeadersRow();
   for (int axis = 0; axis < 3; ++axis) draw_coordinate(axis == 0 ? "x" : axis == 1 ? "y" : "z", axis, places, state.unit_length);
 
-  // rows of the longest list: what is loaded is the same everywhere
+  // rows of the longest list: the loaded fields are the same at every point
   const PointSamples& most = **std::ranges::max_element(places, {}, [](const PointSamples* p) { return p->samples.size(); });
   for (const FieldSample& row : most.samples) {
     ImGui::TableNextRow();

@@ -1,4 +1,4 @@
-// Fields: what each is, how its values are spread, and buttons that show it.
+// Panel of the fields: description, histogram of the values, and buttons that show the field.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
   if (field.bytes() > 0) row("memory", bytes_text(field.bytes()));
 }
 
-/// Its place is kept while the values are being sorted.
+/// Draws the histogram; its space stays reserved while the values are being sorted.
 void draw_histogram(const SortedSamples& values, const field::AnyField& shown) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
   ImGui::Dummy(size);
@@ -62,7 +62,7 @@ void draw_histogram(const SortedSamples& values, const field::AnyField& shown) {
   draw_histogram_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
 }
 
-/// Loads it if need be, then adds the item.
+/// Loads the field if needed, then adds the item.
 void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   scene::Scene& scene = context.scene.scene();
   const auto drawn = scene::resolve_rendered_field(scene, entity, scene.entities.get<scene::FieldSource>(entity).where);

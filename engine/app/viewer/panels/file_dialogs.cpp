@@ -1,4 +1,4 @@
-// Open and Save as: a folder, its files, a path to type (Tab completes it).
+// Dialogs Open and Save as: a folder, its files, and a path to type (Tab completes it).
 #include <imgui.h>
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What one dialog remembers between its frames, and from one use to the next.
+/// State of one dialog, retained between frames and between uses.
 struct Browser {
   std::string folder;
   std::vector<FileEntry> entries;
-  std::string problem;  ///< why the folder cannot be listed
+  std::string problem;  ///< reason why the folder cannot be listed; empty: it was listed
   std::array<char, 4096> typed{};
   bool scenes_only = false, focus = false, asks_overwrite = false;
 
@@ -43,7 +43,7 @@ std::string size_words(std::uintmax_t bytes) {
   return words;
 }
 
-/// The scene's own; where one that has none is saved: the one that the program was started in.
+/// The scene's own folder; when a scene without a file is saved, the folder in which the program was started.
 std::string start_folder(const PanelContext& context, bool saves = false) {
   std::error_code code;
   fs::path folder = fs::absolute(context.scene.document().path(), code).parent_path();
@@ -60,7 +60,7 @@ int complete(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
-/// The list of files; true: a file was double clicked (its name is typed).
+/// Draws the list of files. True: a file was double-clicked (its name is in the text field).
 bool draw_list(Browser& browser) {
   bool chosen = false;
   std::string to;
@@ -88,7 +88,7 @@ bool draw_list(Browser& browser) {
   return chosen;
 }
 
-/// The line to type into; true: Enter.
+/// Draws the text field for the path. True: Enter was pressed.
 bool draw_typed(Browser& browser) {
   if (std::exchange(browser.focus, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(520);
@@ -115,7 +115,7 @@ bool cancelled() {
   return pressed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
 }
 
-/// A typed folder is gone to; what is no folder is the answer.
+/// Enters a typed folder and returns false; stores any other path in `path` and returns true.
 bool is_answer(Browser& browser, std::string& path) {
   if (browser.typed[0] == '\0') return false;
   path = resolve_typed_path(browser.folder, browser.typed.data());

@@ -1,4 +1,4 @@
-// Arrows of vectors: of which field, where they stand, how far apart, how long, their colours.
+// Panel of the arrow glyphs: vector field, positions, spacing, length, colors.
 #include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/field/field_display_range.h"
@@ -9,7 +9,7 @@ namespace catena::app {
 
 namespace {
 
-/// Where they can stand: a text of the scene, and what the person reads. The first, without a text, is the field's domain.
+/// Choice of positions: JSON text of the scene, and the label shown. The first choice, without text, is the field's domain.
 struct Stand {
   std::string text, words;
 };
@@ -73,7 +73,7 @@ void choose_stand(Edits& edits, const scene::Scene& scene, const scene::GlyphSet
   ImGui::EndCombo();
 }
 
-/// Of a plane or a box of their own.
+/// Edits a plane or box that the glyphs state themselves.
 void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
   const std::string pointer = item_pointer(set.where) + "/on";
   const double speed = length / 500;
@@ -92,7 +92,7 @@ void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
   edit_vector(edits, "normal", pointer + "/plane/normal", set.normal, 0.005);
 }
 
-/// A speed of the field, for the step of a drag.
+/// Estimated maximum speed of the field, used as the step size of a drag.
 double fastest(const scene::Scene& scene, const scene::GlyphSet& set) {
   const auto& vector = scene.entities.get<scene::FieldSource>(set.field).loaded.vector;
   return vector && vector->grid() != nullptr ? field::display_range(*vector->grid()).hi : 1;

@@ -1,4 +1,4 @@
-// Isosurfaces: the level on the field's histogram, colour, opacity. The hand's surface follows the one that is seen.
+// Panel of the isosurfaces: level on the field's histogram, color, opacity. The link on a surface follows its level.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/field/field_display_range.h"

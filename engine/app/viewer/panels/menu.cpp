@@ -1,4 +1,4 @@
-// The bar at the top: entries that ask for the commands of shell/commands.h.
+// The menu bar at the top: entries that request the commands.
 #include <imgui.h>
 
 #include "engine/app/viewer/panels/panel.h"
@@ -7,7 +7,7 @@ namespace catena::app {
 
 namespace {
 
-/// Another word than the command's own: "Undo isolevel".
+/// Entry with a label other than the command's own, such as "Undo isolevel".
 void entry(PanelContext& context, Action action, const std::string& words, bool checked = false, bool enabled = true) {
   if (ImGui::MenuItem(words.c_str(), shortcut_label(action).c_str(), checked, enabled)) context.push_command(action);
 }

@@ -1,4 +1,4 @@
-// Meshes: colour, and their plain keys.
+// Panel of the meshes: color and plain keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/scene/visibility.h"

@@ -1,4 +1,4 @@
-/// AppearanceState is what the panels of the scene's look remember from frame to frame. Frame thread.
+/// Panels of the GUI: their interface, the state they share, and the functions that draw the GUI outside the panels. Frame thread.
 #pragma once
 #include <deque>
 #include <map>
@@ -22,92 +22,97 @@
 
 namespace catena::app {
 
+/// State that the panels for the appearance of the scene keep from frame to frame.
 struct AppearanceState {
   HistogramCache histograms;
-  int press_count = 0;  ///< counts presses of the pointer: names drags
+  int press_count = 0;  ///< Number of pointer presses; identifies the undo group of a drag.
 
-  /// A drag in a plot: where the handle would be, by the pointer alone.
+  /// During a drag in a plot: position of the handle according to the pointer alone, pixels.
   double handle_x = 0, handle_y = 0;
 
   /// The transfer function being edited.
   struct TransferEditor {
-    std::string volume;                                           ///< its pointer
-    std::optional<std::size_t> selected_opacity, selected_color;  ///< selected points
-    std::optional<TransferEdit> before_drag;                      ///< as it was when the drag began
-    std::optional<PlotTransform> drag_frame;                      ///< stands still while something is dragged
+    std::string volume;                                           ///< JSON pointer of the volume.
+    std::optional<std::size_t> selected_opacity, selected_color;  ///< Indices of the selected points.
+    std::optional<TransferEdit> before_drag;                      ///< State at the start of the drag.
+    std::optional<PlotTransform> drag_frame;                      ///< Plot of the drag, constant while it lasts.
+    /// Plot the full range of the field.
     bool show_full_range = false;
   } transfer_editor;
 
-  std::map<std::string, std::string> disabled_text;  ///< pointer to the text that stood there
+  std::map<std::string, std::string> disabled_text;  ///< Disabled text by the JSON pointer of its place.
 };
 
-/// A panel is one part of the side window, one file in panels/: it shows what is there, notes edits of the scene (context.edits, see
-/// edit/edits.h), and asks for what else the window can do (context.commands, see shell/commands.h). Nothing here waits for anything.
-/// To add one: a file with a function that returns its Panel, and that function's name in the list of panels.cpp. Frame thread, between
-/// Gui::begin and end.
+/// A panel is one section of the side window, one file in panels/: it shows state, records edits of the scene (context.edits, see
+/// edit/edits.h), and issues commands for everything else (context.commands, see input/commands.h). Panels never block. To add one: a file
+/// with a function that returns its Panel, and the name of that function in the list in panels.cpp. Frame thread, between Gui::begin and
+/// end.
 
-/// One line for the person, at the bottom of the window for a while.
+/// A one-line message for the user, shown at the bottom of the window for a while.
 struct Message {
   std::string text;
   bool is_error = false;
+  /// Time when it was issued, nanoseconds of engine/base/clock.h.
   std::int64_t time_ns = 0;
 };
 
-/// What goes on once it is decided what becomes of unsaved changes: another file, or (empty) the end of the program.
+/// The action to continue with when unsaved changes are resolved: opening another file, or (empty path) quitting.
 struct PendingLeave {
   std::string open_path;
   bool quits() const { return open_path.empty(); }
 };
 
-/// What is asked above everything else; each stands until it is answered.
+/// Modal dialogs; each stays pending until it is answered.
 struct PendingDialogs {
-  bool show_open = false, show_save_as = false;  ///< the dialogs shall come up
-  std::optional<PendingLeave> unsaved_changes;   ///< what becomes of unsaved changes before that
-  std::optional<std::string> dropped_file;       ///< a data file on an open scene: open it, or add it
-  /// The scene's file was changed or removed by somebody else, and is to be saved.
+  bool show_open = false, show_save_as = false;  ///< Open these dialogs.
+  std::optional<PendingLeave> unsaved_changes;   ///< Action waiting for the unsaved changes dialog.
+  std::optional<std::string> dropped_file;       ///< A data file dropped on an open scene: open it, or add it.
+  /// The scene's file was changed or removed by another program, and is to be saved.
   std::optional<scene::Document::DiskState> file_conflict;
-  std::optional<OrphanedAutosave> recovery;  ///< unsaved work of an earlier run
+  std::optional<OrphanedAutosave> recovery;  ///< Autosave of an earlier run.
 };
 
-/// What the window shows beside the scene: set by the session, read by the panels.
+/// State of the window apart from the scene: set by the session, read by the panels.
 struct ViewState {
-  bool show_panels = true;  ///< the side window and the status line
+  bool show_panels = true;  ///< Show the side window and the status line.
   bool show_help = false, is_fullscreen = false;
   PendingDialogs dialogs;
-  std::deque<Message> messages;  ///< the newest last, at most kMaxMessages
+  std::deque<Message> messages;  ///< Newest last, at most kMaxMessages.
   static constexpr std::size_t kMaxMessages = 100;
 
-  // files
-  bool is_untitled = false;  ///< nothing is open: the window says how to begin
-  bool owns_file = true;     ///< the scene's path is its own; else it was made for a data file and is saved where the person says
-  std::string loading_path;  ///< the path that is being opened; empty: none
-  std::vector<std::string> recent_files;  ///< paths, the newest first
+  // Files.
+  bool is_untitled = false;  ///< Nothing is open: the window shows the welcome page.
+  bool owns_file = true;     ///< The scene's path is its own; false: it was generated for a data file and is saved where the user chooses.
+  std::string loading_path;  ///< Path being loaded; empty: none.
+  std::vector<std::string> recent_files;  ///< Paths, newest first.
 
-  TimePlayback playback;  ///< in time
+  TimePlayback playback;  ///< Playback of time steps.
 
-  std::string prompt;  ///< what the person does next, until it is done; empty: nothing is asked
+  std::string prompt;  ///< Instruction for the user until it is done; empty: none.
 
-  // the picture and the pointer
-  Area image_area;                                             ///< of the picture, window coordinates
-  double pointer_x = 0, pointer_y = 0;                         ///< window coordinates
-  bool pointer_on_image = false;                               ///< and not on a panel
-  bool pointer_has_moved = false;                              ///< it has moved over the window
-  bool pointer_pressed = false;                                ///< a button is down
-  PointSamples pointer_samples, probe_samples, proxy_samples;  ///< for the table of values
+  // Image and pointer.
+  Area image_area;                                             ///< Area of the image in window coordinates.
+  double pointer_x = 0, pointer_y = 0;                         ///< Window coordinates.
+  bool pointer_on_image = false;                               ///< The pointer is on the image and not on a panel.
+  bool pointer_has_moved = false;                              ///< The pointer has moved over the window at least one time.
+  bool pointer_pressed = false;                                ///< A mouse button is down.
+  PointSamples pointer_samples, probe_samples, proxy_samples;  ///< Rows of the value table.
   std::string unit_length;
-  double force_ratio = 0;  ///< of the greatest force, 0..1
+  double force_ratio = 0;  ///< Force as a fraction of the maximum force, 0 to 1.
 
-  // what panels remember
+  // State kept by panels.
   EditState edit;
   AppearanceState appearance;
 
+  /// Appends a message.
   void show_message(std::string text, bool is_error = false);
-  /// An error is said.
+  /// Shows the error of a failed outcome as a message.
   void show_error(const Outcome& outcome) {
     if (!outcome) show_message(outcome.error().message, true);
   }
 };
 
+/// Everything that a panel can read and change.
 struct PanelContext {
   SceneModel& scene;
   HapticSession& haptic_session;
@@ -120,37 +125,38 @@ struct PanelContext {
   Commands& commands;
   Edits edits{commands, state.edit};
 
-  /// Done after this frame, in order.
+  /// Queues a command, executed after this frame, in order.
   void push_command(Command command) { commands.push_back(std::move(command)); }
 };
 
-/// What the interface takes of the window where panels are shown (after the first frame's begin).
+/// Width of the side panel and insets of the GUI while panels are shown, window coordinates (valid after the first Gui::begin).
 inline constexpr float kSidePanelWidth = 320;
 Insets interface_insets();
 
+/// One section of the side window.
 struct Panel {
   const char* title;
   bool is_initially_open;
   void (*draw)(PanelContext& context);
-  /// Whether the scene has anything for it; nullptr: always shown.
+  /// Returns whether the scene has anything for the panel; nullptr: always shown.
   bool (*is_relevant)(const PanelContext& context) = nullptr;
 };
-/// For Panel::wanted.
+/// Returns whether the scene has a component of the type; for Panel::is_relevant.
 template <class Component>
 bool has_any(const PanelContext& context) {
   return context.scene.scene().entities.count<Component>() > 0;
 }
 
-/// Everything in order: the menu bar, the side window with every panel, the dialogs, the status line.
+/// Draws the whole GUI: menu bar, side window with all panels, dialogs, status line.
 void draw_interface(PanelContext& context);
 
-// what is drawn beside the panels
+// Parts of the GUI apart from the panels.
 void draw_menu(PanelContext& context);
 void draw_dialogs(PanelContext& context);
 void draw_status(PanelContext& context);
 void draw_file_dialogs(PanelContext& context);
 void draw_welcome(PanelContext& context);
-/// The recent files as a list to choose from; false: there are none.
+/// Draws the recent files as a list to choose from; returns false if there are none.
 bool draw_recent_files(PanelContext& context);
 
 }  // namespace catena::app

@@ -5,7 +5,7 @@
 
 namespace catena::app {
 
-// every panel, each described in its own file
+// factories of all panels, each documented in its own file
 Panel values_panel(), time_panel(), fields_panel(), volumes_panel(), isosurfaces_panel(), slices_panel(), lines_panel(), glyphs_panel(),
     curves_panel(), points_panel(), meshes_panel(), widgets_panel(), chain_panel(), device_panel(), recording_panel(), view_panel(),
     quality_panel(), plan_panel(), times_panel();
@@ -53,7 +53,7 @@ Insets interface_insets() { return {kSidePanelWidth, ImGui::GetFrameHeight(), Im
 void draw_interface(PanelContext& context) {
   ViewState& state = context.state;
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) ++state.edit.gesture;
-  // without panels the menu comes down where the pointer looks for it
+  // with panels hidden, the menu appears when the pointer is where it would be
   const bool looked_for =
       state.pointer_y < ImGui::GetFrameHeight() && state.pointer_y >= 0 && !state.pointer_pressed && state.pointer_has_moved;
   if (state.show_panels || looked_for || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) draw_menu(context);

@@ -13,12 +13,12 @@ namespace catena::app {
 
 namespace {
 
-/// The key that an item edits, for the menu of undo.
+/// The key that an item edits, as the undo label.
 std::string key_of(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
-/// True: `now` is to be taken. While digits are typed nothing is: a surface that follows each of them would jump under the hand.
+/// Returns whether `now` is final. False while digits are typed: a surface that follows each digit would jump under the probe.
 bool is_settled(EditState& state, const std::string& pointer, bool changed, const Vec3& before, Vec3& now) {
-  // a click that types a number is a drag of its own
+  // a click that types a number forms an undo group of its own
   if (ImGui::IsItemActivated()) ++state.gesture;
   TypedInput& typed = state.typed;
   const int frame = ImGui::GetFrameCount();
@@ -89,7 +89,7 @@ void edit_color(Edits& edits, const char* label, const Color& color, const std::
 
 namespace {
 
-/// What the item states, or else the default.
+/// The value that the item states, or else the default.
 json::Node value_of(const json::Node& item, const schema::Key& key) {
   if (const json::Node* stated = item.find(key.name)) return *stated;
   auto usual = json::parse(key.default_text, key.name);

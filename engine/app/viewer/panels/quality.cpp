@@ -1,4 +1,4 @@
-// How good the picture is, how long it takes, what it holds on the GPU.
+// Panel of the quality: image quality, frame time, GPU memory.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using Goal = render::QualityGoal;
 
-/// What is asked for, as the words of --quality.
+/// The requested quality as an argument of --quality.
 std::string words_of(const Quality& q) {
   if (q.goal) return fmt::format("{}={:.3g}", q.goal->kind == Goal::Kind::time ? "time" : "error", q.goal->value);
   for (const char* word : {"draft", "balanced", "reference"})
@@ -37,7 +37,7 @@ void draw_goal(PanelContext& context) {
     if (word[0] != 'd') ImGui::SameLine();
     if (ImGui::RadioButton(word, words == word)) ask(word);
   }
-  // a goal takes hold when the slider is let go: each one begins anew
+  // a goal is applied when the slider is released: each change restarts the search
   static double held = 0;
   static bool sliding = false;
   if (!time && !error) return;

@@ -1,4 +1,4 @@
-// Every tick of the session into a file, from a click to the next.
+// Panel of the recording: starts and stops writing every tick of the session to a file.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -13,7 +13,7 @@ namespace catena::app {
 
 namespace {
 
-/// The first name that is free, beside the scene.
+/// The first unused file name next to the scene.
 std::string unused_file_name(const std::string& scene_path) {
   const std::filesystem::path scene(scene_path);
   const std::filesystem::path base = scene.parent_path() / scene.stem();
@@ -35,7 +35,7 @@ void draw_recording(PanelContext& context) {
     ImGui::SetNextItemWidth(-1);
     const bool enter = ImGui::InputText("##file", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue);
     show_tooltip("the recording, .catlog");
-    // what is there is replaced by a click on a button that says so, never by Enter
+    // an existing file is replaced only by a click on the button that says so, never by Enter
     std::error_code ignored;
     const bool exists = name[0] != 0 && std::filesystem::exists(name, ignored);
     const bool clicked = ImGui::Button(exists ? "Replace the file" : "Record");
@@ -44,7 +44,7 @@ void draw_recording(PanelContext& context) {
                         : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
     return;
   }
-  // Stop is where SetRecording was
+  // the Stop button takes the position of the Record button
   const haptics::log::LogStatus status = recording.status();
   ImGui::SetNextItemWidth(-1);
   std::string path = recording.path();

@@ -1,4 +1,4 @@
-// Slices: where the plane lies, its colours, opacity, contours.
+// Panel of the slices: plane, colors, opacity, contours.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace catena::app {
 
 namespace {
 
-/// The slice's edits, and those of the links that feel its plane: they lie on the new one.
+/// Edits of the slice, and of the links on its plane, which move to the new plane.
 TextEdits with_links(const scene::Scene& scene, const scene::Slice& slice, TextEdits edits, const Vec3& point, const Vec3& normal) {
   for (const std::string& link : find_coplanar_links(scene, slice.point, slice.normal)) {
     edits.push_back({link + "/point", scene::to_json(point)});

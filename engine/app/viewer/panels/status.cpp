@@ -1,4 +1,4 @@
-// The line at the bottom: the newest message or what is under the pointer, and the force on the hand.
+// The status line at the bottom: the newest message or the point under the pointer, and the force on the device.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -21,7 +21,7 @@ const Message* newest(const ViewState& state) {
 
 ImVec4 color_of(const Message& m) { return m.is_error ? ImVec4(1, 0.5f, 0.4f, 1) : ImVec4(0.7f, 0.9f, 0.7f, 1); }
 
-/// From calm to red as the force comes near its limit.
+/// Color from neutral to red as the force approaches its limit; `share`: force divided by the limit.
 ImVec4 force_color(double share) {
   const auto s = static_cast<float>(share);
   return {0.35f + 0.6f * s, 0.75f - 0.5f * s, 0.9f - 0.7f * s, 1};
@@ -41,7 +41,7 @@ void draw_force(const PanelContext& context) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the force on the hand, of at most %.3g N", context.scene.scene().coupling.max_force_n);
 }
 
-/// "skin 5.1 mm": the last link that holds the hand, and how far from itself, in millimetres of the hand.
+/// Status text such as "skin 5.1 mm": the last link in contact and the distance of the probe from it, in device millimeters.
 std::string held_words(const PanelContext& context) {
   const HapticState& felt = context.haptic_session.latest_state();
   const auto& program = context.haptic_session.program();
@@ -54,7 +54,7 @@ std::string held_words(const PanelContext& context) {
   return {};
 }
 
-/// What the person does next, in the middle of the picture.
+/// Draws the instruction for the user in the middle of the image.
 void draw_prompt(PanelContext& context) {
   const ViewState& state = context.state;
   if (state.prompt.empty()) return;
@@ -75,7 +75,7 @@ void draw_prompt(PanelContext& context) {
   ImGui::End();
 }
 
-/// Without panels only what must be read is shown.
+/// With panels hidden, draws only the messages that must be read.
 void draw_words_alone(const ViewState& state) {
   const Message* message = newest(state);
   if (message == nullptr && state.loading_path.empty()) return;

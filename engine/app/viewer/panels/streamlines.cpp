@@ -1,4 +1,4 @@
-// StreamlineTracing: one colour or the colours of values, radius.
+// Panel of the streamlines: one color or colors by value, radius.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"
 #include "engine/scene/visibility.h"

@@ -1,4 +1,4 @@
-// Steps in time: which one is shown, and how fast they go by.
+// Panel of the time steps: the step shown and the playback speed.
 #include <imgui.h>
 
 #include "engine/app/viewer/panels/panel.h"

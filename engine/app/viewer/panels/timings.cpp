@@ -1,4 +1,4 @@
-// How long pictures and ticks take: the newest pictures against their budget, histograms on logarithmic scales.
+// Panel of the timings: recent frame times against their budget, histograms of frames and ticks on logarithmic scales.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -33,7 +33,7 @@ std::string time_text(double us) {
   return us < 1000 ? fmt::format("{:g} us", us) : us < 1e6 ? fmt::format("{:g} ms", 1e-3 * us) : fmt::format("{:g} s", 1e-6 * us);
 }
 
-/// Both axes logarithmic, one long picture in ten thousand must be seen; a tick at every power of ten.
+/// Draws a histogram with logarithmic axes, so that one long frame in ten thousand is visible; a mark at every power of ten.
 void draw_histogram(const char* name, const char* what, const haptics::HistogramSummary& f) {
   const auto number = [](double us) { return us < 1000 ? fmt::format("{:.0f} us", us) : fmt::format("{:.3g} ms", 1e-3 * us); };
   ImGui::Text("%s  %s, p99 %s", name, number(f.p50_us).c_str(), number(f.p99_us).c_str());
@@ -59,14 +59,14 @@ void draw_histogram(const char* name, const char* what, const haptics::Histogram
     list.AddLine({x, area.to.y}, {x, area.to.y + 4}, kLine);
     const std::string text = time_text(std::pow(10.0, decade));
     const float w = ImGui::CalcTextSize(text.c_str()).x, at = std::clamp(x - 0.5f * w, area.from.x, area.to.x - w);
-    if (at < last + 4) continue;  // too dense to be read
+    if (at < last + 4) continue;  // too dense to be legible
     list.AddText({at, area.to.y + 4}, kLine, text.c_str());
     last = at + w;
   }
   ImGui::Dummy({1, ImGui::GetTextLineHeight() + 2});
 }
 
-/// The newest pictures, the latest at the right; the line is what they may take while something moves.
+/// Draws the most recent frame times, the latest at the right; the line is the budget of interactive frames.
 void draw_recent_files(const FrameTimes& times, double budget_ms) {
   const auto& ring = times.recent();
   float most = static_cast<float>(1.5 * budget_ms);

@@ -1,4 +1,4 @@
-// Volumes and their transfer functions: opacity points over the histogram, colours in a bar below, all moved by the pointer.
+// Panel of the volumes and their transfer functions: opacity points over the histogram, colors in a bar below, edited with the pointer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,14 +24,14 @@ struct Editor {
   Edits& edits;
   const scene::Volume& volume;
   AppearanceState::TransferEditor& state;
-  TransferEdit edit;  ///< as the scene has it now
+  TransferEdit edit;  ///< the transfer function of the scene
   SortedSamples values;
-  PlotTransform plot, bar;  ///< one range of values
+  PlotTransform plot, bar;  ///< plot transforms, both over the same range of values
 };
 
-// ---- what is seen ----
+// ---- display ----
 
-/// All points, and the values but for the rarest.
+/// Range that contains all points, and the values without their rarest tails.
 std::array<double, 2> shown_range(const Editor& editor, const field::ScalarField& field) {
   if (editor.state.show_full_range) return plottable_range(editor.edit, field.min_value(), field.max_value());
   auto range = *value_range(editor.edit.colors, editor.edit.opacities);
@@ -56,7 +56,7 @@ void draw_curve(const Editor& editor) {
     list->AddLine({lo.x, y}, {hi.x, y}, ImGui::GetColorU32(ImGuiCol_Text, 0.12f));
     list->AddText({lo.x + 3, y - ImGui::GetTextLineHeight()}, ImGui::GetColorU32(ImGuiCol_Text, 0.4f), fmt::format("{}", alpha).c_str());
   }
-  // the area under the curve in the colours that it is drawn with
+  // the area under the curve in the colors of the transfer function
   constexpr float kStep = 1;
   ImVec2 last;
   for (float x = lo.x; x <= hi.x; x += kStep) {
@@ -94,9 +94,9 @@ void draw_bar(const Editor& editor, bool handles) {
   }
 }
 
-// ---- the pointer ----
+// ---- pointer input ----
 
-/// What the drag makes of the points as they were at its start.
+/// Applies the drag to the points as they were at its start.
 template <class Points, class Move>
 void dragged(Editor& editor, Points TransferEdit::*points, Select selected, const PlotTransform& frame, Move&& move, Writer writes,
              const char* what) {
@@ -115,7 +115,7 @@ void dragged(Editor& editor, Points TransferEdit::*points, Select selected, cons
   editor.edits.drag(writes(editor.volume, now), what);
 }
 
-/// A press: takes the handle there, or makes one.
+/// Handles a press: selects the handle at that position, or creates one.
 template <class Points>
 void pressed(Editor& editor, Points TransferEdit::*points, Select selected, std::optional<std::size_t> there,
              const std::function<std::optional<std::size_t>(Points&)>& add, Writer writes, const char* what) {
@@ -137,7 +137,7 @@ void remove_at(Editor& editor, Points TransferEdit::*points, Select selected, st
 }
 
 double rounded_alpha(double alpha) {
-  // small ones need more digits
+  // small opacities need more digits
   return alpha < 0.02 ? std::round(alpha * 20 * kAlphaSteps) / (20 * kAlphaSteps) : std::round(alpha * kAlphaSteps) / kAlphaSteps;
 }
 
@@ -193,9 +193,9 @@ void move_colors(Editor& editor) {
   if (!ImGui::IsItemActive()) show_short_tooltip("click: new colour, drag: move, right click: remove");
 }
 
-// ---- what is typed and chosen ----
+// ---- typed values and selections ----
 
-/// The selected point in numbers. The line is there without one too: nothing moves when one is taken.
+/// Draws the values of the selected point. The line also takes space without a selection, so that the layout does not move.
 void draw_opacity_line(Editor& editor, bool mine) {
   const auto selected = editor.state.selected_opacity;
   const bool has = mine && selected && *selected < editor.edit.opacities.size();
@@ -287,12 +287,12 @@ void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volum
     return;
   }
   if (const std::string pointer = item_pointer(volume.where); state.volume != pointer) {
-    // another one: nothing of it is selected, but a press on it counts
+    // a different volume: its selection is cleared, but a press on it counts
     if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && state.before_drag) return;
   }
   Editor editor{context, edits, volume, state, *edit, context.state.appearance.histograms.find_or_request(scene, volume.field), {}, {}};
 
-  // the frame stands still while something in it is held
+  // the plot's transform stays fixed during a drag
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x - kHandle;
   const bool mine = state.volume == item_pointer(volume.where);

@@ -1,4 +1,4 @@
-// One slider between fast and exact, with what is expected of it and what was observed.
+// Panel of the tuning: one slider between fast and exact, with predicted and measured error and cost.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -47,7 +47,7 @@ void draw_plan(PanelContext& context) {
     if (ImGui::Button("Measure")) context.push_command(MeasureCosts{});
     return;
   }
-  // it takes hold when it is let go: the hand's settings are new ones from then on
+  // applied when the slider is released: it replaces the haptic settings
   static double held = 0;
   static bool sliding = false;
   double place = sliding ? held : live.slider_position();

@@ -1,4 +1,4 @@
-// A window without a scene says how to begin.
+// Panel shown when no scene is open: how to begin.
 #include <imgui.h>
 
 #include <filesystem>

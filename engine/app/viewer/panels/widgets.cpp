@@ -1,4 +1,4 @@
-// The things that the hand takes hold of: what each does now, where it is, and new ones.
+// Panel of the widgets that the probe can move: state, pose, and creation of new ones.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -25,7 +25,7 @@ std::vector<Row> rows_of(const scene::Scene& scene) {
   return rows;
 }
 
-/// The pose as numbers; an edit states it in the text.
+/// Draws the pose as numbers; an edit writes it to the scene text.
 void draw_pose(PanelContext& context, const Row& row) {
   const widget::Pose& pose = row.widget.report.pose;
   const double speed = 0.001 * row.widget.spec.length;
@@ -34,7 +34,7 @@ void draw_pose(PanelContext& context, const Row& row) {
     case widget::Kind::cutting_plane: {
       place("center", pose.points[0]);
       const Vec3 normal = scene::plane_normal(pose);
-      // two ways to say how it stands: where one is edited the other goes
+      // the orientation can be stated in two ways: editing one removes the other
       double n[3] = {normal.x, normal.y, normal.z};
       if (ImGui::InputScalarN("normal", ImGuiDataType_Double, n, 3, nullptr, nullptr, "%.3g", ImGuiInputTextFlags_EnterReturnsTrue))
         context.edits.set({{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::to_json(Vec3(n[0], n[1], n[2]))}},
@@ -59,7 +59,7 @@ void draw_pose(PanelContext& context, const Row& row) {
 }
 
 void reset(PanelContext& context, const Row& row) {
-  // the pose that a new one would have, under the old name
+  // the default pose of a new widget, under the existing name
   const auto fresh = make_widget_json(context.scene.scene(), scene::to_string(row.widget.spec.kind), context.scene.bounds);
   if (!fresh) return;
   const auto node = json::parse(*fresh, "widget");

@@ -28,13 +28,13 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kDigits = 12, kLongestName = 180;
 
-/// Where drafts lie, and how their names begin.
+/// Folder in which autosaves lie, and the prefix of their file names.
 struct DraftPlace {
   fs::path folder;
   std::string prefix;
 };
 
-/// Beside the scene: "scene.json.unsaved-".
+/// Autosaves next to the scene: "scene.json.unsaved-".
 DraftPlace beside_scene(const std::string& scene_path) {
   std::string name = fs::path(scene_path).filename().string();
   name.resize(std::min(name.size(), kLongestName));
@@ -42,7 +42,7 @@ DraftPlace beside_scene(const std::string& scene_path) {
   return {folder.empty() ? fs::path(".") : folder, name + ".unsaved-"};
 }
 
-/// In the user's own folder, the same with a hash of the scene's place before it; none where there is no home.
+/// Autosaves in the user's own folder, the prefix preceded by a hash of the scene's path; std::nullopt if there is no home folder.
 std::optional<DraftPlace> in_state_folder(const std::string& scene_path) {
   const std::string state = state_folder();
   if (state.empty()) return std::nullopt;
@@ -75,7 +75,7 @@ Outcome write_all(int descriptor, std::string_view text, const std::string& path
   return Done{};
 }
 
-/// Of a file that its program no longer holds: when it was written.
+/// Time at which an orphaned autosave was written; std::nullopt if a running program still holds the file.
 std::optional<std::int64_t> time_of_left(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return std::nullopt;
@@ -99,7 +99,7 @@ Outcome Autosave::save_text(const std::string& scene_path, const std::string& te
   if (path.empty()) {
     std::error_code code;
     DraftPlace place = beside_scene(scene_path);
-    // a data file's folder is not chosen for scenes before one is saved there
+    // a data file's folder is not used for autosaves until a scene has been saved there
     if (const auto own = in_state_folder(scene_path); own && !fs::exists(scene_path, code)) {
       place = *own;
       fs::create_directories(place.folder, code);

@@ -1,8 +1,8 @@
-/// Autosave keeps unsaved work: the scene's text as it is now, in a file while it has changes that are not saved, so that it outlives a
-/// program that is killed. SCENE.json.unsaved-<12 hex digits> lies beside the scene; of a data file whose scene was never saved it lies in
-/// the user's own folder (state_folder() in file_list.h, unsaved/<hash of the place>-SCENE.json.unsaved-...), so that nothing is written
-/// beside data unasked. It is written whole or not at all, is its owner's alone, and is locked (flock) while its program runs: what is
-/// found unlocked was left by one that has ended. Frame thread.
+/// Autosave: keeps the current text of the scene in a file while there are unsaved changes, so that they survive a killed program. The file
+/// SCENE.json.unsaved-<12 hex digits> is next to the scene; for a data file whose scene was never saved it is in the user's own folder
+/// (state_folder() in file_browser.h, unsaved/<hash of the path>-SCENE.json.unsaved-...), so that nothing is written next to data without
+/// being asked. It is written atomically, readable by its owner only, and locked (flock) while its program runs: an unlocked file is
+/// orphaned. Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,30 +12,33 @@
 
 namespace catena::app {
 
+/// Owns the autosave file of one scene and the lock on it.
 class Autosave {
  public:
   Autosave() = default;
-  ~Autosave();  ///< the file stays
+  ~Autosave();  ///< Leaves the file.
   Autosave(const Autosave&) = delete;
   Autosave& operator=(const Autosave&) = delete;
 
-  /// The text is on its way to the disk; the same text twice is written once. Of another scene than before: the one before goes.
+  /// Writes the text if it differs from the last one. If the scene's path has changed, the file of the former scene is removed. An Error if
+  /// it cannot be written.
   Outcome save_text(const std::string& scene_path, const std::string& text);
-  /// Saved, or given up by the person.
+  /// Removes the file: the changes were saved or discarded.
   void remove();
 
  private:
-  std::string scene_path_, path_, text_;  ///< path_ empty: nothing is kept
+  std::string scene_path_, path_, text_;  ///< An empty path_ means that there is no file.
   int lock_ = -1;
 };
 
-/// What a program that has ended left of a scene.
+/// An autosave file whose program has ended.
 struct OrphanedAutosave {
   std::string path, text;
-  std::int64_t saved_at_s = 0;  ///< when it was kept, seconds of the system's clock
+  std::int64_t saved_at_s = 0;  ///< Modification time, seconds of the system clock.
 };
-/// The newest of this user's own; none: nothing is there. Links and what is no regular file do not count.
+/// Returns the newest file of the current user for that scene; nothing if there is none. Symbolic links and non-regular files are ignored.
 std::optional<OrphanedAutosave> find_orphaned_autosave(const std::string& scene_path);
+/// Deletes the file.
 void remove_orphaned_autosave(const OrphanedAutosave& draft);
 
 }  // namespace catena::app

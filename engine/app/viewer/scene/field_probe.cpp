@@ -24,7 +24,7 @@ std::vector<FieldSample> sample_fields(const scene::Scene& scene, const Vec3& wo
       value.value = sample.value;
       if (const scene::LabelMap* map = scene::find_label_map(scene, e)) {
         value.label = scene::describe_label(*map, sample.value);
-        // a surface of labels runs between them and what is none
+        // a surface of labels runs between labeled and unlabeled voxels
         if (const double near = field::label_at(*any.scalar->grid(), world); sample.value == 0 && near != 0)
           value.label = "beside " + scene::describe_label(*map, near);
       }

@@ -1,4 +1,4 @@
-/// These functions say what the fields of the scene are at a place: every field that is loaded, by its name, with its unit. Frame thread.
+/// Values of the scene's fields at a point: every loaded field, by name, with its unit. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,29 +8,30 @@
 
 namespace catena::app {
 
+/// The value of one field.
 struct FieldSample {
   std::string name, unit;
-  bool is_inside = false;  ///< within the domain and the mask; outside there is no value
-  double value = 0;        ///< of a vector: its length
+  bool is_inside = false;  ///< The point is within domain and mask; outside there is no value.
+  double value = 0;        ///< For a vector field the magnitude.
   std::optional<Vec3> vector{};
-  std::string label{};  ///< of a label map: what the value stands for, "Precentral_L (1)"
+  std::string label{};  ///< For a label map the name of the label, "Precentral_L (1)".
 };
 
-/// A place of the table: where, of which thing, and what is there.
+/// A row of the value table: position, name of the object there, and field values.
 struct PointSamples {
   std::optional<Vec3> world{};
   std::string object{};
   std::vector<FieldSample> samples{};
 };
 
-/// In the order of the scene.
+/// Returns the values of all loaded fields, in the order of the scene.
 std::vector<FieldSample> sample_fields(const scene::Scene& scene, const Vec3& world);
 
-/// "0.43", "Precentral_L (1)", "outside"; a vector's length with its components in brackets where `components`.
+/// Returns "0.43", "Precentral_L (1)" or "outside"; for a vector its magnitude, followed by the components in parentheses if `components`.
 std::string format_sample(const FieldSample& value, bool components = false);
-/// "1.2, 3.4, 5.6 mm"
+/// Returns "1.2, 3.4, 5.6 mm".
 std::string format_point(const Vec3& world, const std::string& unit_length);
-/// "1.2, 3.4, 5.6 mm   density 0.43   isosurface density"
+/// Returns "1.2, 3.4, 5.6 mm   density 0.43   isosurface density"; empty without a position.
 std::string format_point_samples(const PointSamples& place, const std::string& unit_length);
 
 }  // namespace catena::app

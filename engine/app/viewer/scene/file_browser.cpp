@@ -35,7 +35,7 @@ bool is_scene_path(const std::string& path) { return has_extension(path, ".json"
 const std::vector<std::string_view>& openable_extensions() {
   static const std::vector<std::string_view> endings = [] {
     std::vector<std::string_view> all{".json"};
-    // several kinds of things lie in files of one ending
+    // one file extension may hold items of several kinds
     for (const auto& kind : {field::field_extensions(true), mesh::mesh_endings(), curves::curve_endings(), curves::point_endings()})
       for (const std::string_view ending : kind)
         if (std::ranges::find(all, ending) == all.end()) all.push_back(ending);
@@ -197,7 +197,7 @@ void RecentFiles::add(const std::string& file) {
   files_.insert(files_.begin(), whole.string());
   if (files_.size() > kMaxRecentFiles) files_.resize(kMaxRecentFiles);
   if (path_.empty()) return;
-  // a list that cannot be kept is one of this run
+  // a list that cannot be saved is valid for this run only
   const Outcome kept = write_list(path_, files_);
   static_cast<void>(kept);
 }

@@ -17,9 +17,9 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kKeepS = 3;  // between looks at what is not saved
+constexpr double kKeepS = 3;  // seconds between checks for unsaved changes to autosave
 
-/// The first of a scene's notes, for the line of the window; all of them are on the terminal.
+/// The first of a scene's notes, for the status line; all of them are printed to the terminal.
 std::string noted(const scene::Scene& scene) {
   if (scene.notes.empty()) return {};
   const std::size_t rest = scene.notes.size() - 1;
@@ -65,9 +65,9 @@ void SceneFiles::adopt_scene(const LoadedScene& loaded) {
   context_.scene.set_validator([&haptic_session = context_.haptic_session](scene::Scene& scene) { return haptic_session.validate(scene); });
 }
 
-// ---- leaving ----
+// ---- closing ----
 
-/// Unsaved changes are asked about first, and on the way out a recording. The view alone is no change.
+/// Asks about unsaved changes first and, on exit, about a running recording. A changed view alone does not count as a change.
 void SceneFiles::confirm_leave(const PendingLeave& leaving) {
   after_save_.reset();
   const bool ends_recording = leaving.quits() && context_.haptic_session.recording().is_recording();
@@ -92,8 +92,8 @@ void SceneFiles::on_choice(UnsavedChangesChoice given) {
 
 // ---- saving ----
 
-/// Where the scene comes from; for one that was made for a data file, or comes from nowhere, the person says where: nothing is written
-/// beside data unasked.
+/// Saves to the scene's own file; a scene that was made for a data file, or has no file, gets a dialog for its path: nothing is written
+/// next to data without confirmation.
 void SceneFiles::save() {
   if (context_.state.is_untitled || !context_.state.owns_file)
     context_.state.dialogs.show_save_as = true;
@@ -101,7 +101,7 @@ void SceneFiles::save() {
     save_as(context_.scene.document().path());
 }
 
-/// What somebody else has written to the scene's own file since it was read is not replaced unasked.
+/// Saves to `path`. If another program has changed the scene's own file since it was read, the user is asked before it is replaced.
 void SceneFiles::save_as(const std::string& path) {
   const scene::Document& document = context_.scene.document();
   const bool own = context_.state.owns_file && !context_.state.is_untitled && is_same_file(path, document.path());
@@ -133,7 +133,7 @@ void SceneFiles::save_and_continue(const std::string& path) {
   if (const auto next = std::exchange(after_save_, std::nullopt); next && written) leave(*next);
 }
 
-/// With the view, if the person has moved it.
+/// Writes the scene, including the view if the user has changed it.
 bool SceneFiles::write(const std::string& path) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
@@ -189,7 +189,7 @@ bool SceneFiles::poll_loaded() {
   return true;
 }
 
-/// Another scene in the same window; one that the hand cannot feel leaves this one.
+/// Opens another scene in the same window; if its haptic program cannot be built, the present scene stays.
 void SceneFiles::replace_scene(LoadedScene loaded, const std::string& path) {
   ViewState& state = context_.state;
   if (auto taken = context_.haptic_session.switch_scene(loaded.model.scene(), loaded.bounds); !taken)
@@ -210,7 +210,7 @@ void SceneFiles::replace_scene(LoadedScene loaded, const std::string& path) {
   offer_recovery();
 }
 
-/// One step of undo; what was loaded goes over.
+/// Adds the loaded items as one undo step; the loaded data are reused.
 void SceneFiles::add_to_scene(LoadedScene loaded, const std::string& path) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
@@ -239,7 +239,7 @@ void SceneFiles::add_to_recent(const std::string& path) {
   context_.state.recent_files = recent_files_.existing_files();
 }
 
-// ---- what is not saved ----
+// ---- autosave ----
 
 void SceneFiles::autosave(bool now) {
   if (has_quit_ || (!now && last_autosave_ns_ != 0 && 1e-3 * ms_since(last_autosave_ns_) < kKeepS)) return;
@@ -255,7 +255,7 @@ void SceneFiles::autosave(bool now) {
   autosave_error_ = why;
 }
 
-/// What a program that was killed left of this scene is offered; what is saved since is not.
+/// Offers the autosave that a killed program left of this scene, unless the scene has been saved since.
 void SceneFiles::offer_recovery() {
   const scene::Document& document = context_.scene.document();
   context_.state.dialogs.recovery.reset();
@@ -265,7 +265,7 @@ void SceneFiles::offer_recovery() {
       return;
     }
     remove_orphaned_autosave(*left);
-    if (std::error_code code; std::filesystem::exists(left->path, code)) return;  // it cannot go
+    if (std::error_code code; std::filesystem::exists(left->path, code)) return;  // the file cannot be removed
   }
 }
 
@@ -277,7 +277,7 @@ void SceneFiles::on_choice(RecoveryChoice given) {
     const Outcome done = context_.scene.replace(left->text, "unsaved changes");
     if (!done) return state.show_message(done.error().message + " (" + left->path + " is still there)", true);
     state.show_message("the unsaved changes are here again; undo takes them back");
-    // here before it goes there
+    // write the new autosave before the old one is removed
     autosave(true);
     if (!autosave_error_.empty()) return;
   }

@@ -1,5 +1,5 @@
-/// SceneFiles opens, adds to, saves and leaves the scene, and keeps what is not saved. What takes long runs beside the window;
-/// what fails is said in one line and leaves all as it was. Frame thread.
+/// File operations of the window: opening, adding, saving and closing the scene, and autosave. Loading runs in the background; a failure is
+/// reported in one line and leaves everything unchanged. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,38 +13,48 @@
 
 namespace catena::app {
 
-/// What a recording says of the scene that is felt.
+/// Returns the description of the scene for a recording: path, text, field options and input files.
 RecordedScene make_recorded_scene(const SceneModel& scene, const HapticSession& hand);
-/// Loads what the first scene draws and feels; the hand takes hold. `scene` is the host of the answer again.
+/// Loads the first scene and prepares the haptic session for it. `scene` is replaced by the loaded model, which is moved out of the result.
+/// An Error if loading or preparing fails.
 Result<LoadedScene> load_initial_scene(SceneModel& scene, HapticSession& hand, std::uint32_t width, std::uint32_t height);
 
+/// Executes the file commands; holds the state of pending loads, saves and dialogs.
 class SceneFiles {
  public:
   SceneFiles(ViewerContext& shared, CameraController& eye, Viewport& picture);
 
-  /// The scene has just become the one that is shown. From now on an edit counts if the hand can feel what it makes.
+  /// Call when a loaded scene has become the visible one: adopts its bounds and camera. Edits are then accepted only if the haptic program
+  /// can be built.
   void adopt_scene(const LoadedScene& loaded);
-  /// The list of recent files begins, and what an earlier run left unsaved is offered.
+  /// Initializes the list of recent files and offers the autosave of an earlier run.
   void begin();
 
-  // commands
+  // Commands.
+  /// Opens a file in place of the scene, after resolving unsaved changes.
   void open(const std::string& path) { confirm_leave({path}); }
+  /// Opens a dropped file or folder, or asks whether to add it to the scene.
   void open_dropped(const std::string& dropped);
+  /// Saves to the scene's own file; without one, opens the Save As dialog.
   void save();
+  /// Saves to `path`; asks first if the scene's own file was changed on disk.
   void save_as(const std::string& path);
+  /// Cancels what should follow the pending save.
   void cancel_save() { after_save_.reset(); }
   void quit() { confirm_leave({}); }
+  /// Choices of the dialogs.
   void on_choice(UnsavedChangesChoice given);
   void on_choice(DroppedFileChoice given);
   void on_choice(FileConflictChoice given);
   void on_choice(RecoveryChoice given);
 
-  /// What was being opened is there; true: the picture has to be made again.
+  /// Takes over a finished load. Returns true if the image must be rendered again.
   bool poll_loaded();
   bool is_loading() const { return loader_.is_busy(); }
-  /// Every few seconds, beside the scene, and (`now`) at the end where nobody was asked. What cannot be kept is said once.
+  /// Saves unsaved changes to the autosave file: every few seconds (3 s), or immediately if `now`, as at an exit without a dialog. A
+  /// failure is reported once.
   void autosave(bool now = false);
-  /// The person has quit, and was asked where something would be lost.
+  /// Returns whether the user has quit, with unsaved changes resolved.
   bool has_quit() const { return has_quit_; }
 
  private:
@@ -63,12 +73,12 @@ class SceneFiles {
   Viewport& viewport_;
   RecentFiles recent_files_;
   SceneLoader loader_;
-  bool loading_joins_scene_ = false;        ///< what is being loaded joins the scene
-  std::optional<PendingLeave> after_save_;  ///< what a save that succeeds goes on with
+  bool loading_joins_scene_ = false;        ///< The file being loaded is added to the scene.
+  std::optional<PendingLeave> after_save_;  ///< Action to continue with after a successful save.
   bool has_quit_ = false;
-  Autosave autosave_;  ///< what is not saved
+  Autosave autosave_;
   std::int64_t last_autosave_ns_ = 0;
-  std::string autosave_error_;  ///< why, as it was said
+  std::string autosave_error_;  ///< Last reported failure; empty: none.
 };
 
 }  // namespace catena::app

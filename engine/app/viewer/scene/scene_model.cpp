@@ -22,7 +22,7 @@ Result<LoadedScene> open_and_load(const std::string& path, std::uint32_t width, 
 
 Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32_t height) {
   scene::Scene& scene = host.scene();
-  // the program loads what is felt, the packet what is drawn
+  // the haptic program loads the fields of the chain, the frame packet those of visible items
   CATENA_CHECK(HapticSession::load(scene));
   CATENA_TRY(render::FramePacket packet, render::make_frame(scene, width, height));
   const Bounds bounds = scene::scene_bounds(scene);
@@ -94,7 +94,7 @@ void SceneModel::transfer_session_state(scene::Scene& fresh) const {
   fresh.camera = scene_.camera;
   fresh.stereo.mode = scene_.stereo.mode;
   fresh.animation_phase = scene_.animation_phase;
-  // fitted to the device once; a scene that states another one is followed when it is opened
+  // the workspace is fitted to the device only once; a scene that states another one takes effect when it is opened
   fresh.workspace = scene_.workspace;
   if (!fresh.coupling.ramp_s) fresh.coupling.ramp_s = scene_.coupling.ramp_s;
 }
@@ -103,7 +103,7 @@ Outcome SceneModel::edit_document(const std::function<Outcome(scene::Document&)>
   scene::Document edited = document_;
   CATENA_CHECK(edit(edited));
   std::swap(document_, edited);
-  // `edited` is what it was from here on
+  // after the swap `edited` holds the previous document, restored on an error
   auto fresh = parse_document();
   if (!fresh) {
     std::swap(document_, edited);

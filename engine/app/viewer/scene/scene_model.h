@@ -1,5 +1,5 @@
-/// SceneModel has the scene that the window shows, with the text that it is read from. Edits go to the text; the scene is then read again
-/// and takes over what was loaded, what the hand did, and where the eye stands. Frame thread.
+/// The scene shown in the window together with the text it is read from. Edits change the text; the scene is then read again and takes over
+/// loaded data, haptic state and the camera. Frame thread.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -17,49 +17,56 @@
 
 namespace catena::app {
 
+/// Owns document and scene, and keeps them consistent.
 class SceneModel {
  public:
-  /// Reads it; nothing is loaded yet. `adjust`: what is wanted otherwise than the text says, whenever it is read.
+  /// Reads the scene; nothing is loaded yet. `adjust`: applies overrides, called whenever the scene is read. An Error if the document is
+  /// invalid.
   static Result<SceneModel> open(scene::Document document, std::function<Outcome(scene::Scene&)> adjust);
 
   scene::Scene& scene() { return scene_; }
   const scene::Scene& scene() const { return scene_; }
   const scene::Document& document() const { return document_; }
 
-  /// What a scene must pass beside being read for an edit to count, such as that its program can be made. It may load what the scene names.
+  /// Additional check that a scene must pass for an edit to be accepted, such as that its haptic program can be built. It may load what the
+  /// scene refers to.
   using Validator = std::function<Outcome(scene::Scene&)>;
   void set_validator(Validator check) { validator_ = std::move(check); }
 
-  /// An error leaves all as it was. `what`, `drag`: as Document::set.
+  /// Applies an edit; an Error leaves everything unchanged. `what`: undo label, `drag`: undo group, as in Document::set.
   Outcome set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
   Outcome remove(std::string_view pointer, const std::string& what);
   Outcome apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
-  /// Another text, as one step of undo.
+  /// Replaces the whole text, as one undo step.
   Outcome replace(const std::string& text, const std::string& what);
+  /// Reads the file again, as one undo step.
   Outcome reload_from_disk();
+  /// Undo and redo; without effect if there is nothing to undo or redo.
   Outcome undo();
   Outcome redo();
+  /// Writes the text to a file. An Error if it cannot be written.
   Outcome save(const std::string& path);
 
-  /// The links are followed as this plan says, from now on and whenever the scene is read; read again at once.
+  /// Applies the tick tuning to the links, immediately and whenever the scene is read. An Error leaves everything unchanged.
   Outcome set_tick_tuning(std::optional<plan::TickTuning> plan);
-  /// The text of what is felt: with the plan's settings, for a recording.
+  /// Returns the text of the scene as used for haptics, with the tick tuning applied; for recordings.
   std::string recording_text() const;
 
-  /// The scene differs from what it was at the last call: picture and program have to be made again.
+  /// Returns whether the scene has changed since the last call, so that image and haptic program must be updated.
   bool take_changed() { return std::exchange(changed_, false); }
+  /// Marks the scene as changed.
   void mark_changed() { changed_ = true; }
 
-  /// All that is drawn and felt; set by who extracts.
+  /// Bounds of everything visible and haptic, world units; set by the caller that extracts the scene.
   Bounds bounds;
 
  private:
   SceneModel(scene::Document document, std::function<Outcome(scene::Scene&)> adjust)
       : document_(std::move(document)), apply_overrides_(std::move(adjust)) {}
   Result<scene::Scene> parse_document() const;
-  /// The document as `edit` leaves it and the scene of it, or both as they were.
+  /// Applies `edit` to the document and reads the scene from it; on an Error both stay unchanged.
   Outcome edit_document(const std::function<Outcome(scene::Document&)>& edit);
-  /// What the person did to the scene without editing it.
+  /// Copies what the user changed without editing the text: camera, stereo mode, animation phase, fitted workspace.
   void transfer_session_state(scene::Scene& fresh) const;
 
   scene::Document document_;
@@ -70,32 +77,33 @@ class SceneModel {
   bool changed_ = false;
 };
 
-/// SceneLoader opens a scene or a data file beside the window: it reads it, loads what it draws and feels, and makes its first packet. The
-/// window goes on meanwhile. One at a time; what is under way when the loader goes is waited for.
+/// Loading of a scene or data file in the background: reads it, loads what is rendered and what the links use, and makes the first packet,
+/// while the window continues.
 struct LoadedScene {
   SceneModel model;
-  render::FramePacket packet;  ///< of the size asked for
-  Bounds bounds;               ///< of all that is drawn and felt
+  render::FramePacket packet;  ///< First packet, of the requested size.
+  Bounds bounds;               ///< Bounds of everything visible and haptic, world units.
 };
 
-/// The work itself; any thread, the scene is its own. Errors: one line.
+/// Loads a scene synchronously; any thread, since it owns its scene. Size in pixels. An Error, one line, if something cannot be loaded.
 Result<LoadedScene> load_scene(SceneModel host, std::uint32_t width, std::uint32_t height);
 
+/// Loads one scene at a time on its own thread; the destructor waits for it.
 class SceneLoader {
  public:
-  /// Not while one is under way.
+  /// Starts loading; only while not busy. Size of the first packet in pixels.
   void start(const std::string& path, std::uint32_t width, std::uint32_t height);
-  /// The path that is being opened; empty: none.
+  /// Returns the path being loaded; empty: none.
   const std::string& path() const { return path_; }
   bool is_busy() const { return !path_.empty(); }
-  /// What came of it, once.
+  /// Returns the result once it is available, and only once.
   std::optional<Result<LoadedScene>> take_result();
 
  private:
   std::string path_;
   std::optional<Result<LoadedScene>> loaded_;
   std::atomic<bool> done_{false};
-  std::jthread thread_;  ///< last: it is joined before what it writes goes
+  std::jthread thread_;  ///< Last member: joined before the members it writes are destroyed.
 };
 
 }  // namespace catena::app

@@ -32,7 +32,7 @@ Outcome TimePlayback::advance(SceneModel& host) {
   const int next = (scene.time.step + 1) % count;
   std::vector<field::LoadRequest> requests = scene::prefetch_requests(scene, next);
   const bool ready = std::all_of(requests.begin(), requests.end(), field::is_cached);
-  constexpr double kLongestWaitS = 30;  // then it is loaded here, which says what is wrong
+  constexpr double kLongestWaitS = 30;  // after this the step is loaded on this thread, which reports any error
   const double since_s = 1e-3 * ms_since(last_step_ns_), period_s = 1 / scene.time.steps_per_second;
   if (since_s >= period_s && (ready || since_s >= period_s + kLongestWaitS)) return show(host, next);
   if (prefetched_step_ == next) return Done{};

@@ -1,5 +1,4 @@
-/// TimePlayback shows a scene's steps in time (engine/scene/time_steps.h), one that is asked for or one after the other, in a window or for
-/// a browser. Frame thread.
+/// Playback of a scene's time steps (engine/scene/time_steps.h), in a window or for a browser. Frame thread.
 #pragma once
 #include <cstdint>
 
@@ -7,18 +6,20 @@
 
 namespace catena::app {
 
+/// Shows a requested step, or the steps one after the other.
 class TimePlayback {
  public:
-  bool is_playing = false;  ///< steps go by
+  bool is_playing = false;  ///< True: the steps advance by themselves.
 
-  /// Round and round. What cannot be loaded is an error: the step stays, and no more go by.
+  /// Shows a step; the index wraps around. An Error if it cannot be loaded: the current step stays and playback stops.
   Outcome show(SceneModel& scene, int step);
-  /// The next one, where they go by and its time has come. One that is not loaded yet is waited for, without holding up who asks.
+  /// Shows the next step if playback is on and its time has come. A step that is not loaded yet is prefetched without blocking; after 30 s
+  /// it is loaded synchronously. An Error as in show().
   Outcome advance(SceneModel& scene);
 
  private:
   std::int64_t last_step_ns_ = 0;
-  int prefetched_step_ = -1;  ///< the step that is loaded ahead
+  int prefetched_step_ = -1;  ///< The last step that was requested for prefetching; -1: none.
 };
 
 }  // namespace catena::app

@@ -1,6 +1,5 @@
-/// TimeStepWatcher has new steps in time looked for beside the picture (engine/scene/follow_files.h), in a window or for a browser:
-/// `--follow`. Who looks at the newest step is taken to the next one; who looks at another stays there. Frame thread; the looking is on a
-/// thread of its own.
+/// Watches for new time steps in the background (engine/scene/follow_files.h), for a window or a browser: option `--follow`. If the newest
+/// step is shown, the view advances to the next one; any other step stays. Called on the frame thread; the search has a thread of its own.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -12,10 +11,12 @@
 
 namespace catena::app {
 
+/// Owns the search thread.
 class TimeStepWatcher {
  public:
   explicit TimeStepWatcher(bool on) : is_enabled_(on) {}
-  /// Takes what was found, and has it looked for again after a while. True: there are more steps.
+  /// Takes the result of a finished search and starts the next one after 500 ms. Returns true if time steps were added. An Error if the
+  /// thread cannot be started or the step cannot be shown.
   Result<bool> poll(SceneModel& scene, TimePlayback& steps);
 
  private:
@@ -24,7 +25,7 @@ class TimeStepWatcher {
   std::vector<scene::FollowedSource> found_;
   std::atomic<bool> done_{false};
   bool is_searching_ = false, shows_newest_ = false;
-  std::jthread thread_;  ///< last: it is joined before what it writes goes
+  std::jthread thread_;  ///< Last member: joined before the members it writes are destroyed.
 };
 
 }  // namespace catena::app

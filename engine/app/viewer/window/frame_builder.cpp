@@ -11,14 +11,14 @@
 namespace catena::app {
 
 namespace {
-constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
+constexpr std::uint32_t kLeastPixels = 16;  // minimum image size in each direction: any packing of views has at least one pixel per view
 }
 
 Result<render::FramePacket> FrameBuilder::make_packet(std::uint32_t width, std::uint32_t height) const {
   scene::Scene& scene = scene_.scene();
   const auto eye = render::view_size(render::stereo_packing(scene.stereo), render::stereo_view_count(scene.stereo),
                                      std::max(kLeastPixels, width), std::max(kLeastPixels, height));
-  // a hand that the mouse holds says how deep it is
+  // with a mouse-driven probe, the drop line shows its depth
   const auto drop_line = [&]() -> bool& { return scene.entities.get<scene::Cursor>(scene.cursor).drop_line; };
   const bool stated = std::exchange(drop_line(), drop_line() || navigation_.probe_mode);
   auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
@@ -26,7 +26,7 @@ Result<render::FramePacket> FrameBuilder::make_packet(std::uint32_t width, std::
   return packet;
 }
 
-/// Interlaced eyes belong to the window's own pixels.
+/// Pixel stride of the next frame; interlaced stereo needs the window's own pixels.
 std::uint32_t FrameBuilder::pixel_stride(const FrameRequest& next) const {
   return render::is_interlaced(render::stereo_packing(scene_.scene().stereo)) ? 1 : next.pixel_stride;
 }
@@ -57,7 +57,7 @@ std::optional<FrameRequest> FrameBuilder::next_frame(bool moved, bool hand_moved
   if (!hand_moved) return rested_s >= kRefineDelayS ? refined_frame() : std::nullopt;
   const FrameRequest next = frame_after_probe_motion(width, height);
   if (!next.settings.reuse_rays) mark_changed();
-  // better ones come while a hand is at work, too
+  // also refine during probe motion if time permits
   if (next.settings.reuse_rays && rested_s >= kRefineDelayS && scheduler_.may_refine())
     if (auto better = refined_frame()) {
       discard_prebuilt();  // it may have fewer pixels

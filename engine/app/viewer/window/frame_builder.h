@@ -1,5 +1,5 @@
-/// FrameBuilder says which picture of the scene comes next and what it is made of, whoever draws it and wherever it is shown: a window
-/// (picture_view.h) or a browser (engine/app/server). It remembers what the last one showed. Frame thread.
+/// Selects the next frame of the scene and makes its packet, independent of who renders it and where it is shown: a window (viewport.h) or
+/// a browser (engine/app/server). Remembers the packet of the last frame. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,45 +12,48 @@
 
 namespace catena::app {
 
-inline constexpr double kRefineDelayS = 0.25;  ///< without a change for so long: the picture may take its time
+inline constexpr double kRefineDelayS = 0.25;  ///< Idle time after which frames are refined.
 
+/// Refers to the scene, navigation and scheduler, which must outlive it.
 class FrameBuilder {
  public:
   FrameBuilder(SceneModel& scene, const Navigation& controls, ProgressiveScheduler& pacing)
       : scene_(scene), navigation_(controls), scheduler_(pacing) {}
 
-  // which one comes next, in a picture of that many pixels
+  // Requests for the next frame; sizes in pixels.
   FrameRequest final_frame() { return scheduler_.final_frame(ray_workload_); }
   FrameRequest interactive_frame() { return scheduler_.interactive_frame(ray_workload_); }
   std::optional<FrameRequest> refined_frame() { return scheduler_.refined_frame(ray_workload_); }
-  /// After the hand has moved: as good as the last where rays meet what they met, else as while something moves.
+  /// Returns the frame after a motion of the probe: a reused frame if the rays still meet the same, else an interactive frame.
   FrameRequest frame_after_probe_motion(std::uint32_t width, std::uint32_t height);
-  /// In time while something moves, better ones when it rests; nothing where the last one stands.
+  /// Returns the next frame: interactive after a change, reused or interactive after probe motion, refined when idle; nothing if the last
+  /// one is final.
   std::optional<FrameRequest> next_frame(bool moved, bool hand_moved, std::uint32_t width, std::uint32_t height);
-  /// Since what the picture shows has changed, seconds.
+  /// Returns the seconds since the content of the image changed.
   double idle_s() const;
-  /// It has changed now.
+  /// Records a change of the content.
   void mark_changed();
 
-  /// Of the scene as it is now, for a picture of that many pixels.
+  /// Makes the packet of the scene in its current state, for an image of that size in pixels.
   Result<render::FramePacket> make_packet(std::uint32_t width, std::uint32_t height) const;
-  /// The same for this picture, each way so many pixels less; what followed() has made already is used.
+  /// The same for a request, with the size divided by its pixel stride; uses the packet prebuilt by frame_after_probe_motion() if there is
+  /// one.
   Result<render::FramePacket> make_packet(const FrameRequest& next, std::uint32_t width, std::uint32_t height);
-  /// What followed() has made is not wanted.
+  /// Discards the prebuilt packet.
   void discard_prebuilt() { prebuilt_packet_.reset(); }
-  /// Where the error decides on the next picture: it is estimated.
+  /// Estimates the error of the frame if the selection of the next one depends on it. An Error if rendering fails.
   Outcome estimate_error_if_needed(render::Renderer& renderer, const render::FramePacket& packet, const FrameRequest& next);
-  /// That packet was drawn.
+  /// Records that the packet was rendered.
   void on_rendered(render::FramePacket packet, const render::Renderer& renderer);
-  /// What there is to draw in that packet: the next pictures are chosen by it.
+  /// Determines from a rendered packet what it requires of ray casting; the next frames are selected by it.
   const RayWorkload& update_ray_workload(const render::FramePacket& packet, const render::Renderer& renderer);
-  /// Another scene: nothing of the last picture counts.
+  /// Resets the state for another scene.
   void reset() { last_packet_.reset(); }
 
   const std::optional<render::FramePacket>& last_packet() const { return last_packet_; }
-  /// What the last picture shows beside the hand, in shares of its width and height.
+  /// Returns what the last frame shows at (x, y), ignoring the probe; x and y are fractions of its width and height.
   std::optional<PickHit> pick_at(double x, double y) const;
-  /// "isosurfaces[0]"; empty: an id of no item.
+  /// Returns "isosurfaces[0]"; empty for an id of no item.
   std::string item_label(std::uint32_t id) const;
 
  private:
@@ -59,9 +62,9 @@ class FrameBuilder {
   SceneModel& scene_;
   const Navigation& navigation_;
   ProgressiveScheduler& scheduler_;
-  std::optional<render::FramePacket> last_packet_;      ///< the last picture's
-  std::optional<render::FramePacket> prebuilt_packet_;  ///< the next one's, where followed() has made it
-  RayWorkload ray_workload_;                            ///< the last picture's
+  std::optional<render::FramePacket> last_packet_;      ///< Packet of the last frame.
+  std::optional<render::FramePacket> prebuilt_packet_;  ///< Packet of the next frame, made by frame_after_probe_motion().
+  RayWorkload ray_workload_;                            ///< Requirements of the last frame.
   std::int64_t last_change_ns_ = 0;
 };
 

@@ -18,7 +18,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kFocusSettleFrames = 3;  // frames until what was opened has the keyboard
+constexpr int kFocusSettleFrames = 3;  // frames until a newly opened item has keyboard focus
 
 void choose_style(float scale) {
   ImGui::StyleColorsDark();
@@ -27,7 +27,7 @@ void choose_style(float scale) {
   style.FrameRounding = 3;
   style.GrabRounding = 3;
   style.WindowBorderSize = 0;
-  // the side window lets the picture through a little; menus and questions do not
+  // the side window is slightly transparent; menus and dialogs are opaque
   style.Colors[ImGuiCol_WindowBg].w = 0.88f;
   style.Colors[ImGuiCol_PopupBg].w = style.Colors[ImGuiCol_MenuBarBg].w = 1;
   style.ScaleAllSizes(scale);
@@ -39,14 +39,14 @@ struct Gui::Impl {
   Window* window;
   std::shared_ptr<const render::UiTexture> font;
   KeyFrameScheduler keys{};
-  Input last{};                     ///< the piece that was told last
-  bool moved = false;               ///< the pointer, since the last frame
-  int settling = 0;                 ///< frames to make before the next stroke
-  float wheel = 0;                  ///< turned in frames that nobody saw
-  std::optional<ImVec2> pointed{};  ///< another pointer, for one frame
-  bool pressed = false;             ///< its button
+  Input last{};                     ///< the input segment sent most recently
+  bool moved = false;               ///< whether the pointer has moved since the last frame
+  int settling = 0;                 ///< hidden frames to run before the next key press
+  float wheel = 0;                  ///< wheel motion in hidden frames
+  std::optional<ImVec2> pointed{};  ///< position of a substitute pointer, for one frame
+  bool pressed = false;             ///< whether the button of the substitute pointer is down
 
-  /// A frame that nobody sees, with the pointer at a place and the buttons of a piece.
+  /// Runs a hidden frame with the pointer at a position and the buttons of an input segment.
   void make(const Input& buttons, double x, double y, const Frame& frame);
   void tell_key(const KeyEvent& event) const;
   void framed() {
@@ -62,13 +62,13 @@ Gui::Gui(Window& window, const std::vector<float>& text_pixels) : impl_(std::mak
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
-  io.KeyRepeatDelay = std::numeric_limits<float>::max();  // keys repeat as the system says (keys.h)
+  io.KeyRepeatDelay = std::numeric_limits<float>::max();  // the system generates key repeats (keys.h)
   const float scale = window.content_scale();
   choose_style(scale);
   ImGui_ImplGlfw_InitForVulkan(window.glfw_window(), false);
   window.forward_events_to_gui(true);
 
-  // letters beyond ASCII that units and names use
+  // non-ASCII characters that units and names use
   static const ImWchar kRanges[] = {0x20, 0x17f, 0x370, 0x3ff, 0x2010, 0x2027, 0x2070, 0x209f, 0x2190, 0x2193, 0x2200, 0x22ff, 0};
   const auto font = render::find_font("DejaVu Sans", false);
   std::vector<float> heights{kTextPixels};
@@ -124,7 +124,7 @@ void Gui::feed_input(const Input& piece, const Frame& frame) {
   Impl& parts = *impl_;
   const Input& last = parts.last;
   if (piece.left != last.left || piece.right != last.right || piece.middle != last.middle) {
-    // where a drag ends before its button goes up, and what was typed before
+    // a hidden frame for the end of a drag before its button is released, and for keys typed earlier
     if (parts.moved || parts.keys.has_pending()) parts.make(last, piece.x, piece.y, frame);
     parts.make(piece, piece.x, piece.y, frame);
   }

@@ -1,5 +1,5 @@
-/// Gui is Dear ImGui on the window: events go in, triangles come out. Nothing else but the panels includes ImGui. Frame thread; one at a
-/// time.
+/// The GUI (Dear ImGui): takes input events, produces triangles. Only this file's implementation and the panels include ImGui. Frame
+/// thread; one instance at a time.
 #pragma once
 #include <functional>
 #include <memory>
@@ -11,42 +11,44 @@
 
 namespace catena::app {
 
+/// Owns the ImGui context.
 class Gui {
  public:
-  static constexpr float kTextPixels = 15;  ///< height of the panels' text
+  static constexpr float kTextPixels = 15;  ///< Height of the panels' text.
 
-  /// `text_pixels`: of further heights of text beside that; ImGui has them in its list of fonts, in this order. Without an installed font
-  /// ImGui's own is taken.
+  /// `text_pixels`: additional text heights; their fonts follow the panels' font in ImGui's font list, in this order. If no font is
+  /// installed, ImGui's built-in font is used.
   explicit Gui(Window& window, const std::vector<float>& text_pixels = {});
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// What a frame of the interface is made of: the panels, and after each frame what they asked for.
+  /// The parts of one GUI frame: drawing the panels, then executing the commands they issued.
   struct Frame {
     std::function<void()> draw_panels, run_commands;
   };
-  /// Between the two the panels are made, once for what is shown.
+  /// Begin and end a visible GUI frame; the panels are drawn in between. end() returns the triangles.
   void begin();
   render::UiItems end();
-  /// Another pointer than the window's, at a place of the window, for the next frame that is shown: a controller that points at a panel.
+  /// Replaces the window's pointer in the next visible frame by one at a position of the window, for an XR controller pointing at the XR
+  /// panel.
   void set_virtual_pointer(double x, double y, bool pressed);
-  /// Tells the beginning of a piece of input, a button or a stroke, and makes frames that nobody sees wherever it must be read apart from
-  /// what was told before: however long a picture takes, each press, release and character counts, in order, with the pointer and the
-  /// modifiers as they were. Not between begin() and end().
+  /// Sends the event at the beginning of an input segment, a mouse button or key event, to the GUI. Hidden GUI frames are run wherever it
+  /// must be separated from earlier events, so that at any frame rate every press, release and character counts, in order, with the pointer
+  /// and modifiers of its time. Not between begin() and end().
   void feed_input(const Input& piece, const Frame& frame);
-  /// What was just done may open something: the next stroke is told once it is there.
+  /// Call when an action may have opened something that takes the focus: the next key press is sent only after it has appeared.
   void expect_focus_change();
 
-  /// Something of the interface lay at this place of the window in the last frame (window coordinates).
+  /// Returns whether the GUI covers this position in the last frame (window coordinates).
   bool covers(double x, double y) const;
-  /// Keys are text now.
+  /// Returns whether key presses are text input for the GUI.
   bool wants_text_input() const;
-  /// What is open above the panels (a menu, a list to choose from, a dialog) closes; false: nothing is. Not between begin() and end().
+  /// Closes the topmost popup (menu, list, dialog); returns false if there is none. Not between begin() and end().
   bool close_popup();
-  /// The pointer is not shown over the window, for this frame.
+  /// Hides the pointer over the window for this frame.
   void hide_pointer();
-  /// Something of it is being held, typed into, or open above all.
+  /// Returns whether a widget of the GUI is active or takes text input.
   bool is_busy() const;
 
  private:

@@ -9,14 +9,14 @@
 namespace catena::app {
 namespace {
 
-/// Up to three digits, so that what is wanted is not missed by a hair.
+/// Rounds up to three digits, so that rounding cannot make a target unreachable.
 double rounded_up(double value) {
   if (!(value > 0)) return 1e-30;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
   return std::ceil(value / unit * (1 - 1e-12)) * unit;
 }
 
-/// The item at a place of the slider, and the place of the first item that is at most `error`.
+/// Index of the item at a position of the slider, and position of the first item whose error is at most `error`.
 std::size_t index_at(double place, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(std::lround(place * static_cast<double>(count - 1))));
 }

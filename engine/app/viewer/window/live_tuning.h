@@ -1,6 +1,6 @@
-/// The plan of a scene that is open in a window or a browser (engine/app/tuning/plan): what is wanted, the curves of eye and hand once they
-/// are measured, what was observed, and the slider between fast and exact. The scene's text has the last word on what is wanted: the slider
-/// edits its "plan". Frame thread.
+/// Tuning of the scene in a window or browser (engine/app/tuning/plan): targets, the cost curves of image and tick once measured, the
+/// measured tracking error, and the slider between fast and exact. The targets stated in the scene's text have precedence; the slider edits
+/// its "plan". Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,40 +14,41 @@
 
 namespace catena::app {
 
+/// State of the tuning; the two tunings are empty until their costs are measured.
 struct LiveTuning {
-  scene::TuningTargets target;        ///< of the command line, until the scene's text says otherwise
-  scene::TuningTargets scene_target;  ///< what the text said when it was looked at last
-  bool has_explicit_quality = false;  ///< of the picture: the plan leaves it alone
+  scene::TuningTargets target;        ///< Current targets: of the command line, until the scene's text states others.
+  scene::TuningTargets scene_target;  ///< Targets of the scene's text when last read.
+  bool has_explicit_quality = false;  ///< The image quality was set explicitly; the tuning does not change it.
   std::optional<plan::ImageTuning> image_tuning;
   std::optional<plan::TickTuning> tick_tuning;
   std::optional<plan::TrackingErrorMonitor> observer;
-  double tuned_image_ms = 0;             ///< of the last picture with the plan's settings; 0: none yet
-  std::optional<double> tracking_error;  ///< observed, world units
+  double tuned_image_ms = 0;             ///< Time of the last frame with the tuned settings; 0: none so far.
+  std::optional<double> tracking_error;  ///< Measured, world units.
 
-  /// The text has come to say something else: true, and it is wanted.
+  /// Adopts the targets stated in the scene's text. Returns true if they differ from the last ones.
   bool update_target(const scene::TuningTargets& text);
-  /// A picture at rest with the plan's settings took so long: true where another setting follows.
+  /// Records the time of a refined frame with the tuned settings. Returns true if other settings follow from it.
   bool on_rendered(double ms);
 
-  /// What the picture is to be drawn with; nothing without a plan of the eye.
+  /// Returns the quality to render with; nothing without an image tuning.
   std::optional<Quality> quality() const;
 
-  /// What a place of the slider wants, 0 fast to 1 exact; and the place of what is wanted now.
+  /// Returns the targets at a slider position, 0 fast to 1 exact; and the slider position of the current targets.
   scene::TuningTargets target_at(double place) const;
   double slider_position() const;
 
-  /// That picture is drawn with the plan's settings, every pixel of it.
+  /// Returns whether the requested frame uses the tuned settings, with every pixel rendered.
   bool matches(const FrameRequest& next) const;
 };
 
-/// The curves of eye or hand, measured or out of the store, and what is wanted by them. An Error is of the hand's plan, which is not there
-/// then, or of the machine. `packet`: of a picture at rest.
+/// Measure the cost curves of tick or image, or take them from the cache, and apply the settings chosen for the targets. An Error means
+/// that there is no tick tuning, or a failure of the system. `packet`: of a refined frame; `tell` receives messages for the user.
 Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell);
 Outcome measure_image_costs(LiveTuning& live, ProgressiveScheduler& pacing, render::Renderer& renderer, const render::FramePacket& packet,
                             const SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell);
-/// Nothing was wanted, and the curves are asked for: as good as what a scene without a plan has.
+/// Sets default targets (image error 2/255, proxy error 1e-9) where there are none: equivalent to a scene without targets.
 void set_default_target(LiveTuning& live);
-/// The scene's text was read again: what it wants now is what is felt and drawn.
+/// Call after the scene's text was read again: applies the targets it states. An Error leaves the links as they are.
 Outcome apply_scene_target(LiveTuning& live, SceneModel& scene, ProgressiveScheduler& pacing);
 
 }  // namespace catena::app

@@ -34,7 +34,7 @@ bool Presenter::is_resized() const {
   return !size_matches_ || width != swapchain_->extent().width || height != swapchain_->extent().height;
 }
 
-/// The device was lost: another one. Once for every picture: what is lost again at once is an error.
+/// Recreates the device after a loss, at most once per frame: a repeated loss is an error.
 Outcome Presenter::recover() {
   CATENA_CHECK(create_device());
   ++recovery_count_;
@@ -75,7 +75,7 @@ std::optional<render::PickResult> Presenter::pick(double x, double y) {
   if (!(x >= 0 && y >= 0 && x < width && y < height)) return std::nullopt;
   const auto picked = renderer_->pick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
   if (picked) return *picked;
-  // the next picture finds out what is wrong
+  // the next frame reports the error
   has_image_ = false;
   return std::nullopt;
 }

@@ -1,5 +1,5 @@
-/// Presenter brings pictures into the window by its renderer and its swapchain. A device that is lost is made again, once for every lost
-/// picture; a window that changes its size gets a new swapchain; a minimised one is not drawn to. Frame thread.
+/// Shows images in the window: owns renderer and swapchain. A lost device is recreated, once per image; a resized window gets a new
+/// swapchain; nothing is shown while minimized. Frame thread.
 #pragma once
 #include <memory>
 #include <optional>
@@ -13,41 +13,45 @@
 
 namespace catena::app {
 
+/// Owns the graphics device of the window.
 class Presenter {
  public:
   struct Options {
-    std::uint64_t memory_budget_bytes = 0;                             ///< of the GPU; 0: what the driver offers
-    std::function<VkResult(render::vk::DriverCall)> inject_failure{};  ///< tests only
-    std::function<render::vk::VulkanProvider()> vulkan_maker{};  ///< of the device, asked whenever one is made; empty: the screen itself
-    std::function<void()> before_device_created{};               ///< what hangs on the last device goes now
+    std::uint64_t memory_budget_bytes = 0;                             ///< GPU memory budget; 0: what the driver offers.
+    std::function<VkResult(render::vk::DriverCall)> inject_failure{};  ///< For tests only.
+    /// Called whenever a device is created; returns the provider of Vulkan. Empty: the presenter's own.
+    std::function<render::vk::VulkanProvider()> vulkan_maker{};
+    std::function<void()> before_device_created{};  ///< Called before a device is created; releases what depends on the last one.
   };
 
+  /// Creates device, renderer and swapchain. An Error if that fails. `window` must outlive the presenter.
   static Result<std::unique_ptr<Presenter>> open(Window& window, Options options);
 
-  /// Pixels of the window now; 0 while minimised.
+  /// Returns the size of the framebuffer in pixels; 0 while minimized.
   void size(std::uint32_t& width, std::uint32_t& height) const { window_.framebuffer_size(width, height); }
-  /// The window has another size than what is shown.
+  /// Returns whether the window's size differs from that of the shown image.
   bool is_resized() const;
 
+  /// Renders an image; if the device is lost, recreates it and renders again. An Error if that fails.
   Outcome draw(const render::FramePacket& packet, const render::RenderSettings& settings);
-  /// The last picture with the user interface over it. Where the device is lost on the way it is made again, and the picture is gone:
-  /// has_image() says so.
+  /// Shows the last image with the GUI over it. If the device is lost, it is recreated and the image is gone: check has_image(). An Error
+  /// after three losses in a row.
   Outcome show(const render::UiItems& ui);
-  /// What the picture shows at a pixel; nothing while there is no picture, or beyond it.
+  /// Returns what the image shows at a pixel; nothing if there is no image or the pixel is outside.
   std::optional<render::PickResult> pick(double x, double y);
-  /// The renderer has drawn a picture without draw().
+  /// Marks that the renderer has rendered an image without draw().
   void mark_rendered() { has_image_ = true; }
-  /// Another device: of another maker, or for one that was lost on the way of who draws without draw().
+  /// Recreates the device: because the provider has changed, or because the device was lost while rendering without draw().
   Outcome recreate();
-  /// There is a picture to show.
+  /// Returns whether there is an image to show.
   bool has_image() const { return has_image_; }
-  /// There is a window's picture: what was shown last.
+  /// Returns whether the window has shown an image.
   bool has_presented() const { return has_presented_; }
-  /// The window as it is shown, user interface and all.
+  /// Returns the window as shown, including the GUI.
   Result<render::Image8> capture_window();
 
   render::Renderer& renderer() { return *renderer_; }
-  /// Times that the device was lost and made again.
+  /// Returns how often the device was lost and recreated.
   int recovery_count() const { return recovery_count_; }
 
  private:
@@ -59,9 +63,9 @@ class Presenter {
   Options options_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::vk::Swapchain> swapchain_;
-  bool size_matches_ = true;  ///< the swapchain still has the window's size
+  bool size_matches_ = true;  ///< The swapchain has the window's size.
   bool has_image_ = false, has_presented_ = false;
-  int recovery_count_ = 0, consecutive_losses_ = 0;  ///< consecutive_losses_: while showing, in a row
+  int recovery_count_ = 0, consecutive_losses_ = 0;  ///< Consecutive losses are counted in show().
 };
 
 }  // namespace catena::app

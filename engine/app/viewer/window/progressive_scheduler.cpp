@@ -7,9 +7,9 @@
 namespace catena::app {
 namespace {
 
-constexpr double kKeptBudgets = 3;       // that a picture may take whose rays are kept, as good as it is
-constexpr double kStandingBudgets = 20;  // the same of exact rays, that is to be better than the last one
-constexpr double kFinerBelow = 0.7;      // of the budget: more pixels again only with some room, or their number would come and go
+constexpr double kKeptBudgets = 3;       // frame budgets allowed for a frame that reuses rays, at its best quality
+constexpr double kStandingBudgets = 20;  // frame budgets allowed for a refined frame of exact rays
+constexpr double kFinerBelow = 0.7;  // fraction of the budget: hysteresis for increasing the pixel count, which would otherwise oscillate
 
 bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
 
@@ -25,7 +25,7 @@ render::QualityLevelOptions ladder_of(const RayWorkload& kind) { return {kind.su
 ProgressiveScheduler::ProgressiveScheduler(const Quality& quality)
     : quality_(quality), budget_ms_(budget_of(quality)), refinement_(budget_ms_, ladder_of(workload_)) {}
 
-/// Another kind of scene begins with another ladder.
+/// Sets the kind of workload; a different kind starts with its own quality levels.
 void ProgressiveScheduler::set_workload(const RayWorkload& kind) {
   if (kind == workload_) return;
   workload_ = kind;
@@ -43,7 +43,7 @@ FrameRequest ProgressiveScheduler::request(const render::RefinementStep& step, s
 FrameRequest ProgressiveScheduler::interactive_frame(const RayWorkload& kind) {
   set_workload(kind);
   const render::RefinementStep step = *refinement_.next(true);
-  // the fast raycast saves pixels by itself
+  // the fast ray casting reduces its pixels by itself
   const std::uint32_t scale = kind.supports_fast ? 1 : render::choose_pixel_scale(step.expected_ms, current_.pixel_stride, budget_ms_);
   is_interactive_ = true;
   is_finished_ = false;
@@ -76,7 +76,7 @@ std::optional<FrameRequest> ProgressiveScheduler::refined_frame(const RayWorkloa
 }
 
 FrameRequest ProgressiveScheduler::reused_frame() {
-  // what it takes says nothing of its setting
+  // the time of this frame does not represent its setting
   awaits_time_ = false;
   is_reused_ = true;
   FrameRequest next = current_;

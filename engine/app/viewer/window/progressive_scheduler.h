@@ -1,10 +1,10 @@
-/// ProgressiveScheduler says which picture a window shows next: one that comes in time while something moves, better ones while nothing
-/// does. It is pure logic, without window and clock.
-///   moves:  the best setting whose expected time fits the budget (time=MS: MS, else kFrameBudgetMs); where even the cheapest takes
-///           longer, fewer pixels
-///   a hand moves, and nothing that rays meet: as good as the last picture (RenderSettings::keep)
-///   still:  time=MS: quarter -> half -> every pixel; error=E: the same until a picture's estimated error is at most E;
-///           draft, balanced, reference, step=VOXELS: that setting at once
+/// Progressive rendering: selects the settings of the next frame, fast ones while something moves, better ones when idle. Pure logic,
+/// independent of window and clock.
+///   interactive: the best setting whose expected time fits the frame budget (time=MS: MS, else kFrameBudgetMs); if even the cheapest
+///                takes longer, fewer pixels
+///   reused:      the probe moves and nothing that rays meet has changed: as good as the last frame (RenderSettings::reuse_rays)
+///   refined:     time=MS: quarter -> half -> every pixel; error=E: the same until the estimated error of a frame is at most E;
+///                draft, balanced, reference, step=VOXELS: that setting immediately
 #pragma once
 #include <array>
 #include <cmath>
@@ -19,54 +19,60 @@
 
 namespace catena::app {
 
+/// Default time for an interactive frame, milliseconds.
 inline constexpr double kFrameBudgetMs = 50;
 
-/// What the scene asks of the rays.
+/// Requirements of the scene on ray casting.
 struct RayWorkload {
-  bool uses_rays = true;      ///< something is drawn by rays: settings matter
-  bool supports_fast = true;  ///< Renderer::can_draw_fast
+  bool uses_rays = true;      ///< Something is rendered by rays, so that the settings matter.
+  bool supports_fast = true;  ///< Value of Renderer::can_draw_fast.
   bool is_shaded = false;
   bool operator==(const RayWorkload&) const = default;
 };
 
+/// Settings of the frame to render next.
 struct FrameRequest {
   render::RenderSettings settings;
-  std::uint32_t pixel_stride = 1;  ///< every so many pixels, each way
+  std::uint32_t pixel_stride = 1;  ///< Every n-th pixel is rendered in each direction.
 };
 
+/// State of the refinement.
 class ProgressiveScheduler {
  public:
   explicit ProgressiveScheduler(const Quality& quality);
-  /// The picture after a change.
+  /// Returns the frame after a change.
   FrameRequest interactive_frame(const RayWorkload& kind);
-  /// The picture after the last, with nothing changed; nothing: it was the last.
+  /// Returns the frame after the last one, with nothing changed; nothing if the last one was final.
   std::optional<FrameRequest> refined_frame(const RayWorkload& kind);
-  /// The picture after nothing but opaque things has moved: as good as the last one, what has not changed of it is kept.
+  /// Returns the frame after a motion of opaque items only: as good as the last one, reusing the unchanged rays.
   FrameRequest reused_frame();
-  /// Whether still() may come between pictures that are kept: exact rays only where the hand's picture does not stand for long.
+  /// Returns whether refined_frame() may be interleaved with reused frames: with exact rays only if that does not stop the probe's image
+  /// for long.
   bool may_refine() const;
-  /// Not where the last one that was kept came far too late, because much had moved; until something rests.
+  /// Returns false after a reused frame took far too long because much had moved, until the next refined frame.
   bool may_reuse() const { return !reuse_too_slow_; }
-  /// The picture that still() would end with.
+  /// Returns the frame that refined_frame() ends with.
   FrameRequest final_frame(const RayWorkload& kind);
-  /// The last one.
+  /// Returns the last request.
   const FrameRequest& current() const { return current_; }
+  /// Returns whether the last frame is final.
   bool is_finished() const { return is_finished_; }
 
-  /// What the picture asked for last took; asked for by again(), it says nothing new.
+  /// Records the time of the last requested frame; the time of a reused frame does not count for its setting.
   void on_rendered(double ms);
-  /// error=E: needs_estimate() after still(); the estimate ends the refinement if it is small enough. 1/255.
+  /// Returns whether, for error=E, the error of a refined frame must be estimated; set_estimate(), in 1/255, ends the refinement if it is
+  /// small enough.
   bool needs_estimate() const {
     return quality_.goal && quality_.goal->kind == render::QualityGoal::Kind::error && workload_.uses_rays && !is_interactive_ && !rmse_;
   }
   void set_estimate(double rmse);
-  /// With any other goal: the picture at rest is the last one, and its error is not known yet.
+  /// Returns whether the error of the final frame can be estimated and is not known yet, for any goal.
   bool may_estimate() const { return is_finished_ && workload_.uses_rays && !is_interactive_ && !rmse_; }
   const Quality& quality() const { return quality_; }
-  std::optional<double> rmse() const { return rmse_; }  ///< of the picture that is shown, where it was estimated
-  double budget_ms() const { return budget_ms_; }       ///< of a picture while something moves
+  std::optional<double> rmse() const { return rmse_; }  ///< Error of the shown frame, if estimated.
+  double budget_ms() const { return budget_ms_; }       ///< Time for an interactive frame.
 
-  /// "fast, step 4, every 4th pixel, 32 ms"
+  /// Returns "fast, step 4, every 4th pixel, 32 ms".
   std::string status_text() const;
 
  private:
@@ -78,34 +84,35 @@ class ProgressiveScheduler {
   RayWorkload workload_;
   render::Refinement refinement_;
   FrameRequest current_;
-  bool awaits_time_ = false;     ///< the refinement waits for a time
-  bool is_interactive_ = false;  ///< current_ is from moving()
+  bool awaits_time_ = false;     ///< The refinement waits for the time of a frame.
+  bool is_interactive_ = false;  ///< The last request is from interactive_frame().
   bool is_finished_ = false;
-  bool is_reused_ = false;  ///< the last picture is from kept()
+  bool is_reused_ = false;  ///< The last request is from reused_frame().
   bool reuse_too_slow_ = false;
   double last_image_ms_ = 0;
   std::optional<double> rmse_;
 };
 
-/// FrameTimes records how long pictures took, for the panel and for --frame-stats; its size is fixed however long the session is.
+/// Statistics of frame times, for the panel and for --frame-stats; of constant size for any length of the session.
 class FrameTimes {
  public:
+  /// Number of recent frames kept.
   static constexpr std::size_t kRecent = 240;
 
-  /// A picture was drawn in `ms` and stood in the window at `now_ns`.
+  /// Records a frame rendered in `ms` milliseconds and shown at `now_ns`.
   void add(double ms, std::int64_t now_ns);
-  /// One more user interface was laid over a picture, in `ms`.
+  /// Records a GUI drawn over the image in `ms` milliseconds.
   void add_interface(double ms) { interface_.add(static_cast<std::int64_t>(1e6 * ms)); }
 
   int count() const { return count_; }
   haptics::HistogramSummary draw_times() const { return draw_.summarize(); }
-  haptics::HistogramSummary periods() const { return period_.summarize(); }  ///< from picture to picture, pauses of a second left out
+  haptics::HistogramSummary periods() const { return period_.summarize(); }  ///< Frame to frame, without pauses of 1 s or more.
   haptics::HistogramSummary interface_times() const { return interface_.summarize(); }
-  /// The newest kRecent pictures, milliseconds, as a ring that begins at `recent_begin()`.
+  /// Returns the latest kRecent frame times in milliseconds, as a ring buffer starting at recent_begin().
   const std::array<float, kRecent>& recent() const { return recent_; }
   std::size_t recent_begin() const { return static_cast<std::size_t>(count_) % kRecent; }
 
-  /// {"frames", "draw_us", "period_us", "interface_us": {"p50", "p99", "p999", "max", "count", "bins"}}
+  /// Returns {"frames", "draw_us", "period_us", "interface_us": {"p50", "p99", "p999", "max", "count", "bins"}}.
   std::string to_json() const;
 
  private:
@@ -115,14 +122,14 @@ class FrameTimes {
   std::int64_t last_ns_ = 0;
 };
 
-/// BandAnimationClock moves the scene's phase as time goes by: pulses run along streamlines while somebody looks. Pure logic: the time is
-/// told.
+/// Advances the animation phase of the scene: animated bands run along streamlines while the window has focus or pointer. Pure logic: the
+/// time is passed in.
 class BandAnimationClock {
  public:
   static constexpr double kCyclesPerS = 0.5;
-  static constexpr double kStepS = 0.04;  ///< no more than 25 new pictures a second for pulses alone
+  static constexpr double kStepS = 0.04;  ///< Minimum step: at most 25 frames per second for animated bands alone.
 
-  /// The phase (0 to 1) to draw now; nothing where it has not moved. While not `running` time does not count.
+  /// Returns the phase (0 to 1) to render at this time; nothing if it has not changed. Time does not count while not `running`.
   std::optional<double> advance(std::int64_t now_ns, bool running, double phase) {
     const std::optional<std::int64_t> before = last_ns_;
     if (!running || !before) {
@@ -137,7 +144,7 @@ class BandAnimationClock {
   }
 
  private:
-  std::optional<std::int64_t> last_ns_;  ///< of the last step; none: it stands
+  std::optional<std::int64_t> last_ns_;  ///< Time of the last step; empty: not running.
 };
 
 }  // namespace catena::app

@@ -17,10 +17,10 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kEstimateS = 0.6;  // without a change for so long: the picture's error is looked at
+constexpr double kEstimateS = 0.6;  // seconds without a change after which the image error is estimated
 constexpr double kTitleS = 0.25;
-constexpr double kLiveS = 0.1;     // between interfaces that only follow the hand
-constexpr double kMirrorS = 0.03;  // between the headset's pictures in the window, whose display may be the slower one
+constexpr double kLiveS = 0.1;     // seconds between GUI frames that only show the haptic state
+constexpr double kMirrorS = 0.03;  // seconds between mirror frames of the headset in the window, whose display may be the slower one
 
 double s_since(std::int64_t ns) { return 1e-3 * ms_since(ns); }
 
@@ -49,7 +49,7 @@ std::optional<Failure> Session::open() {
   HapticSession& hand = context_.haptic_session;
   ViewState& state = context_.state;
   state.show_panels = options.show_panels && options.width >= kMinWidthWithPanels;
-  // the picture's size: the panels' edges are known once the interface has begun
+  // the image size: the panels' edges are known only after the GUI frame has begun
   gui_.begin();
   const Insets edges = state.show_panels ? interface_insets() : Insets{};
   gui_.end();
@@ -67,7 +67,7 @@ std::optional<Failure> Session::open() {
     if (auto failure = viewport_.apply_tuning()) return failure;
   reset_tracking_observer();
   files_.begin();
-  // a device that pushes is let go by its own way out, whatever signal comes; beside the mouse the outputs are finished
+  // a device with forces is stopped by its own signal handling on any signal; with a mouse the outputs are finished
   if (hand.is_mouse())
     interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
   else
@@ -77,7 +77,7 @@ std::optional<Failure> Session::open() {
   return std::nullopt;
 }
 
-/// The scene was edited, or is another: the hand's program is made again. True: so must the picture be.
+/// Rebuilds the haptic program after an edit or a change of the scene. True: the image must be drawn anew, too.
 bool Session::process_edits() {
   SceneModel& scene = context_.scene;
   if (!scene.take_changed()) return false;
@@ -88,7 +88,7 @@ bool Session::process_edits() {
   return true;
 }
 
-/// Another scene has curves of its own.
+/// Discards the cost curves: another scene has its own.
 void Session::reset_tuning() {
   LiveTuning& live = context_.tuning;
   live = {};
@@ -97,7 +97,7 @@ void Session::reset_tuning() {
   live.has_explicit_quality = context_.options.has_explicit_quality || !scene.quality.empty();
 }
 
-/// The curves of this scene, whatever is wanted of it: the slider goes by them.
+/// Measures the cost curves of this scene, independent of its targets: the slider uses them.
 std::optional<Failure> Session::measure_costs() {
   LiveTuning& live = context_.tuning;
   set_default_target(live);
@@ -107,7 +107,7 @@ std::optional<Failure> Session::measure_costs() {
   return viewport_.apply_tuning();
 }
 
-/// What was felt with other settings is no observation of these.
+/// Resets the measured tracking error, which depends on the settings.
 void Session::reset_tracking_observer() {
   LiveTuning& live = context_.tuning;
   live.tracking_error.reset();
@@ -123,13 +123,13 @@ void Session::find_animated_bands() {
   });
 }
 
-/// What the hand has moved and let go of is written into the scene.
+/// Writes the poses of widgets that the probe has moved and released into the scene.
 void Session::store_widget_edits() {
   for (const WidgetEdits::FinishedMove& ended : widget_edits_.take_finished(context_.scene.scene()))
     context_.state.show_error(context_.scene.apply(ended.edits, ended.undo_label));
 }
 
-/// True where the pulses have moved. With a number of frames asked for they stand: the pictures repeat.
+/// Advances the animated bands. True: they have moved. With a fixed number of frames they stand still, so that frames repeat.
 bool Session::animate_bands() {
   const bool running = has_animated_bands_ && bands_animated_ && context_.options.max_frames == 0 && context_.window.has_focus_or_pointer();
   scene::Scene& scene = context_.scene.scene();
@@ -138,7 +138,7 @@ bool Session::animate_bands() {
   return phase.has_value();
 }
 
-/// The tracked head is where the eye is, whatever the mouse does. True where it has moved.
+/// Sets the camera from the tracked head, regardless of the mouse. True: it has moved.
 bool Session::update_head() {
   if (!head_) return false;
   const auto at = head_->position_at(s_since(start_ns_));
@@ -215,13 +215,13 @@ std::optional<Failure> Session::run() {
       if (auto failure = measure_costs()) return failure;
       content_changed_ = true;
     }
-    // what has changed since the last picture
+    // collect the changes since the last frame
     poll_time_steps();
     context_.state.show_error(context_.state.playback.advance(scene));
     const bool opened = files_.poll_loaded();
     if (opened) {
       reset_tuning();
-      head_.reset();  // its screen is of the scene that was left
+      head_.reset();  // its display screen belongs to the closed scene
     }
     const bool edited = process_edits(), late = viewport_.take_late_probe_motion(),
                news = context_.haptic_session.pull_state(scene.scene()) || late;
@@ -234,7 +234,7 @@ std::optional<Failure> Session::run() {
     minimised = viewport_.is_minimised();
     if (minimised) {
       viewport_.request_redraw();
-      frame.run_commands();  // it can be closed all the same
+      frame.run_commands();  // the window can still be closed
       continue;
     }
     const bool flies = context_.navigation.fly && !gui_.wants_text_input();
@@ -253,7 +253,7 @@ std::optional<Failure> Session::run() {
     if (next)
       if (auto failure = viewport_.draw(*next)) return failure;
 
-    // the interface follows the person at once, the hand at a calmer pace
+    // the GUI responds to user input at once, and to the haptic state at a lower rate
     const bool due = live && s_since(last_show_ns) >= kLiveS;
     const bool mirrors = in_headset && s_since(last_show_ns) < kMirrorS && !viewport_.needs_redraw();
     if (mirrors) {
@@ -289,7 +289,7 @@ std::optional<Failure> Session::finish() {
   return std::nullopt;
 }
 
-/// The last words, on the terminal.
+/// Prints the closing statistics to the terminal.
 void Session::print_statistics() {
   Presenter& screen = viewport_.presenter();
   const FrameTimes& times = context_.frame_times;

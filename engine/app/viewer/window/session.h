@@ -1,5 +1,5 @@
-/// Session is the loop of one open window, again and again: input -> newest haptic state -> picture -> interface. It reads strokes and
-/// carries out commands; files are in scene_files.h, the picture in picture_view.h, the eye in eye.h. Frame thread.
+/// Main loop of an open window: input -> latest haptic state -> frame -> GUI. Processes key presses and executes commands; files are in
+/// scene_files.h, the image in viewport.h, the camera in camera_controller.h. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,21 +16,24 @@
 
 namespace catena::app {
 
+/// Owns the GUI and all parts of the window.
 class Session {
  public:
-  /// `head`: where one is tracked. `hand` has its device; `scene` is read, and not loaded yet. `interrupt` is made where a device needs it,
-  /// and outlives the hand.
+  /// `head`: the tracked head, or null. `hand` has its device open; `scene` has been read but not loaded. `interrupt` is created if the
+  /// device needs it, and must outlive the haptic session.
   Session(const ViewOptions& options, SceneModel& scene, HapticSession& hand, Window& window, std::optional<ShaderReload> reload,
           std::unique_ptr<TrackedHead> head, std::optional<InterruptHandler>& interrupt);
-  ~Session();  ///< the hand is let go first
+  ~Session();  ///< Stops the servo first.
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  /// Loads the scene and starts the servo. Returns the failure, if any.
   std::optional<Failure> open();
+  /// Runs until the user quits. Returns the failure, if any.
   std::optional<Failure> run();
 
  private:
-  // the loop
+  // The loop.
   bool should_continue() const;
   std::optional<FrameRequest> next_frame(bool moved, bool hand_moved);
   bool process_edits();
@@ -49,13 +52,13 @@ class Session {
   std::optional<Failure> finish();
   void print_statistics();
 
-  // session_input.cpp
+  // Input (session_input.cpp).
   NavigationChanges process_input(double wait_s);
   NavigationChanges process_segment(Input piece);
   Input route_to_viewport(Input input);
   Gui::Frame make_gui_frame();
 
-  // session_input.cpp
+  // Commands (session_input.cpp).
   void execute();
   void execute(const Command& command);
   void perform(Action action);
@@ -68,8 +71,8 @@ class Session {
   Gui gui_;
   ViewerContext context_;
   CameraController camera_;
-  std::unique_ptr<TrackedHead> head_;  ///< none: the mouse moves the eye
-  render::View view_without_head_;     ///< but for where the head is
+  std::unique_ptr<TrackedHead> head_;  ///< Null: the mouse moves the camera.
+  render::View view_without_head_;     ///< The view apart from the position of the head.
   Viewport viewport_;
   SceneFiles files_;
   TimeStepWatcher step_watcher_;
@@ -77,15 +80,15 @@ class Session {
   WidgetEdits widget_edits_;
   BandAnimationClock band_clock_;
   bool has_animated_bands_ = false, bands_animated_ = true;
-  std::int64_t start_ns_ = 0;                 ///< of the loop
-  bool content_changed_ = false;              ///< a command has changed what the picture shows
-  bool estimate_requested_ = false;           ///< of the picture at rest
-  bool measurement_requested_ = false;        ///< what a plan goes by
-  std::int64_t last_tracking_report_ns_ = 0;  ///< the hand
-  bool gui_captures_pointer_ = false;         ///< the buttons that are down went down on it
-  int settle_frames_ = 0;                     ///< interfaces to come though nothing happens: they settle their sizes
+  std::int64_t start_ns_ = 0;                 ///< Start of the loop.
+  bool content_changed_ = false;              ///< A command has changed what the image shows.
+  bool estimate_requested_ = false;           ///< An error estimate of the refined frame is pending.
+  bool measurement_requested_ = false;        ///< A measurement of the tuning's costs is pending.
+  std::int64_t last_tracking_report_ns_ = 0;  ///< Time of the last tracking error report.
+  bool gui_captures_pointer_ = false;         ///< The pressed mouse buttons were pressed on the GUI.
+  int settle_frames_ = 0;                     ///< GUI frames to come without events, until sizes have settled.
   std::int64_t last_title_ns_ = 0;
-  int frames_at_last_title_ = 0;  ///< drawn when it was last made
+  int frames_at_last_title_ = 0;  ///< Number of frames when the title was last updated.
 };
 
 }  // namespace catena::app

@@ -1,4 +1,4 @@
-// The one place where commands are carried out.
+// Carries out commands: the only place that does so.
 #include <utility>
 
 #include "engine/app/viewer/edit/haptic_binding.h"
@@ -29,7 +29,7 @@ void Session::execute(const Command& command) {
   ViewState& state = context_.state;
   const auto choose_device = [&](const SelectDevice& asked) {
     const Outcome done = hand.switch_device(scene.scene(), asked.name, scene.bounds);
-    // what pushes hears every signal, and a second one, too, only as a wish to end
+    // a device with forces receives every signal, even a repeated one, only as a request to stop
     if (done && !hand.is_mouse() && !(interrupt_ && interrupt_->is_requested())) interrupt_.emplace();
     context_.navigation.probe = hand.latest_state().tick > 0 ? hand.latest_state().probe : hand.initial_probe();
     state.show_message(done ? hand.device().device->capabilities().name + " holds the probe" : done.error().message, !done);
@@ -66,7 +66,7 @@ void Session::execute(const Command& command) {
              command);
 }
 
-/// Now and then: its lines are traced as far as the hand has gone.
+/// Reports the measured tracking error at intervals; reference lines are traced as far as the probe has gone.
 void Session::report_tracking_error() {
   constexpr double kEveryMs = 2000;
   LiveTuning& live = context_.tuning;
@@ -144,7 +144,7 @@ void Session::end_probe_mode() {
   if (context_.haptic_session.is_mouse()) context_.state.show_message("the hand stays where it is; H takes it again");
 }
 
-/// The hand goes onto what is under the pointer. A chain that holds nothing yet gets that very thing.
+/// Moves the probe onto the item under the pointer. If the chain is empty, a link on that item is added.
 void Session::begin_probe_mode() {
   Navigation& controls = context_.navigation;
   controls.probe_mode = true;
@@ -163,7 +163,7 @@ void Session::begin_probe_mode() {
   context_.haptic_session.move_mouse(context_.scene.scene(), controls.probe, controls.buttons);
 }
 
-/// `at`: a place where it is seen.
+/// Adds a link on the item. `at`: a visible point of the item.
 void Session::bind_haptics(const std::string& item, std::optional<Vec3> at) {
   SceneModel& scene = context_.scene;
   ViewState& state = context_.state;
@@ -174,7 +174,7 @@ void Session::bind_haptics(const std::string& item, std::optional<Vec3> at) {
     return state.show_message(thing->description + " is felt already, by the link " + by);
   const Outcome done = scene.apply(make_binding_edits(scene.scene(), item, *thing), "feel " + thing->description, {});
   if (!done) return state.show_message(done.error().message, true);
-  // a mouse's hand begins on the thing, not somewhere within it
+  // a mouse-driven probe starts on the item's surface, not inside it
   Navigation& controls = context_.navigation;
   if (context_.haptic_session.is_mouse() && at) {
     controls.probe = *at;
@@ -187,7 +187,7 @@ void Session::bind_haptics(const std::string& item, std::optional<Vec3> at) {
   state.show_message("felt: " + thing->description + how);
 }
 
-/// With the links that feel it, unless something else needs them.
+/// Removes the item and the links on it, except links that something else needs.
 void Session::remove_item(const std::string& item, const std::string& what) {
   SceneModel& scene = context_.scene;
   const TextEdits felt = make_remove_edits_with_links(scene.scene(), scene.document().text(), item);
@@ -195,7 +195,7 @@ void Session::remove_item(const std::string& item, const std::string& what) {
   context_.state.show_error(scene.apply(make_remove_edits(scene.document().text(), item), what));
 }
 
-/// What is open above all goes first; the program stays.
+/// Closes the topmost open element; never the program.
 void Session::dismiss() {
   if (gui_.close_popup()) return;
   ViewState& state = context_.state;
@@ -207,7 +207,7 @@ void Session::dismiss() {
   state.is_fullscreen = false;
 }
 
-// What the person does with keys and pointer: for the interface, for a command, for the eye or the hand.
+// Keys and pointer input of the user are sent to the GUI, to a command, to the camera or to the probe.
 
 namespace {
 
@@ -255,7 +255,7 @@ NavigationChanges Session::process_input(double wait_s) {
   return changed;
 }
 
-/// The interface first: it says whether a stroke is text for it or a command. Then the stroke, then the motion after it.
+/// Processes one input segment. The GUI comes first: it decides whether a key press is text or a command. Then the key press, then motion.
 NavigationChanges Session::process_segment(Input piece) {
   gui_.feed_input(piece, make_gui_frame());
   Commands& commands = context_.commands;
@@ -275,7 +275,7 @@ NavigationChanges Session::process_segment(Input piece) {
   if (stops_turntable(piece)) controls.turntable = false;
   Input input = route_to_viewport(piece);
   if (controls.probe_mode && context_.haptic_session.is_mouse()) {
-    // over a panel the hand stays where it is: a way that leads there does not move it
+    // over a panel the probe stays where it is, so that moving the pointer to a panel does not move it
     if (!context_.state.pointer_on_image && !context_.state.pointer_pressed) input.dx = input.dy = input.wheel = 0;
     const auto under = viewport_.pick_under_pointer();
     controls.pointer_hit = under ? std::optional(under->world) : std::nullopt;
@@ -283,7 +283,7 @@ NavigationChanges Session::process_segment(Input piece) {
   return apply(controls, input);
 }
 
-/// What the interface holds is not the scene's: a drag belongs to where it began.
+/// Removes input that belongs to the GUI: a drag belongs to the area in which it began.
 Input Session::route_to_viewport(Input input) {
   ViewState& state = context_.state;
   const bool pressed = input.left || input.middle || input.right;
@@ -300,7 +300,7 @@ Input Session::route_to_viewport(Input input) {
     input.dx = input.dy = input.wheel = 0;
     input.left = input.middle = input.right = false;
   }
-  // from now on the picture is all there is
+  // from here on in coordinates of the image area
   input.x -= state.image_area.x;
   input.y -= state.image_area.y;
   input.width = state.image_area.width;

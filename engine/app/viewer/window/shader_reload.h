@@ -1,5 +1,5 @@
-/// ShaderReload is `--shaders DIR`: what changes there is drawn with, without starting anew. What does not compile is said in one line, and
-/// the last shader that did stays. Frame thread.
+/// Shader reloading, option `--shaders DIR`: changed shaders are used without a restart. If one does not compile, the error is reported in
+/// one line and its last working version stays. Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,13 +10,15 @@
 
 namespace catena::app {
 
+/// Watches the folder and replaces shaders of the renderer.
 class ShaderReload {
  public:
-  /// DIR: the folder `shaders` of the sources, or a copy of it.
+  /// Starts watching. `folder`: the folder `shaders` of the sources, or a copy of it. An Error if files are missing.
   static Result<ShaderReload> open(const std::string& folder);
-  /// Looks at the files at most four times a second. True: the next picture differs.
+  /// Checks the files, at most four times per second. Returns true if the next frame uses other shaders.
   bool poll(render::Renderer& renderer, std::int64_t now_ns);
-  /// The newest shaders cannot be drawn with: the embedded ones again, and `why` on stderr. False: nothing was replaced.
+  /// Call when rendering with the replaced shaders fails: restores the embedded ones and prints `why` to stderr. Returns false if no shader
+  /// was replaced.
   bool fall_back(render::Renderer& renderer, const std::string& why);
 
  private:

@@ -14,10 +14,10 @@ namespace {
 constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing;
 const ImVec4 kPaper(0.11f, 0.12f, 0.13f, 1), kInk(0.90f, 0.90f, 0.88f, 1), kQuiet(0.62f, 0.64f, 0.66f, 1), kChosen(0.20f, 0.45f, 0.70f, 1);
-constexpr float kSmallArea = 640;   // narrower ones have the panels' text
-constexpr float kLineLetters = 34;  // of a page's column, in heights of its text
+constexpr float kSmallArea = 640;   // pixels; narrower areas use the panels' text size
+constexpr float kLineLetters = 34;  // width of a page's column, in text heights
 
-/// The fonts of an area, as Gui has made them.
+/// The fonts of an area, as created by Gui.
 struct Fonts {
   ImFont *small, *text, *heading;
 };
@@ -38,7 +38,7 @@ void write(ImFont* font, const ImVec4& color, const std::string& text) {
 
 void space(float lines) { ImGui::Dummy({0, lines * ImGui::GetFontSize()}); }
 
-/// A column in the middle of an opaque sheet; what goes on is said at its foot.
+/// Draws a column in the middle of an opaque sheet, with the next action in its footer.
 template <class Fill>
 void sheet(const Area& area, const char* name, const std::string& foot, Fill&& fill) {
   const Fonts fonts = fonts_for(area);
@@ -74,7 +74,7 @@ void draw_page(const InstructionPage& page, const Area& area, const char* name) 
   });
 }
 
-/// An answer without the number of its key, with which it may begin: "7 very much".
+/// The answer without the number of its key, with which it may begin: "7 very much".
 std::string words_of(const std::string& answer, std::size_t key) {
   const std::string number = std::to_string(key);
   if (!answer.starts_with(number)) return answer;
@@ -87,7 +87,7 @@ bool is_scale(const std::vector<std::string>& answers) {
   return true;
 }
 
-/// A box with its key in it, filled where it is chosen.
+/// Draws a box with its key in it, filled if it is selected.
 void draw_box(const ImVec2& corner, float side, std::size_t key, bool chosen) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string figure = std::to_string(key);
@@ -97,7 +97,7 @@ void draw_box(const ImVec2& corner, float side, std::size_t key, bool chosen) {
   list.AddText({corner.x + 0.5f * (side - size.x), corner.y + 0.5f * (side - size.y)}, ImGui::GetColorU32(kInk), figure.c_str());
 }
 
-/// Boxes beside each other, with what they mean below.
+/// Draws boxes side by side with their meanings below.
 void draw_scale(const std::vector<std::string>& answers, const std::string& entry, const Fonts& fonts, float column) {
   const auto count = static_cast<float>(answers.size());
   const float side = std::min(1.9f * fonts.text->FontSize, 0.8f * column / count), step = (column - side) / (count - 1);
@@ -107,7 +107,7 @@ void draw_scale(const std::vector<std::string>& answers, const std::string& entr
     draw_box({screen.x + x, screen.y}, side, k + 1, entry == answers[k]);
     const std::string words = words_of(answers[k], k + 1);
     ImGui::PushFont(fonts.small);
-    // within the column
+    // keep the text within the column
     const float width = ImGui::CalcTextSize(words.c_str()).x, left = std::clamp(x + 0.5f * (side - width), 0.0f, column - width);
     ImGui::PopFont();
     ImGui::SetCursorPos({at.x + left, at.y + side + 0.3f * fonts.text->FontSize});
@@ -144,7 +144,7 @@ void draw_question(const StudyView& view, const Area& area, const char* name) {
   });
 }
 
-/// At an edge of the picture, which stays free.
+/// Edge of the image at which a text is placed; the rest of the image stays free.
 enum class Edge { top, bottom };
 void draw_line(const std::string& words, const Area& area, const char* name, Edge edge = Edge::bottom) {
   const Fonts fonts = fonts_for(area);

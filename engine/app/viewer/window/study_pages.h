@@ -1,5 +1,5 @@
-/// What a study shows over the picture: pages, questions, and one line while a trial waits. Nothing of it tells a trial's condition.
-/// Frame thread, between Gui::begin and end.
+/// Pages of a study, shown over the image: pages, questions, and one line while a trial waits. Nothing in them reveals the condition of a
+/// trial. Frame thread, between Gui::begin and end.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,17 +9,18 @@
 
 namespace catena::app {
 
-/// Heights of the text of pages and of their headings, beside the panels': what Gui is made with.
+/// Text heights of pages and headings, passed to the Gui in addition to the panels' height.
 inline constexpr float kPageTextPx = 22, kHeadingTextPx = 32;
 
+/// Content of the pages.
 struct StudyView {
   const Procedure& procedure;
-  bool is_at_start = false;           ///< the cursor is where the trial that is ready begins
-  bool must_return_to_start = false;  ///< the trial runs, and the cursor has to come back to its start
-  std::string device_prompt{};        ///< what the device asks of the person; empty: nothing
+  bool is_at_start = false;           ///< The cursor is at the start point of the ready trial.
+  bool must_return_to_start = false;  ///< The trial runs, and the cursor must return to its start point.
+  std::string device_prompt{};        ///< Instruction from the device for the user; empty: none.
 };
 
-/// The same in each area: eyes that have a part of the window for themselves have a page each.
+/// Draws the same page in each area; with side-by-side stereo each eye has an area of its own.
 void draw_study(const StudyView& view, const std::vector<Area>& areas);
 
 }  // namespace catena::app

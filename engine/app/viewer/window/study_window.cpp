@@ -27,7 +27,7 @@ std::optional<KeyPress> stroke_of(const KeyEvent& event) {
   return std::nullopt;
 }
 
-/// A page for each eye that has a part of the window for itself.
+/// Areas for pages: one for each stereo eye that has its own part of the window.
 std::vector<Area> areas_of(const scene::Stereo& stereo, const Area& whole) {
   const render::Packing packing = render::stereo_packing(stereo);
   const std::size_t views = render::has_separate_views(packing) ? render::stereo_view_count(stereo) : 1;
@@ -65,7 +65,7 @@ std::optional<Failure> StudyWindow::open() {
   if (!loaded) return to_failure(loaded.error());
   show_scene(*loaded);
   if (auto failure = viewport_.open()) return failure;
-  // a device that pushes is let go by its own way out, Ctrl-C or not
+  // a device with forces is stopped by its own signal handling, with or without Ctrl-C
   if (!context_.haptic_session.is_mouse()) interrupt_.emplace();
   if (const Outcome started = context_.haptic_session.start(); !started) return Failure{1, started.error().message};
   return std::nullopt;
@@ -100,7 +100,7 @@ bool StudyWindow::shows_image() const {
   return stage == Stage::ready || stage == Stage::running;
 }
 
-// ---- keyboard and hand ----
+// ---- keyboard and probe ----
 
 Outcome StudyWindow::process_key(const KeyEvent& key) {
   if (key.type == KeyEvent::Type::press && key.key == GLFW_KEY_F11) context_.window.set_fullscreen(!context_.window.is_fullscreen());
@@ -114,7 +114,7 @@ Outcome StudyWindow::process_key(const KeyEvent& key) {
 Outcome StudyWindow::process_input(double wait_s) {
   for (const Input& piece : context_.window.poll(wait_s)) {
     if (piece.needs_redraw) viewport_.request_redraw();
-    // the stroke is made where the hand is now
+    // the key press applies to the present probe position
     if (piece.key_event) {
       probe_moved_ = context_.haptic_session.pull_state(context_.scene.scene()) || probe_moved_;
       CATENA_CHECK(process_key(*piece.key_event));
@@ -125,7 +125,7 @@ Outcome StudyWindow::process_input(double wait_s) {
   return Done{};
 }
 
-/// The hand of a mouse is under the pointer, as deep as it was; the wheel moves it along the view. Nothing moves the eye.
+/// Moves a mouse-driven probe under the pointer at its present depth; the wheel moves it along the view. The camera does not move.
 void StudyWindow::move_probe(Input piece) {
   const bool motion = piece.dx != 0 || piece.dy != 0;
   if (motion || piece.x != 0 || piece.y != 0) last_pointer_ = {piece.x + piece.dx, piece.y + piece.dy};
@@ -138,7 +138,7 @@ void StudyWindow::move_probe(Input piece) {
   context_.haptic_session.move_mouse(context_.scene.scene(), controls.probe, 0);
 }
 
-/// A mouse knows no depth: at the beginning it has that of the trial's start.
+/// A mouse gives no depth: the probe begins at the depth of the trial's start.
 void StudyWindow::place_probe_under_pointer() {
   if (!context_.haptic_session.is_mouse()) return;
   Navigation& controls = context_.navigation;
@@ -152,7 +152,7 @@ void StudyWindow::place_probe_under_pointer() {
   context_.haptic_session.move_mouse(context_.scene.scene(), controls.probe, 0);
 }
 
-// ---- what is shown ----
+// ---- display ----
 
 std::optional<FrameRequest> StudyWindow::next_frame(bool moved, bool hand_moved) {
   if (moved) return viewport_.frame_builder().interactive_frame();
@@ -170,7 +170,7 @@ void StudyWindow::draw_pages() {
   draw_study(view, areas_of(context_.scene.scene().stereo, context_.state.image_area));
 }
 
-/// Nothing of it tells a trial's condition.
+/// Updates the window title, which must not reveal a trial's condition.
 void StudyWindow::update_title() {
   const Procedure& procedure = session_.procedure();
   const std::size_t trials = procedure.trials().size();
@@ -208,7 +208,7 @@ std::optional<Failure> StudyWindow::run() {
     if (const Outcome followed = session_.update(scene, context_.haptic_session); !followed) return to_failure(followed.error());
     if (const Outcome opened = open_next_scene(); !opened) return to_failure(opened.error());
     probe_moved_ = context_.haptic_session.pull_state(scene.scene()) || probe_moved_;
-    // another page, or the picture behind it
+    // another page, or the image behind it
     if (std::exchange(last_stage_, session_.procedure().stage()) != session_.procedure().stage()) needs_redraw_ = true;
     update_title();
     minimised = viewport_.is_minimised();

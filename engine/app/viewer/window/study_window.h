@@ -1,5 +1,5 @@
-/// StudyWindow is the loop of a live session's window: strokes and motion go in, the trial's picture and the pages over it come out. There
-/// are no panels, no menu and no edits; the eye stands where the scene puts it. Frame thread.
+/// Window of a live study session: processes key presses and probe motion, and shows the image of the trial with its pages. No panels, menu
+/// or edits; the camera is fixed by the scene. Frame thread.
 #pragma once
 #include <array>
 #include <optional>
@@ -14,18 +14,20 @@
 
 namespace catena::app {
 
+/// Loop of the window.
 class StudyWindow {
  public:
-  /// `options`: size and quality; `hand` has its device. `interrupt` is made where a device needs it, and outlives the hand.
+  /// `options`: size and quality; `hand` has its device open. `interrupt` is created if the device needs it, and must outlive the haptic
+  /// session.
   StudyWindow(const ViewOptions& options, LiveSession& session, SceneModel& scene, HapticSession& hand, Window& window,
               std::optional<InterruptHandler>& interrupt);
-  ~StudyWindow();  ///< the hand is let go first
+  ~StudyWindow();  ///< Stops the servo first.
   StudyWindow(const StudyWindow&) = delete;
   StudyWindow& operator=(const StudyWindow&) = delete;
 
-  /// Loads the first scene; the hand takes hold.
+  /// Loads the first scene, opens the viewport and starts the servo. Returns the failure, if any.
   std::optional<Failure> open();
-  /// Until the session is over, or somebody closes the window.
+  /// Runs until the session is finished or the window is closed. Returns the failure, if any.
   std::optional<Failure> run();
 
  private:
@@ -48,10 +50,10 @@ class StudyWindow {
   Viewport viewport_;
   std::optional<InterruptHandler>& interrupt_;
   bool is_closed_ = false;
-  bool needs_redraw_ = true;                           ///< the picture has to be drawn anew
-  bool probe_moved_ = false;                           ///< since the last picture
-  Procedure::Stage last_stage_{};                      ///< that was shown last
-  std::optional<std::array<double, 2>> last_pointer_;  ///< window coordinates, once it has been seen
+  bool needs_redraw_ = true;                           ///< The image must be rendered again.
+  bool probe_moved_ = false;                           ///< Since the last frame.
+  Procedure::Stage last_stage_{};                      ///< The stage shown last.
+  std::optional<std::array<double, 2>> last_pointer_;  ///< Window coordinates; empty until the pointer has been seen.
   std::int64_t last_change_ns_ = 0;
   std::string title_;
 };

@@ -1,5 +1,5 @@
-/// Shared is what loop (session.h), files (scene_files.h), picture (picture_view.h) and eye (eye.h) work on together, and what the panels
-/// read. Each of them owns its own state beside it. Frame thread.
+/// State shared by the parts of a window: loop (session.h), files (scene_files.h), viewport (viewport.h), camera (camera_controller.h), and
+/// read by the panels. Each part also has state of its own. Frame thread.
 #pragma once
 #include <string>
 
@@ -10,18 +10,20 @@
 
 namespace catena::app {
 
-/// Why the program ends, in one line, and with which exit code.
+/// The reason why the program ends, in one line, and its exit code.
 struct Failure {
   int exit_code;
   std::string message;
 };
-/// With the exit code of the error.
+/// Returns the failure for an error, with its exit code.
 inline Failure to_failure(const Error& error) { return {to_exit_code(error), error.message}; }
 
-// what a window's loop goes by, seconds
-inline constexpr double kIdleWaitS = 0.004;  ///< between looks at the servo's news when nothing else happens
+// Timing of the window's loop, seconds.
+inline constexpr double kIdleWaitS = 0.004;  ///< Interval of polling the servo when nothing else happens.
+/// Interval of the loop while the window is minimized.
 inline constexpr double kMinimizedWaitS = 0.1;
 
+/// References to what the loop owns, and the shared state.
 struct ViewerContext {
   const ViewOptions& options;
   SceneModel& scene;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kMaxWaits = 30;
 
-/// The largest part of an area, in its middle, with a picture's proportions.
+/// The largest centered part of an area with the image's aspect ratio.
 std::array<std::uint32_t, 4> fitted_area(const std::array<std::uint32_t, 4>& area, const std::array<std::uint32_t, 2>& picture) {
   const double width = area[2] - area[0], height = area[3] - area[1];
   const double scale = std::min(width / picture[0], height / picture[1]);
@@ -53,7 +53,7 @@ std::optional<Failure> Viewport::open() {
   return std::nullopt;
 }
 
-// ---- its place ----
+// ---- image area ----
 
 bool Viewport::is_minimised() const {
   std::uint32_t width = 0, height = 0;
@@ -87,11 +87,11 @@ Result<bool> Viewport::poll_headset() {
     context_.state.show_message(line, true);
     print_message(line);
   }));
-  if (!headset_session_->is_running()) context_.haptic_session.suspend_forces(false);  // nothing moves the world any more
+  if (!headset_session_->is_running()) context_.haptic_session.suspend_forces(false);  // world motion has ended
   return headset_session_->is_running();
 }
 
-/// The hand's metres are the room's where the room knows them; not while the world is on its way.
+/// Registers device and tracking space where the device is registered; not while the world is being moved.
 void Viewport::update_room_registration() {
   HapticSession& hand = context_.haptic_session;
   DeviceRegistration& desk = *headset_session_->device_registration();
@@ -119,7 +119,7 @@ Outcome Viewport::toggle_registration() {
   return Done{};
 }
 
-/// With the settings of the device, in its own file or in the scene.
+/// Saves the registration with the settings of the device, in its own file or in the scene.
 void Viewport::save_registration(const haptics::DeviceSettings::RoomRegistration& room) {
   const std::string type = haptics::parse_device_type(context_.haptic_session.device_name()), &file = context_.options.device_file;
   const std::vector<scene::Document::Edit> edits{{"/type", scene::to_json(type)},
@@ -140,7 +140,8 @@ void Viewport::save_registration(const haptics::DeviceSettings::RoomRegistration
   say(context_.scene.apply(in_scene, "where the device stands"), "where it stands is part of the scene, which is saved with Ctrl+S");
 }
 
-/// True: the picture is an eye's. What lies at a place of the window's picture cannot be said by it: an eye has its own packet.
+/// Draws into the headset. True: the window shows the image of one eye. Window positions cannot be picked there: each eye has its own
+/// packet.
 Result<bool> Viewport::draw_in_headset() {
   const std::int64_t start = now_ns();
   scene::Scene& scene = context_.scene.scene();
@@ -148,7 +149,7 @@ Result<bool> Viewport::draw_in_headset() {
   content.make_packet = [&]() -> Result<render::FramePacket> {
     auto [width, height] = size();
     CATENA_TRY(render::FramePacket packet, frame_builder_.make_packet(width, height));
-    // what belongs to a flat picture stays in the window
+    // overlays of a flat image stay in the window
     packet.overlay.texts.clear();
     packet.overlay.scalar_bars.clear();
     packet.overlay.orientation_marker.reset();
@@ -178,7 +179,7 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
   if (headset_session_ && headset_session_->is_running() && !for_file && !is_minimised()) {
     const auto drawn = draw_in_headset();
     if (!drawn) return Failure{1, drawn.error().message};
-    // a number of pictures is counted in the window where nobody sees the headset's
+    // without headset frames, a limited number of frames is counted in the window
     if (*drawn || (frame_builder_.last_packet() && context_.options.max_frames == 0)) return std::nullopt;
   }
   shows_headset_eye_ = false;
@@ -198,7 +199,7 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
   std::int64_t start = now_ns();
   auto packet = frame_builder_.make_packet(next, width, height);
   if (!packet) {
-    // at the start it is the scene's fault; later an edit's, and the last picture stands
+    // an error in the first frame is an error of the scene; later it comes from an edit, and the last frame stays
     if (context_.frame_times.count() == 0) return to_failure(packet.error());
     context_.state.show_message(packet.error().message, true);
     return std::nullopt;
@@ -212,13 +213,13 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
   const int recoveries = presenter_->recovery_count();
   const render::RenderTimer clock(presenter_->renderer());
   auto drawn = presenter_->draw(*packet, next.settings);
-  // with the embedded shaders if those of --shaders cannot be drawn with
+  // falls back to the embedded shaders if those of --shaders fail
   if (!drawn && reload_ && reload_->fall_back(presenter_->renderer(), drawn.error().message))
     drawn = presenter_->draw(*packet, next.settings);
   if (!drawn) return Failure{1, drawn.error().message};
   const bool recovered = presenter_->recovery_count() != recoveries;
   if (recovered) context_.state.show_message("the graphics device was lost and has been started again", true);
-  // the clock's renderer is gone with a lost device
+  // the clock's renderer was destroyed with the lost device
   const double ms = ms_since(start), drawing_ms = recovered ? ms : clock.elapsed_ms();
   pacing.on_rendered(ms);
   LiveTuning& live = context_.tuning;
@@ -232,7 +233,7 @@ std::optional<Failure> Viewport::draw(const FrameRequest& next, bool for_file) {
   return std::nullopt;
 }
 
-/// What the first picture had to leave out.
+/// Prints what the renderer had to omit in the first frame.
 void Viewport::print_renderer_notes() const {
   const render::RenderStats stats = presenter_->renderer().stats();
   for (const std::string& note : stats.warnings) print_message(note);
@@ -243,16 +244,16 @@ std::optional<Failure> Viewport::estimate_error() {
   ProgressiveScheduler& pacing = context_.scheduler;
   if (!pacing.may_estimate() || is_minimised()) return std::nullopt;
   auto packet = this->make_packet();
-  if (!packet) return std::nullopt;  // said where it was drawn
+  if (!packet) return std::nullopt;  // the error was reported when it was drawn
   const auto estimate = [&]() -> Result<double> {
     if (!context_.tuning.image_tuning) return render::estimate_rmse(presenter_->renderer(), *packet, pacing.current().settings);
-    // beside what a plan expects: the error itself, not the estimate above it
+    // for comparison with the tuning's prediction: the error itself, not the estimate above it
     return render::measure_single_rmse(presenter_->renderer(), *packet, pacing.current().settings);
   };
   const auto error = estimate();
   if (!error) return Failure{1, error.error().message};
   pacing.set_estimate(*error);
-  // the estimate drew with the renderer's own images
+  // the estimate has overwritten the renderer's images
   if (auto drawn = presenter_->draw(*packet, pacing.current().settings); !drawn) return Failure{1, drawn.error().message};
   needs_redraw_ = true;
   return std::nullopt;
@@ -282,7 +283,7 @@ std::optional<Failure> Viewport::show(const std::function<void()>& make_panels) 
     gui.set_virtual_pointer(mouse->x_px * width / frame_width, mouse->y_px * height / frame_height, mouse->pressed);
   }
   gui.begin();
-  // the glyph is the pointer while the mouse is the hand
+  // the probe glyph replaces the pointer while the mouse moves the probe
   if (context_.navigation.probe_mode && context_.haptic_session.is_mouse() && context_.state.pointer_on_image) gui.hide_pointer();
   make_panels();
   render::UiItems items = gui.end();
@@ -300,9 +301,9 @@ void Viewport::reset() {
   is_pick_stale_ = true;
 }
 
-// ---- what is where ----
+// ---- picking ----
 
-/// The rows of the table of values. The place under the pointer is looked up while nothing moves.
+/// Updates the table of field values. The point under the pointer is looked up while nothing moves.
 void Viewport::update_field_probes() {
   const scene::Scene& scene = context_.scene.scene();
   const HapticSession& hand = context_.haptic_session;
@@ -344,14 +345,14 @@ std::optional<PickHit> Viewport::pick_at(double window_x, double window_y) const
 
 std::optional<PickHit> Viewport::pick_under_pointer() const {
   const ViewState& state = context_.state;
-  // eyes side by side have a place for the pointer each
+  // each image of a side-by-side pair has its own pointer position
   const auto& shown = frame_builder_.last_packet();
   const bool apart = shown && !shown->eyes.empty() && render::has_separate_views(shown->packing);
   return state.pointer_on_image && !apart ? pick_at(state.pointer_x, state.pointer_y) : std::nullopt;
 }
 
 std::optional<Vec3> Viewport::find_visible_point(const std::string& item) const {
-  // big meshes are looked at triangle by triangle
+  // large meshes are tested triangle by triangle
   std::size_t triangles = 0;
   if (const auto& shown = frame_builder_.last_packet())
     for (const render::MeshItem& mesh : shown->meshes) triangles += mesh.geometry->triangles.size() / 3;
@@ -372,7 +373,7 @@ std::optional<Vec3> Viewport::find_visible_point(const std::string& item) const 
   return place;
 }
 
-// ---- to a file ----
+// ---- image files ----
 
 void Viewport::write_requested_screenshot() {
   const bool of_window = requested_screenshot_.value_or(false);
@@ -402,7 +403,7 @@ std::optional<Failure> Viewport::write_final_screenshots(const std::function<voi
   std::uint32_t width = 0, height = 0;
   presenter_->size(width, height);
   const bool whole = pixel_rect_ == std::array<std::uint32_t, 4>{0, 0, width, height};
-  // of a headset: what was seen last by the first eye
+  // for a headset: the last image of the first eye
   const bool seen = shows_headset_eye_ && presenter_->has_image();
   if (!seen && (!context_.scheduler.is_finished() || !whole || !presenter_->has_image()))
     if (auto failure = draw(frame_builder_.final_frame(), !whole)) return failure;

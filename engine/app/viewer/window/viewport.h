@@ -1,5 +1,5 @@
-/// Viewport is the picture in the window: it says where the picture lies, draws it, shows it with the interface over it, looks up what
-/// is under the pointer, and writes it to files. Frame thread.
+/// The viewport: the image area of the window. Renders the image, shows it with the GUI on top, picks what is under the pointer, and writes
+/// image files. Frame thread.
 #pragma once
 #include <array>
 #include <functional>
@@ -15,79 +15,85 @@
 
 namespace catena::app {
 
+/// Owns the presenter, the headset session and the frame builder.
 class Viewport {
  public:
   Viewport(ViewerContext& shared, std::optional<ShaderReload> reload)
       : context_(shared), frame_builder_(shared.scene, shared.navigation, shared.scheduler), reload_(std::move(reload)) {}
-  ~Viewport();  ///< what the headset has on the device goes first
+  ~Viewport();  ///< Ends the headset session before its device is destroyed.
 
-  /// What draws it, and the headset where one is asked for; before the first picture.
+  /// Creates the presenter, and the headset session if requested. Call before the first frame. Returns the failure, if any.
   std::optional<Failure> open();
-  /// What the headset has to say. True: it wants a picture at every turn of the loop.
+  /// Processes the events of the headset. Returns true if it needs a frame at every turn of the loop. An Error if the graphics device
+  /// cannot be recreated.
   Result<bool> poll_headset();
-  /// The hand's newest state was taken while the headset's picture was drawn, and what comes of it is still to be looked at. Once.
+  /// Returns, once, whether the latest haptic state was taken during a headset frame (late latching), so that its effects are still to be
+  /// processed.
   bool take_late_probe_motion() { return std::exchange(probe_moved_late_, false); }
-  /// For the title; empty without one.
+  /// Returns the status for the window title; empty without a headset.
   std::string headset_status() const { return headset_session_ ? headset_session_->status_text() : std::string(); }
-  /// The three places of the device on the desk are asked for, or not any more.
+  /// Starts the registration of the device on the desk, or cancels it. An Error without a headset or if the device cannot be registered.
   Outcome toggle_registration();
-  /// For the last words; empty without one.
+  /// Returns the final statistics; empty without a headset.
   std::string headset_summary() const { return headset_session_ ? headset_session_->summary_text() : std::string(); }
   Presenter& presenter() { return *presenter_; }
 
   bool is_minimised() const;
-  /// The picture's place in the window; true where it has changed.
+  /// Recomputes the image area; returns true if it has changed.
   bool update_layout();
-  /// Width and height of the picture, pixels; at least 1.
+  /// Returns width and height of the image, pixels; at least 1.
   std::array<std::uint32_t, 2> size() const;
-  /// It is not there, not in the window's size, or an eye's of a headset that shows nothing any more.
+  /// Returns whether the image must be rendered again: there is none, its size differs from the window's, or it is an eye of a headset that
+  /// has stopped.
   bool is_stale() const {
     return presenter_->is_resized() || !presenter_->has_image() || (shows_headset_eye_ && !headset_session_->is_running());
   }
-  /// True: the next picture is drawn with other shaders.
+  /// Returns true if the next frame uses other shaders.
   bool reload_shaders();
 
-  /// Into the picture's part of the window; `for_file`: of the whole window's size, and no picture of the session's.
+  /// Renders a frame into the image area; `for_file`: at the size of the whole window, not counted as a frame of the session. Returns the
+  /// failure, if any.
   std::optional<Failure> draw(const FrameRequest& next, bool for_file = false);
-  /// Which one comes next (drawing.h).
+  /// Returns the frame builder, which determines the next frame (frame_builder.h).
   FrameBuilder& frame_builder() { return frame_builder_; }
   FrameRequest frame_after_probe_motion() {
     return frame_builder_.frame_after_probe_motion(pixel_rect_[2] - pixel_rect_[0], pixel_rect_[3] - pixel_rect_[1]);
   }
-  /// The error of the picture that is at rest, once.
+  /// Estimates the error of the refined image, if it is not known yet.
   std::optional<Failure> estimate_error();
-  /// The plan of the picture as it is now: measured, or out of the store. From then on it is drawn by it.
+  /// Tunes the image settings for the current image, from measured or cached costs; the following frames use them.
   std::optional<Failure> apply_tuning();
-  /// The interface over the last picture.
+  /// Shows the last image with the GUI over it.
   std::optional<Failure> show(const std::function<void()>& make_panels);
 
-  /// The interface has to be shown again though nothing happened.
+  /// Returns whether the GUI must be shown again although there was no event.
   bool needs_redraw() const { return needs_redraw_; }
   void request_redraw() { needs_redraw_ = true; }
-  /// Another scene: nothing of the last picture counts.
+  /// Resets the state for another scene.
   void reset();
-  /// What lies under the pointer beside the hand; nothing where it is not on the picture, or where the picture shows
-  /// several eyes beside each other.
+  /// Returns what lies under the pointer, ignoring the probe; nothing if the pointer is not on the image, or if the image shows several
+  /// eyes side by side.
   std::optional<PickHit> pick_under_pointer() const;
-  /// A place where the item ("isosurfaces[0]") is seen: under the pointer, or else the nearest to the middle of the picture on a lattice.
+  /// Returns a visible point of the item ("isosurfaces[0]"): under the pointer, or else the one nearest to the image center on a grid of
+  /// sample points. Nothing if none is found.
   std::optional<Vec3> find_visible_point(const std::string& item) const;
-  /// "isosurfaces[0]"; empty: an id of no item.
+  /// Returns "isosurfaces[0]"; empty for an id of no item.
   std::string item_label(std::uint32_t id) const { return frame_builder_.item_label(id); }
-  /// The pointer may be over something else.
+  /// Marks the pick under the pointer as out of date.
   void invalidate_pick() { is_pick_stale_ = true; }
 
-  /// The picture, or the window, to the next free SCENE-001.png of the folder that the program was started in: as soon as there is one of
-  /// every pixel, for which it waits a while.
+  /// Requests a screenshot of the image or the window, written to the first unused SCENE-001.png in the working directory as soon as an
+  /// image with every pixel is available, for which it waits at most 30 calls.
   void request_screenshot(bool of_window) { requested_screenshot_ = of_window; }
   void write_requested_screenshot();
-  /// --screenshot and --window-screenshot, at the end.
+  /// Writes the files of --screenshot and --window-screenshot at the end. Returns the failure, if any.
   std::optional<Failure> write_final_screenshots(const std::function<void()>& make_panels);
 
  private:
   Result<bool> draw_in_headset();
   void update_room_registration();
   void save_registration(const haptics::DeviceSettings::RoomRegistration& room);
-  /// Of the picture's own size.
+  /// Makes a packet of the size of the image.
   Result<render::FramePacket> make_packet() const {
     return frame_builder_.make_packet(pixel_rect_[2] - pixel_rect_[0], pixel_rect_[3] - pixel_rect_[1]);
   }
@@ -98,15 +104,15 @@ class Viewport {
   ViewerContext& context_;
   FrameBuilder frame_builder_;
   std::optional<ShaderReload> reload_;
-  std::unique_ptr<HeadsetSession> headset_session_;  ///< outlives the device that it made
+  std::unique_ptr<HeadsetSession> headset_session_;  ///< Outlives the device created by its runtime.
   std::unique_ptr<Presenter> presenter_;
-  std::array<std::uint32_t, 4> pixel_rect_{};  ///< where the picture lies in the window
-  bool is_pick_stale_ = true;                  ///< the place under the pointer is to be looked at again
+  std::array<std::uint32_t, 4> pixel_rect_{};  ///< Image area in framebuffer pixels: x0, y0, x1, y1.
+  bool is_pick_stale_ = true;                  ///< The pick under the pointer must be repeated.
   bool needs_redraw_ = false;
   bool probe_moved_late_ = false;
-  bool shows_headset_eye_ = false;            ///< the last picture is an eye of the headset
-  std::optional<bool> requested_screenshot_;  ///< a file; of the window: true
-  int frames_waited_ = 0;                     ///< frames, for a picture of every pixel
+  bool shows_headset_eye_ = false;            ///< The last image is an eye of the headset.
+  std::optional<bool> requested_screenshot_;  ///< Requested screenshot: true for the window, false for the image.
+  int frames_waited_ = 0;                     ///< Calls waited for an image with every pixel.
 };
 
 }  // namespace catena::app

@@ -21,20 +21,20 @@ std::string& last_error() {
 
 struct Window::Impl {
   GLFWwindow* window = nullptr;
-  std::vector<Input> done;  ///< gathered since the last poll
+  std::vector<Input> done;  ///< complete segments since the last poll
   Input current;
   double last_x = 0, last_y = 0;
   bool has_last = false;
   bool happened = false;
   bool gui = false;
-  std::array<int, 4> place{};  ///< before full screen: x, y, width, height
+  std::array<int, 4> place{};  ///< window position and size before full screen: x, y, width, height
 
   ~Impl() {
     if (window != nullptr) glfwDestroyWindow(window);
     glfwTerminate();
   }
 
-  /// Ends the current piece.
+  /// Ends the current input segment.
   void cut() {
     done.push_back(current);
     Input next;
@@ -54,7 +54,7 @@ struct Window::Impl {
     cut();
     current.*what = held;
   }
-  /// The next piece begins with it.
+  /// Starts the next segment with a key press.
   void stroke(const KeyEvent& event) {
     happened = true;
     cut();
@@ -86,7 +86,7 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
     p.last_y = y;
     p.has_last = true;
   });
-  // what moves while the pointer is away does not count
+  // motion while the pointer is outside does not count
   glfwSetCursorEnterCallback(parts.window, [](GLFWwindow* w, int inside) {
     Impl& p = *static_cast<Impl*>(glfwGetWindowUserPointer(w));
     p.happened = true;
@@ -219,7 +219,7 @@ void Window::set_fullscreen(bool on) {
   }
   glfwGetWindowPos(impl_->window, &x, &y);
   glfwGetWindowSize(impl_->window, &width, &height);
-  // the monitor that most of the window lies on
+  // the monitor that holds most of the window
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
   GLFWmonitor* best = nullptr;

@@ -1,5 +1,5 @@
-/// FrustumWindow is a window by GLFW: it gives input as plain data, and the factory of its Vulkan surface. GLFW's functions are called here
-/// and by ImGui's backend (gui.cpp) alone. Frame thread (the process's main thread) only.
+/// The application window (GLFW): delivers input as plain data, and the factory of its Vulkan surface. GLFW is called only here and in
+/// ImGui's backend (gui.cpp). Frame thread (the process's main thread) only.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,39 +15,43 @@ struct GLFWwindow;
 
 namespace catena::app {
 
+/// Owns the GLFW window and its input queue.
 class Window {
  public:
-  /// No display, or no Vulkan on it: an error in one sentence.
+  /// Opens a window. An Error, one sentence, if there is no display or no Vulkan on it.
   static Result<std::unique_ptr<Window>> create(std::uint32_t width, std::uint32_t height, const std::string& title);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
+  /// Returns the factory of the Vulkan surface; the window must outlive it.
   render::vk::SurfaceFactory surface_factory() const;
-  /// Takes what happened since the last call; waits up to `wait_s` for something to happen (0: not at all). In pieces, in order, cut at
-  /// every stroke, button and change of the focus: what was done within one slow picture counts as it was done. At least one.
+  /// Returns the input since the last call; waits up to `wait_s` seconds for an event (0: no waiting). The input is split into segments, in
+  /// order, at every key event, mouse button and focus change, so that everything done during one slow frame keeps its order. At least one
+  /// segment.
   std::vector<Input> poll(double wait_s);
+  /// Returns whether the user has requested to close the window.
   bool is_closing() const;
-  /// The person was asked and stays.
+  /// Withdraws the request to close.
   void cancel_close();
-  /// Anything at all happened in the last poll (a pointer that moved, a key).
+  /// Returns whether there was any event in the last poll (pointer motion, a key, ...).
   bool had_events() const;
-  /// It has the keyboard or the pointer: somebody is likely to look at it.
+  /// Returns whether the window has the keyboard focus or the pointer, so that someone is probably looking at it.
   bool has_focus_or_pointer() const;
-  /// Of the picture, in pixels; 0 while minimised.
+  /// Returns the size of the framebuffer in pixels; 0 while minimized.
   void framebuffer_size(std::uint32_t& width, std::uint32_t& height) const;
-  /// Of the window, in window coordinates.
+  /// Returns the size in window coordinates.
   void size(double& width, double& height) const;
   void set_title(const std::string& title);
   void set_fullscreen(bool on);
   bool is_fullscreen() const;
 
-  /// The keys of flight that are down.
+  /// Returns which fly keys are down; none while control is held.
   FlyKeys held_fly_keys() const;
 
-  /// Pixels by the size that interfaces are designed for.
+  /// Returns the ratio of pixels to the resolution that GUIs are designed for.
   float content_scale() const;
-  /// The pointer's coming and going and the wheel go to the user interface (gui.h) as well.
+  /// Enables forwarding of pointer enter/leave and wheel events to the GUI (gui.h).
   void forward_events_to_gui(bool on);
   GLFWwindow* glfw_window() const;
 

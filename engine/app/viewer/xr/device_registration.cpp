@@ -5,7 +5,7 @@
 namespace catena::app {
 namespace {
 
-constexpr double kJitter_m = 1e-3, kJitter_rad = 2e-3;  // of the room's space: less is no motion
+constexpr double kJitter_m = 1e-3, kJitter_rad = 2e-3;  // in tracking space: smaller changes count as no motion
 
 bool has_moved(const StageSpace& from, const StageSpace& to) {
   return from.is_stage != to.is_stage || !(norm(to.position_m - from.position_m) <= kJitter_m) ||
@@ -33,7 +33,7 @@ void DeviceRegistration::cancel() {
   touch_registration_.reset();
 }
 
-/// Another device, or another room: what was known of the one in the other may not hold any more.
+/// Discards the registration when the device or the tracking space changes, since it may no longer hold.
 void DeviceRegistration::track_device(HapticSession& hand, const StageSpace& space) {
   const bool recentred = space_ && space.recenter_count != space_->recenter_count;
   const bool is_new = device_ != hand.device_name() || !space_;

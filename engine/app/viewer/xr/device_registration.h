@@ -1,8 +1,8 @@
-/// A haptic device on the desk of a person who wears a headset. It is registered by three touched places
-/// (engine/app/viewer/xr/touch_registration.h); from then on its metres lie in the room, and so in the world as it stands there:
-///   world = placement(room),   room = stage(origin + rotation device)          stage: the room's own space, which recentring does not move
-/// Where the runtime knows no such space the local one stands in for it, and what was found holds until the headset is recentred. Plain
-/// data in and out; nothing here is OpenXR's. Frame thread.
+/// Registration of a haptic device on the desk of a user who wears a headset. Three touched points determine where it stands
+/// (engine/app/viewer/xr/touch_registration.h); then positions in device meters map to tracking space, and from there to the world:
+///   world = placement(tracking space),   tracking space = stage(origin + rotation device)     recentering does not move the stage space
+/// If the runtime has no stage space, the local space is used, and the registration holds until the headset is recentered. Plain data,
+/// independent of OpenXR. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,35 +14,38 @@
 
 namespace catena::app {
 
-/// The room's own space in that in which heads and hands are located.
+/// Pose of the stage space within the space in which heads and controllers are located.
 struct StageSpace {
   Vec3 position_m{0.0};
   Quat orientation{kIdentityRotation};
-  bool is_stage = false;             ///< it is the stage
-  std::uint64_t recenter_count = 0;  ///< so far
+  bool is_stage = false;             ///< False: there is no stage space, and this is the local space.
+  std::uint64_t recenter_count = 0;  ///< Number of recenterings so far.
 };
 
+/// Guides the user through the registration of the current device and maps the device to the world.
 class DeviceRegistration {
  public:
+  /// Pose of the device in the stage space.
   using Room = haptics::DeviceSettings::RoomRegistration;
   using Message = xr_interaction::TouchRegistration::Message;
 
-  /// The person is asked for the three places; its forces go off. Errors: a device that cannot be registered.
+  /// Starts a registration: switches the forces off and prompts for the three points. An Error for a device that cannot be registered: not
+  /// a stationary haptic device, or one with "scale" or "clutch_button" settings.
   Outcome begin(HapticSession& hand);
-  /// Not now: which is said.
+  /// Aborts the registration and queues a message.
   void cancel();
   bool is_active() const { return touch_registration_.has_value(); }
-  /// What the person does next; empty: nothing is asked for.
+  /// Returns the next instruction for the user; empty if no registration is active.
   std::string prompt() const { return touch_registration_ ? touch_registration_->prompt() : std::string(); }
 
-  /// Each picture. A device that could be registered and is not is asked for once.
+  /// Call once per frame. A device that can be registered and is not is prompted for once, when it is first seen. `t_s`: time of the frame.
   void step(double t_s, HapticSession& hand, const std::array<XrHand, 2>& hands, const StageSpace& space);
-  /// What is to be said since the last call.
+  /// Returns the messages for the user since the last call.
   std::vector<Message> take_messages() { return std::exchange(messages_, {}); }
-  /// What was found since the last call, if it is to be kept with the device's settings.
+  /// Returns a registration found since the last call, if it should be saved in the device's settings (only one in the stage space).
   std::optional<Room> take_registration() { return std::exchange(found_pose_, std::nullopt); }
 
-  /// The device's metres in the world; nothing where it is not registered.
+  /// Returns the workspace that maps device meters to the world; nothing if the device is not registered.
   std::optional<scene::Workspace> workspace(const HapticSession& hand, const Placement& placement) const;
 
  private:
@@ -51,8 +54,8 @@ class DeviceRegistration {
 
   std::optional<xr_interaction::TouchRegistration> touch_registration_;
   std::optional<StageSpace> space_;
-  std::string device_;                                     ///< that was looked at last
-  std::size_t touching_hand_ = XrControllers::kProbeHand;  ///< the hand that touches
+  std::string device_;                                     ///< Device of the last step().
+  std::size_t touching_hand_ = XrControllers::kProbeHand;  ///< Index of the controller that touches.
   std::vector<Message> messages_;
   std::optional<Room> found_pose_;
 };

@@ -3,7 +3,7 @@
 namespace catena::xr_interaction {
 namespace {
 
-constexpr double kAlong = 1e-6;  // of a ray's direction across the panel: less is along it
+constexpr double kAlong = 1e-6;  // component of the ray's direction across the panel: smaller ones count as parallel to it
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::optional<PanelHit> intersect(const Panel& panel, const AimRay& ray) {
 
 Quat heading_rotation(const Quat& head) {
   const Vec3 back = rotate(head, Vec3(0, 0, 1));
-  // straight up or down: not turned
+  // straight up or down: no rotation about the vertical
   if (!(std::hypot(back.x, back.z) > kAlong)) return kIdentityRotation;
   return rotation_from_vector(std::atan2(back.x, back.z) * Vec3(0, 1, 0));
 }
@@ -40,7 +40,7 @@ Panel place_in_front(const Vec3& head_m, const Quat& head, double distance_m, do
 PanelPointer::Mouse PanelPointer::step(const Panel& panel, const AimRay& ray, bool selects) {
   const std::optional<PanelHit> hit = intersect(panel, ray);
   const bool inside = hit && hit->is_inside;
-  // only a press that begins on the panel is the panel's
+  // only a press that begins on the panel is captured
   if (!selects) captured_ = false;
   if (selects && !was_selecting_ && inside) captured_ = true;
   was_selecting_ = selects;

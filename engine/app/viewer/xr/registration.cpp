@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kLeastEdge_m = 0.02, kLeastHeight_m = 0.01;
 
-/// Three places as a plane through their centre.
+/// Three points as a plane through their centroid.
 struct Triangle {
   Vec3 centre{0.0}, normal{0.0};
   std::array<Vec3, 3> from_centre{};

@@ -6,7 +6,7 @@ namespace catena::xr_interaction {
 namespace {
 
 constexpr std::size_t kPlaces = 3;
-constexpr double kLeap_s = 1;  // between two samples of a touch
+constexpr double kLeap_s = 1;  // maximum seconds between two samples of one touch
 
 std::array<Vec3, kPlaces> three(const std::vector<Vec3>& places) { return {places[0], places[1], places[2]}; }
 

@@ -1,11 +1,10 @@
-/// Three places that a person touches with a haptic device's handle and with a headset's controller, in whichever order: what says where
-/// the device stands in the room (registration.h).
-///   touch     a button is pressed, and the place is the mean of the next kHold_s; what moves by more than kMaxMotion_m meanwhile, is lost,
-///   or
-///             is closer than kMinSeparation_m to a place that the same thing has touched before, does not count, which is said
-///   the end   when both have three places: the motion of least squares between them. What is refused there (nearly one line), or leaves
-///             more than kMaxResidual_m at the places (root mean square), is said, and all three are asked for again
-/// The k-th place of one is the k-th of the other: it is the same place. Metres, seconds. The frame thread.
+/// Collects three points that the user touches with the handle of a haptic device and with an XR controller, in either order, and computes
+/// from them where the device stands in tracking space (registration.h).
+///   touch   a button is pressed, and the point is the mean over the next kHold_s; a touch is rejected with a message if the position moves
+///           by more than kMaxMotion_m meanwhile, is lost, or is closer than kMinSeparation_m to an earlier point of the same side
+///   result  when both sides have three points: the least-squares motion between them; if that is an Error (nearly collinear) or leaves
+///           more than kMaxResidual_m at the points (root mean square), a message reports it, and all three points are requested again
+/// The k-th points of both sides correspond: they are the same physical point. Meters, seconds. Frame thread.
 #pragma once
 #include <array>
 #include <optional>
@@ -16,42 +15,46 @@
 
 namespace catena::xr_interaction {
 
+/// State of one registration.
 class TouchRegistration {
  public:
   static constexpr double kHold_s = 0.15, kMaxMotion_m = 0.005, kMinSeparation_m = 0.02, kMaxResidual_m = 0.01;
 
-  /// One that touches: where it is, if that is known, and whether its button is down.
+  /// Input of one side: its position, if known, and whether its button is down.
   struct TouchInput {
     std::optional<Vec3> position_m{};
     bool pressed = false;
   };
+  /// A message for the user.
   struct Message {
-    std::string text;  ///< one line
+    std::string text;  ///< One line.
     bool is_error = false;
   };
 
-  /// `device`: what it is called.
+  /// `device`: name of the device in messages.
   explicit TouchRegistration(std::string device) : device_name_(std::move(device)) {}
 
-  /// Each picture: `device` in its own metres, `controller` in the room's. What is to be said of it. A clock that goes back, or makes a
-  /// leap, begins the touch that is under way again.
+  /// Call once per frame with `device` in device meters and `controller` in tracking space; returns the messages for the user. If the time
+  /// `t_s` goes backwards or jumps by more than 1 s, the touch in progress restarts.
   std::vector<Message> step(double t_s, const TouchInput& device, const TouchInput& controller);
-  /// What the person does next, in a sentence or two.
+  /// Returns the next instruction for the user in a sentence or two; empty when finished.
   std::string prompt() const;
-  /// Once three places of both fit.
+  /// Returns the result once three points of both sides fit.
   const std::optional<Registration>& registration() const { return registration_; }
 
  private:
+  /// Progress of one side.
   struct Side {
     std::vector<Vec3> points{};
-    bool was_pressed = true;  ///< what is down at first is no touch
+    bool was_pressed = true;  ///< Initially true, so that a button already down at the start does not count as a touch.
     bool is_sampling = false;
     double start_s = 0, last_s = 0;
     Vec3 first{0.0}, sum{0.0};
     int count = 0;
   };
-  /// What came of this picture's sample; nothing: no more than before.
+  /// Processes one sample of a side; returns a message if a point was accepted or rejected.
   std::optional<Message> add_sample(Side& side, const std::string& whose, double t_s, const TouchInput& now);
+  /// Computes the registration from three points of both sides; on failure clears the points.
   Message finish();
 
   std::string device_name_;

@@ -8,12 +8,12 @@ namespace {
 constexpr double kLeastSpan_m = 0.02;
 const Vec3 kUp{0.0, 1.0, 0.0};
 
-/// The part of q that turns about the unit axis, radians.
+/// Angle of the component of q that turns about the unit axis, radians.
 double twist_about(const Vec3& axis, const Quat& q) { return 2 * std::atan2(dot(Vec3(q.x, q.y, q.z), axis), q.w); }
 
 double wrapped(double angle) { return angle - 2 * M_PI * std::round(angle / (2 * M_PI)); }
 
-/// What two hands do together since they took hold: the rotation, and the factor.
+/// Relative motion of both controllers since the grab began: the rotation, and the scale factor.
 struct Pull {
   Quat turn{kIdentityRotation};
   double factor = 1;
@@ -38,7 +38,7 @@ Placement move_world(const Placement& placement, const Vec3& from_m, const Quat&
   const Quat back = glm::conjugate(turn);
   Placement out;
   out.meters_per_unit = factor * placement.meters_per_unit;
-  // through a unit quaternion: hours of turning leave a rotation
+  // through a unit quaternion, so that the matrix stays a rotation after many turns
   out.world_from_room = glm::mat3_cast(normalized(glm::quat_cast(placement.world_from_room) * back));
   out.world_origin = placement.to_world(from_m - rotate(back, to_m) / factor);
   return out;

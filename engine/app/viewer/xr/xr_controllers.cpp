@@ -4,7 +4,7 @@ namespace catena::app {
 
 namespace {
 
-/// With a gap between down and up, so that a finger at the edge does not flicker.
+/// Hysteresis between pressed and released, so that a value at the threshold does not flicker.
 bool is_down(double amount, bool was) { return amount > (was ? XrControllers::kReleaseThreshold : XrControllers::kPressThreshold); }
 
 }  // namespace
@@ -15,7 +15,7 @@ void XrControllers::update(const std::array<XrHand, 2>& hands, const Vec3& head_
     squeezed_[k] = hands[k].is_tracked && is_down(hands[k].squeeze, squeezed_[k]);
     holding[k] = {hands[k].position_m, hands[k].orientation, squeezed_[k]};
   }
-  // the person turns, the world the other way
+  // when the user turns, the world turns the other way
   if (const double turn = snap_turn_.step(hands[kProbeHand].is_tracked ? hands[kProbeHand].stick_x : 0); turn != 0)
     placement = xr_interaction::rotate_about(placement, head_m, -turn);
   const Placement before = placement;

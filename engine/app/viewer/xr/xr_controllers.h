@@ -1,7 +1,7 @@
-/// What the hands do in a headset, picture by picture: squeezing takes hold of the world (engine/app/viewer/xr/world_grab.h), the right
-/// stick turns the person in steps, the right hand is the probe, and what it feels goes to its vibration. While a hand holds the world
-/// nothing is felt: the probe counts as lost, so that the force rises again when the world is let go. Plain data in and out; nothing here
-/// is OpenXR's. Frame thread.
+/// Interpretation of the XR controllers, frame by frame: squeezing grabs the world (engine/app/viewer/xr/world_grab.h), the right
+/// thumbstick turns the user in steps, and the right controller is the probe, with contact rendered as vibration. While a controller grabs
+/// the world, the probe counts as lost, so that the force ramps up again after the release. Plain data, independent of OpenXR. Frame
+/// thread.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,31 +14,33 @@
 
 namespace catena::app {
 
-/// A hand in the room, metres.
+/// State of a controller in tracking space, meters.
 struct XrHand {
   bool is_tracked = false;
   Vec3 position_m{0.0};
   Quat orientation{kIdentityRotation};
+  /// Select and squeeze from 0 to 1; thumbstick from -1 (left) to 1.
   double select = 0, squeeze = 0, stick_x = 0;
 };
 
+/// Turns controller states into the placement of the world, the probe pose and vibration commands.
 class XrControllers {
  public:
-  static constexpr std::size_t kProbeHand = 1;  ///< the right hand
-  /// A button that is squeezed is down above the one, up below the other.
+  static constexpr std::size_t kProbeHand = 1;  ///< Index of the right controller, which is the probe.
+  /// A button counts as pressed above kPressThreshold until it falls below kReleaseThreshold.
   static constexpr double kPressThreshold = 0.6, kReleaseThreshold = 0.4;
 
-  /// Each picture, `dt_s` after the last: the world follows the hands.
+  /// Call once per frame, `dt_s` after the last one: moves the placement with the controllers.
   void update(const std::array<XrHand, 2>& hands, const Vec3& head_m, double dt_s, Placement& placement);
   bool is_grabbing_world() const { return world_grab_.is_grabbing(); }
-  /// Between the hands that hold it, metres of room; nothing where none does.
+  /// Returns the midpoint of the grabbing controllers in tracking space, meters; nothing if none grabs.
   std::optional<Vec3> grab_center(const std::array<XrHand, 2>& hands) const;
-  /// How far the picture narrows, 0..1.
+  /// Returns the strength of the vignette, 0 to 1.
   double vignette_strength() const { return vignette_strength_; }
 
-  /// What the controller is told of the probe's hand, as it was at a time of engine/base/clock.h.
+  /// Returns the probe pose for the device, from a controller state at time `t_ns` of engine/base/clock.h.
   haptics::ControllerPose make_controller_pose(const XrHand& hand, std::int64_t t_ns);
-  /// What the runtime is asked for. `focused`: the session has the person.
+  /// Returns the vibration command for the runtime. `focused`: whether the session has the input focus.
   haptics::VibrationSender::Command next_vibration(haptics::PeakDetector& peaks, std::int64_t now_ns, bool focused, const XrHand& hand) {
     return vibration_sender_.next(peaks, now_ns, focused && hand.is_tracked && !is_grabbing_world());
   }

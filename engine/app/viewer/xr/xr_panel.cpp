@@ -11,7 +11,7 @@ namespace catena::app {
 void XrPanel::update(const std::array<render::xr::ControllerState, render::xr::kControllers>& hands, const render::xr::XrHeadPose& head,
                      DeviceRegistration& desk) {
   const bool menu = hands[0].menu || hands[1].menu, pressed = menu && !menu_pressed_;
-  // what is asked of the person stands before them; the button puts it off, and the trigger means the touch
+  // instructions appear in front of the user; the button postpones the registration, and the trigger marks a touch
   const bool began = desk.is_active() && !is_registering_;
   if (pressed && is_registering_) desk.cancel();
   is_registering_ = desk.is_active();

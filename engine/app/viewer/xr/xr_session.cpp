@@ -19,18 +19,18 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kFarewellTurns = 200;                  // of events and frames, while the runtime ends the session
-constexpr std::chrono::milliseconds kPatience{500};  // with a frame's wait, before the window goes on; then
-constexpr std::chrono::milliseconds kTurn{10};       // of the window's loop, and of the farewell
-constexpr double kFovea = 0.36;       // tan 20 degrees off the gaze, or the eye's axis: beyond, lenses and eyes see less than the rays cost
-constexpr double kAboveHandM = 0.06;  // the scale's words over the hands that hold the world
-constexpr double kWordsAt_px = 1.0 / 50;              // their height, of the view's
-constexpr double kMostStepS = 0.1;                    // of the world's motion: after a pause it does not race
-constexpr std::int64_t kSayAgainNs = 30'000'000'000;  // the same loss is said again after so long
-constexpr std::int64_t kSettlesNs = 300'000'000;      // the hand leaps to where the world was put: nothing to feel so long
-constexpr int kUnseen = 60;                           // frames without a view, before that is said
+constexpr int kFarewellTurns = 200;                  // maximum turns of events and frames while the session ends
+constexpr std::chrono::milliseconds kPatience{500};  // wait for a frame before the window continues; after that kTurn
+constexpr std::chrono::milliseconds kTurn{10};       // wait per turn of the window's loop, and while the session ends
+constexpr double kFovea = 0.36;           // tan 20 degrees off the gaze, or the eye's axis: beyond it full resolution is not worth its cost
+constexpr double kAboveHandM = 0.06;      // offset of the scale label above the controllers that grab the world
+constexpr double kWordsAt_px = 1.0 / 50;  // label height, as a fraction of the view's
+constexpr double kMostStepS = 0.1;        // maximum time step of world motion: no jump after a pause
+constexpr std::int64_t kSayAgainNs = 30'000'000'000;  // interval after which the same loss is reported another time
+constexpr std::int64_t kSettlesNs = 300'000'000;      // forces are suspended so long after the world was placed: the probe jumps
+constexpr int kUnseen = 60;                           // frames without a view before this is reported
 
-/// As the scene's camera says, but straight ahead of where the head is now: the local space of some runtimes begins elsewhere.
+/// Placement by the scene's camera, with its view straight ahead of the head: the local space of some runtimes begins elsewhere.
 Placement before(const render::xr::XrHeadPose& head, const render::View& view) {
   return xr_interaction::move_world(render::make_initial_placement(view), Vec3(0.0), xr_interaction::heading_rotation(head.orientation), 1,
                                     head.position);
@@ -45,26 +45,26 @@ XrHand room_hand(const render::xr::ControllerState& state) {
 struct HeadsetSession::Impl {
   std::mutex queue_lock;  // outlives the device
   std::unique_ptr<render::xr::Headset> headset;
-  std::int64_t retry_ns = 0;    ///< not before
-  std::int64_t started_ns = 0;  ///< the session
-  std::string said;             ///< what was lost last
+  std::int64_t retry_ns = 0;    ///< earliest time of the next attempt
+  std::int64_t started_ns = 0;  ///< start of the session
+  std::string said;             ///< last reported loss
   std::int64_t said_ns = 0;
-  std::string broken;  ///< what went wrong in a frame; follow() acts on it
-  bool waits = false;  ///< for a frame that the runtime keeps longer than kPatience
+  std::string broken;  ///< error in a frame; handled by follow()
+  bool waits = false;  ///< waiting for a frame that the runtime delays longer than kPatience
   bool told_waits = false, waits_news = false;
-  int unseen = 0;     ///< frames in a row whose views no picture can be made for
-  bool left = false;  ///< the person has ended it by the runtime's own ways
+  int unseen = 0;     ///< consecutive frames whose views cannot be rendered
+  bool left = false;  ///< the user has ended the session through the runtime
   std::optional<Placement> placement;
-  std::int64_t placed_ns = 0;  ///< since then the hand is where the picture has it
+  std::int64_t placed_ns = 0;  ///< time of placement, from which the probe position matches the image
   XrControllers hands;
   render::XrFramePacing pace;
-  int pictures = 0;            ///< that were shown
-  XrTime last_time = 0;        ///< of the last frame; 0: none before
-  std::optional<Vec3> gaze;    ///< where the eyes look when the picture is seen, a direction in the room; none: not known
-  std::optional<Vec3> held_m;  ///< the middle of the hands that hold the world; none: they do not
+  int pictures = 0;            ///< number of frames shown
+  XrTime last_time = 0;        ///< time of the last frame; 0: no frame so far
+  std::optional<Vec3> gaze;    ///< gaze direction at display time, in tracking space; none: not known
+  std::optional<Vec3> held_m;  ///< center of the controllers that grab the world; none: they do not
   DeviceRegistration desk;
   XrPanel panel;
-  std::uint64_t starts = 0;  ///< of sessions: each has a local space of its own
+  std::uint64_t starts = 0;  ///< number of sessions started: each has its own local space
 
   void lose(std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HapticSession& hand);
@@ -73,9 +73,9 @@ struct HeadsetSession::Impl {
   void stop();
 };
 
-/// What hangs on the session goes with it.
+/// Stops the session and releases everything that depends on it.
 void HeadsetSession::Impl::stop() {
-  if (headset && headset->is_started()) headset->session().stop_wait();  // before anything that it uses goes
+  if (headset && headset->is_started()) headset->session().stop_wait();  // before anything that it uses is destroyed
   panel.release();
   if (headset) headset->stop();
 }
@@ -96,7 +96,7 @@ void HeadsetSession::configure(Presenter::Options& options) {
   options.before_device_created = [this] { impl_->stop(); };
 }
 
-/// It is tried again, at once where it had been there for some time; the runtime's own instance goes with it where that was lost.
+/// Handles a loss: retries, at once if the session had run for some time; a lost runtime instance is released as well.
 void HeadsetSession::Impl::lose(std::int64_t now_ns) {
   const auto wait_ns = std::int64_t(1e9 * kRetryIntervalS);
   last_time = 0;
@@ -124,7 +124,7 @@ Outcome HeadsetSession::poll(Presenter& screen, std::int64_t now_ns, const std::
     auto opened = render::xr::Headset::open();
     if (!opened) return Done{};
     p.headset = std::move(*opened);
-    // the new runtime's own device; where it makes none, the window has one of its own
+    // uses the device created by the new runtime; if that fails, the window creates its own
     if (const Outcome made = screen.recreate(); !made) {
       p.headset.reset();
       CATENA_CHECK(screen.recreate());
@@ -169,7 +169,7 @@ void HeadsetSession::update_panel(Presenter& screen) {
 
 std::optional<xr_interaction::PanelPointer::Mouse> HeadsetSession::take_panel_mouse() { return impl_->panel.take_mouse(); }
 
-/// A device on the desk, where one holds the probe.
+/// Updates the registration of a desktop device, if one drives the probe.
 Outcome HeadsetSession::Impl::take_desk(const render::xr::Frame& frame, HapticSession& hand, const std::array<XrHand, 2>& now) {
   if (!frame.should_render || hand.is_mouse() || hand.controller()) return Done{};
   render::xr::Session& session = headset->session();
@@ -184,7 +184,7 @@ Outcome HeadsetSession::Impl::take_desk(const render::xr::Frame& frame, HapticSe
   return Done{};
 }
 
-/// What the hands do to the world, to the probe, and what they are told. Poses go to the recording as they are when the picture is seen.
+/// Applies the controllers to the world and to the probe, and their haptic output. Recorded poses are those at display time.
 Outcome HeadsetSession::Impl::take_hands(const render::xr::Frame& frame, HapticSession& hand) {
   using haptics::log::TrackedPart;
   render::xr::Actions& actions = headset->actions();
@@ -216,7 +216,7 @@ Outcome HeadsetSession::Impl::take_hands(const render::xr::Frame& frame, HapticS
 
   CATENA_CHECK(take_desk(frame, hand, hands_then));
 
-  // the probe is where the hand is now
+  // the probe is at the controller's present position
   haptics::TrackedController* controller = hand.controller();
   if (!controller) return Done{};
   const std::int64_t now = now_ns();
@@ -226,7 +226,7 @@ Outcome HeadsetSession::Impl::take_hands(const render::xr::Frame& frame, HapticS
     CATENA_TRY(const render::xr::ControllerState state, actions.controller(XrControllers::kProbeHand, *at));
     probe = room_hand(state);
   }
-  if (panel.captures_pointer()) probe.select = 0;  // it means the panel
+  if (panel.captures_pointer()) probe.select = 0;  // the trigger acts on the panel
   controller->push_pose(hands.make_controller_pose(probe, now));
   const bool settled = placement && now - placed_ns > kSettlesNs;
   const auto call = hands.next_vibration(controller->peaks(), now, settled && headset->session().is_focused(), probe);
@@ -236,7 +236,7 @@ Outcome HeadsetSession::Impl::take_hands(const render::xr::Frame& frame, HapticS
   return actions.vibrate(XrControllers::kProbeHand, call.vibration.amplitude, call.vibration.frequency_hz, call.vibration.duration_ns);
 }
 
-/// How large the world is, over the hands that scale it.
+/// Shows the scale of the world above the controllers that change it.
 void HeadsetSession::Impl::show_scale(render::FramePacket& packet) const {
   if (!held_m || !placement) return;
   render::LabelItem label;
@@ -251,10 +251,10 @@ void HeadsetSession::Impl::show_scale(render::FramePacket& packet) const {
 Result<bool> HeadsetSession::draw(Presenter& screen, HapticSession& hand, const FrameCallbacks& content) {
   Impl& p = *impl_;
   const auto broken = [&](const std::string& why) {
-    p.broken = why;  // follow() acts on it
+    p.broken = why;  // handled by follow()
     return false;
   };
-  // a runtime that keeps the frame does not keep the window
+  // a runtime that delays the frame must not delay the window
   auto begun = p.headset->begin_within(p.waits ? kTurn : kPatience);
   if (!begun) return broken(begun.error().message);
   std::optional<render::xr::Frame>& frame = *begun;
@@ -331,7 +331,7 @@ void HeadsetSession::request_exit() {
     const auto frame = p.headset->begin_within(kTurn);
     if (!frame || (*frame && !p.headset->skip(**frame))) break;
   }
-  p.stop();  // whether it ran or not: the device goes next
+  p.stop();  // stop in any state: the device is destroyed next
 }
 
 std::string HeadsetSession::status_text() const {

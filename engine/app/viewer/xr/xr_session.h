@@ -1,7 +1,6 @@
-/// The headset beside the window, for `catena view --xr`: it draws both eyes, the window mirrors the first one. What is lost is said once,
-/// the window goes on, and the headset is tried again, at once and then every kRetryIntervalS: its session, or its runtime (which may be
-/// gone for a while) with a new graphics device. Nothing here is OpenXR's own (render/xr is); without it, open() is one sentence. Frame
-/// thread.
+/// The headset session of `catena view --xr`: renders both eyes, while the window mirrors the first one. When the headset is lost, this is
+/// reported once, the window continues, and the session is retried immediately and then every kRetryIntervalS: the session, or the runtime
+/// (which may be gone for a while) with a new graphics device. Independent of OpenXR types (render/xr has those). Frame thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -18,52 +17,56 @@
 
 namespace catena::app {
 
+/// Owns the connection to the headset, its controllers and panel.
 class HeadsetSession {
  public:
   static constexpr double kRetryIntervalS = 1;
 
+  /// Connects to the headset. An Error if there is none, or if the program was built without OpenXR.
   static Result<std::unique_ptr<HeadsetSession>> open();
   ~HeadsetSession();
   HeadsetSession(const HeadsetSession&) = delete;
   HeadsetSession& operator=(const HeadsetSession&) = delete;
 
-  /// For the screen's device: made by the headset's runtime while there is one. The screen lives shorter than this.
+  /// Sets the options so that the presenter's device is created by the headset's runtime while there is one. The presenter must be
+  /// destroyed before this session.
   void configure(Presenter::Options& options);
 
-  /// What happened: states begin and end, what was lost is tried again. What is to be said goes to `say`.
-  /// Errors: the graphics device cannot be made any more.
+  /// Call once per turn of the loop: handles session state changes and retries a lost headset. `say` receives the messages for the user. An
+  /// Error if the graphics device cannot be recreated.
   Outcome poll(Presenter& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& say);
-  /// Frames are made: draw() paces the loop.
+  /// Returns whether the headset displays frames; then draw() paces the loop.
   bool is_running() const;
-  /// What a frame is made of.
+  /// Functions that supply the content of a frame.
   struct FrameCallbacks {
-    std::function<Result<render::FramePacket>()> make_packet;  ///< of the scene as it is now
-    /// Just before it is drawn: the hand in it as it is by now (late latching; nothing else moves, both eyes see the same).
+    std::function<Result<render::FramePacket>()> make_packet;  ///< Makes the packet of the scene in its current state.
+    /// Updates the probe in the packet just before rendering (late latching); nothing else changes, and both eyes see the same.
     std::function<void(render::FramePacket& packet)> late_latch;
-    std::function<void(const render::View& view, render::FramePacket& packet)> apply_view;  ///< what follows from where the eye is
-    std::function<render::QualityLevelOptions(const render::FramePacket& packet)>
-        classify_rays;  ///< what the rays have to do, once it was drawn
+    std::function<void(const render::View& view, render::FramePacket& packet)> apply_view;  ///< Updates what depends on the view.
+    /// Returns the ray casting methods the packet needs, once rendered.
+    std::function<render::QualityLevelOptions(const render::FramePacket& packet)> classify_rays;
   };
-  /// A frame: it is waited for, the hands are looked at, and both eyes are drawn as well as its time allows. True: the screen's picture is
-  /// the first eye's. False: nobody sees anything now, or the headset is lost. Errors: what a window's picture would fail with, too.
+  /// Waits for the next frame, processes the controllers, and renders both eyes at the quality that the time allows. Returns true if the
+  /// presenter's image is then the first eye's; false if nothing is displayed or the headset is lost. An Error if a frame in the window
+  /// would fail for the same reason.
   Result<bool> draw(Presenter& screen, HapticSession& hand, const FrameCallbacks& content);
-  /// The menu button brings the window, panels and all, before the person, and sends it away again. After the window was shown: as it is
-  /// now, on that panel.
+  /// Updates the XR panel, which shows the window with its GUI; the menu button brings it in front of the user and dismisses it. Call after
+  /// the window was shown.
   void update_panel(Presenter& screen);
-  /// The controller as a mouse on the panel, since the last call; pixels of the window. Nothing while it points elsewhere.
+  /// Returns the controller as a mouse on the panel since the last call, in pixels of the window; nothing if it points elsewhere.
   std::optional<xr_interaction::PanelPointer::Mouse> take_panel_mouse();
-  /// Asks the runtime to end the session, and gives it a moment for that.
+  /// Asks the runtime to end the session and waits briefly for it.
   void request_exit();
 
-  /// "headset focused, 1 unit = 23 cm", for the title.
+  /// Returns "headset focused, 1 unit = 23 cm", for the window title.
   std::string status_text() const;
-  /// "headset: 880 pictures, 3 late after the first 30, 0 at half rate", for the last words.
+  /// Returns "headset: 880 pictures, 3 late after the first 30, 0 at half rate", for the summary.
   std::string summary_text() const;
-  /// A hand has hold of the world, which moves with it.
+  /// Returns whether a controller is grabbing the world.
   bool is_grabbing_world() const;
-  /// The metres of what holds the probe, in the world as it stands in the room: of the controller, or of a device that is registered.
+  /// Returns the workspace that maps meters of the controller or the registered device to the world; nothing if it is not known.
   std::optional<scene::Workspace> probe_workspace(const HapticSession& hand) const;
-  /// The registration of a device on the desk; null where there is no headset.
+  /// Returns the registration of a device on the desk; null in a build without OpenXR.
   DeviceRegistration* device_registration();
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 using field::Index3;
 
-/// Read as `like` is. Without memory for the ghosts: linear.
+/// Gives the grid the interpolation of `like`; linear if there is no memory for the ghost voxels.
 template <class Grid>
 std::shared_ptr<const Grid> as(const Grid& like, std::shared_ptr<const Grid> grid) {
   if (like.interpolation() != field::Interpolation::cubic) return grid;
@@ -33,7 +33,7 @@ auto make(const field::VectorGrid& like, const field::Mapping& m, const Index3& 
   return as(like, field::make_vector_grid(like.name(), m, n, values, valid));
 }
 
-/// 1 where a voxel has its value: it is a corner of a cell that is valid.
+/// 1 for a voxel with a defined value, that is a corner of a valid cell.
 template <class Grid>
 std::vector<std::uint8_t> valid_voxels(const Grid& grid, const Index3& origin, const Index3& n) {
   std::vector<std::uint8_t> valid;
@@ -95,8 +95,9 @@ std::optional<InterpolationError> floor_of(const Grid& grid, double scale) {
   f.at_4h = field::compute_difference(*levels->grids[1], *levels->grids[2]).rms;
   f.at_h = extrapolate_from_errors(f.at_2h, f.at_4h);
   if (grid.interpolation() == field::Interpolation::cubic) {
-    // the leading part of its error goes as t (1 - t) (1 - 2 t) h^3: seen at the quarters of cells, 0 midway, where h^4 is seen. The error
-    // lies between what either leads to: their geometric mean
+    // the leading part of its error is proportional to t (1 - t) (1 - 2 t) h^3: it appears at the quarters of cells and is 0 midway, where
+    // the h^4 term appears. The error lies between the extrapolations of the two: their geometric mean is used lies between what either
+    // leads to: their geometric mean
     f.at_4h = field::compute_difference(*levels->grids[0], *levels->grids[2]).rms;
     const double order = std::min(f.at_h.order, 3.0);
     f.at_h.error = std::sqrt(f.at_h.error * f.at_4h / std::exp2(2 * order));

@@ -1,4 +1,5 @@
-/// What a fetch takes: places along random straight walks, as a hand's fetches lie, and a repeat (timing.h) over them.
+/// Cost of a field fetch: positions along random straight lines, distributed like the fetches of a probe, and a timed run (timing.h) over
+/// them.
 #pragma once
 #include <vector>
 
@@ -8,10 +9,11 @@
 
 namespace catena::app::tradeoff {
 
-/// 1e5 places in a box of indices, a tenth of a voxel from one to the next of a walk; the same at every call.
+/// Returns 1e5 positions in a box of grid indices, on straight lines with a tenth of a voxel between neighbors; the same at every call.
 std::vector<Vec3> straight_sample_paths(const field::Box& box);
 
-/// Nanoseconds a place of `fetch`(place), a number; it and the places outlive the repeat's use.
+/// Returns a timed run of `fetch(position)`, which returns a number: nanoseconds per position. `places`, and whatever `fetch` refers to,
+/// must outlive it.
 template <class Fetch>
 TimedRun make_fetch_run(const std::vector<Vec3>& places, Fetch fetch) {
   return [&places, fetch]() mutable -> Result<double> {

@@ -11,19 +11,19 @@
 namespace catena::app::tradeoff {
 namespace {
 
-constexpr double kKnee = 0.1;  // of the chord: what is less deep is none
+constexpr double kKnee = 0.1;  // fraction of the chord: a knee less deep does not count
 
 bool counts(const Point& p, CostKind cost) { return p.is_selectable && std::isfinite(p.error) && std::isfinite(get_cost(p, cost)); }
 
-/// What is exact to the last bit has a place on a logarithmic axis, too.
+/// Logarithm with a lower bound, so that an exact result also has a position on a logarithmic axis.
 double log_of(double value, double least) { return std::log(std::max(value, least)); }
 
-/// -1: error and cost trade evenly.
+/// Index of the knee of the front; -1: none, error and cost trade evenly.
 int knee(const std::vector<Point>& points, const std::vector<int>& front, CostKind cost) {
   if (front.size() < 3) return front.back();
   double least = 1e-300;
   for (const int i : front)
-    if (points[i].error > 0) least = points[i].error;  // falls along the front
+    if (points[i].error > 0) least = points[i].error;  // errors fall along the front
   const auto x = [&](int i) { return log_of(get_cost(points[i], cost), 1e-300); };
   const auto y = [&](int i) { return log_of(points[i].error, 0.1 * least); };
   const double x0 = x(front.front()), dx = x(front.back()) - x0, y0 = y(front.front()), dy = y(front.back()) - y0;
@@ -42,7 +42,7 @@ bool alike(const Point& a, const Point& b, CostKind cost) {
   return a.time.lower_quartile <= b.time.upper_quartile && b.time.lower_quartile <= a.time.upper_quartile;
 }
 
-/// Of those that reach the floor.
+/// The cheapest of the points in `good`.
 int cheapest(const std::vector<Point>& points, const std::vector<int>& good, CostKind cost) {
   const int least =
       *std::min_element(good.begin(), good.end(), [&](int a, int b) { return get_cost(points[a], cost) < get_cost(points[b], cost); });
@@ -87,7 +87,7 @@ PickedPoint pick_point(const Curve& curve, const Target& target) {
   const auto error = [&](int i) { return std::max(points[i].error, floor); };
   const auto cost = [&](int i) { return get_cost(points[i], curve.cost); };
   PickedPoint picked;
-  double most = 0;  // of the errors that will do
+  double most = 0;  // maximum acceptable error
   if (target.error) {
     picked.at_floor = *target.error < floor;
     most = std::max(*target.error, floor);
@@ -115,7 +115,7 @@ std::string describe_discretization_error(const Curve& curve) {
 
 namespace {
 
-/// The choice on one curve, and the sentence that says why. Errors that the reference cannot tell apart are one.
+/// Makes the choice on one curve and states its reason. Errors that the reference cannot resolve count as equal.
 class Chooser {
  public:
   explicit Chooser(Curve& curve);
@@ -133,9 +133,9 @@ class Chooser {
   Curve& curve_;
   const std::vector<Point>& points_;
   const bool bytes_;
-  double told_ = 0, reached_ = 0;         // what the reference can tell; the floor
-  std::vector<Point> seen_;               // with errors as far as they can be told
-  std::vector<int> all_, good_, untold_;  // that count; not above the floor; not above what can be told
+  double told_ = 0, reached_ = 0;         // resolvable error of the reference; discretization error
+  std::vector<Point> seen_;               // with errors limited to the resolvable error
+  std::vector<int> all_, good_, untold_;  // selectable; at the discretization error; below the resolvable error
 };
 
 Chooser::Chooser(Curve& curve) : curve_(curve), points_(curve.points), bytes_(curve.cost == CostKind::bytes), seen_(curve.points) {
@@ -184,10 +184,10 @@ std::string Chooser::cheap_enough(int i, const std::string& level) const {
                      error, level);
 }
 
-/// No setting changes the error: what the scene has stays, unless another one is clearly cheaper.
+/// No setting changes the error: the scene's setting stays, unless another one is clearly cheaper.
 void Chooser::take_of_equals() {
   const int now = curve_.current, least_cost = cheapest(seen_, all_, curve_.cost);
-  // the first as listed of those that noise cannot tell apart
+  // the first in the list of those whose costs differ only by noise
   const int best = *std::find_if(all_.begin(), all_.end(), [&](int i) { return alike(points_[i], points_[least_cost], curve_.cost); });
   curve_.is_flat = now >= 0 && alike(points_[now], points_[best], curve_.cost);
   take(curve_.is_flat ? now : best, fmt::format("{}{}.",
@@ -198,7 +198,7 @@ void Chooser::take_of_equals() {
                                                                : ", so that the cheapest will do"));
 }
 
-/// Every setting has its price: the knee of the front, where it has one.
+/// Error and cost are in conflict: the knee of the front is chosen, if there is one.
 void Chooser::take_knee() {
   const std::vector<int>& front = curve_.front;
   const int bend = knee(seen_, front, curve_.cost);
@@ -221,7 +221,7 @@ void Chooser::take_knee() {
   }
 }
 
-/// What the neighbours on the front would give and take.
+/// Describes the error and cost differences to the neighbors on the front.
 std::string Chooser::knee_words(const std::string& begin) const {
   const std::vector<int>& front = curve_.front;
   const auto at = static_cast<std::size_t>(std::ranges::find(front, curve_.chosen) - front.begin());

@@ -1,6 +1,6 @@
-/// The list of what `catena tradeoff SCENE` measures. A curve more is one file in measure/data, measure/hand or measure/eye and one line
-/// in registry.cpp. A measurement answers with as many curves as the scene has things for it; none, with a sentence in
-/// Workload::left_out, where it has nothing. An Error is the machine's, and leaves that measurement out.
+/// Registry of the measurements of `catena tradeoff SCENE`. To add one, add a file in measure/data, measure/haptics or measure/rendering
+/// and a line in registry.cpp. A measurement returns one curve per item of the scene it applies to; none, with a sentence in
+/// Workload::skipped, if there is no such item. An Error is a failure of the system and omits that measurement.
 #pragma once
 #include <span>
 #include <vector>
@@ -9,25 +9,27 @@
 
 namespace catena::app::tradeoff {
 
+/// One measurement.
 struct Measurement {
   const char* name;
-  const char* category;  ///< data, hand or eye
+  const char* category;  ///< "data", "hand" (haptics) or "eye" (rendering).
   Result<std::vector<Curve>> (*measure)(Workload& subject);
 };
+/// Returns all measurements, in the order in which they run.
 std::span<const Measurement> measurements();
 
 // measure/data
-Result<std::vector<Curve>> measure_grid_spacing(Workload& subject);   ///< interpolation error by the grid's spacing
-Result<std::vector<Curve>> measure_interpolation(Workload& subject);  ///< linear or cubic cells
+Result<std::vector<Curve>> measure_grid_spacing(Workload& subject);   ///< Interpolation error against grid spacing.
+Result<std::vector<Curve>> measure_interpolation(Workload& subject);  ///< Linear against cubic interpolation.
 
-// measure/hand
+// measure/haptics
 Result<std::vector<Curve>> measure_streamline(Workload& subject);
 Result<std::vector<Curve>> measure_isosurface(Workload& subject);
 Result<std::vector<Curve>> measure_value_precision(Workload& subject);
 Result<std::vector<Curve>> measure_tick_rate(Workload& subject);
 Result<std::vector<Curve>> measure_chain_length(Workload& subject);
 
-// measure/eye
+// measure/rendering
 Result<std::vector<Curve>> measure_quality(Workload& subject);
 Result<std::vector<Curve>> measure_ray_step(Workload& subject);
 Result<std::vector<Curve>> measure_ray_grid(Workload& subject);

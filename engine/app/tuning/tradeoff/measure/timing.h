@@ -1,5 +1,5 @@
-/// Times that a busy machine does not decide: the settings of a curve are run in turns, each round beginning with another one, and a
-/// setting's time is the median of its rounds, its spread their quartiles. Processor time where the processor does the work.
+/// Timing that is robust against load on the system: the settings of a curve run interleaved, each round starting with another one. The
+/// time of a setting is the median over its rounds, its spread the quartiles. Processor time where the processor does the work.
 #pragma once
 #include <functional>
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace catena::app::tradeoff {
 
-/// One repeat of a setting: what it took, in the unit of the curve.
+/// One timed run of a setting; returns its duration in the unit of the curve.
 using TimedRun = std::function<Result<double>()>;
 
-/// Rounds until `seconds` of wall time are over, three at least (one, where that takes twice as long) and `most` at most. The first round
-/// warms up and does not count.
+/// Times the settings in rounds until `seconds` of wall time have passed, at least three rounds (one, if that takes twice as long) and at
+/// most `most`. The first round is a warm-up and does not count. An Error if a run fails.
 Result<std::vector<Timing>> time_interleaved(const std::vector<TimedRun>& settings, double seconds, int most = 31);
 
-/// The same into the points of a curve; a repeat is one of each, in their order.
+/// The same, written to the points of a curve; `repeats` has one run per point, in order.
 Outcome time_points(Curve& curve, const std::vector<TimedRun>& repeats, double seconds, int most = 31);
 
-/// Median and quartiles; not finite of nothing.
+/// Returns median and quartiles; NaN for an empty list.
 Timing compute_timing(std::vector<double> times);
 
 }  // namespace catena::app::tradeoff

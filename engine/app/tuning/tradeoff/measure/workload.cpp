@@ -16,15 +16,15 @@ namespace catena::app::tradeoff {
 namespace {
 
 constexpr double kSpeed_m_per_s = 0.15;
-constexpr double kReach_m = 0.1;  // of a hand whose scene states no workspace
+constexpr double kReach_m = 0.1;  // reach of a device whose scene states no workspace
 constexpr double kTau = 2 * std::numbers::pi;
 
-/// A tremor and a wander beside the way, within `reach`.
+/// Offset of a tremor and a slow drift next to the path, within `reach`.
 Vec3 beside(double t, double reach) {
   return reach * Vec3(std::sin(kTau * 1.3 * t), std::sin(kTau * 1.7 * t + 1), std::cos(kTau * 1.1 * t));
 }
 
-/// Where a way from the outside of the domain to its middle first meets the level, and the gradient there.
+/// First point at which a straight path from outside the domain to its center crosses the level, and the gradient there.
 std::optional<std::pair<Vec3, Vec3>> first_crossing(const field::ScalarField& s, double level) {
   const Bounds box = s.world_bounds();
   field::Cursor cursor;
@@ -88,7 +88,8 @@ std::optional<ProbeMotion> motion_through_surface(scene::Scene& scene, const Nam
   const field::ScalarField& s = *field;
   const auto met = first_crossing(s, level->number);
   if (!met) return std::nullopt;
-  const Vec3 p = met->first, n = (side != nullptr && side->string == "below" ? -1.0 : 1.0) * direction(met->second);  // to the free side
+  // n points to the free side
+  const Vec3 p = met->first, n = (side != nullptr && side->string == "below" ? -1.0 : 1.0) * direction(met->second);
   const Vec3 a = direction(cross(n, std::fabs(n.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0))), b = cross(n, a);
   const json::Node* release = link.node.find("release");
   double deep = std::min(0.01 / scene.workspace.meters_per_unit, 0.03 * s.domain_length());

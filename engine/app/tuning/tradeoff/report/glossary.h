@@ -1,16 +1,18 @@
-/// The words of a report that a reader may not know, for the list at the end of its page: only those that stand on it are written.
+/// Glossary for the end of a report page: terms that a reader may not know. A page lists only the terms that it uses.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace catena::app::tradeoff {
 
+/// One term of the glossary.
 struct GlossaryEntry {
   const char* term;
-  const char* trigger;  ///< what stands in a report that uses it; nullptr: in every one
+  const char* trigger;  ///< Text whose presence in a report means that the term is used; nullptr: listed in every report.
   const char* definition;
 };
 
+/// Returns all entries, in the order of the page.
 inline const std::vector<GlossaryEntry>& report_glossary() {
   static const std::vector<GlossaryEntry> words{
       {"the data's own error", nullptr,

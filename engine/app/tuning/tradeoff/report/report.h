@@ -1,4 +1,5 @@
-/// A run of `catena tradeoff SCENE`: its curves and where they come from. One file of JSON holds all of it; the page is made of one or two.
+/// Report of one run of `catena tradeoff SCENE`: its curves and their origin. One JSON file holds all of it; an HTML page is made of one
+/// report or two.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,33 +11,38 @@
 
 namespace catena::app::tradeoff {
 
+/// The result of one run.
 struct Report {
-  std::string source;                                         ///< the scene's or data file's name, without its folder
-  std::vector<std::pair<std::string, std::string>> metadata;  ///< version, processor, GPU, build, date, effort ..., in order
+  std::string source;                                         ///< File name of the scene or data file, without its folder.
+  std::vector<std::pair<std::string, std::string>> metadata;  ///< Version, processor, GPU, build, date, effort ..., in order.
   std::vector<Curve> curves;
-  std::vector<std::string> skipped;  ///< a sentence each
+  std::vector<std::string> skipped;  ///< Measurements that were skipped, a sentence each.
 };
 
+/// Returns the report as JSON; read_report() reads it back.
 std::string to_json(const Report& report);
-/// Error: FILE:LINE: what; what was expected.
+/// Reads a report. An Error, "FILE:LINE: problem; what was expected", if the file cannot be read or is not a valid report.
 Result<Report> read_report(const std::string& path);
-/// Whether a JSON file says that it is one; false also where it cannot be read.
+/// Returns whether the file is JSON and identifies itself as a report; false if it cannot be read.
 bool is_report(const std::string& path);
 
-/// Of that id; null where there is none, or no report.
+/// Returns the curve with that id; null if there is none or `report` is null.
 const Curve* find_curve(const Report* report, const std::string& id);
 
+/// Returns the points of the curve as a CSV table.
 std::string to_csv(const Curve& curve);
 
-/// One page that opens without a network. `plots`: SVG, none or more a curve. `other`: beside the first.
+/// Returns one HTML page that opens without network access. `plots`: SVG texts per curve, possibly none. `other`: report to compare with,
+/// shown next to the first; may be null.
 std::string to_html(const Report& report, const Report* other, const std::vector<std::vector<std::string>>& plots);
 
-/// The gnuplot script of a curve's plots, one after the other into `files` (SVG): error against each cost that was measured, or the cost
-/// alone where there is no error.
+/// A gnuplot script that draws the plots of a curve one after the other into `files` (SVG): error against each measured cost, or the cost
+/// alone where no error was measured.
 struct PlotScript {
   std::string text;
   std::vector<std::string> files;
 };
+/// Returns the script for `curve`, with `other` (may be null) drawn for comparison; file names start with `prefix`.
 PlotScript plot_script(const Curve& curve, const Curve* other, const std::string& prefix);
 
 }  // namespace catena::app::tradeoff

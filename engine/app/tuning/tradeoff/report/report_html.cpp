@@ -27,7 +27,7 @@ const Point* same(const Curve* other, const Point& p) {
   return nullptr;
 }
 
-/// What is written: all of it code, or what stands between backquotes.
+/// Configuration text of a point as HTML: code throughout, or only between backquotes.
 std::string ask(const Point& p) {
   if (p.config_text.find('`') == std::string::npos) return p.config_text.empty() ? "" : "<code>" + escape_html(p.config_text) + "</code>";
   std::string text;
@@ -41,7 +41,7 @@ std::string ask(const Point& p) {
   return text;
 }
 
-/// "481.4 us of processor a second".
+/// Formats a cost such as "481.4 us of processor a second".
 std::string cost_text(const Curve& c, const Point& p) {
   const std::string& unit = c.cost == CostKind::time ? c.time_name : c.cost == CostKind::work ? c.work_name : c.bytes_name;
   return fmt::format("{} <small>{}</small>", c.cost == CostKind::bytes ? format_bytes(p.bytes) : number(get_cost(p, c.cost)),
@@ -49,7 +49,7 @@ std::string cost_text(const Curve& c, const Point& p) {
 }
 
 std::string points_table(const Curve& c, const Curve* other) {
-  // what no row has needs no column
+  // a column is omitted if no row has a value
   const bool asked = std::any_of(c.points.begin(), c.points.end(), [](const Point& p) { return !p.config_text.empty(); });
   std::string text = "<div class=\"wide\"><table><tr><th>setting</th>";
   if (asked) text += "<th>how to ask for it</th>";
@@ -89,7 +89,7 @@ std::string points_table(const Curve& c, const Curve* other) {
   return text + "</table></div>\n";
 }
 
-/// Whether what is chosen is what the scene has, or can be written into it.
+/// Returns whether the chosen setting is the scene's own or can be written into the scene.
 bool can_be_had(const Curve& c) { return c.chosen >= 0 && (c.chosen == c.current || !c.points[c.chosen].config_text.empty()); }
 
 std::string section(const Curve& c, const Curve* other, const std::vector<std::string>& plots) {
@@ -104,7 +104,7 @@ std::string section(const Curve& c, const Curve* other, const std::vector<std::s
       text += " <b>Nothing needs to be changed.</b>";
     else if (!p.config_text.empty())
       text += " <b>Ask for it</b> by " + ask(p) + ".";
-    else if (c.category == "eye")  // a plan looks among all of them
+    else if (c.category == "eye")  // the tuning searches all rendering settings
       text += fmt::format(" <code>--plan error={:.2g}</code> finds the cheapest picture as exact as that.",
                           std::max(p.error, min_resolvable_error(c)));
     text += "</p>\n";
@@ -137,7 +137,7 @@ std::string summary(const Report& report) {
   return text + "</table></div>\n";
 }
 
-/// The list at the end of the page.
+/// The list of terms at the end of the page.
 std::string words_used(const Report& report) {
   std::string all;
   for (const Curve& c : report.curves) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kMark = "catena_tradeoff";
 constexpr int kFormat = 1;
-constexpr std::size_t kMostCurves = 256, kMostPoints = 4096, kMostId = 200;  // of a file that is read
+constexpr std::size_t kMostCurves = 256, kMostPoints = 4096, kMostId = 200;  // limits on a file that is read
 
 std::string json_of(const Point& p) {
   return fmt::format(
@@ -27,7 +27,7 @@ std::string json_of(const Point& p) {
 
 constexpr const char* kCosts[] = {"time", "work", "bytes"};
 
-/// The members of a curve that are text.
+/// Pairs of JSON key and member for the text members of a curve.
 template <class AnyCurve>
 auto words_of(AnyCurve& c) {
   return std::to_array({std::pair{"id", &c.id},
@@ -69,7 +69,7 @@ Result<double> number_at(const json::Node& node, std::string_view key) {
   return json::as_number(*found, key);
 }
 
-/// An index of a point, or -1.
+/// Reads an index of a point, or -1.
 Result<int> index_at(const json::Node& node, std::string_view key, std::size_t count) {
   return json::get_integer(node, key, -1, -1, static_cast<int>(count) - 1);
 }
@@ -106,7 +106,7 @@ Result<Curve> read_curve(const json::Node& node) {
   for (const auto& [key, word] : words_of(c)) {
     CATENA_TRY(*word, json::require_string(node, key));
   }
-  // its table has the id's name: it leads nowhere else
+  // the id names the file of the curve's table: it must not lead to another folder
   const bool plain = !c.id.empty() && c.id.size() <= kMostId && c.id.front() != '.' &&
                      std::ranges::none_of(c.id, [](unsigned char letter) { return letter == '/' || letter < ' '; });
   if (!plain) return json::error_at(node, "\"id\" is " + in_quotes(c.id) + "; the name of a table was expected");

@@ -18,7 +18,7 @@ std::vector<std::string> series_of(const Curve& c) {
   return all;
 }
 
-/// One axis of costs: bytes as KiB or MiB, so that its numbers are short.
+/// One axis of costs: bytes in KiB or MiB, so that the numbers are short.
 struct CostAxis {
   CostKind cost;
   double unit = 1;
@@ -32,7 +32,7 @@ CostAxis axis_of(CostKind cost, const std::string& name, double most) {
   return {cost, mega ? 1048576.0 : 1024.0, name + (mega ? ", MiB" : ", KiB")};
 }
 
-/// "cost error low high" of a point that has both; what is exact is drawn at `least`.
+/// Data row "cost error low high" of a point with cost and error; an exact result is plotted at `least`.
 std::string row(const Point& p, const CostAxis& axis, double least) {
   const double x = axis.at(p);
   if (!(x > 0) || !std::isfinite(p.error)) return {};
@@ -58,7 +58,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
     if (c != nullptr)
       for (const Point& p : c->points)
         if (p.error > 0 && std::isfinite(p.error)) least = std::min(least, p.error), most = std::max(most, p.error);
-  if (!(most > 0)) return script;  // all are exact
+  if (!(most > 0)) return script;  // all errors are zero
   for (const double level : {curve.discretization_error, curve.reference_error})
     if (level > 0) least = std::min(least, level), most = std::max(most, level);
   if (!std::isfinite(least) || !(most > 0) || curve.error_name.empty()) return script;
@@ -75,7 +75,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
         if (get_cost(p, cost) > 0 && std::isfinite(p.error))
           lo = std::min(lo, get_cost(p, cost)), hi = std::max(hi, get_cost(p, cost)), ++points;
     }
-    if (points < 2) continue;  // one place says nothing that its number does not
+    if (points < 2) continue;  // a plot of one point adds nothing to its number
     const CostAxis axis = axis_of(cost, *name, hi);
     lo *= 0.7 / axis.unit, hi *= 1.4 / axis.unit;
     if (cost == curve.cost && curve.front.size() > 1) {

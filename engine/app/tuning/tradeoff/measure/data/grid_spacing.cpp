@@ -1,5 +1,6 @@
-/// What interpolation, linear or cubic, errs by on each grid of the scene: seen at every 4th and every 2nd voxel, extrapolated to the grid
-/// itself. The last is the floor of all that is felt and drawn of it. Of a formula that is drawn from a grid the truth stands beside it.
+/// Interpolation error, linear or cubic, on each grid of the scene: measured at every 4th and every 2nd voxel, and extrapolated to the grid
+/// itself. The last is the discretization error of haptics and rendering. For a formula that is sampled on a grid the true error is shown
+/// too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace catena::app::tradeoff {
 namespace {
 
-/// Root mean square of grid - formula at random places of the grid.
+/// Root mean square of grid - formula at random points of the grid.
 double true_error(const field::AnyField& grid, const field::AnyField& formula) {
   std::mt19937 random(11);
   const auto unit = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };

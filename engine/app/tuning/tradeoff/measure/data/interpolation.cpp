@@ -1,7 +1,7 @@
-/// How each grid of the scene is read between its voxels: by linear or by cubic cells.
-///   error  root mean square of the interpolation's error, by the range of the values: seen at every 4th and every 2nd voxel and
-///          extrapolated to the grid itself (floor.h); where the field is a formula that is drawn from a grid, against the formula
-///   time   one fetch of value and gradient along straight walks, as a hand's fetches lie
+/// Interpolation of each grid of the scene: linear or cubic.
+///   error  root mean square of the interpolation's error, by the range of the values: measured at every 4th and every 2nd voxel and
+///          extrapolated to the grid itself (discretization_error.h); for a formula that is sampled on a grid, against the formula
+///   time   one fetch of value and gradient along straight sample paths, an access pattern like that of the haptics
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ TimedRun fetches(const FieldPtr& field, const std::vector<Vec3>& places) {
 field::AnyField any(std::shared_ptr<const field::ScalarGrid> grid) { return {std::move(grid), nullptr}; }
 field::AnyField any(std::shared_ptr<const field::VectorGrid> grid) { return {nullptr, std::move(grid)}; }
 
-/// Adds both ways of reading one grid to the curve.
+/// Adds both interpolations of one grid to the curve.
 template <class Grid>
 Outcome add_cells(Workload& subject, const Grid& grid, Curve& curve) {
   const std::shared_ptr<const Grid> linear = grid.as_linear();
@@ -46,8 +46,9 @@ Outcome add_cells(Workload& subject, const Grid& grid, Curve& curve) {
   return time_points(curve, {fetches(linear, places), fetches(cubic, places)}, 0.3 * subject.effort.haptics_s);
 }
 
-/// Cubic cells take longer everywhere: they are chosen where they are nearer by a quarter at least. Where rays go through the field as a
-/// volume, the fetch is not all that they cost: what the scene has stays.
+/// Cubic interpolation is always slower: it is chosen only if its error is smaller by at least a quarter. Where rays go through the field
+/// as a volume, the fetch is only part of the cost, and the scene's setting stays. volume, the fetch is not all that they cost: what the
+/// scene has stays.
 void decide(Curve& curve, bool as_volume) {
   const double gain = curve.points[0].error / curve.points[1].error, cost = curve.points[1].time.median / curve.points[0].time.median;
   curve.front = pareto_front(curve.points, curve.cost);
@@ -65,7 +66,7 @@ void decide(Curve& curve, bool as_volume) {
   curve.chosen = curve.current;
 }
 
-/// Whether a volume of the scene shows the field.
+/// Returns whether a volume of the scene shows the field.
 bool is_volume(scene::Scene& scene, scene::Entity field) {
   bool found = false;
   scene.entities.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) { found = found || volume.field == field; });

@@ -1,4 +1,4 @@
-/// What each link of the chain costs: the scene's chain cut off after 1, 2, ... links.
+/// Cost of each link of the chain: the scene's chain truncated after 1, 2, ... links.
 #include <fmt/format.h>
 
 #include "engine/app/tuning/tradeoff/measure/haptics/link_replay.h"

@@ -1,6 +1,6 @@
-/// How exactly an isosurface link stays on its surface: as it is, and on coarser grids. The link has no setting of its own: it goes on
-/// until the tangential way left is below 1e-8 L (haptics/constraints/isosurface).
-///   error  the root mean square over the ticks that hold of |s(p) - level| / |grad s| in the field as it is, by L
+/// Accuracy of an isosurface link on the given grid and on coarser grids. The link has no setting of its own: it iterates
+/// until the remaining tangential distance is below 1e-8 L (haptics/constraints/isosurface).
+///   error  root mean square of |s(p) - level| / |grad s| in the given field over the ticks in contact, by L
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/// The very tick of a program along a path, looked at or timed. Off the haptic thread.
+/// Runs the real tick of a program along a path, to observe or to time it. Not for the haptic thread.
 #pragma once
 #include <functional>
 #include <span>
@@ -10,21 +10,21 @@
 
 namespace catena::app::tradeoff {
 
-/// Calls `look` after every tick.
+/// Runs one tick per sample and calls `look`, if set, after each.
 void run_ticks(const haptics::HapticProgram& program, std::span<const haptics::ProbeSample> path,
                const std::function<void(const HapticState&)>& look);
 
-/// A repeat that runs the whole path and gives the processor's nanoseconds a tick. Both outlive it.
+/// Returns a timed run of the whole path: processor time in nanoseconds per tick. `program` and `path` must outlive it.
 TimedRun make_tick_run(const haptics::HapticProgram& program, std::span<const haptics::ProbeSample> path);
 
-/// The program without what a person can hold or switch: its links may be taken out.
+/// Returns the program without widgets and modes, so that its links can be removed.
 haptics::HapticProgram without_widgets(const haptics::HapticProgram& program);
 
-/// The program with one link alone, another constraint in its place where `constraint` is given.
+/// Returns the program reduced to the one link, always active, with `constraint` in place of its own if given.
 haptics::HapticProgram isolate_link(const haptics::HapticProgram& program, const std::string& name,
                                     std::shared_ptr<const haptics::Constraint> constraint = {});
 
-/// A curve for each link of the scene of a type; of one that cannot be measured the sentence "WHAT: why." in left_out.
+/// Measures a curve for each link of the given type; a link that cannot be measured adds the sentence "WHAT: reason." to Workload::skipped.
 Result<std::vector<Curve>> measure_links(Workload& subject, const std::string& type, const std::string& what,
                                          Result<Curve> (*measure)(Workload& subject, const NamedLink& link));
 

@@ -1,6 +1,6 @@
-/// How a streamline link is followed: every integrator, the embedded ones at several tolerances, and the curve that is traced once.
-///   error  the greatest distance of the proxy from the converged line, along the whole motion, by L
-///   floor  the lines through the same seed on the grid at 2 h and 4 h, extrapolated; a formula has none
+/// Methods of a streamline link: every integrator, the embedded ones at several tolerances, and the precomputed curve.
+///   error  maximum distance of the proxy from the reference line, along the whole motion, by L
+///   floor  discretization error: the lines through the same seed on the grid at 2 h and 4 h, extrapolated; a formula has none
 #include "engine/app/tuning/tradeoff/measure/haptics/streamline.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kReferenceTolerance = 1e-13;  // L
 
-/// The greatest distance of one line from another, over the arc lengths lo..hi, by L.
+/// Maximum distance of one line from another, over the arc lengths lo..hi, by L.
 double apart(const flow::Curve& line, const flow::NearestOnCurve& other, double lo, double hi, double length) {
   double most = 0;
   constexpr int kPlaces = 400;
@@ -34,11 +34,11 @@ struct Line : StreamlineSource {
   std::string name;
   flow::TraceOptions options;
   flow::CurvePtr truth;
-  double lo = 0, hi = 0;  ///< arc lengths that the hand comes to
+  double lo = 0, hi = 0;  ///< range of arc lengths that the probe reaches
   ProbeMotion motion;
 };
 
-/// How far the line that is traced once is off anywhere, as long as a link has it: the hand may hold a far pass. By L.
+/// Maximum error of the precomputed line over its full length in a link, since the proxy may be on any pass of it. By L.
 double anywhere(const Line& line) {
   const auto traced = flow::trace(line.flow, line.seed), truth = flow::trace(line.flow, line.seed, converged_trace_options(0));
   if (!traced || !truth) return kNotMeasured;
@@ -66,7 +66,7 @@ void add_floor(const Line& line, Curve& curve) {
                                           " voxel there is no line through the seed.";
       return;
     }
-    // no farther than both lines go
+    // limited to the range of both lines
     const double lo = std::max(line.lo, (*coarse)->knots().front().s), hi = std::min(line.hi, (*coarse)->knots().back().s);
     off[level - 1] = apart(**coarse, nearest, lo, hi, line.field->domain_length());
   }
@@ -84,7 +84,7 @@ Result<Line> make_line(Workload& subject, const NamedLink& link) {
   const auto motion = motion_along_streamline(subject.scene, link, subject.effort.motion_s);
   if (!motion) return Error{"from the seed of link \"" + link.name + "\" no line goes"};
   line.motion = *motion;
-  // somewhat farther than the hand goes
+  // somewhat longer than the probe path
   const double length = std::min(0.6 * probe_speed(subject.scene) * subject.effort.motion_s, 1.2 * line.field->domain_length());
   line.options = converged_trace_options(length + 0.02 * line.field->domain_length());
   CATENA_TRY(line.truth, flow::trace(line.flow, line.seed, line.options));
@@ -137,7 +137,7 @@ std::vector<StreamlineSetting> streamline_settings(const json::Node& link) {
   }
   std::vector<std::pair<double, std::string>> tolerances;
   for (int digits = 3; digits <= 13; digits += 2) tolerances.emplace_back(std::pow(10.0, -digits), fmt::format("1e-{}", digits));
-  // what the link itself says, if it is another one
+  // the setting that the link itself states, if it differs
   if (const json::Node* own = link.find("tolerance");
       own != nullptr && own->kind == json::Kind::number && own->number > 0 && own->number < 1) {
     const auto near = [&](const auto& t) { return std::fabs(t.first - own->number) <= 1e-9 * own->number; };
@@ -170,7 +170,7 @@ Result<Curve> measure_streamline_link(Workload& subject, const NamedLink& link) 
   curve.time_name = "ns of processor a ms of motion";
   curve.extra_columns = {"before the first tick, ms", "ticks not OK, %", "anywhere on its line, distance / L"};
 
-  // the line that errors are measured from, and a less exact one
+  // the reference line, and a less accurate one
   flow::TraceOptions coarser = line.options;
   coarser.tolerance *= 100;
   coarser.hermite_tolerance *= 100;
@@ -188,7 +188,7 @@ Result<Curve> measure_streamline_link(Workload& subject, const NamedLink& link) 
     rates.push_back(rate_hz);
     point.extra_values.resize(2, 0);
     point.extra_values.push_back(programs.size() == 1 ? anywhere(line) : kNotMeasured);
-    point.is_selectable = rate_hz == subject.rate_hz;  // the rate is a choice of its own (rate.cpp)
+    point.is_selectable = rate_hz == subject.rate_hz;  // the tick rate is chosen separately (tick_rate.cpp)
     curve.points.push_back(std::move(point));
   };
   const std::int64_t start = now_ns();
@@ -204,7 +204,7 @@ Result<Curve> measure_streamline_link(Workload& subject, const NamedLink& link) 
   };
   for (const StreamlineSetting& setting : settings) {
     if (setting.is_selected) continue;
-    // a fixed step is as long as the hand's way in a tick: the servo's rate is its knob
+    // a fixed step is as long as the probe's path in a tick: it depends on the tick rate
     const bool fixed = !setting.tolerance;
     for (const double times : fixed ? std::vector{0.25, 1.0, 4.0} : std::vector{1.0}) {
       const std::string rate = fmt::format("{:g}", times * subject.rate_hz);

@@ -1,4 +1,4 @@
-/// How often the servo ticks: the force that the hand gets against that of a servo of 10 kHz, and the largest spring that stays stable.
+/// Tick rate of the servo: the force compared with that of a servo of 10 kHz, and the largest spring stiffness that stays stable.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::vector<Vec3> forces_of(const haptics::HapticProgram& program, const std::ve
   return forces;
 }
 
-/// Root mean square of the difference, each force held until the next tick; seen at the finer servo's ticks.
+/// Root mean square of the difference, each force held until the next tick; evaluated at the ticks of the faster servo.
 double difference(const std::vector<Vec3>& coarse, double coarse_hz, const std::vector<Vec3>& fine, double fine_hz) {
   double sum = 0;
   for (std::size_t k = 0; k < fine.size(); ++k) {
@@ -90,7 +90,7 @@ Result<Curve> force_curve(Workload& subject) {
 }
 
 Result<Curve> stability_curve(Workload& subject) {
-  // the device that the scene names, or else the simulated one
+  // the device that the scene names, otherwise the simulated one
   StiffnessSetting setting;
   const haptics::SimulatedDeviceParameters simulated = haptics::desktop_device_parameters();
   setting.damping = simulated.device_damping_ns_per_m;
@@ -142,7 +142,7 @@ Result<Curve> stability_curve(Workload& subject) {
   return curve;
 }
 
-/// One rate for both: the faster of the two that the force and the spring ask for.
+/// Chooses one rate for both: the higher of the rates that the force and the stability require.
 void choose_one_rate(Curve& force, Curve& stability) {
   for (Curve* curve : {&force, &stability}) {
     choose_setting(*curve);
@@ -151,7 +151,7 @@ void choose_one_rate(Curve& force, Curve& stability) {
   Curve &slower = force.chosen < stability.chosen ? force : stability, &faster = &slower == &force ? stability : force;
   if (slower.chosen == faster.chosen) return;
   const auto setting = [](const Curve& curve) { return curve.points[static_cast<std::size_t>(curve.chosen)].setting; };
-  if (faster.is_flat)  // it asks for nothing: what the scene has stays
+  if (faster.is_flat)  // no requirement: the scene's rate stays
     slower.choice_reason =
         fmt::format("Here {} would do, but by the force no rate stands out, so that the scene's {} may stay: a servo has one rate.",
                     setting(slower), setting(faster));

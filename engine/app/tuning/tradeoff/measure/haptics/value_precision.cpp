@@ -1,6 +1,6 @@
-/// In how many bits the values of a grid are kept: floats, half floats, bytes between the least and the greatest value. TrialResult on a
-/// copy with its own trilinear fetch; Catena's hand reads floats, and has no setting for it.
-///   error  root mean square of what a sample differs by from that of floats, at places within the grid, by the range of the values
+/// Precision of the values of a grid: floats, half floats, and bytes between the minimum and the maximum value. An experiment on a
+/// copy with its own trilinear fetch; Catena's haptics reads floats and has no setting for it.
+///   error  root mean square difference of a sample from that of floats, at points within the grid, by the range of the values
 #include <fmt/format.h>
 
 #include <cmath>
@@ -85,7 +85,7 @@ Result<Curve> measure_grid(Workload& subject, const std::string& name, const fie
     curve.discretization_error_method =
         fmt::format("of linear interpolation between the samples, from every 2nd and 4th voxel, observed order {:.1f}", floor->at_h.order);
   }
-  // not on the last voxels themselves: a cell begins at each place
+  // excludes the last voxels: every point must be the start of a cell
   const std::vector<Vec3> places = straight_sample_paths({Vec3(0.0), Vec3(n.x - 1, n.y - 1, n.z - 1) - 1e-9});
   const auto add = [&](const char* setting, double size, const auto& block) {
     Point p{setting, "", "", 0, kNotMeasured, {}, size * static_cast<double>(floats.values.size()), {0}};

@@ -1,4 +1,4 @@
-/// How much memory of the device may be used: what does not fit is drawn at 1/2, 1/4 or 1/8 of its resolution.
+/// Memory budget of the device: grids that do not fit are rendered at 1/2, 1/4 or 1/8 of their resolution.
 #include <fmt/format.h>
 
 #include "engine/app/tuning/tradeoff/measure/registry.h"
@@ -31,10 +31,10 @@ Result<std::vector<Curve>> measure_memory_budget(Workload& subject) {
     auto renderer = render::Renderer::create(options);
     if (!renderer) break;
     auto picture = render_image(**renderer, eye.packet, settings);
-    if (!picture) break;  // nothing smaller is enough
+    if (!picture) break;  // smaller grids do not fit either
     const render::RenderStats stats = (*renderer)->stats();
     const double factor = stats.downsampled_grids.empty() ? 1 : stats.downsampled_grids.front().factor;
-    if (!curve.points.empty() && factor == curve.points.back().extra_values.back()) continue;  // the same picture
+    if (!curve.points.empty() && factor == curve.points.back().extra_values.back()) continue;  // the same image
     const render::ImageError error = render::measure_error(*picture, eye.reference);
     const std::string budget = fmt::format("{:.3g} MB", 1e-6 * static_cast<double>(stats.gpu_budget));
     const CandidateSetting tried{share > 0 ? budget : "as much as there is",

@@ -1,4 +1,4 @@
-/// What a person types after --quality: draft, balanced, a step, a stated error, reference; with the flicker of a slow turn.
+/// The values of --quality: draft, balanced, a step, a stated error, reference; with the flicker during a slow rotation.
 #include <fmt/format.h>
 
 #include "engine/app/render/render_options.h"
@@ -13,7 +13,7 @@ namespace {
 constexpr double kTurn_deg = 0.2;
 constexpr int kFrames = 3;
 
-/// The packet with its eye turned about the target.
+/// Copies of the packet with the camera rotated about the target.
 std::vector<render::FramePacket> slow_turn(const Workload& subject) {
   std::vector<render::FramePacket> frames;
   for (int k = 0; k < kFrames; ++k) {

@@ -1,4 +1,4 @@
-/// At how many pixels rays are marched: every one, every 2nd, every 4th each way, and where they are refined.
+/// Spacing of the ray grid: a ray at every pixel, every 2nd or every 4th in each direction, and its refinement.
 #include <fmt/format.h>
 
 #include "engine/app/tuning/tradeoff/measure/registry.h"

@@ -1,4 +1,4 @@
-/// How far apart a ray's samples are: the exact rays, plain and jittered, and the fast (pre-integrated) ones at every pixel.
+/// Sampling distance along a ray: the exact rays, plain and jittered, and the fast (pre-integrated) ones at every pixel.
 #include <fmt/format.h>
 
 #include "engine/app/tuning/tradeoff/measure/registry.h"

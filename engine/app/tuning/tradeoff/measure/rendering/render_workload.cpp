@@ -16,7 +16,7 @@
 namespace catena::app::tradeoff {
 namespace {
 
-constexpr double kSettled = 0.3;  // 1/255: a step that changes less is short enough
+constexpr double kSettled = 0.3;  // 1/255: the step is short enough if halving it changes less
 
 render::RenderSettings converged_trace_options(double step) {
   render::RenderSettings s = render::converged_level(step);
@@ -24,7 +24,7 @@ render::RenderSettings converged_trace_options(double step) {
   return s;
 }
 
-/// Halves the step until the picture settles, or the time is over.
+/// Renders the reference image: halves the step until the image converges or the time is over.
 Outcome find_truth(RenderWorkload& eye, double seconds) {
   const std::int64_t start = now_ns();
   double step = eye.has_raycast ? 0.5 : 1;
@@ -39,7 +39,7 @@ Outcome find_truth(RenderWorkload& eye, double seconds) {
   }
   eye.reference_step = step;
   if (!eye.has_raycast) return Done{};
-  // surfaces and layers are met where they are, however far apart samples would be
+  // surfaces and layers are intersected exactly, whatever the step
   render::RenderSettings coarse = render::exact_level(4);
   coarse.jitter = true;
   CATENA_TRY(const render::Image8 picture, render_image(*eye.renderer, eye.packet, coarse));
@@ -48,7 +48,7 @@ Outcome find_truth(RenderWorkload& eye, double seconds) {
   return Done{};
 }
 
-/// The same packet on coarser grids; false where one of them cannot be subsampled.
+/// Replaces the packet's grids by coarser ones; false if one of them cannot be subsampled.
 bool on_level(render::FramePacket& packet, std::map<const field::ScalarGrid*, ResolutionLevels<field::ScalarGrid>>& levels, int level) {
   const auto put = [&](std::shared_ptr<const field::ScalarGrid>& grid) {
     if (!grid) return true;

@@ -1,4 +1,4 @@
-/// How many samples the picture has: fewer pixels, scaled up, and several samples a pixel, against 4 x 4 samples a pixel.
+/// Samples of the image: fewer pixels, scaled up, and several samples per pixel, compared with 4 x 4 samples per pixel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ render::FramePacket sized(const render::FramePacket& packet, double factor) {
   return p;
 }
 
-/// To another size: the mean of what a pixel covers, or linear between pixel centres; premultiplied.
+/// Resizes an image: the mean over a pixel's area, or linear between pixel centers; premultiplied.
 render::Image8 resized(const render::Image8& from, std::uint32_t width, std::uint32_t height) {
   if (from.width == width && from.height == height) return from;
   render::Image8 to{width, height, std::vector<std::uint8_t>(std::size_t(4) * width * height)};
@@ -64,7 +64,7 @@ Result<std::vector<Curve>> measure_resolution(Workload& subject) {
           width, height));
   curve.work_name = "samples";
   const render::RenderSettings settings = eye.has_raycast ? render::exact_level(1) : render::RenderSettings{};
-  // what 4 x 4 samples still lack is seen beside 3 x 3
+  // the error of 4 x 4 samples is estimated from the difference to 3 x 3
   CATENA_TRY(const render::Image8 four, render_image(*eye.renderer, sized(eye.packet, 4), settings));
   CATENA_TRY(const render::Image8 three, render_image(*eye.renderer, sized(eye.packet, 3), settings));
   const render::Image8 truth = resized(four, width, height);

@@ -1,4 +1,4 @@
-/// How the grids are kept on the device: 16 or 32 bits a texel, whole or as bricks.
+/// Storage of the grids on the device: 16 or 32 bits per texel, dense or as bricks.
 #include <fmt/format.h>
 
 #include "engine/app/tuning/tradeoff/measure/registry.h"
