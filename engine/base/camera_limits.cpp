@@ -7,8 +7,9 @@
 namespace catena {
 
 namespace {
-constexpr double kLeastShare = 1e-12;  // of the coordinates: the direction of view has four digits then
-}
+// smallest distance of position and target, as a fraction of the largest coordinate: the view direction keeps four digits
+constexpr double kLeastShare = 1e-12;
+}  // namespace
 
 std::string validate_view(const Vec3& position, const Vec3& target) {
   const double size = std::max(max_abs(position), max_abs(target));

@@ -23,7 +23,7 @@ std::atomic<int> output_error{0};
 
 void keep_output_error(int descriptor, int code) noexcept {
   int none = 0;
-  if (code == EIO && ::isatty(descriptor) == 1) return;  // the terminal has been closed: nobody looks
+  if (code == EIO && ::isatty(descriptor) == 1) return;  // the terminal has been closed: the error has no reader
   if (descriptor == STDOUT_FILENO) output_error.compare_exchange_strong(none, code);
 }
 
@@ -46,12 +46,12 @@ void print_message(std::string_view line) noexcept { tell_line("catena: ", line)
 void print_nonblocking(int descriptor, std::string_view text, int wait_ms) noexcept {
   struct stat about {};
   if (::fstat(descriptor, &about) != 0) return keep_output_error(descriptor, errno);
-  // what others that print left in their buffer comes first, where that does not wait either
+  // flushes the stdio buffer first, as far as that does not block
   pollfd ready{descriptor, POLLOUT, 0};
   if (::poll(&ready, 1, wait_ms) != 1) return;
   std::fflush(descriptor == STDERR_FILENO ? stderr : stdout);
 
-  // a description of its own: O_NONBLOCK on the shared one would reach the shell
+  // opens the terminal or pipe separately: O_NONBLOCK on the shared file description would also affect the shell
   const bool waits = S_ISCHR(about.st_mode) || S_ISFIFO(about.st_mode);
   int own = -1;
   if (waits) {

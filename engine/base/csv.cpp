@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNotAsked = static_cast<std::size_t>(-1);
 
-/// Takes the text up to the next `separator` off the front.
+/// Removes the text up to the next `separator` from the front of `rest` and returns it.
 std::string_view take(std::string_view& rest, char separator, bool& last) {
   const std::size_t at = rest.find(separator);
   last = at == std::string_view::npos;
@@ -28,7 +28,7 @@ std::string header_words(const std::vector<std::string_view>& required, const st
   return "\"" + words + "\"";
 }
 
-/// The columns of an optional group: "qw,qx" is two columns that come together.
+/// Splits an optional group into its columns: "qw,qx" is two columns that must appear together.
 std::vector<std::string_view> columns_of(std::string_view group) {
   std::vector<std::string_view> columns;
   for (bool last = false; !last;) columns.push_back(take(group, ',', last));
@@ -39,11 +39,11 @@ struct Reader {
   const std::string& file;
   const std::vector<std::string_view>& required;
   const std::vector<std::string_view>& optional;
-  std::vector<std::string_view> all{};  ///< columns, in the order asked
+  std::vector<std::string_view> all{};  ///< names of all requested columns, in the requested order
 
   Error error(int line, const std::string& what) const { return Error{one_line(file + ":" + std::to_string(line) + ": " + what)}; }
 
-  /// Names of the header in file order.
+  /// Returns the column names of the header line in file order; an Error if they are not the expected ones.
   Result<std::vector<std::string_view>> header(std::string_view line) const {
     const std::string expected = "; the header " + header_words(required, optional) + " was expected";
     std::vector<std::string_view> names;
@@ -82,7 +82,7 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
     for (std::string_view name : columns_of(group)) reader.all.push_back(name);
   text = strip_bom(text);
 
-  // blank lines at the end do not count
+  // blank lines at the end are ignored
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   if (text.empty())
     return reader.error(1, "is empty; the header " + header_words(required, optional) + " and rows of numbers were expected");
@@ -91,7 +91,7 @@ Result<NumberTable> parse_csv(std::string_view text, const std::string& file, co
   CATENA_TRY(const auto names, reader.header(take(text, '\n', last_line)));
   if (last_line) return reader.error(1, "holds a header only; at least one row of numbers was expected");
 
-  // the table's columns in the order asked; where each cell of a row goes
+  // columns in the requested order; `slots` maps each cell of a row to its column
   NumberTable table;
   table.file = file;
   std::vector<std::size_t> slots(names.size(), kNotAsked);
@@ -154,7 +154,8 @@ Vec3 position_of(const NumberTable& table, std::size_t first_column, std::size_t
   return {table.values[first_column][row], table.values[first_column + 1][row], table.values[first_column + 2][row]};
 }
 
-/// Beside the table, and later without it beside what becomes of each row: a sample for the tick and the figures of that tick.
+/// Checks the memory budget for the rows of a table. The rows exist beside the table; later, without the table, they exist beside at most
+/// kLater bytes for each row (a sample for the tick and the results of that tick).
 Outcome ask_for_rows(const NumberTable& table, std::size_t row_bytes) {
   constexpr std::size_t kLater = 128;
   return check_text_memory_available(

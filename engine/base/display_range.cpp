@@ -11,12 +11,12 @@
 namespace catena {
 namespace {
 
-constexpr double kFillGap = 2, kFewGap = 10, kSpikeGap = 50, kWildGap = 1e6;  // in lengths of the range so far
+constexpr double kFillGap = 2, kFewGap = 10, kSpikeGap = 50, kWildGap = 1e6;  // in lengths of the interval so far
 constexpr double kWildShare = 0.1, kWildSize = 1e9, kHugeSize = 1e15, kHugeRatio = 1e6;
 constexpr std::size_t kMostSampled = 1u << 20;
-constexpr std::size_t kFewestInside = 8;  // fewer different values may be materials
+constexpr std::size_t kFewestInside = 8;  // fewer distinct values may be materials
 constexpr std::uint64_t kFewValues = 4, kFewDivisor = 10000, kSmallDivisor = 64;
-constexpr double kManyShare = 0.001;  // from here on a single value may be a fill value
+constexpr double kManyShare = 0.001;  // fraction of the values from which a single repeated value may be a fill value
 
 struct DistinctValue {
   double value;
@@ -24,7 +24,7 @@ struct DistinctValue {
   bool fill;
 };
 
-/// The limits of integer types: data have them as well.
+/// Limits of integer types. They also occur as ordinary data values.
 constexpr std::array<float, 6> kIntegerFills{-32768.f, -32767.f, 32767.f, 65535.f, -2147483648.f, 2147483648.f};
 
 bool is_integer_fill(double value) {
@@ -40,7 +40,7 @@ std::vector<DistinctValue> distinct_values(const std::vector<float>& sorted) {
   return distinct;
 }
 
-/// Grows an interval of distinct values from its core.
+/// Grows an interval of distinct values from the inlier interval that find_core() returns.
 class RangeSearch {
  public:
   explicit RangeSearch(const std::vector<DistinctValue>& values) : values_(values) {
@@ -77,7 +77,7 @@ class RangeSearch {
     }
   }
 
-  /// Takes in one value more; false where only values beyond are left.
+  /// Extends the interval by one value; returns false if only outliers are left.
   bool grow_once() {
     const bool can_fall = first_ > 0, can_rise = last_ + 1 < values_.size();
     const double down = can_fall ? values_[first_].value - values_[first_ - 1].value : 0,
@@ -123,7 +123,7 @@ class RangeSearch {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// Between the last value shown and the first one beyond.
+/// Returns the boundary between the last value in the range and the first outlier.
 double fence(double shown, double beyond, double length) {
   const double half = 0.5 * shown + 0.5 * beyond, reach = kFewGap * length;
   if (!(length > 0)) return half;
@@ -245,7 +245,7 @@ std::string format_range(const DisplayRange& range) {
 }
 
 std::string outlier_note(const DisplayRange& range) {
-  constexpr std::uint64_t kFewValues = 10;  // that are outliers and no code for missing data
+  constexpr std::uint64_t kFewValues = 10;  // minimum count at which outliers of one value are reported as a possible code for missing data
   if (!range.has_outliers()) return {};
   std::string text = fmt::format("{} the others, {} .. {}, which colours span where no range is stated", beyond_text(range),
                                  format_readable(range.lo), format_readable(range.hi));

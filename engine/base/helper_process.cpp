@@ -25,16 +25,16 @@ namespace catena {
 namespace {
 
 constexpr int kFirstDescriptor = 3;
-/// Where `cmake --install` puts the helpers: seen from bin and lib, and with one ".." more from lib/MACHINE.
+/// Folder where `cmake --install` puts the helpers, relative to bin and lib; relative to lib/MACHINE it needs one more "..".
 constexpr const char* kInstalled = "../libexec/catena";
-/// Under the sanitizers a helper tells what they found.
+/// True under the sanitizers: the helper keeps its stderr so that their reports are visible.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kKeepsErrors = true;
 #else
 constexpr bool kKeepsErrors = false;
 #endif
 
-/// What posix_spawn is told, freed at the end.
+/// Arguments of posix_spawn; the destructor frees them.
 struct Plan {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;
@@ -49,9 +49,9 @@ struct Plan {
   }
 };
 
-constexpr int kAway = 64;  ///< where descriptors wait for their places
+constexpr int kAway = 64;  ///< lowest number of the temporary descriptors, clear of the final ones
 
-/// The running program's file. Where /proc is not mounted: the name by which the kernel was asked for it.
+/// Returns the path of the running program; where /proc is not mounted, the name with which the kernel executed it.
 std::filesystem::path program_itself() {
   std::error_code code;
   const std::filesystem::path linked = std::filesystem::read_symlink("/proc/self/exe", code);
@@ -76,7 +76,7 @@ std::string helper_path(const std::string& name) {
   const auto look_in = [&](const fs::path& folder) {
     for (const fs::path& at : {folder, folder / kInstalled, folder / ".." / kInstalled}) places.push_back(at / name);
   };
-  // the shared library that this is a part of, so that both are of one version; the program itself has no name there
+  // first the folder of the shared library that contains this code, so that both have one version; l_name is empty for the program itself
   Dl_info info;
   link_map* map = nullptr;
   if (::dladdr1(reinterpret_cast<const void*>(&helper_path), &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 &&
@@ -111,7 +111,7 @@ Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<co
                                               : ": expected it beside the program, as the package catena installs it"),
                  true};
   };
-  // the descriptors: out of the way first, so that none overwrites another
+  // descriptors: duplicated to high numbers first, so that none overwrites another
   Plan plan;
   std::vector<FileDescriptor> away;
   for (const int fd : descriptors) {
@@ -123,7 +123,7 @@ Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<co
   int next = kFirstDescriptor;
   for (const FileDescriptor& fd : away) posix_spawn_file_actions_adddup2(&plan.files, fd.get(), next++);
   posix_spawn_file_actions_addclosefrom_np(&plan.files, next);
-  // signals as a new program has them
+  // signals: default handlers, none blocked
   sigset_t all, none;
   sigfillset(&all);
   sigemptyset(&none);
@@ -163,7 +163,7 @@ ProcessExit HelperProcess::wait(double limit_s, const std::function<void(double)
       }
       break;
     }
-    // a kernel without such descriptors is asked again and again
+    // a kernel without pidfd: the process is polled every kPollMs
     constexpr int kPollMs = 2, kLongestMs = 1000;
     pollfd poller{ended.get(), POLLIN, 0};
     ::poll(&poller, ended ? 1 : 0, ended ? static_cast<int>(std::min<std::int64_t>(left_ns / 1'000'000 + 1, kLongestMs)) : kPollMs);

@@ -15,7 +15,7 @@ namespace catena::json {
 namespace {
 
 constexpr int kDeepest = 64;
-constexpr std::size_t kLongestLabel = 24;  ///< of what an item's label begins with
+constexpr std::size_t kLongestLabel = 24;  ///< maximum length of the name shown in an item's label
 
 /// Turns offsets into 1-based line numbers; CR, LF and CRLF each end a line.
 class Lines {
@@ -35,10 +35,10 @@ Error error_on_line(const std::string& file, int line, const std::string& what) 
   return Error{one_line(at.empty() ? what : at + ": " + what)};
 }
 
-/// What is known of a text before it is parsed. Strings and comments are skipped.
+/// Statistics of a text before it is parsed. Strings and comments are skipped.
 struct Shape {
-  std::size_t too_deep_at = std::string_view::npos;                    ///< where brackets nest deeper than kDeepest
-  std::size_t values = 0, containers = 0, objects = 0, line_ends = 0;  ///< of sound JSON: all values; objects and arrays among them
+  std::size_t too_deep_at = std::string_view::npos;                    ///< offset at which brackets nest deeper than kDeepest
+  std::size_t values = 0, containers = 0, objects = 0, line_ends = 0;  ///< for valid JSON: all values; objects and arrays among them
 };
 
 Shape shape_of(std::string_view text) {
@@ -74,7 +74,7 @@ Shape shape_of(std::string_view text) {
     } else if (c == '\n' || c == '\r') {
       ++shape.line_ends;
     } else if (c == ':' && shape.values > 0) {
-      --shape.values;  // the string before it was a key
+      --shape.values;  // the string before the colon is a key
     } else if (c != ',' && c != ' ' && c != '\t') {
       in_word = true;
       if (!was_in_word) ++shape.values;
@@ -83,8 +83,8 @@ Shape shape_of(std::string_view text) {
   return shape;
 }
 
-/// Blanks in place of comments, so that they may stand wherever blanks may: the library takes none in an empty array. Every other byte
-/// stays, and where it is; so does a comment without an end, which the library refuses.
+/// Replaces comments by blanks, so that they may stand wherever blanks may: the library accepts none in an empty array. Every other byte
+/// keeps its value and offset. A comment without an end is kept; the library rejects it.
 std::string without_comments(std::string_view text) {
   std::string plain(text);
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -105,9 +105,9 @@ std::string without_comments(std::string_view text) {
   return plain;
 }
 
-/// What parsing takes beside the text: each value as the library keeps it (a node of a map) and as a Node with its label; words, keys and
-/// labels of the text, and the text without its comments; the ends of its lines, in lists that grow. Copies that readers keep take the
-/// place of the library's part; what they make of an object is about a kilobyte.
+/// Estimates the memory in bytes that parsing needs beside the text: each value in the library (a map node) and as a Node with its label;
+/// the strings, keys and labels; the text without its comments; the list of line ends, which grows. Copies that readers cache later
+/// replace the library's part; what they create from an object is about a kilobyte.
 double bytes_to_parse(std::string_view text, const Shape& shape) {
   constexpr double kMapNode = sizeof(Json::Value) + 64, kContainer = 64, kObject = 1024, kLabel = 48, kLineEnd = 2 * 24;
   return static_cast<double>(shape.values) * (kMapNode + sizeof(Node) + kLabel) + static_cast<double>(shape.containers) * kContainer +
@@ -115,7 +115,7 @@ double bytes_to_parse(std::string_view text, const Shape& shape) {
          static_cast<double>(shape.line_ends) * kLineEnd;
 }
 
-/// -?(0|[1-9][0-9]*)(.[0-9]+)?([eE][+-]?[0-9]+)?
+/// Returns true for a number by JSON's grammar: -?(0|[1-9][0-9]*)(.[0-9]+)?([eE][+-]?[0-9]+)?
 bool is_json_number(std::string_view text) {
   std::size_t i = 0;
   const auto digits = [&] {
@@ -136,7 +136,7 @@ bool is_json_number(std::string_view text) {
   return i == text.size();
 }
 
-/// jsoncpp's report is "* Line 3, FieldArray 5\n  MESSAGE\n..."; its first error is the one that helps.
+/// Returns the first error of jsoncpp's report, "* Line 3, Column 5", then "  MESSAGE" on the next line; later errors follow from it.
 Error first_error(const std::string& file, const std::string& report) {
   int line = 1;
   const std::size_t at = report.find("Line ");
@@ -202,7 +202,7 @@ class Converter {
         break;
       case Json::objectValue: {
         node.kind = Kind::object;
-        // jsoncpp sorts members by key; their offsets give the order of the file back
+        // jsoncpp sorts members by key; their offsets restore the order of the file
         std::vector<Json::Value::const_iterator> order;
         order.reserve(value.size());
         for (auto it = value.begin(); it != value.end(); ++it) order.push_back(it);
@@ -225,7 +225,7 @@ class Converter {
   }
 
   std::string_view text_;
-  std::size_t skipped_;  ///< the byte order mark before has_text_
+  std::size_t skipped_;  ///< length of the byte order mark before text_
   Lines lines_;
   std::shared_ptr<const std::string> file_;
 };

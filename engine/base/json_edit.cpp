@@ -9,9 +9,9 @@
 namespace catena::json {
 namespace {
 
-// ---- pointers ----
+// ---- JSON pointers ----
 
-/// The steps of a pointer; nothing where it is none.
+/// Returns the steps of a JSON pointer; nullopt if it is malformed.
 std::optional<std::vector<std::string>> steps_of(std::string_view pointer) {
   std::vector<std::string> steps;
   if (!pointer.empty() && pointer[0] != '/') return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<std::vector<std::string>> steps_of(std::string_view pointer) {
   return steps;
 }
 
-/// "-" is the end; else the index, as JSON writes whole numbers.
+/// Returns the index that a step names: `size` for "-", else a decimal number without leading zeros; nullopt if it is neither.
 std::optional<std::size_t> index_of(const std::string& step, std::size_t size) {
   if (step == "-") return size;
   const bool digits = !step.empty() && step.size() < 10 && step.find_first_not_of("0123456789") == std::string::npos;
@@ -37,13 +37,13 @@ std::optional<std::size_t> index_of(const std::string& step, std::size_t size) {
   return std::stoul(step);
 }
 
-/// As far as the pointer leads.
+/// Result of following a JSON pointer as far as its nodes exist.
 struct Walk {
   std::vector<std::string> steps;
   const Node* at = nullptr;
   const Node* parent = nullptr;
   std::size_t taken = 0;
-  std::size_t index = 0;  ///< of `at` in its parent; at the end, of the step that is not there
+  std::size_t index = 0;  ///< index of `at` in its parent; if the step is missing, the index where it would be inserted
   bool arrived() const { return taken == steps.size(); }
 };
 
@@ -75,7 +75,7 @@ Result<Walk> walk(const Node& root, std::string_view pointer) {
   return w;
 }
 
-/// The text of the value alone.
+/// Returns the JSON text of the value without the blanks and comments around it.
 Result<std::string> value_text(const Node& root, std::string_view pointer, std::string_view value) {
   const auto parsed = parse(value, {});
   if (!parsed)
@@ -83,7 +83,7 @@ Result<std::string> value_text(const Node& root, std::string_view pointer, std::
   return std::string(value.substr(parsed->begin, parsed->end - parsed->begin));
 }
 
-/// The text as it is, if it can be read.
+/// Returns the text unchanged if it parses, else the parser's Error.
 Result<std::string> checked(std::string text, const std::string& file) {
   if (const auto again = parse(text, file); !again) return again.error();
   return text;

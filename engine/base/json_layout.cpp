@@ -11,9 +11,9 @@ bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool all_space(std::string_view text) { return text.find_first_not_of(" \t\r\n") == kNone; }
 
-// ---- places in the text ----
+// ---- positions in the text ----
 
-/// The end of the comment that begins here; kNone where none does.
+/// Returns the end of the comment that begins at `at`; kNone if there is no comment.
 std::size_t comment_end(std::string_view text, std::size_t at) {
   if (text.substr(at, 2) == "//") return std::min(text.find_first_of("\r\n", at), text.size());
   if (text.substr(at, 2) != "/*") return kNone;
@@ -21,7 +21,7 @@ std::size_t comment_end(std::string_view text, std::size_t at) {
   return end == kNone ? text.size() : end + 2;
 }
 
-/// The next token: past blanks, line ends and comments.
+/// Returns the offset of the next token after blanks, line ends and comments.
 std::size_t next_token(std::string_view text, std::size_t at) {
   while (at < text.size()) {
     const std::size_t end = comment_end(text, at);
@@ -31,7 +31,7 @@ std::size_t next_token(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Past the comments that follow on the same line.
+/// Returns the offset after the comments that follow on the same line.
 std::size_t past_line_comments(std::string_view text, std::size_t at) {
   std::size_t after = at;
   while (at < text.size()) {
@@ -55,7 +55,7 @@ std::size_t past_line_end(std::string_view text, std::size_t at) {
   return at < text.size() && is_line_end(text[at]) ? at + 1 : at;
 }
 
-/// Only blanks stand before it on its line, which is not the first.
+/// Returns true if only blanks precede `at` on its line, and this is not the first line.
 bool starts_line(std::string_view text, std::size_t at) {
   const std::size_t begin = line_begin(text, at);
   return begin > 0 && past_blanks(text, begin) >= at;
@@ -64,17 +64,19 @@ std::string_view indentation(std::string_view text, std::size_t at) {
   const std::size_t begin = line_begin(text, at);
   return text.substr(begin, past_blanks(text, begin) - begin);
 }
-/// How lines end in this text.
+/// Returns the line ending of this text ("
+/// ", "\r
+/// " or "\r").
 std::string_view line_end_of(std::string_view text) {
   const std::size_t at = text.find_first_of("\r\n");
   return at == kNone ? "\n" : text.substr(at, past_line_end(text, at) - at);
 }
 
 struct Item {
-  std::size_t begin;    ///< of the key, or of the value
-  std::size_t key_end;  ///< of a member's key
+  std::size_t begin;    ///< offset of the key, or of the value in an array
+  std::size_t key_end;  ///< end of the key, for members of an object
   std::size_t value, end;
-  std::size_t comma;  ///< after it; kNone: the last
+  std::size_t comma;  ///< offset of the comma after the item; kNone for the last item
 };
 
 std::vector<Item> items_of(std::string_view text, const Node& container) {
@@ -94,9 +96,9 @@ std::vector<Item> items_of(std::string_view text, const Node& container) {
   return items;
 }
 
-// ---- putting in ----
+// ---- insertion ----
 
-/// One more step of indentation, as the outermost items have it.
+/// Returns one step of indentation, taken from the outermost items.
 std::string_view indentation_step(std::string_view text, const Node& root) {
   for (const Item& item : items_of(text, root))
     if (starts_line(text, item.begin) && !indentation(text, item.begin).empty()) return indentation(text, item.begin);
@@ -108,7 +110,7 @@ std::string into_empty(std::string_view text, const Node& root, const Node& cont
   const std::size_t first = container.begin + 1, close = container.end - 1;
   const std::string_view inside = text.substr(first, close - first);
   const std::size_t last = inside.find_last_not_of(" \t\r\n");
-  const std::size_t at = last == kNone ? first : first + last + 1;  // after its comments
+  const std::size_t at = last == kNone ? first : first + last + 1;  // after the comments of the empty container
   if (inside.find_first_of("\r\n") == kNone) {
     if (last == kNone) return out.insert(first, std::string(inside) + item);
     return out.insert(at, " " + item);
@@ -117,19 +119,19 @@ std::string into_empty(std::string_view text, const Node& root, const Node& cont
       at, std::string(line_end_of(text)) + std::string(indentation(text, close)) + std::string(indentation_step(text, root)) + item);
 }
 
-/// Text between the key and the value of a new member, as its neighbour has it.
+/// Returns the text between the key and the value of a new member, copied from its neighbor.
 std::string colon_like(std::string_view text, const Item& neighbour) {
   const std::string_view between = text.substr(neighbour.key_end, neighbour.value - neighbour.key_end);
   return between.find_first_not_of(": \t") == kNone ? std::string(between) : ": ";
 }
 
-// ---- taking out ----
+// ---- removal ----
 
 struct Cut {
   std::size_t begin, end;
 };
 
-/// The cut with the blanks that it would leave behind; a line that would be blank goes as a whole.
+/// Extends the cut by the blanks that it would leave behind; a line that would become blank is removed completely.
 Cut tidy(std::string_view text, Cut cut) {
   const bool starts = starts_line(text, cut.begin);
   const std::size_t after = past_blanks(text, cut.end);

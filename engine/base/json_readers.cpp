@@ -5,7 +5,7 @@
 namespace catena::json {
 namespace {
 
-/// What the node holds, for "... but X was found".
+/// Returns a description of the node's value for messages "... but X was found".
 std::string shown(const Node& node) {
   switch (node.kind) {
     case Kind::null:
@@ -102,7 +102,7 @@ Result<int> get_integer(const Node& object, std::string_view key, int fallback, 
   return static_cast<int>(node->number);
 }
 
-// ---- words ----
+// ---- booleans and strings ----
 
 Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback) {
   const Node* node = object.find(key);
@@ -192,7 +192,7 @@ Result<Mat3> as_rotation(const Node& node, std::string_view what) {
     CATENA_TRY(const Vec3 axis, require_vec3(node, "axis"));
     if (norm(axis) == 0) return error_at(*node.find("axis"), "\"axis\" is zero; a vector other than [0, 0, 0] was expected");
     CATENA_TRY(const double angle_deg, require_number(node, "angle_deg"));
-    // Rodrigues: R e = e cos a + (u x e) sin a + u (u . e)(1 - cos a)
+    // Rodrigues' formula: R e = e cos a + (u x e) sin a + u (u . e)(1 - cos a)
     const Vec3 u = direction(axis);
     const double angle = angle_deg * (3.14159265358979323846 / 180.0), c = std::cos(angle), s = std::sin(angle);
     Mat3 rotation(1.0);

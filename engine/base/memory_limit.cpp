@@ -21,7 +21,7 @@ std::atomic<std::uint64_t> chosen_limit{kNoLimit};
 std::atomic<std::uint64_t> held_bytes{0}, refusals{0};
 std::atomic<bool> chosen_of_addresses{false};
 
-/// MemAvailable of /proc/meminfo; where it cannot be read, nothing is known and nothing is refused.
+/// Returns MemAvailable of /proc/meminfo in bytes; kNoLimit if it cannot be read, so that no request is refused.
 std::uint64_t free_on_the_machine() {
   std::ifstream file("/proc/meminfo");
   std::string word;
@@ -30,7 +30,7 @@ std::uint64_t free_on_the_machine() {
   return kNoLimit;
 }
 
-/// What the control group of this process leaves; most have no limit ("max").
+/// Returns the free bytes in the memory limit of this process's control group; kNoLimit if there is none ("max").
 std::uint64_t free_in_the_group() {
   std::uint64_t most = 0, current = 0;
   std::ifstream limit("/sys/fs/cgroup/memory.max"), used("/sys/fs/cgroup/memory.current");
@@ -38,7 +38,7 @@ std::uint64_t free_in_the_group() {
   return most > current ? most - current : 0;
 }
 
-/// What the limit on addresses leaves of them. Without /proc nothing is known of those in use, and half is taken for free.
+/// Returns the free bytes below RLIMIT_AS. Without /proc the address space in use is unknown; half of the limit counts as free.
 std::uint64_t free_addresses() {
   const auto limit = resource_limit(RLIMIT_AS);
   if (!limit) return kNoLimit;
@@ -100,7 +100,7 @@ MemoryReservation::~MemoryReservation() { held_bytes -= bytes_; }
 void retain_freed_memory() {
 #if defined(__GLIBC__)
   ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // setting the one ends the allocator's own choice of the other
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // setting one threshold turns off the allocator's dynamic choice of the other
 #endif
 }
 

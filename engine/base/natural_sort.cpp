@@ -11,14 +11,14 @@ namespace {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80; }
 
-/// A part of a name: a character that belongs to no number, or a number.
+/// Part of a name: a character outside numbers, or a number.
 struct Token {
-  char text = 0;               ///< 0: a number
-  bool minus = false;          ///< has a sign
-  bool doubtful_sign = false;  ///< the sign stands behind a letter
-  std::string digits;          ///< of a whole number, without leading zeros
-  bool whole = true;           ///< neither fraction nor exponent
-  double value = 0;            ///< without its sign
+  char text = 0;               ///< the character; 0 for a number
+  bool minus = false;          ///< the number has a minus sign
+  bool doubtful_sign = false;  ///< the sign follows a letter and may be a hyphen
+  std::string digits;          ///< integer digits, without leading zeros
+  bool whole = true;           ///< has neither a fraction nor an exponent
+  double value = 0;            ///< absolute value
 };
 
 std::size_t digits_end(std::string_view name, std::size_t at) {
@@ -26,7 +26,7 @@ std::size_t digits_end(std::string_view name, std::size_t at) {
   return at;
 }
 
-/// Reads the number whose first digit is at `at`; returns its end.
+/// Reads the number whose first digit is at `at`; returns the offset of its end.
 std::size_t read_number(std::string_view name, std::size_t at, bool decimals, Token& token) {
   std::size_t end = digits_end(name, at);
   const bool in_sequence = at >= 2 && name[at - 1] == '.' && is_digit(name[at - 2]);
@@ -66,7 +66,7 @@ std::vector<Token> tokens_of(std::string_view name, bool decimals) {
   return tokens;
 }
 
-/// Less than, equal to, or greater than 0, as numbers.
+/// Compares two tokens, numbers by value; returns a number less than, equal to, or greater than 0.
 int compare(const Token& a, const Token& b) {
   if ((a.text != 0) != (b.text != 0)) {
     const char x = a.text != 0 ? a.text : '0', y = b.text != 0 ? b.text : '0';
@@ -101,7 +101,7 @@ int compare(const Name& a, const Name& b) {
   return a.tokens.size() == b.tokens.size() ? 0 : a.tokens.size() < b.tokens.size() ? -1 : 1;
 }
 
-/// A minus behind a letter is a sign only where some name has the same number without one.
+/// Resolves doubtful signs: a minus after a letter is a sign only if another name has a number without a sign at the same position.
 void settle_signs(std::vector<Name>& names) {
   std::size_t longest = 0;
   for (const Name& name : names) longest = std::max(longest, name.tokens.size());
@@ -141,7 +141,7 @@ void natural_sort(std::vector<std::string>& names) {
 bool is_numbered_series(const std::vector<std::string>& names) {
   const auto text_of = [](const std::string& name) {
     std::string text;
-    for (const Token& token : tokens_of(name, true)) text += token.text;  // of a number a zero byte
+    for (const Token& token : tokens_of(name, true)) text += token.text;  // a number adds a zero byte
     return text;
   };
   return std::ranges::all_of(names, [&](const std::string& name) { return text_of(name) == text_of(names.front()); });

@@ -34,7 +34,7 @@ std::string format_readable(double value, int digits) {
   const auto format = fixed ? std::chars_format::fixed : std::chars_format::scientific;
   const std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, rounded, format).ptr);
   const std::size_t e = text.find('e');
-  // "1e+20" as "1e20", "2e-07" as "2e-7"
+  // shortens "1e+20" to "1e20", "2e-07" to "2e-7"
   return fixed ? text : text.substr(0, e) + "e" + std::to_string(std::atoi(text.c_str() + e + 1));
 }
 
@@ -63,7 +63,7 @@ std::optional<T> parse(std::string_view text) {
 
 std::optional<double> parse_double(std::string_view text) {
   if (const auto value = parse<double>(text)) return value;
-  // from_chars refuses what is too small for a double; that is zero, or nearly
+  // from_chars rejects numbers that are too small for a double; they become zero or subnormal
   text = trim(text);
   double value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -79,20 +79,20 @@ namespace {
 constexpr double kNoRange = 1e-12, kSlack = 1e-9;
 constexpr std::size_t kMaxFixed = 6;
 
-/// mantissa 10^exponent, the mantissa 1, 2, 5 or 10.
+/// Number mantissa * 10^exponent; the mantissa is 1, 2, 5 or 10.
 struct Step {
   int mantissa = 1, exponent = 0;
   double value() const { return mantissa * std::pow(10.0, exponent); }
 };
 
-/// The nice number nearest to x > 0.
+/// Returns the Step nearest to x > 0.
 Step nice(double x) {
   int exponent = static_cast<int>(std::floor(std::log10(x)));
   const double fraction = x / std::pow(10.0, exponent);
   return {fraction < 1.5 ? 1 : fraction < 3 ? 2 : fraction < 7 ? 5 : 10, exponent};
 }
 
-/// count 10^exponent as text without an exponent, with -exponent decimals.
+/// Formats count * 10^exponent without an exponent, with -exponent decimals.
 std::string fixed_text(long long count, int exponent) {
   std::string digits = std::to_string(std::llabs(count));
   if (exponent >= 0) {
@@ -105,7 +105,7 @@ std::string fixed_text(long long count, int exponent) {
   return (count < 0 ? "-" : "") + digits;
 }
 
-/// The same with one digit before the point and an exponent: "2.5e-7".
+/// Formats count * 10^exponent with one digit before the decimal point and an exponent: "2.5e-7".
 std::string exponent_text(long long count, int exponent) {
   if (count == 0) return "0";
   std::string digits = std::to_string(std::llabs(count));
@@ -115,7 +115,7 @@ std::string exponent_text(long long count, int exponent) {
   return (count < 0 ? "-" : "") + digits + "e" + std::to_string(exponent);
 }
 
-/// The most digits that a label shows.
+/// Returns the largest number of digits in a label.
 std::size_t most_digits(const std::vector<std::string>& labels) {
   std::size_t most = 0;
   for (const std::string& label : labels)
@@ -130,7 +130,7 @@ std::vector<AxisTick> nice_ticks(double lo, double hi, int about) {
   if (!std::isfinite(lo) || !std::isfinite(hi)) return {};
   if (lo > hi) std::swap(lo, hi);
   const double size = std::max(std::fabs(lo), std::fabs(hi));
-  // halves: the difference of two large numbers must not overflow
+  // halved: the difference of two large numbers must not overflow
   const double half = 0.5 * hi - 0.5 * lo;
   if (!(half > 0.5 * kNoRange * size) || !(half > 1e-300)) return {{lo, to_text(lo)}};
 

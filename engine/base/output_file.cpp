@@ -22,10 +22,10 @@ namespace {
 
 constexpr int kMaxSymlinks = 40;
 
-/// What a name leads to: a thing on the disk, or the place where one would be made.
+/// Identity of the file that a name leads to: (device, inode, "") of an existing file, else the folder and the name of the new file.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
-/// None: a device, a pipe, or a name of nothing.
+/// Returns the identity of a name; nullopt for a device, a pipe or an empty name.
 std::optional<Identity> identity_of(const std::string& name) {
   if (name.empty()) return std::nullopt;
   struct stat about {};
@@ -33,7 +33,7 @@ std::optional<Identity> identity_of(const std::string& name) {
     if (!S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode)) return std::nullopt;
     return Identity{about.st_dev, about.st_ino, {}};
   }
-  // a link to nothing is the place that it names
+  // a dangling symbolic link stands for the path that it names
   std::error_code code;
   fs::path place = fs::absolute(name, code);
   for (int k = 0; k < kMaxSymlinks && fs::is_symlink(place, code); ++k) {
@@ -97,12 +97,12 @@ namespace fs = std::filesystem;
 namespace {
 Error cannot_write(const std::string& path, int code) { return system_error(path + ": cannot write", code); }
 
-/// A pipe, a socket or a device, never waited for: a pipe that nobody reads is refused.
+/// Opens a pipe, a socket or a device for writing without blocking; a pipe without a reader is an Error.
 Result<int> open_directly(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_TRUNC | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (descriptor < 0 && errno == ENXIO) return Error{path + ": nothing reads from this pipe or socket: expected a file, or a reader first"};
   if (descriptor < 0) return cannot_write(path, errno);
-  // who reads may be slower than who writes
+  // writes block: the reader may be slower than the writer
   static_cast<void>(::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK));
   return descriptor;
 }
@@ -137,7 +137,7 @@ Result<OutputFile> OutputFile::open(const std::string& name) {
     if (file == nullptr) return cannot_write(name, errno);
     return OutputFile(name, std::nullopt, file);
   }
-  // through a link to the file that it names
+  // a symbolic link is resolved: its target is replaced
   std::error_code code;
   std::string path = name;
   if (fs::is_symlink(name, code)) {
@@ -145,7 +145,7 @@ Result<OutputFile> OutputFile::open(const std::string& name) {
     if (code) return cannot_write(name, code.value());
   }
   CATENA_TRY(TemporaryFile part, TemporaryFile::create(path));
-  // the stream has a descriptor of its own: the part's keeps the lock until the end
+  // the stream gets a duplicate descriptor: the temporary file's own keeps the lock until the end
   const int own = ::fcntl(part.descriptor(), F_DUPFD_CLOEXEC, 0);
   std::FILE* const file = own < 0 ? nullptr : ::fdopen(own, "wb");
   if (file == nullptr) {

@@ -1,1 +1,1 @@
-// Nothing but the precompiled header is compiled here (precompiled.cmake).
+// Compiles only the precompiled header (precompiled.cmake).

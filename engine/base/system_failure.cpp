@@ -21,16 +21,16 @@ constexpr const char *kAddresses = "this process may have at most {} KiB of addr
 
 constexpr std::array<SystemFailure, 11> kCauses{{
     {ENOSPC, -1, ""},                  // the disk is full
-    {EDQUOT, -1, ""},                  // so is this user's share of it
-    {EFBIG, RLIMIT_FSIZE, kFileSize},  // the file system's largest, or a limit
-    {EIO, -1, ""},                     // the disk or its cable
+    {EDQUOT, -1, ""},                  // the user's disk quota is used up
+    {EFBIG, RLIMIT_FSIZE, kFileSize},  // file size limit of the file system or of the process
+    {EIO, -1, ""},                     // hardware error of the disk or its connection
     {EROFS, -1, ""},                   // mounted read-only, also by the kernel after an error
-    {ESTALE, -1, ""},                  // a file server that came back as another
-    {ETIMEDOUT, -1, ""},               // one that did not come back
+    {ESTALE, -1, ""},                  // stale handle: the file server has restarted
+    {ETIMEDOUT, -1, ""},               // the file server does not answer
     {EMFILE, RLIMIT_NOFILE, kFiles},
     {ENFILE, -1, ""},
     {ENOMEM, RLIMIT_AS, kAddresses},
-    {EAGAIN, RLIMIT_NPROC, kProcesses},  // of fork and threads; a resource that is used up elsewhere
+    {EAGAIN, RLIMIT_NPROC, kProcesses},  // from fork and thread creation; elsewhere another exhausted resource
 }};
 
 std::string limit_words(const SystemFailure& cause) {
@@ -82,7 +82,7 @@ const char* out_of_memory_message() noexcept {
 std::string describe_resource_limits() {
   std::string all;
   for (const SystemFailure& cause : kCauses)
-    // every user has a limit on processes, and every shell one on open files
+    // only limits that are rarely set: every user has a limit on processes, and every shell one on open files
     if (const std::string words = cause.limit == RLIMIT_AS || cause.limit == RLIMIT_FSIZE ? limit_words(cause) : ""; !words.empty())
       all += (all.empty() ? "" : "; ") + words;
   return all;

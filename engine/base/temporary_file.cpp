@@ -30,11 +30,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kDigits = 12;
-constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name holds 255
+constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name is limited to 255
 
 Error cannot_write_part(const std::string& path, int code) { return system_error(path + ": cannot write", code); }
 
-/// ".../flow.json.part", the beginning of all its unfinished files.
+/// Returns ".../flow.json.part", the common prefix of the output's temporary files.
 std::string beginning_of(const std::string& path) {
   const fs::path place(path);
   std::string name = place.filename().string();
@@ -42,7 +42,7 @@ std::string beginning_of(const std::string& path) {
   return (place.parent_path() / (name + ".part")).string();
 }
 
-/// The process that a name says, "<pid>-<12 hexadecimal digits>" and no other; 0: none, it is somebody else's file.
+/// Returns the process ID from "<pid>-<12 hexadecimal digits>"; 0 for any other text: the file is not one of Catena's.
 pid_t process_of(std::string_view after_part) {
   pid_t pid = 0;
   const char* last = after_part.data() + after_part.size();
@@ -53,15 +53,16 @@ pid_t process_of(std::string_view after_part) {
 
 bool runs(pid_t pid) { return ::kill(pid, 0) == 0 || errno != ESRCH; }
 
-/// A folder that is not just being made. Who makes one locks it: where the lock is free its program has ended, whoever has that number now
-/// (in containers every program has the same one).
+/// Returns true for a folder of at least 60 s of age; a younger one may not be locked yet by its creator. If an old folder's lock is free,
+/// its program has ended, even if another process has that ID (in containers all programs may have the same one).
 bool is_old_folder(const fs::path& path) {
   constexpr std::time_t kYoung_s = 60;
   struct stat about {};
   return ::lstat(path.c_str(), &about) == 0 && S_ISDIR(about.st_mode) && std::time(nullptr) - about.st_mtime >= kYoung_s;
 }
 
-/// What ended programs may have left in a folder. Looked up once a second at most: pictures of a long sequence go into one folder.
+/// Returns the files that ended programs may have left in a folder. The folder is read at most once a second: the images of a long
+/// sequence go into one folder.
 std::vector<std::string> left_in(const fs::path& folder) {
   static std::mutex mutex;
   static fs::path last_folder;
@@ -123,7 +124,7 @@ Result<TemporaryFile> TemporaryFile::create(const std::string& path, bool owner_
   const bool replaces = ::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode);
   const mode_t mode = owner_only ? 0600 : replaces ? old.st_mode & 0777 : 0666;
   for (int attempt = 0;; ++attempt) {
-    // what is to be removed is known before it is made: there may be no memory afterwards
+    // allocates the name before the file exists: its removal must not need memory
     TemporaryFile part(path, temporary_name(path), -1);
     part.descriptor_ = ::open(part.name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
     if (part.descriptor_ < 0) {
@@ -156,7 +157,7 @@ Outcome TemporaryFile::commit() {
 Result<bool> TemporaryFile::commit_new() {
   if (::link(name_.c_str(), path_.c_str()) != 0) {
     if (errno == EEXIST) return false;
-    // a file system without links
+    // the file system has no hard links
     struct stat about {};
     if (::lstat(path_.c_str(), &about) == 0) return false;
     CATENA_CHECK(commit());

@@ -17,7 +17,7 @@ namespace catena {
 
 namespace {
 
-/// What is no regular file, in words.
+/// Returns a message fragment for a file that is not regular.
 const char* kind_of_place(mode_t mode) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISFIFO(mode)) return "is a pipe";
@@ -50,7 +50,7 @@ Result<std::string> read_text_file(const std::string& path, std::string_view exp
     return Error{one_line(path + ": is " + size_in_words(bytes) + " large; " + std::string(expected) + " of at most " +
                           size_in_words(most_bytes) + " was expected")};
   };
-  // a pipe without a writer is opened at once, and then refused
+  // opens a pipe without a writer without blocking; it is rejected below
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (descriptor < 0 && errno == ENXIO) return failed("is a socket or a device");
   if (descriptor < 0) {
@@ -62,7 +62,7 @@ Result<std::string> read_text_file(const std::string& path, std::string_view exp
   if (!S_ISREG(about.st_mode)) return failed(kind_of_place(about.st_mode));
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size > most_bytes) return too_large(size);
-  // a file of holes is no text, whatever its size: nothing of it is read
+  // a sparse file is no text: it is rejected before it is read
   constexpr std::uint64_t kLarge = 16 << 20, kMostRatio = 100;
   const std::uint64_t on_disk = 512 * static_cast<std::uint64_t>(about.st_blocks);
   if (size > kLarge && on_disk < size / kMostRatio)
@@ -76,7 +76,7 @@ Result<std::string> read_text_file(const std::string& path, std::string_view exp
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return unreadable(errno);
     if (got == 0) return text;
-    // one that grows while it is read
+    // the file has grown while it was read
     if (text.size() + static_cast<std::size_t>(got) > most_bytes) return too_large(text.size() + static_cast<std::size_t>(got));
     text.append(buffer, static_cast<std::size_t>(got));
   }
@@ -102,7 +102,7 @@ std::string one_line(std::string text) {
 
 namespace {
 
-/// The length of the UTF-8 character at the start of the text, and its number; 0 where there is none.
+/// Returns the length in bytes of the UTF-8 character at the start of the text and sets `number` to its code point; 0 if it is invalid.
 std::size_t utf8_character(std::string_view text, std::uint32_t& number) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
   const std::uint32_t first = byte(0);
@@ -113,7 +113,7 @@ std::size_t utf8_character(std::string_view text, std::uint32_t& number) {
     if (byte(i) >> 6 != 2) return 0;
     number = number << 6 | (byte(i) & 0x3f);
   }
-  // neither longer than need be, nor half of a UTF-16 pair, nor beyond the last
+  // rejects overlong encodings, surrogates and code points above 0x10ffff
   constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
   return number >= kLeast[length] && number <= 0x10ffff && (number < 0xd800 || number > 0xdfff) ? length : 0;
 }
@@ -171,7 +171,7 @@ std::string strip_addresses(std::string text) {
       at = end;
       continue;
     }
-    // with the brackets around it, and the blank before
+    // also removes the brackets around the address and the blank before
     if (begin > 0 && end < text.size() && text[begin - 1] == '(' && text[end] == ')') --begin, ++end;
     if (begin > 0 && text[begin - 1] == ' ') --begin;
     text.erase(begin, end - begin);
@@ -189,7 +189,7 @@ std::string truncate_utf8(std::string text, std::size_t most) {
 }
 
 namespace {
-// Levenshtein distance; both words are short (the caller cuts them).
+// Levenshtein distance; both words are short (the caller truncates them).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -30,7 +30,7 @@ Quat rotation_from_vector(const Vec3& v) noexcept {
 }
 
 Quat shortest_arc(const Vec3& a, const Vec3& b) noexcept {
-  // |a + b| and |a - b| are exact near both ends, the axis is kept square to a: what is lost in a x b does not matter then
+  // |a + b| and |a - b| are exact near both ends, and the axis is orthogonalized to a: the cancellation in a x b then does not matter
   const double c = 0.5 * norm(a + b), s = 0.5 * norm(b - a);
   if (!(s > 0)) return kIdentityRotation;
   Vec3 axis = cross(a, b);

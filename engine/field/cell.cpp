@@ -4,7 +4,7 @@ namespace catena::field {
 
 Vec3 ScalarCell::mixed_second_derivatives(const Vec3& f) const {
   const auto& c = corner;
-  // d2/dxdy at the lower and the upper z, and so on: second differences over one face
+  // d2/dxdy at the lower and the upper z, and likewise for xz and yz: second differences over one face
   const double xy0 = (c[3] - c[2]) - (c[1] - c[0]), xy1 = (c[7] - c[6]) - (c[5] - c[4]);
   const double xz0 = (c[5] - c[4]) - (c[1] - c[0]), xz1 = (c[7] - c[6]) - (c[3] - c[2]);
   const double yz0 = (c[6] - c[4]) - (c[2] - c[0]), yz1 = (c[7] - c[5]) - (c[3] - c[1]);

@@ -18,7 +18,7 @@ constexpr std::size_t kSampledBlocks = 256, kRangeGrain = 64, kMostTiles = 4096,
 float size_of(float value) { return value; }
 float size_of(const nanovdb::Vec3f& v) { return static_cast<float>(norm(Vec3(v[0], v[1], v[2]))); }
 
-/// Calls take(value, voxels) for active, valid voxels with a finite value: of every `step`-th leaf, and once for every tile.
+/// Calls take(value, voxels) for active, valid voxels with a finite value: for those of every `step`-th leaf, and once for each tile.
 template <class T, class Take>
 void values_of_leaves(const NanoNodes<T>& nodes, const NanoMask* mask, std::size_t begin, std::size_t end, std::size_t step,
                       const Take& take) {
@@ -96,7 +96,7 @@ const DisplayRange& cached_range(const Grid& grid) {
     const std::lock_guard lock(storage.range_mutex);
     if (storage.cached_range) return *storage.cached_range;
   }
-  // without the lock: it is found by several threads, which may take up other work meanwhile
+  // computed without the lock: parallel_for() may run other tasks meanwhile, and those may need the lock
   const DisplayRange found =
       storage.data_range ? *storage.data_range : compute_display_range(*storage.values, storage.valid_voxels, grid.stats());
   const std::lock_guard lock(storage.range_mutex);

@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kNewtonSteps = 24;
 
-/// The largest root of b^3 - 3 b - r, for r in [-2, 2]: Newton from 2, where the cubic is convex, falls onto it from above.
+/// Returns the largest root of b^3 - 3 b - r, for r in [-2, 2]: Newton's method from 2 converges from above, as the cubic is convex there.
 double largest_root(double r) noexcept {
   double b = 2;
   for (int i = 0; i < kNewtonSteps; ++i) {
@@ -18,7 +18,7 @@ double largest_root(double r) noexcept {
   return b > 1 ? b : 1;
 }
 
-/// v / scale, without overflow of the reciprocal.
+/// Returns v / scale, without overflow of the reciprocal.
 Vec3 scaled(const Vec3& v, double scale) noexcept {
   return scale > 1e-290 && scale < 1e290 ? v * (1 / scale) : Vec3(v.x / scale, v.y / scale, v.z / scale);
 }
@@ -30,7 +30,7 @@ LineAxis leading_axis(const Dyad& m) noexcept {
   const double trace = m.xx + m.yy + m.zz, mean = trace / 3;
   if (!(trace > 0)) return out;
 
-  // M = mean I + p B: the eigenvalues of B are the roots of b^3 - 3 b - det B, the largest in [1, 2]
+  // M = mean I + p B: the eigenvalues of B are the roots of b^3 - 3 b - det B, the largest one in [1, 2]
   const double x = m.xx - mean, y = m.yy - mean, z = m.zz - mean;
   const double p = std::sqrt((x * x + y * y + z * z + 2 * (m.yz * m.yz + m.xz * m.xz + m.xy * m.xy)) / 6);
   if (!(p > 1e-15 * mean)) {
@@ -45,7 +45,7 @@ LineAxis leading_axis(const Dyad& m) noexcept {
   const double largest = mean + p * b;
   out.speed = std::sqrt(largest > 0 ? largest : 0);
 
-  // the adjugate of B - b I is a multiple of the dyad of the axis: its longest column
+  // the adjugate of B - b I is a multiple of the dyad of the axis: its longest column is the axis
   const double cx = bx - b, cy = by - b, cz = bz - b;
   const double axx = cy * cz - yz * yz, ayy = cx * cz - xz * xz, azz = cx * cy - xy * xy;
   const double ayz = xy * xz - yz * cx, axz = xy * yz - xz * cy, axy = xz * yz - xy * cz;
@@ -65,7 +65,7 @@ DyadCell::DyadCell(const std::array<Vec3, 8>& corner) noexcept {
     return;
   }
   for (std::size_t c = 0; c < 8; ++c) coefficients_[c].add(1, scaled(corner[c], scale_));
-  // from the corners to the coefficients: differences along x, y, z
+  // converts corner values to polynomial coefficients: differences along x, y, z
   for (const std::size_t bit : {1u, 2u, 4u})
     for (std::size_t c = 0; c < 8; ++c)
       if (c & bit) coefficients_[c].add(-1, coefficients_[c - bit]);

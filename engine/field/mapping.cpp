@@ -8,7 +8,7 @@ Mapping Mapping::from_linear(const Mat3& world_from_index, const Vec3& origin) {
   Mapping m;
   m.world_from_index_linear = world_from_index;
   m.origin = origin;
-  // a diagonal is inverted exactly as a diagonal: no rounding from cofactors
+  // a diagonal matrix is inverted exactly: no rounding errors from cofactors
   const Mat3& j = world_from_index;
   const bool diagonal = j[0][1] == 0 && j[0][2] == 0 && j[1][0] == 0 && j[1][2] == 0 && j[2][0] == 0 && j[2][1] == 0;
   if (diagonal) {

@@ -24,7 +24,7 @@ std::string number_schema(const Key& key) {
   return out;
 }
 
-/// So many numbers, each within the limits.
+/// Returns the schema of an array of `count` numbers, each within the limits.
 std::string row_schema(int count, const Limits& limits = {}) {
   Key one;
   one.limits = limits;
@@ -36,7 +36,7 @@ std::string list_schema(const std::string& item, const Key& key) {
   return R"("type": "array", "items": {)" + item + "}" + items_limits(key);
 }
 
-/// The value that follows a field (haptics/constraints/common/link_schema.h).
+/// Schema of a value mapped from a field (haptics/constraints/common/link_schema.h).
 const char* const kFieldMap =
     R"({"type": "object", "required": ["field", "map"], "properties": {"field": {"type": "string", "description": "The field that is asked, at the proxy."}, "map": {"type": "array", "minItems": 1, "description": "Pairs [value, output], values rising, linear between them.", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}, "of": {"enum": ["value", "gradient", "magnitude"]}, "normalise": {"type": "boolean", "description": "The values of the map run from 0 to 1 over the range of the field."}, "outside": {"type": "number", "description": "The output where the field says nothing; by default the first one."}}, "additionalProperties": false})";
 const char* const kWidget =
@@ -44,7 +44,7 @@ const char* const kWidget =
 const char* const kRotation =
     R"("oneOf": [{"type": "array", "items": {"type": "number"}, "minItems": 9, "maxItems": 9}, {"type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "minItems": 3, "maxItems": 3}, {"type": "object", "required": ["axis", "angle_deg"], "properties": {"axis": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "angle_deg": {"type": "number"}}, "additionalProperties": false}])";
 
-/// What is within the braces, without the sentence.
+/// Returns the members of the key's schema, without the braces and the description.
 std::string body(const Key& key) {
   switch (key.value_type) {
     case ValueType::number:
@@ -77,7 +77,7 @@ std::string body(const Key& key) {
     case ValueType::null:
       return R"("type": "null")";
     case ValueType::object: {
-      // without keys: whatever another room reads there
+      // an object without declared keys: another module reads it
       if (key.members->empty()) return R"("type": "object")";
       const std::string whole = object_schema(*key.members);
       return whole.substr(1, whole.size() - 2);
@@ -94,7 +94,7 @@ std::string body(const Key& key) {
 
 std::string sentence(const std::string& help) { return help.empty() ? std::string() : "\"description\": " + serialize_string(help) + ", "; }
 
-/// The sentence with the unit and the default, as an editor shows it.
+/// Returns the description with the unit and the default, as an editor shows it.
 std::string described(const Key& key) {
   std::string text = key.help;
   if (key.unit == "world") text += " In world units.";
@@ -124,7 +124,7 @@ std::string object_schema(const Keys& keys, const std::string& help, const std::
 
 namespace {
 
-/// Of an item of a list or a map, of the part itself.
+/// Returns the schema of one item of a list or map section, or of a section that is a single object.
 std::string item_schema(const Section& component) {
   if (component.variants.empty()) return object_schema(component.keys);
   const bool typed = find(component.keys, "type") != nullptr;
@@ -136,7 +136,7 @@ std::string item_schema(const Section& component) {
     const std::string type = typed ? "\"type\": {\"const\": " + serialize_string(variant.name) + "}" : std::string();
     std::string one = object_schema(concatenate(keys, variant.keys), variant.help, type);
     if (typed) {
-      // "type" is required, too
+      // "type" is required as well
       const std::string list = "\"required\": [";
       const std::size_t at = one.rfind(list);
       one = at == std::string::npos ? one.substr(0, one.size() - 1) + ", \"required\": [\"type\"]}"

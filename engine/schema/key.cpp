@@ -25,7 +25,7 @@ bool Limits::contains(double x) const {
 
 namespace {
 
-/// 100000, 1e15: not 1e+05, 1e+15.
+/// Formats a number without the plus sign of an exponent: 100000, 1e15 instead of 1e+05, 1e+15.
 std::string plain(double x) {
   if (x == std::floor(x) && std::fabs(x) < 1e7) return std::to_string(static_cast<long long>(x));
   std::string text = to_text(x);

@@ -49,7 +49,7 @@ std::string form_words(const Key& key) {
   return all;
 }
 
-/// JSON values stand as code, words do not.
+/// Returns the default: JSON values as code, descriptions as plain text.
 std::string fallback_words(const Key& key) {
   if (key.is_required) return "required";
   const std::string& text = key.default_text;
@@ -58,7 +58,7 @@ std::string fallback_words(const Key& key) {
   return value ? code(text) : text;
 }
 
-/// A word's words stand where a number's range does.
+/// Returns the range column: the limits of a number, or the options of a choice.
 std::string range_words(const Key& key) {
   if (!key.range_text.empty()) return key.range_text;
   if (key.value_type == ValueType::choice) {

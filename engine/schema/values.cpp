@@ -29,7 +29,7 @@ std::string list(const Items& items) {
   return out + "]";
 }
 
-/// "KEY is VALUE; a number from 0 to 1 was expected" where the number is not within the key's limits.
+/// Returns the Error "KEY is VALUE; a number from 0 to 1 was expected" if the number is outside the key's limits.
 Outcome check_limits(const Key& key, const json::Node& node) {
   if (key.limits.contains(node.number)) return Done{};
   const std::string unit = key.unit.empty() || key.unit == "world" || key.unit == "value" ? "" : " " + key.unit;
@@ -160,7 +160,7 @@ std::string write_value(const std::array<std::string, 3>& value) { return list(v
 std::string write_value(const std::vector<double>& value) { return list(value); }
 std::string write_value(const std::vector<std::string>& value) { return list(value); }
 std::string write_value(const std::vector<Vec3>& value) { return list(value); }
-/// Row by row; the columns are what is stored.
+/// Writes the rows; the matrix is stored by columns.
 std::string write_value(const Mat3& m) {
   std::vector<Vec3> rows;
   for (int i = 0; i < 3; ++i) rows.emplace_back(m[0][i], m[1][i], m[2][i]);

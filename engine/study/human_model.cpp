@@ -7,7 +7,7 @@ namespace catena::study {
 namespace {
 
 constexpr double kPauseS = 0.6, kGetsGoingS = 0.2;
-/// Corners of the path that are looked at behind and before the one that was closest.
+/// Number of path points that are searched behind and ahead of the last closest point.
 constexpr std::size_t kBehind = 40, kBefore = 80;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr std::uint64_t kSubjectSeeds = 0x5eed0b5e55ed0001u;
@@ -47,7 +47,7 @@ HumanModel::HumanModel(const Study& study, const Task& task, const Stimulus& sti
       target_(stimulus.start) {
   speed_ = task.world_from_mm(model_.speed_mm_per_s * subject.speed * std::exp(model_.speed_spread_trial * random_.normal()));
   bias_ = task.dimensions == 3 ? task.world_from_mm(subject.depth_bias) : 0;
-  // two axes of the picture plane, square to each other
+  // orthonormal axes of the image plane
   right_ = direction(cross(task.view_direction, std::fabs(task.view_direction.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(0, 1, 0)));
   up_ = cross(right_, task.view_direction);
   for (NoiseProcess& process : perception_noise_) process.begin(period_s, model_.seeing_noise_s, random_);
@@ -58,7 +58,7 @@ HumanModel::HumanModel(const Study& study, const Task& task, const Stimulus& sti
 }
 
 Vec3 HumanModel::tremor() const noexcept {
-  // three sines of equal amplitude a: their root mean square is a sqrt(3/2)
+  // three sines of equal amplitude a have a root mean square of a sqrt(3/2)
   const double amplitude = task_.world_from_mm(model_.tremor_mm) / std::sqrt(1.5), t = static_cast<double>(ticks_) * period_s_;
   Vec3 sum(0.0);
   for (int axis = 0; axis < 3; ++axis)
@@ -107,7 +107,7 @@ Vec3 HumanModel::next_target(const Vec3& cursor) noexcept {
                                                           : velocity_along_flow(seen_cursors_[oldest], error, speed);
     target_ += period_s_ * (velocity + norm(velocity) * model_.motor_noise * jerk);
   }
-  // gives way
+  // yields to a force above yield_n: limits the distance of the target from the cursor
   const double most = task_.world_from_mm(model_.yield_n / model_.stiffness_n_per_mm);
   const Vec3 pull = target_ - cursor;
   if (const double length = norm(pull); length > most) target_ = cursor + pull * (most / length);

@@ -10,7 +10,7 @@
 namespace catena::study {
 namespace {
 
-constexpr std::size_t kMostTold = 3;  ///< of a subject's rows
+constexpr std::size_t kMostTold = 3;  ///< maximum number of rows listed per subject
 
 }  // namespace
 

@@ -17,7 +17,7 @@ std::string quoted_cell(std::string text) {
   return quoted + "\"";
 }
 
-/// What a cell says, quoted or not.
+/// Returns the text of a CSV cell, without quotes if it is quoted.
 std::string words_of_cell(std::string_view cell) {
   if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
   std::string text;

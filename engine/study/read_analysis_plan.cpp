@@ -11,7 +11,7 @@ namespace {
 const std::vector<std::string> kAsks{"difference", "intervals", "tasks", "correlation", "weaker", "largest", "rejections", "none"};
 const std::vector<std::string> kExpects{"by_test", "lower", "higher", "apart", "overlap", "negative", "positive"};
 
-/// What a test takes beside "paper", "reported" and "test", and what may be expected of it, its default first.
+/// Keys that a test accepts beside "paper", "reported" and "test", and the alternatives for "expect"; the first one is the default.
 struct TestForm {
   std::vector<std::string_view> keys;
   std::vector<Alternative> expects;
@@ -36,7 +36,7 @@ std::vector<std::string_view> names_in(const Items& items) {
   return names;
 }
 
-/// Names of a list as indices; all where the key is missing.
+/// Reads a list of names as indices into `names`; returns all indices if the key is missing.
 Result<std::vector<int>> read_names(const json::Node& object, std::string_view key, const std::vector<std::string_view>& names) {
   std::vector<int> found;
   const json::Node* list = object.find(key);
@@ -93,7 +93,7 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
   return table;
 }
 
-/// Only keys of its test, and what that needs.
+/// Checks that a finding has only keys of its test, and all that the test needs.
 Outcome check_finding(const Study& study, const std::vector<std::array<int, 2>>& pairs, Finding& f) {
   const TestForm& form = form_of(f.test);
   for (const auto& [key, node] : f.where.members) {

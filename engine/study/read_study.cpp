@@ -18,7 +18,7 @@ namespace {
 
 using schema::integer;
 
-/// "chain": one for all tasks, or an object with one for each.
+/// Reads "chain": one array for all tasks, or an object with one array for each task.
 Outcome read_chains(const json::Node& object, const std::vector<Task>& tasks, Condition& condition) {
   const json::Node* chain = object.find("chain");
   if (chain == nullptr) return json::error_at(object, "key \"chain\" is missing; the links that are felt were expected, [] for none");
@@ -63,7 +63,7 @@ Outcome read_question(const json::Node& node, Question& question) {
   return Done{};
 }
 
-/// Names stand in tables and in file names of plots.
+/// Checks a name: names appear in tables and in file names of plots.
 Outcome check_name(const json::Node& item, const std::string& name) {
   constexpr std::size_t kMost = 64;
   const auto breaks = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == ',' || c == '"'; };
@@ -73,7 +73,7 @@ Outcome check_name(const json::Node& item, const std::string& name) {
                             " bytes, or has commas, quotes or line ends; a short name without them was expected");
 }
 
-/// Objects of an array, each with a name of its own.
+/// Reads the objects of an array of at least `least` items; each has a unique name.
 template <class T, class Read>
 Outcome read_items(const json::Node& root, const char* key, std::size_t least, std::vector<T>& out, Read&& read) {
   const json::Node* list = root.find(key);
@@ -152,7 +152,7 @@ Result<Study> parse_study(std::string_view text, const std::string& path) {
     CATENA_CHECK(human_model_table().read(kNoContext, *model, study.human_model));
   }
   CATENA_CHECK(read_items(root, "questionnaire", 0, study.questions, read_question));
-  CATENA_CHECK(read_analysis_plan(study));  // a mistake there is told before the first subject comes
+  CATENA_CHECK(read_analysis_plan(study));  // errors in the analysis plan are reported before the first subject starts
   return study;
 }
 

@@ -44,7 +44,7 @@ const StudyTable<Limits>& limits_table() {
   return table;
 }
 
-/// A key whose object another table reads.
+/// Adds a key whose value is an object that another table reads.
 template <class Outer, class Inner>
 void bind_object(StudyTable<Outer>& table, const std::string& name, const StudyTable<Inner>& inner, Inner Outer::*member,
                  const std::string& help) {
@@ -57,7 +57,7 @@ void bind_object(StudyTable<Outer>& table, const std::string& name, const StudyT
                });
 }
 
-/// What the study must know of the scene: where the eye is, and how large the hand's millimetre.
+/// Reads the properties of the scene that the study needs: the camera, and the scale (meters per unit).
 Outcome read_scene_template(Task& task) {
   const json::Node& scene = task.scene_template;
   CATENA_CHECK(json::expect_object(scene, "scene"));

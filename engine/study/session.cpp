@@ -7,16 +7,16 @@
 namespace catena::study {
 namespace {
 
-/// A seed for each thing that is drawn, from what names it.
+/// Returns a seed for one random choice, derived from the numbers that identify it.
 std::uint64_t seed_of(int study, int subject, int what, int number) {
   std::uint64_t seed = 0;
   for (const int part : {study, subject, what, number}) seed = mix_bits(seed ^ static_cast<std::uint64_t>(part));
   return seed;
 }
 
-constexpr int kOrders = -1;  ///< beside the tasks, what is drawn: the order of a block
+constexpr int kOrders = -1;  ///< value of `what` for the order of a block; task indices are >= 0
 
-/// Fisher and Yates; drawn again while a stimulus follows itself, so often at most.
+/// Fisher-Yates shuffle, repeated up to kDraws times while a stimulus follows itself.
 void shuffle(std::vector<Trial>& trials, Random& random) {
   constexpr int kDraws = 1000;
   for (int draw = 0; draw < kDraws; ++draw) {
@@ -30,7 +30,7 @@ void shuffle(std::vector<Trial>& trials, Random& random) {
 }  // namespace
 
 std::vector<int> latin_square_row(int count, int row) {
-  // 0, 1, n-1, 2, n-2, ...: neighbours differ by every amount once
+  // 0, 1, n-1, 2, n-2, ...: every difference (mod n) of neighbors occurs once
   std::vector<int> order;
   const bool mirrored = count % 2 == 1 && row >= count;
   for (int j = 0; j < count; ++j) {

@@ -14,8 +14,8 @@
 namespace catena::study {
 namespace {
 
-constexpr double kRampS = 0.02;    ///< of switches, as with every device
-constexpr double kPatienceS = 30;  ///< beyond the limit of the clock: for a hand that never leaves the start
+constexpr double kRampS = 0.02;    ///< duration of force ramps after switching, as for every device
+constexpr double kPatienceS = 30;  ///< time after the timeout at which a trial is aborted: the simulated user may never leave the start
 constexpr std::uint64_t kTrialSeeds = 0x0be7a7047a1a1001u;
 
 std::uint64_t operator_seed(const Study& study, const Trial& trial) {

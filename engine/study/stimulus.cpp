@@ -15,18 +15,18 @@
 namespace catena::study {
 namespace {
 
-constexpr int kFields = 200;             ///< at most, asked one after the other for a start
-constexpr int kStarts = 20000;           ///< at most, in all of them
-constexpr double kMostBoxes = 100;       ///< a path and a line are so long at most, by the diagonal of the field's box
-constexpr int kLineChoices = 6;          ///< a global line begins at the place, of so many, that is farthest from the others
-constexpr int kLinePlaces = 60;          ///< that are drawn for those at most: a field may have holes
-constexpr double kPathTolerance = 1e-9;  ///< of the trace, L
-constexpr double kLineTolerance = 1e-6;  ///< of lines, and of paths that are tried
-constexpr double kHidingRadiusMm = 1.5;  ///< a global line hides what is so near to it in the picture
-constexpr double kFlat = 1e-6;           ///< of the path's length: how far a 2D path may leave the picture plane
-constexpr int kStride = 8;               ///< of the path's corners that are looked at for what hides them
+constexpr int kFields = 200;        ///< maximum number of fields that are searched for a start
+constexpr int kStarts = 20000;      ///< maximum number of starts tried in all fields together
+constexpr double kMostBoxes = 100;  ///< maximum length of paths and lines, in diagonals of the field's box
+constexpr int kLineChoices = 6;  ///< a context streamline is seeded at the candidate, of this many, that is farthest from the other lines
+constexpr int kLinePlaces = 60;  ///< maximum number of random points drawn for the candidates: the field may have no value at some
+constexpr double kPathTolerance = 1e-9;  ///< of the final path, as a fraction of L
+constexpr double kLineTolerance = 1e-6;  ///< of lines and of trial paths, as a fraction of L
+constexpr double kHidingRadiusMm = 1.5;  ///< a context streamline occludes points of the path within this distance in the image
+constexpr double kFlat = 1e-6;           ///< maximum distance of a 2D path from the image plane, as a fraction of its length
+constexpr int kStride = 8;               ///< every kStride-th point of the path is tested for occlusion
 
-/// Of another field: below 2^30.
+/// Returns the seed for the next field; below 2^30.
 int next_seed(int seed) { return static_cast<int>(mix_bits(static_cast<std::uint64_t>(seed)) >> 34); }
 
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
@@ -43,7 +43,7 @@ double distance_to(const std::vector<std::vector<Vec3>>& lines, const Vec3& p) {
   return std::sqrt(least2);
 }
 
-/// Why a start is none, in the order in which it is asked.
+/// Reasons why a start is rejected, in the order of the tests.
 enum class Fault { leaves, turn, bend, flat, parallel, crossing, line };
 constexpr int kFaults = 7;
 constexpr const char* kFaultWords[kFaults] = {"have no path of that length within the field",
@@ -63,7 +63,7 @@ std::string words_of(const Faults& faults) {
   return text;
 }
 
-/// What is drawn by chance in one field.
+/// Random choice of start and context streamlines in one field.
 class Draw {
  public:
   Draw(const Task& task, const field::VectorField& field, int seed)
@@ -78,7 +78,7 @@ class Draw {
     stimulus_.context_length = task.world_from_mm(rules_.context_length_mm);
   }
 
-  /// Counts why starts were none.
+  /// Returns the candidate with the least occlusion, or nullopt; `faults` counts the reasons for rejection.
   std::optional<Stimulus> stimulus(Faults& faults) {
     std::optional<Stimulus> best;
     for (int k = 0; k < rules_.candidates; ++k) {
@@ -119,7 +119,7 @@ class Draw {
     if (const auto fault = fault_of_path()) return fault;
     if (stimulus_.context_points.empty()) draw_lines();
     if (distance_to(lines_, start) < task_.world_from_mm(rules_.clearance_mm)) return Fault::line;
-    // what is kept is traced well
+    // the selected path is traced with the final tolerance
     if (!take_path(start, kPathTolerance)) return Fault::leaves;
     return fault_of_path();
   }
@@ -151,7 +151,7 @@ class Draw {
     }
   }
 
-  /// Downstream from the start, all of it within the box.
+  /// Traces the path downstream from the start; returns false if it is too short, closed or outside of the box.
   bool take_path(const Vec3& start, double tolerance) {
     const double length = stimulus_.length;
     const flow::CurvePtr curve = traced(start, 1.001 * length, tolerance);
@@ -181,7 +181,7 @@ class Draw {
     const double turn = std::cos(rules_.turn_deg * std::numbers::pi / 180);
     if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > turn) return Fault::turn;
     for (std::size_t i = 1; i < last; ++i) {
-      // a corner of angle a between pieces of length h: a / h is the curvature
+      // a corner of angle a between segments of length h has the curvature a / h
       const Vec3 before = path[i] - path[i - 1], after = path[i + 1] - path[i];
       if (norm(direction(after) - direction(before)) * task_.world_from_mm(rules_.min_curvature_radius_mm) > norm(before))
         return Fault::bend;
@@ -242,7 +242,7 @@ class Draw {
   Stimulus stimulus_;
 };
 
-/// What is longer than any field is a mistake in the units, and would be traced without end.
+/// Checks the lengths: one that is much longer than the field's box is an error in the units, and tracing it would not end.
 Outcome check_lengths(const Task& task, const Bounds& box) {
   const double diagonal = norm(box.hi - box.lo);
   for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"line_mm", task.rules.context_length_mm}})

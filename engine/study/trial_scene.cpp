@@ -9,7 +9,7 @@
 namespace catena::study {
 namespace {
 
-/// What strings stand for, as JSON text.
+/// Placeholders ("$start") and their values as JSON text.
 using Values = std::vector<std::pair<std::string_view, std::string>>;
 
 Values values_of(const Task& task, const Stimulus& s) {
@@ -30,7 +30,7 @@ Values values_of(const Task& task, const Stimulus& s) {
 
 bool stands_for_a_value(const json::Node& node) { return node.kind == json::Kind::string && node.string.starts_with("$"); }
 
-/// Nothing can be drawn of it: an object with a list of places that is empty.
+/// Returns true for an object that renders nothing: one of its placeholders stands for an empty list.
 bool draws_nothing(const json::Node& item, const Values& values) {
   return std::ranges::any_of(item.members, [&](const auto& member) {
     const auto found = std::ranges::find(values, member.second.string, &Values::value_type::first);
@@ -40,7 +40,7 @@ bool draws_nothing(const json::Node& item, const Values& values) {
 
 std::string with_values(const std::string& text, const json::Node& node, const Values& values);
 
-/// The node's own bytes of the study file with the values in it.
+/// Appends the node's text from the study file from offset `at` on, with its placeholders replaced by values.
 void append_with_values(std::string& out, const std::string& text, const json::Node& node, const Values& values, std::size_t& at) {
   if (std::ranges::any_of(node.items, [&](const json::Node& item) { return draws_nothing(item, values); })) {
     std::string kept;
@@ -68,7 +68,7 @@ std::string with_values(const std::string& text, const json::Node& node, const V
   return out.append(text, at, node.end - at);
 }
 
-/// Line ends until the next text stands on `line`.
+/// Appends line ends so that the next text stands on `line`.
 void go_to_line(std::string& out, int line) {
   const auto now = 1 + std::count(out.begin(), out.end(), '\n');
   if (now < line) out.append(static_cast<std::size_t>(line - now), '\n');
@@ -96,7 +96,7 @@ std::string make_trial_scene(const Study& study, const Trial& trial, const Stimu
   const json::Node& chain = study.conditions[condition].chains[task_index];
   const Values values = values_of(task, stimulus);
   const std::string links = with_values(study.text, chain, values);
-  // the template without its braces; both parts on the lines where they are in the study file, the earlier one first
+  // the template without its braces; template and chain keep their line numbers of the study file, the earlier one comes first
   std::string parts = with_values(study.text, task.scene_template, values);
   parts = parts.substr(1, parts.size() - 2);
   const char* between = task.scene_template.members.empty() ? "" : ",";
@@ -109,7 +109,7 @@ std::string make_trial_scene(const Study& study, const Trial& trial, const Stimu
   }
   go_to_line(out, task.scene_template.line);
   out += parts;
-  // a comment at the template's end must not take the rest
+  // a line comment at the end of the template must not swallow the text that follows
   if (parts.find("//") != std::string::npos) out += '\n';
   out += between;
   go_to_line(out, chain.line);

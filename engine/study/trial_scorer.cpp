@@ -44,7 +44,7 @@ double TrialScorer::find_crossing(const Vec3& from, const Vec3& to) const noexce
     const double above = from.z - end_.z, now = to.z - end_.z;
     return above > 0 && now <= 0 ? above / (above - now) : -1;
   }
-  // |from + u way - start| = radius, from the inside
+  // solves |from + u way - start| = radius for the exit from the circle
   const Vec3 off = from - start_, way = to - from;
   const double a = dot(way, way), b = dot(off, way), c = dot(off, off) - circle_radius_ * circle_radius_;
   const Vec3 out = to - start_;

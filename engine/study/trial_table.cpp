@@ -84,7 +84,7 @@ Result<TrialRow> parse_row(std::string_view line, const std::string& file, int n
 
 std::string table_of(const std::string& folder) { return (fs::path(folder) / "trials.csv").string(); }
 
-/// A subject's rows; of how many bytes of the file's `size`.
+/// Reads a subject's rows. `size` is the size of the file in bytes, `whole` the bytes of its complete rows.
 Result<std::vector<TrialRow>> read_subject(const std::string& folder, int subject, std::size_t& whole, std::size_t& size) {
   const std::string path = subject_file(folder, subject);
   std::error_code code;
@@ -98,7 +98,7 @@ Result<std::vector<TrialRow>> read_subject(const std::string& folder, int subjec
   return rows;
 }
 
-/// By the subjects' numbers.
+/// Returns the rows of all subjects, in the order of their numbers.
 Result<std::vector<TrialRow>> rows_of_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr) {
   CATENA_TRY(const std::vector<int> numbers, list_subjects(folder, notes));
   std::vector<TrialRow> all;
@@ -110,7 +110,7 @@ Result<std::vector<TrialRow>> rows_of_subjects(const std::string& folder, std::v
   return all;
 }
 
-/// The name of a file is on the disk when its folder is.
+/// Flushes a folder to the disk: a new file's name is durable only after that.
 void sync_folder(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;

@@ -35,14 +35,14 @@ int machine_failed(const std::string& message) {
   return 1;
 }
 
-// "catena: unknown option: expected one of ..., see catena render --help"
+// Returns "MESSAGE (see catena render --help)".
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
   std::string command = "catena";
   for (const CLI::App* sub : program.get_subcommands()) command += " " + sub->get_name();
   return std::string(error.what()) + " (see " + command + " --help)";
 }
 
-/// What was typed and nothing knows: a command, or an option of the command; with the nearest that there is. Empty: none is strange.
+/// Returns a message on the first unknown command or option of the command line, with the most similar known name; empty if all are known.
 std::string unknown_word(const CLI::App& program, int argc, char** argv) {
   const CLI::App* command = nullptr;
   std::vector<std::string> commands, options;
@@ -67,7 +67,7 @@ std::string unknown_word(const CLI::App& program, int argc, char** argv) {
   return {};
 }
 
-// --memory MB, of every command: where its data comes from is the reader's business
+// adds --memory MB to every command
 void add_memory_limit(CLI::App& program) {
   for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     command
@@ -78,7 +78,7 @@ void add_memory_limit(CLI::App& program) {
   }
 }
 
-// --plugin FILE, of every command that users see
+// adds --plugin FILE to every visible command
 void add_plugins(CLI::App& program, std::vector<std::string>& plugins) {
   const auto add_to = [&](CLI::App& command) {
     command.add_option("--plugin", plugins, "a shared library with a constraint of your own; may be repeated")->allow_extra_args(false);
@@ -90,7 +90,7 @@ void add_plugins(CLI::App& program, std::vector<std::string>& plugins) {
   }
 }
 
-// Everything that allocates: the caller tells what it throws.
+// Parses the command line and runs the command; returns the exit code. The caller handles exceptions.
 int parse_and_work(int argc, char** argv) {
   if (const Outcome ready = prepare_process(); !ready) return machine_failed(ready.error().message);
   CLI::App program{"Catena: see a scientific field and feel it with a hand."};
@@ -136,16 +136,16 @@ int parse_and_work(int argc, char** argv) {
 
 }  // namespace
 
-// What it throws is told here.
+// Runs parse_and_work() and reports the exceptions that it throws.
 static int guarded(int argc, char** argv) {
   try {
     return parse_and_work(argc, argv);
   } catch (const MachineFailure& failure) {
     return machine_failed(failure.message);
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "catena: %s\n", out_of_memory_message());  // nothing may be allocated
+    std::fprintf(stderr, "catena: %s\n", out_of_memory_message());  // without allocation: memory is exhausted
   } catch (const std::system_error& error) {
-    if (std::ferror(stdout) != 0) return 0;  // the output is lost: that is said at the end
+    if (std::ferror(stdout) != 0) return 0;  // the output is lost: flush_output() reports that
     if (is_thread_start_failure(error)) return machine_failed("no other thread can be started: " + describe_errno(thread_start_errno()));
     return machine_failed(fmt::format("this machine does not give what is needed: {}", error.what()));
   } catch (const std::exception& error) {

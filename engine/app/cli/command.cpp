@@ -115,7 +115,7 @@ Result<std::vector<field::GridInfo>> read_grid_infos(const std::string& path, co
   std::vector<std::string> names;
   for (const field::GridInfo& one : grids) names.push_back(one.series_number + (one.series_number.empty() ? "" : " ") + one.name);
   const std::string known = join_words({names.begin(), names.end()});
-  // the volumes of a DICOM series
+  // all volumes of one DICOM series
   std::erase_if(grids, [&](const field::GridInfo& one) { return !one.series_number.starts_with(grid + "."); });
   if (!grids.empty()) return grids;
   return Error{one_line(path + ": there is no grid " + in_quotes(grid) + ", the file has: " + known)};

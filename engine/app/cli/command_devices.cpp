@@ -1,4 +1,5 @@
-/// catena devices [--json]: what there is.  catena devices test NAME [--forces] [--seconds S] [--firmware FILE]: a safe self-test.
+/// catena devices [--json]: lists the haptic devices.
+/// catena devices test NAME [--forces] [--seconds S] [--firmware FILE]: a safe self-test.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>

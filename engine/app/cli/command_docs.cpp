@@ -1,5 +1,5 @@
-/// catena documents man FOLDER | completion FILE: manual pages and the shell's completion, made of what every command says of itself. For
-/// those who pack Catena: `--help` of the program does not list it.
+/// catena documents man FOLDER | completion FILE: manual pages and the shell completion, generated from the descriptions of all commands.
+/// Meant for packagers of Catena: `catena --help` does not list it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
@@ -15,7 +15,7 @@ namespace {
 
 const auto kAll = [](const CLI::App*) { return true; };
 
-/// As roff takes it: no line begins with a control character, and a hyphen is one.
+/// Escapes text for roff: a control character at the beginning of a line, and hyphens.
 std::string roff(const std::string& text) {
   std::string out = !text.empty() && (text[0] == '.' || text[0] == '\'') ? "\\&" : "";
   for (const char c : text) {
@@ -26,7 +26,7 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-/// "-o,--output FILE", "SCENE"
+/// Returns the name of an option or argument: "-o,--output FILE", "SCENE".
 std::string roff_name(const CLI::Option& option) {
   std::string names;
   for (const std::string& name : option.get_snames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("-" + name) + "\\fR");
@@ -45,7 +45,7 @@ void add_options(const CLI::App& command, std::string& page) {
   }
 }
 
-/// What a command is for, without its own name and a full stop: the program's begins with "Catena: ".
+/// Returns a command's description without a full stop and without the prefix "Catena: " of the program's.
 std::string purpose(const CLI::App& command) {
   std::string text = command.get_description();
   if (text.starts_with("Catena: ")) text.erase(0, 8);
@@ -58,7 +58,7 @@ struct ManualPage {
   std::string text;
 };
 
-/// The page of a command, and those of its parts.
+/// Adds the manual page of a command and those of its subcommands.
 void add_pages(const CLI::App& command, const std::string& name, std::vector<ManualPage>& pages) {
   std::string words = name;
   std::replace(words.begin(), words.end(), '-', ' ');
@@ -103,7 +103,7 @@ Outcome write_manual(const CLI::App& program, const std::string& folder) {
   return commit_all(all);
 }
 
-/// "case" branches: the words after each command.
+/// Adds "case" branches: the words that can follow each command.
 void add_words(const CLI::App& command, const std::string& words, std::string& cases) {
   std::string offered;
   for (const CLI::App* part : command.get_subcommands(kAll)) {
@@ -116,7 +116,7 @@ void add_words(const CLI::App& command, const std::string& words, std::string& c
   cases += "    \"" + words + "\") words=\"" + offered + "\" ;;\n";
 }
 
-/// Of bash, which zsh takes, too (bashcompinit): commands, their options, and files everywhere else.
+/// Writes the completion for bash, which zsh can load, too (bashcompinit): commands and their options, and files elsewhere.
 Outcome write_completion(const CLI::App& program, const std::string& path) {
   std::string cases;
   add_words(program, "catena", cases);

@@ -1,4 +1,4 @@
-/// catena export FILE.catlog -o TICKS.csv [--details FILE.csv] [--poses FILE.csv]: a recording as tables. Needs none of the scene's files.
+/// catena export FILE.catlog -o TICKS.csv [--details FILE.csv] [--poses FILE.csv]: a recording as tables, without the scene's files.
 /// catena export SCENE --isosurface I|--slice I|--streamlines I|--mesh M|--field F|--probe PATH.csv -o OUT: a part of a scene.
 #include <fmt/core.h>
 
@@ -37,7 +37,7 @@ void append_quat(std::string& line, const Quat& q) {
   }
 }
 
-// Beside what `replay --details` tells: all else that was recorded.
+// Returns the column names of the recorded values that `replay --details` does not write.
 std::string recorded_header(const LinkColumns& columns) {
   std::string line =
       ",tick,probe_time,buttons,condition,forces_on,force_state,orientation_w,orientation_x,orientation_y,orientation_z,"

@@ -1,4 +1,4 @@
-/// catena feel SCENE [--device NAME] [--seconds S] [--rate HZ] [--forces on|off] [--stats FILE.json]: the hand without a window.
+/// catena feel SCENE [--device NAME] [--seconds S] [--rate HZ] [--forces on|off] [--stats FILE.json]: haptics without a window.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ struct FeelOptions {
   RealtimeChoice realtime;
 };
 
-/// What the workspace is fitted to; not needed where the scene states its own.
+/// Returns the bounds to which the workspace is fitted; empty if the scene has an explicit workspace.
 Result<Bounds> bounds_of(scene::Scene& scene) {
   if (scene.workspace.is_explicit) return Bounds();
   CATENA_TRY([[maybe_unused]] const auto felt, haptics::build_program(scene));
@@ -44,12 +44,12 @@ Result<Bounds> bounds_of(scene::Scene& scene) {
   return scene::scene_bounds(scene);
 }
 
-constexpr int kPatienceMs = 500;  // with a terminal that takes nothing, once the device is off
+constexpr int kPatienceMs = 500;  // maximum wait for a blocked terminal after the device is off
 
-/// From here on a hand may be held: nothing waits for a terminal.
+/// Prints without blocking: the device may be exerting force, so nothing may wait for a terminal.
 void print_out(std::string_view text, int wait_ms = 0) { print_nonblocking(STDOUT_FILENO, text, wait_ms); }
 
-/// "1000 Hz  curve OK  surface FREE  0.53 N  ON  0 missed", once a second on a terminal.
+/// Status line "1000 Hz  curve OK  surface FREE  0.53 N  ON  0 missed", updated once a second on a terminal.
 class StatusLine {
  public:
   explicit StatusLine(const haptics::HapticProgram& program) : program_(program), terminal_(isatty(STDOUT_FILENO) == 1) {}
@@ -64,7 +64,7 @@ class StatusLine {
     print_out(fmt::format("\r{}  {} missed\033[K", sanitize_for_terminal(line), state.missed_deadlines));
     shown_ = true;
   }
-  /// What the device asks of the person, when it changes; not only on a terminal.
+  /// Prints the device's request to the user when it changes, also if the output is no terminal.
   void tell(const std::string& text) {
     if (text == told_) return;
     told_ = text;
@@ -85,7 +85,7 @@ class StatusLine {
   std::string told_;
 };
 
-/// Until the time is over or somebody asks to end.
+/// Collects statistics until the time is over or an end is requested.
 void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const FeelOptions& options,
           const InterruptHandler& interrupt, StatusLine& line, ContactSummary& felt, plan::TrackingErrorMonitor& observer) {
   constexpr double kStep = 0.02, kLine = 1;
@@ -125,7 +125,7 @@ Outcome make_haptic_binding(const FeelOptions& options) {
   CATENA_CHECK(files.check());
   CATENA_TRY(const scene::TuningTargets wanted, plan::resolve_tick_targets(scene, options.plan));
   CATENA_TRY(HapticDeviceSetup hand, open_haptic_device(scene, options.device, options.rate_hz, options.firmware));
-  // the plan stands before the first tick, and is part of the text that is recorded
+  // the links are tuned before the first tick, and the tuned text is the one that is recorded
   CATENA_TRY(std::string text, plan::read_scene_text(scene));
   CATENA_TRY(const std::optional<plan::TickTuning> plan,
              plan::tune_links(scene, text, wanted, hand.settings.rate_hz, options.fields,
@@ -133,7 +133,7 @@ Outcome make_haptic_binding(const FeelOptions& options) {
   if (plan) {
     CATENA_TRY(text, plan->apply(text, options.scene));
   }
-  // from here on: while it opens there is no force, and Ctrl-C ends at once
+  // Ctrl-C before this point ends the program at once: no force is exerted yet
   const InterruptHandler interrupt;
   const CrashGuard crash_guard(*hand.device);
   if (!hand.note.empty()) print_message(hand.note);

@@ -1,4 +1,4 @@
-/// catena import IN -o OUT: any file that Catena reads, as one of those that it writes (engine/io/volume/write_field.h).
+/// catena import IN -o OUT: converts any file that Catena reads to a format that it writes (engine/io/volume/write_field.h).
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ struct ImportOptions {
   int step = -1;
 };
 
-/// None may be a file that is read: of a series all are, not a step's alone.
+/// Checks that no output is an input file; of a series all files are inputs, not only that of a step.
 Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& outputs) {
   IoConflictChecker files;
   files.add_input(o.input);
@@ -37,7 +37,7 @@ Outcome check_outputs(const ImportOptions& o, const std::vector<std::string>& ou
   return files.check();
 }
 
-/// `told`: notes of steps before, which are not repeated.
+/// Converts one step. `told` holds the notes of earlier steps, which are not repeated.
 Outcome import_step(const ImportOptions& o, const field::LoadRequest& request, const std::string& output, std::set<std::string>& told) {
   std::vector<std::string> notes;
   CATENA_TRY(const std::string name, field::convert_file(request, output, o.name, &notes));
@@ -53,7 +53,7 @@ Result<int> count_steps(const field::LoadRequest& request) {
   return scene::list_time_steps(request.path, first).count;
 }
 
-/// One output holds one step.
+/// Checks that one step is selected if there is one output.
 Outcome check_one_step(const ImportOptions& o, const field::LoadRequest& request) {
   const bool pattern = scene::is_pattern(request.path);
   if (o.step < 0 && !pattern) return Done{};

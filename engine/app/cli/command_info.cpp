@@ -1,5 +1,5 @@
-/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; a mesh's triangles, box and open edges; what
-/// a scene or a recording holds.
+/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; a mesh's triangles, box and open edges; the contents
+/// of a scene or a recording.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -35,7 +35,7 @@ namespace catena::app {
 
 namespace {
 
-/// Pose and sizes; what a ruler reads.
+/// Prints the pose and the sizes of each widget, and the value that a ruler measures.
 Outcome describe_widgets(scene::Scene& scene) {
   std::vector<scene::Entity> widgets;
   scene.entities.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { widgets.push_back(e); });

@@ -1,5 +1,5 @@
 /// catena render SCENE|FILE -o FILE.{png,exr,mp4,webm,gif} [--size WxH] [--quality Q] [--frames N --orbit DEG] ..
-/// Its options; the work is in engine/app/render.
+/// Defines the options; engine/app/render does the work.
 #include <CLI/CLI.hpp>
 #include <memory>
 

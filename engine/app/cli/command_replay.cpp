@@ -1,5 +1,5 @@
 /// catena replay SCENE --probe PATH.csv -o TICKS.csv [--details LINKS.csv] [--widgets W.csv] [--stats FILE.json]
-/// catena replay [SCENE] --log FILE.catlog [-o TICKS.csv] ...: what was recorded, again, compared to the bit (replay_log.h)
+/// catena replay [SCENE] --log FILE.catlog [-o TICKS.csv] ...: repeats a recording and compares the results bit by bit (log_replay.h)
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -25,14 +25,14 @@ namespace catena::app {
 
 namespace {
 
-// A scene that names its device is replayed as that device would give it; without one nothing is limited.
+// Returns the limits of the device that the scene names, so that the replay applies them; no limits if it names none.
 Result<haptics::DeviceLimits> device_limits(const scene::Scene& scene, const std::string& path) {
   if (!scene.device) return haptics::DeviceLimits{};
   CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, path));
   return haptics::compute_device_limits(haptics::nominal_capabilities(settings.type), settings);
 }
 
-/// Before anything is felt: from here on the links say how they are followed.
+/// Tunes the links before the first tick; returns the tuning, if the scene or the options request one.
 Result<std::optional<plan::TickTuning>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
   CATENA_TRY(const scene::TuningTargets wanted, plan::resolve_tick_targets(scene, options.plan));
   double rate_hz = 1000;

@@ -1,4 +1,4 @@
-/// catena serve SOURCE [--port N] [--address A]: the scene in a browser.
+/// catena serve SOURCE [--port N] [--address A]: shows the scene in a browser.
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <utility>

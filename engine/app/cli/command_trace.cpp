@@ -39,7 +39,7 @@ std::int64_t process_cpu_ns() {
   return 1'000'000'000 * static_cast<std::int64_t>(t.tv_sec) + t.tv_nsec;
 }
 
-/// The scene, or one made of the grids of a data file that the options name.
+/// Returns the scene, or one created from a data file with the grids that the options name.
 Result<scene::Scene> scene_of(const TraceOptions& options) {
   scene::Scene scene;
   scene.path = options.source;
@@ -92,7 +92,7 @@ Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptio
 
 using Curves = std::vector<flow::CurvePtr>;
 
-/// How long the tracing took, without files: every repetition of it.
+/// Wall time and CPU time of each repetition of the tracing, without reading and writing files.
 struct Timing {
   std::vector<double> wall_ms, cpu_ms;
 
@@ -106,7 +106,7 @@ struct Timing {
   }
 };
 
-/// Seeds of a table, over all cores.
+/// Traces the seeds of a CSV table on all cores.
 Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, Timing& timing) {
   CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
   flow::TraceOptions exact;
@@ -118,7 +118,7 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
   batch.max_step = options.step;
   const bool exactly = options.tolerance <= 1e-9;
   const flow::BatchTracer tracer(flow, batch);
-  const std::size_t at_once = exactly ? 64 : 4096;  // between two looks at the progress
+  const std::size_t at_once = exactly ? 64 : 4096;  // seeds between two updates of the progress line
   const auto trace_all = [&]() -> Result<Curves> {
     Curves curves;
     curves.reserve(seeds.size());
@@ -130,7 +130,8 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
       const auto traced = exactly ? flow::trace_all(flow, block, exact) : tracer.trace(block);
       for (std::size_t i = 0; i < traced.size(); ++i) {
         if (!traced[i])
-          return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};  // after the header
+          // + 2: 1-based, after the header
+          return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};
         curves.push_back(*traced[i]);
         knots += curves.back()->knots().size();
       }
@@ -146,13 +147,13 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
 
 bool is_pattern(const std::string& seeds) { return seeds.starts_with("{") || seeds.ends_with(".json"); }
 
-/// Seeds by a pattern, as a scene's "seeds" has it: text, or a file.
+/// Reads a seed pattern in the format of a scene's "seeds": JSON text, or the name of a JSON file.
 Result<json::Node> pattern_of(const std::string& seeds) {
   return seeds.starts_with("{") ? json::parse(seeds, "--seeds") : json::read(seeds);
 }
 
 Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node, const flow::Flow& flow, scene::Scene& scene) {
-  // a data file's other grids are found by name
+  // other grids of the data file are added when a pattern refers to them by name
   if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
     if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
   CATENA_TRY(const scene::Seeds seeds, scene::read_seeds(scene, node));
@@ -162,7 +163,7 @@ Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node
     shown->update(static_cast<double>(done));
   };
   scene::LineRequest request{flow, options.length, options.tolerance, options.step, scene::knot_limit(), progress};
-  // a table of lines goes as far as they do, but those that fill the space need its end
+  // the scene's box limits only evenly spaced lines, which would otherwise fill the whole space; other lines are traced to their end
   const scene::Entity field = scene::find_field(scene, options.field);
   if (field && seeds.pattern && seeds.pattern->kind == scene::SeedPattern::Kind::evenly_spaced)
     request.box = scene.entities.get<scene::FieldSource>(field).box;

@@ -1,4 +1,4 @@
-/// catena tradeoff SCENE|FILE -o DIR [--quick|--thorough] [--compare OTHER.json]: error against cost of this scene's settings
+/// catena tradeoff SCENE|FILE -o DIR [--quick|--thorough] [--compare OTHER.json]: error against cost for the settings of a scene
 /// catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
 #include <fmt/core.h>
 

@@ -29,7 +29,7 @@ struct ViewArguments {
   StereoOptions stereo;
 };
 
-/// Of the whole run, as far as the command line says.
+/// Returns the inputs and outputs of the whole run that the command line and the scene name.
 IoConflictChecker files_of(const ViewArguments& o, const scene::Scene& scene) {
   IoConflictChecker files(scene);
   files.add_device_files(o.device);

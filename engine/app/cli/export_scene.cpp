@@ -26,7 +26,7 @@ namespace {
 
 using scene::Entity;
 
-/// The item of that number in a list of the scene.
+/// Returns the item with that index in a list of the scene.
 template <class T>
 Result<Entity> find_item(const scene::Scene& scene, int number, const std::string& list) {
   std::vector<Entity> items;
@@ -41,7 +41,7 @@ Outcome expect(const std::string& output, bool fits, const std::string& endings)
   return Error{output + ": expected an output that ends in " + endings};
 }
 
-/// Where a message points that is about an option.
+/// Returns a node that makes error messages refer to an option.
 json::Node option_node(const std::string& option) {
   json::Node node;
   node.file = std::make_shared<const std::string>(option);
@@ -104,7 +104,7 @@ Outcome export_streamlines(const SceneExport& options, scene::Scene& scene) {
   return Done{};
 }
 
-/// Places of a square lattice in a plane, as far as a field reaches; those where it has a value, and the triangles between them.
+/// Points of a square sampling grid in a plane within the field's domain at which the field has a value, and the triangles between them.
 struct PlaneSamples {
   std::vector<Vec3> points;
   std::vector<mesh::Triangle> triangles;
@@ -114,7 +114,7 @@ Result<PlaneSamples> sample_plane(const std::string& output, const scene::Slice&
                                   std::size_t columns) {
   const field::Field& field = *any.get();
   const Vec3 n = direction(slice.normal);
-  // along the world's axes where the plane is
+  // the first grid axis is the projection of the world axis most parallel to the plane
   int least = 0;
   for (int a = 1; a < 3; ++a)
     if (std::fabs(n[a]) < std::fabs(n[least])) least = a;
@@ -149,7 +149,7 @@ Result<PlaneSamples> sample_plane(const std::string& output, const scene::Slice&
     for (std::size_t i = 0; i < nu; ++i) {
       const Vec3 p = slice.point + u * ((lo[0] + static_cast<double>(i)) * spacing) + v * ((lo[1] + static_cast<double>(j)) * spacing);
       const bool inside = any.scalar ? any.scalar->sample(p, cursor).inside : any.vector->sample(p, cursor).inside;
-      // a formula has a value everywhere: no farther than its box is shown
+      // a formula has values everywhere: only those in its box are exported
       if (!inside || !field.index_box().contains(field.mapping().index_from_world(p), kSlack)) continue;
       number[j * nu + i] = static_cast<std::uint32_t>(made.points.size());
       made.points.push_back(p);
@@ -173,7 +173,7 @@ Outcome export_slice(const SceneExport& options, scene::Scene& scene) {
   CATENA_TRY(const Entity item, find_item<scene::Slice>(scene, *options.slice, "slices"));
   const scene::Slice& slice = scene.entities.get<scene::Slice>(item);
   CATENA_TRY(const field::AnyField shown, scene::resolve_field(scene, slice.color_by.field, slice.where));
-  // a formula is drawn, and measured, of a grid
+  // a formula is rendered from a grid, whose voxel size is the default spacing
   CATENA_TRY(const field::AnyField drawn, scene::resolve_rendered_field(scene, slice.color_by.field, slice.where));
   const double spacing = options.spacing > 0 ? options.spacing : drawn.get()->mapping().min_voxel_edge();
   CATENA_TRY(FieldSampler samples, FieldSampler::load(scene));
@@ -217,7 +217,7 @@ Outcome export_field(const SceneExport& options, scene::Scene& scene) {
   CATENA_CHECK(expect(options.output, field::is_writable_format(options.output), field::writable_extensions()));
   const Entity entity = scene::find_field(scene, options.field);
   const json::Node where = option_node("--field");
-  if (!entity) return scene::resolve_field(scene, options.field, where).error();  // names those that there are
+  if (!entity) return scene::resolve_field(scene, options.field, where).error();  // the message lists the existing fields
   CATENA_TRY(const field::AnyField drawn, scene::resolve_rendered_field(scene, entity, where));
   const auto& file = scene.entities.get<scene::FieldSource>(entity).file;
   CATENA_CHECK(field::write_field(options.output, drawn, options.field, file ? field::read_units(file->path, file->grid) : field::Units{}));
@@ -236,7 +236,7 @@ Outcome export_scene(const SceneExport& options) {
   files.add_input(options.probe);
   files.add_output("-o", options.output);
   CATENA_CHECK(files.check());
-  // what follows a widget is where the widget is
+  // items that are bound to a widget move to its position
   const auto driven = scene::propagate_widgets(scene);
   if (!driven) return driven.error();
   const auto part = options.isosurface       ? export_isosurface

@@ -51,7 +51,7 @@ std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
   return out.add("bytes", std::uint64_t{g.bytes}).text();
 }
 
-/// "steps", and "times" where all are stated, with "time_unit"; of a pattern "files".
+/// Adds "steps"; "times" and "time_unit" if all times are known; "files" for a pattern.
 void add_steps(JsonObject& out, const std::string& path, const scene::TimeSteps& steps) {
   std::vector<std::string> times, files;
   if (scene::is_pattern(path))
@@ -128,7 +128,7 @@ Result<std::string> json_of_scene(const std::string& path) {
     add_mesh(out, *mesh);
     meshes.push_back(out.text());
   }
-  // what info checks, too: the chain can be made, the device's keys are right
+  // the same checks as `info` without --json: the chain can be built, the device's keys are valid
   CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene));
   print_scene_notes(scene);
   if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
@@ -172,7 +172,7 @@ Result<std::string> json_of_log(const std::string& path) {
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
     if (event == log::LogEvent::gap) gaps.push_back(to_json_value(reader.gap().description()));
     if (event != log::LogEvent::tick) continue;
-    // a device that is not there has no time of its own
+    // ticks without a device have no valid time
     const double t_s = reader.tick().input.t_s;
     if (ticks++ == 0) first_s = t_s;
     if (std::isfinite(t_s)) last_s = t_s;
@@ -185,7 +185,7 @@ Result<std::string> json_of_log(const std::string& path) {
   return out.add_raw("gaps", json_array(gaps)).add("ending", std::string(reader.end_summary())).text();
 }
 
-/// Curves and points: what both know.
+/// Returns the members that curve sets and point sets have in common.
 template <class Set>
 JsonObject json_of_set(const std::string& kind, const std::string& path, const Set& set) {
   std::vector<std::string> values;

@@ -90,7 +90,7 @@ void print_mapping(const field::Mapping& mapping) {
   fmt::print("  origin       {}   (world = J index + origin)\n", format_position(mapping.origin));
 }
 
-/// "6, time 0, 0.1, 0.2, 0.3, 0.4, 0.5 s"; of many the first and the last time.
+/// Returns "6, time 0, 0.1, 0.2, 0.3, 0.4, 0.5 s"; for more than kMost steps only the first and the last time.
 std::string steps_text(const scene::TimeSteps& steps) {
   constexpr std::size_t kMost = 10;
   const std::vector<double>& times = steps.times;
@@ -102,7 +102,7 @@ std::string steps_text(const scene::TimeSteps& steps) {
   return text + (times.empty() || steps.time_unit.empty() ? "" : " " + steps.time_unit);
 }
 
-/// Of a file, or a pattern, that has several. Error: there is no such step.
+/// Prints the time steps of a file or a pattern that has several. Error: the step does not exist.
 Outcome print_steps(const std::string& path, const scene::TimeSteps& steps, int step) {
   CATENA_CHECK(check_step(step, steps.count - 1, fmt::format("--step {}", step), path));
   if (scene::is_pattern(path)) {
@@ -122,7 +122,7 @@ Outcome describe_file(const std::string& path, const std::string& grid, int step
                g.is_usable ? "" : "; not a field that Catena can show or feel");
     if (!g.series_number.empty()) fmt::print("  number       {}\n", sanitize_for_terminal(g.series_number));
     if (g.image_count > 0) fmt::print("  images       {}\n", g.image_count);
-    if (!g.is_usable && g.image_count > 0) continue;  // what is wrong with it stands for its type
+    if (!g.is_usable && g.image_count > 0) continue;  // its type states why it is not usable
     fmt::print("  size         {} {} {} voxels from index {} {} {}\n", g.size.x, g.size.y, g.size.z, g.first_index.x, g.first_index.y,
                g.first_index.z);
     print_mapping(g.mapping);

@@ -24,7 +24,7 @@ std::string user_folder(const char* variable, const char* under_home) {
 std::vector<std::string> scene_input_files(const scene::Scene& scene) {
   std::vector<std::string> inputs{scene.path};
   inputs.insert(inputs.end(), scene.referenced_files.begin(), scene.referenced_files.end());
-  // of a scene that was made for a data file, and not read from a text
+  // files of a scene that was created for a data file and not read from a text
   scene.entities.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
     if (source.file) inputs.push_back(source.file->path);
     inputs.insert(inputs.end(), source.series.begin(), source.series.end());
@@ -78,7 +78,7 @@ Outcome IoConflictChecker::check(bool keeps_scene) const {
   for (const std::string& input : inputs_) {
     if (!keeps_scene || !is_scene_file(input))
       if (const auto id = find_file_id(input)) files.push_back(*id);
-    // who reads it is asked only where something could be overwritten
+    // finding the companion files is slow: only if an existing file could be overwritten
     if (there.empty() || !field::has_companion_files(input)) continue;
     const std::vector<FileId> parts = field::find_data_files(input);
     for (const PlannedOutput* output : there)

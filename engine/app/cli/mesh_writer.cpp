@@ -121,7 +121,7 @@ std::string mesh_export_extensions() {
 }
 
 std::string describe_precision_loss(const std::string& path, const MeshExport& surface) {
-  constexpr double kTold = 0.01;  // of the triangles: isosurfaces have slivers anywhere
+  constexpr double kTold = 0.01;  // fraction of degenerate triangles that is reported: isosurfaces always have some slivers
   if (!has_extension(path, ".stl")) return {};
   const auto rounded = [&](std::uint32_t n) { return glm::vec3(surface.points[n]); };
   const auto flat = std::ranges::count_if(surface.triangles, [&](const mesh::Triangle& t) {

@@ -22,7 +22,8 @@ namespace {
 
 constexpr const char* kVariable = "CATENA_PLUGINS";
 
-/// A relative name would mean another file in every folder, an unpacked archive of a stranger among them.
+/// Loads the plug-ins of CATENA_PLUGINS. Paths must be absolute: a relative one could load a file from an untrusted folder, such as an
+/// unpacked archive.
 Outcome load_from_environment() {
   const char* const stated = std::getenv(kVariable);
   std::string rest = stated == nullptr ? "" : stated;
@@ -38,7 +39,7 @@ Outcome load_from_environment() {
   return Done{};
 }
 
-/// The plug-ins of the user's folder. Whoever calls a set-id program does not see into folders with its rights.
+/// Returns the plug-ins of the user's folder; none in a set-user-ID program, which must not read folders with its privileges.
 std::vector<std::string> files_of_folder() {
   std::vector<std::string> files;
   const std::string data = user_folder("XDG_DATA_HOME", ".local/share");

@@ -35,7 +35,7 @@ void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& cur
   std::size_t points = 0;
   for (const auto& curve : curves) points += curve->knots().size();
 
-  // by point, by line
+  // arrays per point and per line
   const auto by_knot = [&]<class T>(const char* name, int components, T, auto&& value) {
     return AppendedArray{kTypeWord<T>, name, components, points * components * sizeof(T), [&curves, components, value](OutputFile& to) {
                            for (std::size_t line = 0; line < curves.size(); ++line)

@@ -35,7 +35,7 @@ void say_no_thread(char* line, std::size_t size) noexcept {
   }
 }
 
-// No allocation: there may be no memory.
+// Must not allocate: memory may be exhausted.
 [[noreturn]] void on_terminate() {
   char line[256] = "catena: ended by an error that nothing handles\n";
   try {
@@ -94,7 +94,7 @@ bool reader_has_gone() {
 }  // namespace
 
 void reserve_standard_descriptors() {
-  // the lowest free one is taken: 0 before 1 before 2
+  // open() returns the lowest free descriptor: 0 before 1 before 2
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) < 0) return;
 }

@@ -12,7 +12,7 @@ std::vector<schema::Section> scene_file_components() {
   for (schema::Section& component : all) {
     if (component.name == "chain") component = haptics::chain_component();
     if (component.name == "device") component = haptics::device_component();
-    // the switch of a mode is that of a link
+    // "on" of a mode has the same keys as "on" of a link
     for (schema::Key& key : component.keys)
       if (component.name == "modes" && key.name == "on") key.members = schema::find(haptics::common_keys(), "on")->members;
   }

@@ -11,7 +11,7 @@ namespace catena::app {
 
 namespace {
 
-/// CRITICAL, PARALLEL: every place of the field would hold it.
+/// Returns true for the status CRITICAL with PARALLEL: the constraint is degenerate, and every point of the field would satisfy it.
 bool is_nowhere(const LinkReport& link) { return link.status == LinkStatus::critical && link.sample_status == SampleStatus::parallel; }
 
 bool holds(const LinkReport& link) {
@@ -20,10 +20,10 @@ bool holds(const LinkReport& link) {
          status != LinkStatus::bad_probe;
 }
 
-/// "12.5 mm", or "3 m" from one metre on.
+/// Formats a length as "12.5 mm", or "3 m" from one meter on.
 std::string hand_length(double metres) { return metres < 1 ? fmt::format("{:.3g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres); }
 
-/// "3.88", or "1.7e+308" where that would be hundreds of digits.
+/// Formats a time as "3.88", or as "1.7e+308" if it is very large.
 std::string seconds(double s) { return s < 1e9 ? fmt::format("{:.2f}", s) : fmt::format("{:.3g}", s); }
 
 }  // namespace

@@ -17,7 +17,7 @@ using haptics::DeviceStatus;
 constexpr double kRise_s = 0.2, kRest_s = 0.2, kPause_s = 0.1;
 constexpr std::uint64_t kTicksATell = 50;
 constexpr double kResting_s = 0.5, kResting_m = 0.002;
-constexpr double kAgainst_m = 5e-4;  // a hand that moves so far against the push: axes or signs are wrong
+constexpr double kAgainst_m = 5e-4;  // motion against the push from which axes or signs count as wrong
 
 class Check {
  public:
@@ -31,7 +31,7 @@ class Check {
   }
 
  private:
-  /// One tick: the pose in, the force out. False: it is over, and why is in `failure`.
+  /// Executes one tick: reads the pose, writes the force. Returns false if the check has ended; `failure` states why.
   bool step(const Vec3& force_n, DeviceInput& input) {
     now_s_ = pace_(tick_++);
     input = device_.read();
@@ -95,7 +95,7 @@ class Check {
     return true;
   }
 
-  /// Until the device lets forces through (a Falcon wants its grip pulled out once more) and the grip rests.
+  /// Waits until the device outputs forces (a Falcon requires its grip to be pulled out once more) and the grip is at rest.
   bool settle() {
     if (!(device_.capabilities().max_force_n > 0)) return fail("the device has no force output; it was expected with --forces");
     const double start = now_s_;
@@ -121,7 +121,7 @@ class Check {
     }
   }
 
-  /// What the device asks of the person, when it changes. A text is made: not in every tick.
+  /// Prompts with the device's request to the user when it changes. It creates a string, and therefore runs only every kTicksATell ticks.
   void tell() {
     if (!options_.prompt || tick_ % kTicksATell != 0) return;
     const std::string text = device_.status_text();

@@ -20,7 +20,7 @@ Outcome apply_device_file(const std::string& path, scene::Scene& scene) {
   if (!is_there(path)) return Done{};
   CATENA_TRY(json::Node device, json::read(path));
   CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(device, path));
-  // relative names are relative to this file, not to the scene
+  // relative paths are relative to this file, not to the scene
   for (auto& [key, value] : device.members)
     if (key == "firmware") value.string = std::filesystem::absolute(settings.firmware).string();
   scene.device = std::move(device);

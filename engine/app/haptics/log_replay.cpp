@@ -47,7 +47,7 @@ std::string describe_scales(const std::vector<double>& metres_per_unit, bool rec
 
 namespace {
 
-// "12 ticks, all equal to the bit", or where they are not.
+// Prints "12 ticks, all equal to the bit", or throws MachineFailure with the first difference or the gap that ended the replay.
 Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, const log::LogReplay& result) {
   const std::string& by = reader.header().catena_version;
   if (result.differing > 0)
@@ -71,7 +71,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
   CATENA_TRY(const LinkColumns all_links, read_log_columns(options.log));
   LinkColumns columns = all_links;
 
-  // what the first program needs must not be overwritten; it is known once its scene has been read
+  // inputs of the first program must not be overwritten; they are known after its scene has been read
   CATENA_TRY(const std::vector<std::string> inputs, scene.input_files());
   IoConflictChecker named = replay_files(options);
   named.add_input(inputs);
@@ -161,7 +161,7 @@ std::string from_folder(const std::string& folder, const std::string& path) {
   return fs::path(path).is_absolute() ? path : (fs::path(folder) / path).string();
 }
 
-// NAME=FILE[:GRID], FILE as seen from where the recording was made
+// NAME=FILE[:GRID]; a relative FILE is relative to the working folder of the recording
 std::string field_from_folder(const std::string& folder, const std::string& option) {
   const auto equals = option.find('=');
   return equals == std::string::npos ? option : option.substr(0, equals + 1) + from_folder(folder, option.substr(equals + 1));
@@ -185,7 +185,7 @@ Outcome LogProgramBuilder::reload_scene(const std::optional<std::string>& own_te
   own_text_ = own_text;
   if (!own_text && (from_file_ || !is_scene_file(scene_path_))) {
     CATENA_TRY(scene_, open_scene(scene_path_, field_options_));
-    // no curve and no clock has a say in what was felt
+    // applies the recorded tuning: tuning again would depend on the cost curves and on the speed of this computer
     if (scene_->tuning.has_haptic_targets() && is_scene_file(header_.scene_path))
       return plan::apply_recorded_settings(header_.scene_text, *scene_);
     return Done{};
@@ -199,7 +199,7 @@ Result<std::shared_ptr<const haptics::HapticProgram>> LogProgramBuilder::build(c
   CATENA_CHECK(reload_scene(program.scene_text));
   CATENA_CHECK(check_plugins(header_.plugins, *scene_));
   scene::Coupling& coupling = scene_->coupling;
-  // a scene from outside keeps what it states; what it leaves open was fitted when it was recorded
+  // an explicitly given scene keeps its explicit settings; the others take the recorded values, which were fitted at that time
   if (!from_file_) {
     coupling.stiffness_n_per_m = program.coupling.stiffness_n_per_m;
     coupling.damping_ns_per_m = program.coupling.damping_ns_per_m;
@@ -209,7 +209,7 @@ Result<std::shared_ptr<const haptics::HapticProgram>> LogProgramBuilder::build(c
   if (!from_file_ || !coupling.ramp_s) coupling.ramp_s = program.coupling.ramp_s;
   if (!from_file_ || !scene_->workspace.is_explicit)
     scene_->workspace = {program.meters_per_unit, program.workspace_origin, program.workspace_rotation, scene_->workspace.is_explicit};
-  // links that follow a widget were made where it was then
+  // links that are bound to a widget were built with its pose at that time
   for (const log::LogProgram::Widget& from : program.widgets) {
     const scene::Entity found = scene::find_widget(*scene_, from.name);
     if (!found) continue;
@@ -253,7 +253,7 @@ Outcome print_log_info(const std::string& path) {
                  reader.program().is_known ? "" : " (the recording does not say what they are)");
     }
     if (event != log::LogEvent::tick) continue;
-    // a device that is not there has no time of its own
+    // ticks without a device have no valid time
     const double t_s = reader.tick().input.t_s;
     if (ticks++ == 0) first_s = t_s;
     if (std::isfinite(t_s)) last_s = t_s;

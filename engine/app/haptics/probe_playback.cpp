@@ -16,7 +16,7 @@ ProbePath make_resting_path(const scene::Scene& scene) {
   if (!scene.cursor || !scene.entities.has<scene::Cursor>(scene.cursor)) return path;
   const scene::Cursor& cursor = scene.entities.get<scene::Cursor>(scene.cursor);
   if (!cursor.visible) return path;
-  // a still hand: as many ticks as a distant proxy may need to arrive
+  // resting probe: enough ticks for a distant proxy to converge
   for (int k = 0; k < 500; ++k) path.push_back({0.001 * k, cursor.probe, 0});
   return path;
 }

@@ -27,7 +27,7 @@ std::atomic<bool> grace_runs{false};
 
 void say(const char* words) { [[maybe_unused]] const auto written = write(STDERR_FILENO, words, std::strlen(words)); }
 
-/// What was asked to end looks at nothing any more, as within a graphics driver that waits for ever: it ends as by the first signal.
+/// Ends the program by its first signal: after kGraceS it has not reacted to the request, for example because a graphics driver hangs.
 void end_by_first_signal() {
   stop_guarded_device();
   say("catena: asked to end, and it did not within 30 s: ended at once\n");
@@ -64,7 +64,7 @@ std::string word_of_signal(int signal_number) {
 InterruptHandler::InterruptHandler() {
   forget_signals();
   for (const int signal_number : kAsking) install(signal_number, false, 0);
-  // what somebody handles or ignores ends nothing
+  // signals that have a handler or are ignored are left unchanged
   for (const int signal_number : kEnding) install(signal_number, true, 0);
   for (int signal_number = SIGRTMIN; signal_number <= SIGRTMAX; ++signal_number) install(signal_number, true, 0);
 }
@@ -135,7 +135,8 @@ const char* line_of(int signal_number) {
   }
 }
 
-/// Libraries, graphics drivers among them, crash where an allocation fails: under a limit on addresses that is taken for the cause.
+/// Returns true if a crash is attributed to a lack of memory: with RLIMIT_AS set, libraries such as graphics drivers crash when an
+/// allocation fails.
 bool lacks_memory(int signal_number) {
   rlimit limit{};
   return (signal_number == SIGSEGV || signal_number == SIGBUS || (signal_number == SIGABRT && !assertion_was_reported())) &&
@@ -152,9 +153,9 @@ void on_crash(int signal_number) {
     say(*line == 0 ? "catena: the device has not confirmed that it is off\n" : "; the device has not confirmed that it is off\n");
   else if (*line != 0)
     say(done == StopResult::stopped ? "; the device is off\n" : "\n");
-  if (signal_number == SIGXCPU || limited) _exit(1);  // a limit, not a crash
+  if (signal_number == SIGXCPU || limited) _exit(1);  // exceeding a limit is no crash
   std::signal(signal_number, SIG_DFL);
-  std::raise(signal_number);  // as soon as this handler returns
+  std::raise(signal_number);  // takes effect when this handler returns
   errno = error;
 }
 
@@ -180,7 +181,7 @@ void install_crash_reporter() {
   sigaltstack(&stack, nullptr);
   for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGABRT, SIGXCPU}) {
     struct sigaction before {};
-    // a sanitizer, or somebody before this program, has one of its own
+    // keeps an existing handler, such as a sanitizer's
     if (sigaction(signal_number, nullptr, &before) != 0 || (before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler != SIG_DFL) continue;
     struct sigaction action {};
     action.sa_handler = on_crash;

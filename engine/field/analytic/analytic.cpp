@@ -8,7 +8,7 @@ namespace {
 constexpr std::string_view kVentricle = "left-ventricle", kUniform = "uniform", kVortices = "vortices";
 Box box_about(const Vec3& center) { return {center - Vec3(2.0), center + Vec3(2.0)}; }
 
-/// Everywhere inside, except where the point or the value is not finite.
+/// Scalar field of a formula. A point is inside unless the point or the value is not finite.
 class ScalarByFormula final : public ScalarField {
  public:
   ScalarByFormula(const ScalarFormula& formula, const AnalyticParameters& p) : formula_(formula), scale_(p.scale), center_(p.center) {
@@ -34,7 +34,7 @@ class ScalarByFormula final : public ScalarField {
   Vec3 center_;
 };
 
-/// The common part of vector formulas: scale, side of a line field, finite results.
+/// Base class of vector formulas: applies the scale, the reference side of a line field, and the check for finite results.
 class VectorByFormula : public VectorField {
  public:
   VectorByFormula(std::string_view name, const AnalyticParameters& p) : scale_(p.scale), center_(p.center) {
@@ -48,7 +48,7 @@ class VectorByFormula : public VectorField {
     s.inside = true;
     return s;
   }
-  /// A formula without a value at a finite place is masked there.
+  /// Returns `masked` for a finite point at which the formula has no value.
   SampleStatus status_outside(const Vec3& world, Cursor&) const noexcept final {
     Vec3 value(0.0);
     if (!is_finite(world)) return SampleStatus::not_finite;
@@ -142,7 +142,7 @@ std::vector<std::string_view> analytic_parts(std::string_view name) {
 }
 
 Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters) {
-  // the parameters
+  // parameters
   if (!is_finite(parameters.center)) return Error{fmt::format("field \"{}\": the center must be finite", name)};
   if (!std::isfinite(parameters.scale) || parameters.scale == 0)
     return Error{fmt::format("field \"{}\": scale is {}, expected a finite number that is not zero", name, parameters.scale)};
@@ -159,7 +159,7 @@ Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& 
       return Error{fmt::format("field \"vortices\": dimensions is {}, expected 2 or 3", parameters.dimensions)};
     return AnyField{nullptr, std::make_shared<VorticesField>(parameters)};
   }
-  // the formulas
+  // formulas
   for (const auto& f : scalar_formulas())
     if (f.name == name) return scalar(f, parameters);
   for (const auto& f : vector_formulas())

@@ -1,6 +1,6 @@
-// Scalar closed forms with exact gradients. sphere, plane, linear and constant use only + - * / and sqrt: their bits repeat on
-// every machine.
-//   sphere          |x|, gradient 0 at the centre               plane      z
+// Scalar closed forms with exact gradients. sphere, plane, linear and constant use only + - * / and sqrt: their results are
+// bit-identical on every machine.
+//   sphere          |x|, gradient 0 at the center               plane      z
 //   torus           distance to the circle of radius 1 in z = 0 (level = tube radius); gradient 0 on the circle and the axis
 //   constant        1                                           linear     x + y + z
 //   gaussian        exp(-|x|^2 / (2 s^2)), s = 0.5              tanh       tanh(z / 0.05): two plateaus and a steep wall
@@ -39,7 +39,7 @@ double torus(const Vec3& p, Vec3& g) {
   const Vec3 flat(p.x, p.y, 0);
   const double r = norm(flat);
   const Vec3 to_tube = (r - 1) * direction(flat) + Vec3(0, 0, p.z);
-  // on the axis the distance has a ridge: every radial direction is as good, none is taken
+  // the distance has a ridge on the axis: no radial direction is preferred, the gradient is 0
   g = direction(Vec3(to_tube.x, to_tube.y, p.z));
   const double s = norm(Vec3(r - 1, 0, p.z));
   if (r == 0) g = s > 0 ? Vec3(0, 0, p.z / s) : Vec3(0.0);
@@ -77,21 +77,21 @@ constexpr ScalarFormula kScalarFormulas[] = {
     {"torus", torus, 0, kInfinity},
     {"constant", constant, 1, 1},
     {"linear", linear, -kInfinity, kInfinity},
-    {"gaussian", gaussian, std::numeric_limits<double>::min(), 1},  // 0 is not attained
+    {"gaussian", gaussian, std::numeric_limits<double>::min(), 1},  // the infimum 0 is not attained
     {"marschner-lobb", marschner_lobb, 0, 1},
-    {"tanh", plateau, -1 + 0x1p-53, 1 - 0x1p-53},  // nor are -1 and 1
+    {"tanh", plateau, -1 + 0x1p-53, 1 - 0x1p-53},  // -1 and 1 are not attained
 };
 
 }  // namespace
 
 std::span<const ScalarFormula> scalar_formulas() { return kScalarFormulas; }
 
-// Vector closed forms. circle, saddle, node and helix use only + - * /: their bits repeat on every machine.
+// Vector closed forms. circle, saddle, node and helix use only + - * /: their results are bit-identical on every machine.
 //   circle      (-y, x, 0)                                      saddle  (x, -y, 0)
 //   node        (x, y, z): repelling (a negative scale attracts) helix   (-2y, 2x, 0.5)
-//   rankine     solid rotation (-y, x, 0) for r <= 1, the free vortex (-y, x, 0) / r^2 beyond
+//   rankine     solid rotation (-y, x, 0) for r <= 1, the free vortex (-y, x, 0) / r^2 outside
 //   lamb-oseen  (-y, x, 0) (1 - exp(-r^2)) / r^2
-//   hill        Hill's spherical vortex of radius 1 and speed 1 along z, in the frame of the vortex:
+//   hill        Hill's spherical vortex of radius 1 and speed 1 along z, in the frame that moves with it:
 //               inside  (3/2) (x z, y z, 1 - 2 (x^2 + y^2) - z^2), outside the potential flow past the sphere; continuous
 //   abc         (A sin z + C cos y, B sin x + A cos z, C sin y + B cos x), A = sqrt 3, B = sqrt 2, C = 1 (period 2 pi)
 
@@ -139,10 +139,10 @@ std::span<const VectorFormula> vector_formulas() { return kVectorFormulas; }
 
 // A left ventricle by formula: a truncated ellipsoidal shell around the long axis z, base up, apex down.
 //   e(x)     = sqrt((x^2 + y^2) / a^2 + z^2 / c^2), a = 1, c = 1.5
-//   t(x)     = (e - 0.75) / 0.4: transmural depth, 0 at the endocardium, 1 at the epicardium (it goes on beyond them)
+//   t(x)     = (e - 0.75) / 0.4: transmural depth, 0 at the endocardium, 1 at the epicardium (defined beyond both, too)
 //   density  = 1 in the wall (0 <= t <= 1, z <= 0.8), falling as a cubic to 0 over 0.25 of the thickness at either side and
 //              over 0.1 above the base
-//   fibre    = cos(h) circumferential + sin(h) longitudinal, helix angle h = 60 - 120 t degrees; unit length, in the tangent
+//   fiber    = cos(h) circumferential + sin(h) longitudinal, helix angle h = 60 - 120 t degrees; unit length, in the tangent
 //              plane of the shell through the point. Circumferential is (-y, x, 0) / r, longitudinal is up along the wall.
 //              Zero outside the support of the density and on the long axis, where no direction is circumferential.
 
@@ -152,7 +152,7 @@ constexpr double a2 = 1.0, c2 = 1.5 * 1.5;
 constexpr double endocardium = 0.75, thickness = 0.4;
 constexpr double side_margin = 0.25, base_z = 0.8, base_margin = 0.1;
 
-/// 1 for u <= 0, 0 for u >= 1, a cubic with flat ends between.
+/// Returns 1 for u <= 0, 0 for u >= 1 and a cubic with zero end slopes between; sets `slope` to the derivative.
 double fall(double u, double& slope) {
   slope = 0;
   if (u <= 0) return 1;

@@ -1,15 +1,15 @@
-// Vortices: rotations in a uniform stream, all drawn by a seed; a field that is another at every seed and nowhere diverges.
+// Vortices in a uniform stream, with random parameters from a seed. The field differs for every seed and is divergence-free.
 //   v(p) = v_0 + sum_i w_i x (p - c_i) / (1 + |p - c_i|^2 / r_i^2)^2
-// |v_0| = 0.5; c_i in [-2, 2]^3, r_i from 0.4 to 0.9, |w_i| from 1 to 2.5, either way round. In two dimensions c_i, v_0 and v lie in the
-// plane of x and y, w_i along z, and nothing depends on z. Each term is w x d times a function of |d|^2, whose gradient is along d: square
-// to it, so div v = 0. Only + - * / and square roots: the bits repeat on every machine.
+// |v_0| = 0.5; c_i in [-2, 2]^3, r_i from 0.4 to 0.9, |w_i| from 1 to 2.5 with either sense of rotation. In two dimensions c_i, v_0 and v
+// lie in the xy plane, w_i is along z, and nothing depends on z. Each term is w x d times a function of |d|^2, whose gradient is along d
+// and thus orthogonal to it: div v = 0. Only + - * / and square roots are used: the results are bit-identical on every machine.
 #include "engine/base/random.h"
 #include "engine/field/analytic/analytic.h"
 
 namespace catena::field {
 namespace {
 
-/// Evenly over all directions: from the ball, or the disc.
+/// Returns a random unit vector, uniform over the sphere, or over the circle if `flat`: rejection sampling in the ball or disc.
 Vec3 unit(Random& random, bool flat) {
   while (true) {
     const Vec3 p(random.between(-1, 1), random.between(-1, 1), flat ? 0.0 : random.between(-1, 1));

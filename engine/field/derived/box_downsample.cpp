@@ -17,12 +17,12 @@ namespace {
 
 constexpr int kLeaf = 8;
 
-/// How a coarse voxel is made from fine ones along one axis: at most factor + 1 of them.
+/// Fine voxels that contribute to a coarse voxel along one axis, at most factor + 1, with their weights.
 struct Window {
   int count = 0;
   std::array<int, 9> at{};       ///< fine indices
   std::array<float, 9> odd{};    ///< weights by odd reflection; they sum to 1
-  std::array<float, 9> plain{};  ///< by plain reflection, none negative
+  std::array<float, 9> plain{};  ///< weights by plain reflection; none is negative
 
   void add(int index, float o, float p) {
     int i = 0;
@@ -60,14 +60,14 @@ class Axis {
     }
     return w;
   }
-  int first, last;  ///< coarse voxels
+  int first, last;  ///< first and last index of the coarse voxels
   double domain_lo, domain_hi;
 
  private:
   int lo_, hi_, factor_;
 };
 
-/// The 8^3 coarse voxels of one leaf, those within the coarse box.
+/// The 8^3 coarse voxels of one leaf, clipped to the coarse box.
 class Leaf {
  public:
   Leaf(const ScalarGrid& grid, const std::array<Axis, 3>& axes, const nanovdb::Coord& origin) : grid_(grid) {
@@ -86,7 +86,7 @@ class Leaf {
     }
   }
 
-  /// The one value of all fine voxels that count here.
+  /// Returns true if all fine voxels that contribute have the same finite value, and sets `value` to it; false if the grid has a mask.
   bool constant(float& value) const {
     if (grid_.has_mask()) return false;
     const auto down = [](int v) { return v & ~(kLeaf - 1); };
@@ -135,12 +135,12 @@ class Leaf {
     return weight > 0 ? float(plain / weight) : std::numeric_limits<float>::quiet_NaN();
   }
 
-  std::array<int, 3> begin{}, end{};  ///< of the voxels within the coarse box
+  std::array<int, 3> begin{}, end{};  ///< range of the voxels within the coarse box, relative to the leaf
 
  private:
   std::size_t row_of(int y, int z) const { return (std::size_t(z) * size_[1] + y) * size_[0]; }
 
-  /// A voxel counts if it is finite and a corner of a valid cell.
+  /// Marks the contributing voxels: a voxel contributes if it is finite and a corner of a valid cell.
   void find_counting() {
     const Index3 n{size_[0] + 1, size_[1] + 1, size_[2] + 1};
     std::vector<std::uint8_t> cells(std::size_t(n.x) * n.y * n.z);
@@ -160,11 +160,11 @@ class Leaf {
   std::array<std::array<Window, kLeaf>, 3> windows_{};
   std::array<int, 3> lo_{}, size_{};
   std::vector<float> values_;
-  std::vector<std::uint8_t> counts_;  ///< by fine voxel; empty: all
+  std::vector<std::uint8_t> counts_;  ///< 1 for each fine voxel that contributes; empty: all contribute
 };
 
-/// Masks for the blocks at `origins`: all voxels, and the cells. The cell at c has the fine cells from factor c + factor / 2 on, `factor`
-/// an axis; it is invalid where half of those that the fine grid has, or more, are.
+/// Builds the masks of the blocks at `origins`: all voxels are valid. The coarse cell at c consists of factor^3 fine cells that start at
+/// factor * c + factor / 2; it is invalid if at least half of those within the fine grid are.
 Outcome mask_cells(const ScalarGrid& grid, int factor, const std::vector<nanovdb::Coord>& origins, NanoBuffers& buffers) {
   using Mask = nanovdb::ValueMask;
   std::vector<NanoBlock<Mask>> voxels, cells;
@@ -212,7 +212,7 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
   const auto axis = [&](int a) { return Axis(int(std::lround(box.lo[a])), int(std::lround(box.hi[a])), factor); };
   const std::array<Axis, 3> axes{axis(0), axis(1), axis(2)};
 
-  // all blocks of the box are looked at: a sparse grid may reach over far more of them than it has
+  // every block of the box is examined: a sparse grid may span far more blocks than it stores
   const auto down = [](int v) { return v & ~(kLeaf - 1); };
   double block_count = 1;
   for (const Axis& a : axes) block_count *= (down(a.last) - down(a.first)) / kLeaf + 1;
@@ -221,7 +221,7 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
   if (block_count > kMaxBlocks) return Error{fmt::format("{} has {:.0f} blocks, expected at most {:.0f}", what, block_count, kMaxBlocks)};
   CATENA_CHECK(check_memory_available(what, block_count * (sizeof(nanovdb::Coord) + 1 + sizeof(float))));
 
-  // the leaves: those of one value become tiles, or nothing
+  // blocks: a constant one becomes a tile, or nothing if it has the background value
   const float background = grid.background();
   std::vector<nanovdb::Coord> origins;
   origins.reserve(static_cast<std::size_t>(block_count));
@@ -233,12 +233,12 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
   parallel_for(origins.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) is_constant[i] = Leaf(grid, axes, origins[i]).constant(constants[i]);
   });
-  // the box is of the active voxels: its corners are leaves, and active
+  // the grid's box is the box of its active voxels: its two corners are stored as active voxels
   const nanovdb::Coord lowest(axes[0].first, axes[1].first, axes[2].first), highest(axes[0].last, axes[1].last, axes[2].last);
   const auto leaf_of = [&](const nanovdb::Coord& c) { return nanovdb::Coord(down(c[0]), down(c[1]), down(c[2])); };
   std::vector<NanoBlock<float>> blocks;
   std::vector<nanovdb::Coord> leaves;
-  std::vector<std::uint8_t> averaged;  // by leaf; the others hold the background, and at most a corner of the box is active
+  std::vector<std::uint8_t> averaged;  // 1 for leaves to average; the others hold the background with at most an active corner of the box
   for (std::size_t i = 0; i < origins.size(); ++i) {
     const bool corner = origins[i] == leaf_of(lowest) || origins[i] == leaf_of(highest);
     const bool empty = is_constant[i] && constants[i] == background;
@@ -284,7 +284,7 @@ Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor) {
       Mapping::from_linear(fine.world_from_index_linear * double(factor), fine.world_from_index(Vec3(0.5 * (factor - 1))));
   CoarseGrid coarse;
   CATENA_TRY(coarse.grid, grid_from_buffers<ScalarGrid>(grid.name(), mapping, std::move(buffers)));
-  // of a cubic grid the coarse one is linear: a preview, as every coarse grid is
+  // nearest stays nearest; every other coarse grid is a preview and uses linear interpolation, also that of a cubic grid
   if (grid.interpolation() == Interpolation::nearest) coarse.grid = coarse.grid->with_interpolation(Interpolation::nearest);
   coarse.domain = {{axes[0].domain_lo, axes[1].domain_lo, axes[2].domain_lo}, {axes[0].domain_hi, axes[1].domain_hi, axes[2].domain_hi}};
   return coarse;

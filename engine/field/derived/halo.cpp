@@ -15,13 +15,13 @@ namespace {
 
 using nanovdb::Coord;
 
-constexpr int kReach = 3;                        // samples in a row
-constexpr int kWindow = kLeafEdge + 2 * kReach;  // voxels an axis about a block
+constexpr int kReach = 3;                        // maximum number of samples in a row for extrapolation
+constexpr int kWindow = kLeafEdge + 2 * kReach;  // voxels per axis of a block with kReach voxels on each side
 constexpr int kWindowVoxels = kWindow * kWindow * kWindow;
 
 constexpr int window_at(int x, int y, int z) { return (x * kWindow + y) * kWindow + z; }
 
-/// The directions in which samples may follow, by the number of axes.
+/// Directions of the sample rows, grouped by the number of axes along which they step (1 to 3).
 struct RowDirections {
   std::array<std::vector<Coord>, 4> by_axes;
   explicit RowDirections(const Index3& step) {
@@ -31,7 +31,7 @@ struct RowDirections {
   }
 };
 
-/// Smallest and largest value that a ghost may take.
+/// Limits of a halo sample's value: the grid's range widened by its length on both sides.
 template <class T>
 struct GhostLimits;
 template <>
@@ -55,7 +55,7 @@ struct GhostLimits<nanovdb::Vec3f> {
   }
 };
 
-/// A block and three voxels about it: values, and which of them are present.
+/// Values and presence of the voxels of a block and of three voxels around it.
 template <class T>
 class Neighbourhood {
  public:
@@ -65,9 +65,9 @@ class Neighbourhood {
     hi_ = to_nano_coord(storage.last_voxel());
   }
 
-  bool some_present = false, some_missing = false;  ///< of what was looked at
+  bool some_present = false, some_missing = false;  ///< whether the region read by look() has a present, or a missing, voxel
 
-  /// Reads what lies within `reach` voxels of the block.
+  /// Reads the voxels within `reach` voxels of the block.
   void look(const Coord& block, int reach) {
     some_present = some_missing = false;
     const Coord first = block.offsetBy(-reach, -reach, -reach), after = block.offsetBy(8 + reach, 8 + reach, 8 + reach);
@@ -122,7 +122,7 @@ class GhostMaker {
   }
   double blocks() const { return static_cast<double>(blocks_[0]) * blocks_[1] * blocks_[2]; }
 
-  /// The origins of all blocks with a ghost.
+  /// Returns the origins of all blocks that contain a halo sample.
   std::vector<Coord> with_ghosts() const {
     const auto count = static_cast<std::size_t>(blocks());
     std::vector<std::uint8_t> needed(count);
@@ -175,7 +175,7 @@ class GhostMaker {
     return window.some_present;
   }
 
-  /// The value in place of a missing sample; false: nothing is beside it.
+  /// Computes the extrapolated value of a missing sample; returns false if it has no present neighbor.
   bool continued(const Neighbourhood<T>& window, int at, T& ghost) const {
     for (int axes = 1; axes <= 3; ++axes) {
       int longest = 0, rows = 0;
@@ -200,7 +200,7 @@ class GhostMaker {
   const GridStorage<T>& storage_;
   RowDirections directions_;
   GhostLimits<T> limits_;
-  Coord first_, final_, blocks_;  ///< of the box and one sample about it
+  Coord first_, final_, blocks_;  ///< bounds of the box with one sample around it, and its size in blocks
 };
 
 }  // namespace

@@ -36,7 +36,8 @@ void add_run(Counts& counts, double value, const Index3& lo, const Index3& hi, s
   count.hi = greatest(count.hi, hi);
 }
 
-/// The labels of eight layers; false where there are none.
+/// Adds the labels of up to eight slices to `counts`; returns false if the values are not labels: not integers, or too many different
+/// ones.
 bool count_layers(const ScalarGrid& map, const Index3& origin, const Index3& size, Counts& counts) {
   std::vector<float> values(static_cast<std::size_t>(size.x) * size.y * size.z);
   map.read_block(origin, size, values);
@@ -64,7 +65,7 @@ std::vector<float> gaussian(double smooth) {
   return weights;
 }
 
-/// chi of a set over a box, layer by layer.
+/// Smoothed indicator function chi of a set of labels over a box, slice by slice.
 class Indicator {
  public:
   Indicator(const ScalarGrid& map, std::vector<double> labels, double smooth, const Index3& origin, const Index3& size)
@@ -93,7 +94,7 @@ class Indicator {
           float sum = 0;
           for (std::size_t j = 0; j < weights_.size(); ++j) sum += weights_[j] * across[(k + j) * layer + i];
           const bool inside = sharp[(k + static_cast<std::size_t>(reach)) * layer + i] > 0;
-          // what rounding alone makes of a constant is the constant
+          // removes rounding errors where chi is constant, 0 or 1
           if (sum < 1e-6f) sum = 0;
           if (sum > 1 - 1e-6f) sum = 1;
           out[k * layer + i] = inside ? std::max(sum, kHeldInside) : std::min(sum, kHeldOutside);
@@ -102,7 +103,7 @@ class Indicator {
   }
 
  private:
-  /// One layer of chi; outside the map there is no label.
+  /// Computes one slice of chi before smoothing; outside the map it is 0.
   void mark(int z, std::span<float> out) const {
     const Index3 from = greatest({origin_.x, origin_.y, origin_.z + z}, lo_);
     const Index3 to = least({origin_.x + size_.x - 1, origin_.y + size_.y - 1, origin_.z + z}, hi_);
@@ -127,7 +128,7 @@ class Indicator {
 
   bool is_wanted(float value) const { return std::binary_search(labels_.begin(), labels_.end(), static_cast<double>(value)); }
 
-  /// Along x and y. Outliers the box there is no label: its margin is wider than the weights reach.
+  /// Smooths one slice along x and y. At the borders of the box the result is 0: its margin is wider than the kernel reaches.
   void smooth_layer(const float* in, float* out) const {
     const int reach = static_cast<int>(weights_.size()) / 2;
     const auto nx = static_cast<std::size_t>(size_.x);
@@ -149,7 +150,7 @@ class Indicator {
   }
 
   const ScalarGrid& map_;
-  std::vector<double> labels_;  ///< rising
+  std::vector<double> labels_;  ///< in increasing order
   Index3 origin_, size_, lo_, hi_;
   std::vector<float> weights_;
 };

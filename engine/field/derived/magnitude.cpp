@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kFormulaNodes = 33;
 
-/// The largest finite size(world, cursor) over the cells' centres of a grid, or the nodes of a formula's box.
+/// Returns the largest finite size(world, cursor) over the cell centers of a grid, or over the nodes of a formula's box.
 template <class Size>
 double largest(const Field& field, const Size& size) {
   const Box& box = field.index_box();
@@ -41,8 +41,8 @@ double largest(const Field& field, const Size& size) {
   return most;
 }
 
-/// The corners of the cells that count, in layers z .. z + layers - 1 of the box; a cell between such corners counts too, as all its
-/// corners are valid.
+/// Marks the corners of all valid cells, in slices z .. z + layers - 1 of the box. A cell whose corners are all marked becomes valid as
+/// well.
 void mark_corners(const VectorGrid& grid, const Index3& size, int z, int layers, std::span<std::uint8_t> valid) {
   std::fill(valid.begin(), valid.end(), std::uint8_t{0});
   const std::size_t plane = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
@@ -72,7 +72,7 @@ double compute_max_gradient(const ScalarField& field) {
   const DisplayRange range = display_range(field);
   return largest(field, [&](const Vec3& world, Cursor& cursor) {
     const ScalarSample sample = field.sample(world, cursor);
-    // the middle of a cell with an outlier at a corner lies beyond the range, too
+    // outliers do not count; the center of a cell with an outlier at a corner is out of the range as well
     const bool counts = (range.below.count == 0 || sample.value >= range.lo) && (range.above.count == 0 || sample.value <= range.hi);
     return sample.inside && counts ? norm(sample.gradient) : 0.0;
   });
@@ -85,7 +85,7 @@ Result<std::shared_ptr<const ScalarGrid>> make_magnitude_grid(const VectorGrid& 
                     static_cast<int>(box.hi.z - box.lo.z) + 1};
   CATENA_CHECK(check_dense_memory(what, size, 1, grid.has_mask()));
 
-  // layer by layer
+  // read slice by slice
   const std::size_t plane = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   std::vector<float> xyz(3 * plane);
   const auto read = [&](int z, int layers, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {

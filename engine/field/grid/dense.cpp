@@ -17,14 +17,14 @@ int blocks_of(int voxels) { return voxels / kLeafEdge + (voxels % kLeafEdge != 0
 
 double voxels_of(const Index3& size) { return static_cast<double>(size.x) * size.y * size.z; }
 
-/// Leaves and tiles as they come.
+/// Grid under construction: leaves and tiles are appended in the order of the slabs.
 template <class T>
 struct Growing {
   NanoMemory memory;
   std::uint64_t leaves = 0;
   std::vector<NanoBlock<T>> blocks;
 
-  /// Where the leaf of the next block is, counted but not written.
+  /// Appends a block with a leaf and returns the leaf's index; the caller writes the leaf.
   std::uint32_t add_leaf(const nanovdb::Coord& origin) {
     NanoBlock<T> block{origin, static_cast<std::uint32_t>(leaves++), {}};
     blocks.push_back(block);
@@ -38,7 +38,7 @@ struct Growing {
 
 constexpr std::uint32_t kNoLeaf = 0xffffffff;
 
-/// One slab's blocks into the grid.
+/// Adds the blocks of one slab to the grid.
 template <class T>
 void add_values(const DenseSlab<T>& slab, Growing<T>& grid) {
   std::vector<std::uint8_t> constant(slab.block_count());
@@ -63,7 +63,7 @@ void add_values(const DenseSlab<T>& slab, Growing<T>& grid) {
   });
 }
 
-/// The same for a mask; blocks without a bit are left out. Says whether a bit of the box is missing.
+/// Adds the mask blocks of one slab; blocks without a set bit are omitted. Returns true if a voxel of the box is invalid.
 template <class T>
 bool add_bits(const DenseSlab<T>& slab, const Index3& size, void (DenseSlab<T>::*gather)(std::size_t, nanovdb::Mask<3>&) const,
               Growing<nanovdb::ValueMask>& mask) {
@@ -119,7 +119,7 @@ nanovdb::Coord DenseSlab<T>::origin(std::size_t block) const {
   return {static_cast<int>(block % blocks_x_) * kLeafEdge, static_cast<int>(block / blocks_x_) * kLeafEdge, z_};
 }
 
-/// Calls visit(number in the leaf, number in the slab) until it says false.
+/// Calls visit(index in the leaf, index in the slab) for the voxels of a block until it returns false.
 template <class T>
 template <class Visit>
 void DenseSlab<T>::for_voxels(std::size_t block, const Visit& visit) const {

@@ -1,4 +1,4 @@
-// Fetches from grids: the cell that holds the place, and its polynomial.
+// Sampling of grids: finds the cell that contains a point and evaluates its polynomial.
 #include "engine/field/grid/grid.h"
 
 #include <cmath>
@@ -27,7 +27,7 @@ struct WalksOf<VectorGrid> {
   using Cubic = CubicCellCache<nanovdb::Vec3f, Vec3>;
 };
 
-/// The corners alone: what every way of reading a grid knows of a cell.
+/// Returns the cell cache for linear and nearest interpolation, filled with the corners of the cell at `base`.
 template <class Grid>
 typename WalksOf<Grid>::Linear& linear_walk(const Grid& grid, const typename Grid::Storage& storage, const Index3& base, Cursor& cursor) {
   auto& walk = cell_cache<typename WalksOf<Grid>::Linear>(cursor, &grid, grid.version(), storage);
@@ -36,7 +36,7 @@ typename WalksOf<Grid>::Linear& linear_walk(const Grid& grid, const typename Gri
   return walk;
 }
 
-/// And the samples about a cell that is valid.
+/// Returns the cell cache for cubic interpolation; if the cell is valid, it also holds the samples around it.
 template <class Grid>
 typename WalksOf<Grid>::Cubic& cubic_walk(const Grid& grid, const typename Grid::Storage& storage, const typename Grid::Halo& ghosts,
                                           const Index3& base, Cursor& cursor) {
@@ -48,7 +48,8 @@ typename WalksOf<Grid>::Cubic& cubic_walk(const Grid& grid, const typename Grid:
   return walk;
 }
 
-/// A cursor keeps to one of them; `ghosts`: null where the grid is not cubic.
+/// Returns the cell cache of the grid's interpolation, which is the same for every call with one cursor; `ghosts` is null unless it is
+/// cubic.
 template <class Grid>
 typename WalksOf<Grid>::Linear& walk_to(const Grid& grid, const typename Grid::Storage& storage, const typename Grid::Halo* ghosts,
                                         const Index3& base, Cursor& cursor) {

@@ -1,4 +1,4 @@
-// What grids hold in boxes of voxels, read by the tree's blocks of 8^3.
+// Reads the values and the validity of boxes of voxels, by the tree's blocks of 8^3.
 #include <cmath>
 #include <vector>
 
@@ -9,7 +9,7 @@
 namespace catena::field {
 namespace {
 
-/// Calls visit(place in the block, value) for every ghost of the region.
+/// Calls visit(index in the region, value) for every halo sample of the region.
 template <class Grid, class Visit>
 void for_ghosts(const Grid& ghosts, const Index3& origin, const Index3& size, const Visit& visit) {
   for_blocks(ghosts, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
@@ -43,7 +43,7 @@ void ScalarGrid::read_block(const Index3& origin, const Index3& size, std::span<
   if (halo_) for_ghosts(*halo_->grid, origin, size, [&](std::size_t at, float ghost) { out[at] = ghost; });
 }
 
-/// Block by block: the corners that are finite, then the cells of which all are, as far as the masks say.
+/// Works block by block: first marks the finite corners, then the cells whose corners are all finite and that the masks declare valid.
 void ScalarGrid::read_cell_validity(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const {
   CATENA_ASSERT(out.size() >= static_cast<std::size_t>(size.x) * size.y * size.z);
   const Storage& s = *storage_;

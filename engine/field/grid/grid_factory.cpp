@@ -1,4 +1,4 @@
-// Grids from buffers, and from values in memory (runs of one value become tiles: the background of an image costs nothing).
+// Creates grids from buffers and from values in memory (constant blocks become tiles: the background of an image costs no memory).
 #include "engine/field/grid/grid_factory.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 Index3 index3(const nanovdb::Coord& c) { return {c[0], c[1], c[2]}; }
 Vec3 vec3(const nanovdb::Coord& c) { return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])}; }
 
-/// SliceSource of what is in memory already.
+/// Returns a DenseSource that reads from arrays in memory.
 DenseSource layers_of(const Index3& size, std::span<const float> values, std::span<const std::uint8_t> valid,
                       std::span<const std::uint8_t> cells) {
   CATENA_ASSERT(cells.empty() || (!valid.empty() && cells.size() == valid.size()));
@@ -53,7 +53,7 @@ Error index_range_error(const ActiveBox& box) {
 template <class Grid>
 Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Mapping& mapping, NanoBuffers buffers) {
   using T = typename GridValue<Grid>::Type;
-  // what the grid holds
+  // validation and statistics of the buffers
   const auto& values = as_nano_grid<T>(buffers.values);
   const NanoMask* valid = buffers.valid_voxels.size() > 0 ? &as_nano_grid<nanovdb::ValueMask>(buffers.valid_voxels) : nullptr;
   const ActiveBox box = compute_active_box(values);
@@ -62,7 +62,7 @@ Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Ma
   const auto [stats, ranged] = compute_stats(values, valid);
   if (!ranged && valid) return Error{"has no valid voxel with a finite value: the mask leaves nothing of it"};
   if (!ranged) return Error{"has no finite value in any active voxel"};
-  // its parts
+  // storage
   auto storage = std::make_unique<typename Grid::Storage>();
   storage->set_box(index3(box.lo), index3(box.hi));
   storage->values = &values;

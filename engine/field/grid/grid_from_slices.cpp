@@ -7,7 +7,7 @@
 namespace catena::field {
 namespace {
 
-constexpr int kMostVoxels = 65536;  // an axis
+constexpr int kMostVoxels = 65536;  // per axis
 
 template <class Grid>
 Result<AnyField> grid_of(const std::string& name, const Mapping& mapping, const DenseSource& source) {

@@ -1,4 +1,4 @@
-// Any field sampled on a cube of nodes. Nodes that the field does not cover are marked invalid.
+// Samples any field on a cube of nodes. Nodes at which the field has no value are marked invalid.
 #include <cmath>
 #include <type_traits>
 
@@ -25,7 +25,7 @@ void store(const VectorSample& s, float* out) {
   for (int a = 0; a < 3; ++a) out[a] = static_cast<float>(s.value[a]);
 }
 
-/// The field at the nodes, in parallel by rows of x.
+/// Evaluates the field at the nodes, in parallel over rows along x.
 template <class Field>
 DenseSource samples_of(const Field& field, const Nodes& n) {
   constexpr std::size_t components = std::is_same_v<Field, VectorField> ? 3 : 1;

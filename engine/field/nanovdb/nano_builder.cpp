@@ -22,7 +22,7 @@ constexpr nanovdb::GridType type_of() {
   return nanovdb::GridType::Mask;
 }
 
-/// The same to the bit: zero and minus zero differ.
+/// Returns true if the values are equal bit by bit: 0 and -0 differ.
 template <class Value>
 bool same(const Value& a, const Value& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
@@ -30,7 +30,7 @@ bool same(const Value& a, const Value& b) {
 
 nanovdb::Coord aligned(const nanovdb::Coord& c, std::int32_t edge) { return {c[0] & ~(edge - 1), c[1] & ~(edge - 1), c[2] & ~(edge - 1)}; }
 
-/// In the order of the nodes: by upper node, by its entry, by the lower node's entry.
+/// Orders origins as the nodes are stored: by upper node, by its entry, by the lower node's entry.
 bool before(const nanovdb::Coord& a, const nanovdb::Coord& b) {
   const nanovdb::Coord ua = aligned(a, kUpperEdge), ub = aligned(b, kUpperEdge);
   if (ua != ub) return ua < ub;
@@ -38,7 +38,7 @@ bool before(const nanovdb::Coord& a, const nanovdb::Coord& b) {
   return lower_entry(a) < lower_entry(b);
 }
 
-/// Of one node and its kind of children: a run of blocks or of nodes below it, or what one value became.
+/// Children of one node, a range of blocks or of lower nodes; a tile if all children are equal tiles.
 template <class Value>
 struct Run {
   nanovdb::Coord origin;
@@ -47,7 +47,7 @@ struct Run {
   Value value{};
 };
 
-/// Groups `items` (each with origin, is_tile, value) by the node of edge `edge` that holds them.
+/// Groups `items` (each with origin, is_tile, value) by the node of edge length `edge` that contains them.
 template <class Value, class Items, class IsTile>
 std::vector<Run<Value>> group(const Items& items, std::int32_t edge, std::size_t full, const IsTile& is_tile) {
   std::vector<Run<Value>> runs;
@@ -89,14 +89,14 @@ NanoBuilder<T>::NanoBuilder(std::byte* start, const NanoCounts& c, const typenam
   lowers_ = leaves_offset() + c.leaves * sizeof(typename Types::Leaf);
   uppers_ = lowers_ + c.lowers * sizeof(typename Types::Lower);
   root_ = uppers_ + c.uppers * sizeof(typename Types::Upper);
-  // the grid
+  // grid header
   auto& grid = *reinterpret_cast<nanovdb::GridData*>(start);
   grid.mMagic = NANOVDB_MAGIC_NUMBER;
   grid.mVersion = nanovdb::Version();
   grid.mGridCount = 1;
   grid.mGridSize = bytes(c);
   grid.mGridType = type_of<T>();
-  // the tree: offsets from itself
+  // tree header: offsets are relative to it
   auto& tree = *reinterpret_cast<nanovdb::TreeData<3>*>(start + kGridBytes);
   tree.mNodeOffset[0] = c.leaves > 0 ? leaves_offset() - kGridBytes : 0;
   tree.mNodeOffset[1] = c.lowers > 0 ? lowers_ - kGridBytes : 0;
@@ -105,7 +105,7 @@ NanoBuilder<T>::NanoBuilder(std::byte* start, const NanoCounts& c, const typenam
   tree.mNodeCount[0] = static_cast<std::uint32_t>(c.leaves);
   tree.mNodeCount[1] = static_cast<std::uint32_t>(c.lowers);
   tree.mNodeCount[2] = static_cast<std::uint32_t>(c.uppers);
-  // the root
+  // root
   root().mTableSize = static_cast<std::uint32_t>(c.entries);
   root().mBackground = root().mMinimum = root().mMaximum = background;
 }
@@ -136,7 +136,7 @@ Result<NanoMemory> build_from_blocks(NanoMemory memory, std::uint64_t leaves, st
                                      const typename NanoTypes<T>::Value& background) {
   using Value = typename NanoTypes<T>::Value;
   std::sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) { return before(a.origin, b.origin); });
-  // what becomes of the nodes
+  // group the children: a complete node with one value becomes a tile
   const auto is_tile = [](const auto& run) { return run.is_tile; };
   const auto lower_runs =
       group<Value>(blocks, kLowerEdge, kLowerEntries, [](const NanoBlock<T>& b) { return b.leaf == NanoBlock<T>::kTile; });
@@ -149,7 +149,7 @@ Result<NanoMemory> build_from_blocks(NanoMemory memory, std::uint64_t leaves, st
   }
   if (counts.entries > kMaxRootEntries)
     return Error{fmt::format("reaches over {} nodes of {}^3 voxels, expected at most {}", counts.entries, kUpperEdge, kMaxRootEntries)};
-  // the nodes, from below
+  // write the nodes from the leaves up
   memory.resize(NanoBuilder<T>::bytes(counts));
   NanoBuilder<T> build(memory.data(), counts, background);
   std::uint64_t lower_number = 0, upper_number = 0;
@@ -229,7 +229,7 @@ void NanoMemory::resize(std::size_t bytes) {
   CATENA_ASSERT(bytes > 0 && region_ && data_ == region_->start && region_.use_count() == 1);
   void* start = ::mremap(region_->start, region_->bytes, bytes, MREMAP_MAYMOVE);
   if (start == MAP_FAILED) throw std::bad_alloc();
-  // of the last page that is kept, what is behind the end may have been written
+  // clears the rest of the last page, which may have been written before
   if (bytes < region_->bytes) {
     const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)), rest = (page - bytes % page) % page;
     std::memset(static_cast<std::byte*>(start) + bytes, 0, rest);

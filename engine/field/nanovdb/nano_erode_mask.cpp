@@ -13,7 +13,7 @@ using nanovdb::Coord;
 using Mask = nanovdb::ValueMask;
 enum class Fill : std::uint8_t { none, some, all };
 
-/// The mask within the box, asked by blocks and by regions of 128^3.
+/// Mask clipped to the box, queried by voxels, by blocks and by regions of 128^3.
 class Clipped {
  public:
   Clipped(const NanoMask& mask, const ActiveBox& box) : accessor_(mask), root_(mask.tree().root()), box_(box) {}
@@ -65,11 +65,11 @@ class Clipped {
   ActiveBox box_;
 };
 
-/// What becomes of a region of 128^3: one tile, or a node with its blocks.
+/// Result for a region of 128^3: one tile, or a node with its blocks.
 struct Region {
   Coord origin;
   Fill fill = Fill::some;
-  std::array<std::uint64_t, 64> full{}, partial{};  ///< by block
+  std::array<std::uint64_t, 64> full{}, partial{};  ///< one bit for each block
   std::uint64_t leaves = 0;
 };
 
@@ -79,7 +79,7 @@ class Eroder {
     for (int a = 0; a < 3; ++a) step_[a] = box.voxels(a) > 1 ? 1 : 0;
   }
 
-  /// All regions in which a voxel may be valid, in the order of nodes.
+  /// Returns the origins of all regions in which a voxel may be valid, in the order of the nodes.
   std::vector<Coord> candidates() const {
     const Clipped mask(valid_, box_);
     std::vector<Coord> found;
@@ -118,7 +118,7 @@ class Eroder {
 
   void fill(const Coord& origin, NanoTypes<Mask>::Leaf& leaf) const {
     const Clipped mask(valid_, box_), cells(cells_ != nullptr ? *cells_ : valid_, box_);
-    // the block and one layer beyond it, then eight corners a cell
+    // the voxels of the block and one more layer toward higher indices: a cell needs its eight corners
     bool window[9][9][9];
     for (int x = 0; x < 9; ++x)
       for (int y = 0; y < 9; ++y)
@@ -134,7 +134,7 @@ class Eroder {
   }
 
  private:
-  /// A part and the seven beside it toward higher indices are all valid.
+  /// Returns true if a block or region and its seven neighbors toward higher indices are completely valid.
   template <class State>
   bool surrounded(const Coord& origin, std::int32_t edge, const State& state) const {
     for (int c = 0; c < 8; ++c)
@@ -144,12 +144,12 @@ class Eroder {
   }
 
   const NanoMask& valid_;
-  const NanoMask* cells_;  ///< null: none
+  const NanoMask* cells_;  ///< null: no cell mask
   ActiveBox box_;
   std::array<std::int32_t, 3> step_{};
 };
 
-/// Calls visit(number of the block) for every bit.
+/// Calls visit(index of the block) for every set bit.
 template <class Visit>
 void for_bits(const std::array<std::uint64_t, 64>& bits, const Visit& visit) {
   for (std::uint32_t w = 0; w < 64; ++w)
@@ -161,7 +161,7 @@ void for_bits(const std::array<std::uint64_t, 64>& bits, const Visit& visit) {
 Result<NanoMemory> erode_mask(const NanoMask& valid, const ActiveBox& box, const NanoMask* cells, const NanoAllocator& allocate,
                               const std::function<Outcome(double bytes)>& ask) {
   const Eroder eroder(valid, box, cells);
-  // what becomes of each region
+  // classify each region
   const std::vector<Coord> origins = eroder.candidates();
   CATENA_CHECK(ask(static_cast<double>(origins.size()) * sizeof(Region)));
   std::vector<Region> regions(origins.size());
@@ -171,7 +171,7 @@ Result<NanoMemory> erode_mask(const NanoMask& valid, const ActiveBox& box, const
       eroder.look_at(regions[n]);
     }
   });
-  // what they take
+  // count the nodes and check the memory budget
   const auto upper_of = [](const Coord& c) { return Coord(c[0] & ~(kUpperEdge - 1), c[1] & ~(kUpperEdge - 1), c[2] & ~(kUpperEdge - 1)); };
   NanoCounts counts;
   std::vector<std::uint64_t> first_leaf(regions.size());
@@ -184,7 +184,7 @@ Result<NanoMemory> erode_mask(const NanoMask& valid, const ActiveBox& box, const
   counts.entries = counts.uppers;
   CATENA_CHECK(ask(static_cast<double>(NanoBuilder<Mask>::bytes(counts))));
   NanoMemory memory = allocate(NanoBuilder<Mask>::bytes(counts));
-  // the nodes
+  // write the nodes
   NanoBuilder<Mask> build(memory.data(), counts, false);
   std::uint64_t lowers = 0, uppers = 0;
   NanoTypes<Mask>::Upper* upper = nullptr;

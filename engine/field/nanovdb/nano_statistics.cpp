@@ -36,7 +36,7 @@ void merge(GridStats& s, const GridStats& t) {
   }
 }
 
-/// Widens the ranges by a finite value; false where it is not finite.
+/// Extends the ranges by a value; returns false if the value is not finite.
 bool widen(GridStats& s, float v) {
   if (!std::isfinite(v)) return false;
   s.min = std::min(s.min, static_cast<double>(v));
@@ -57,11 +57,11 @@ bool widen(GridStats& s, const nanovdb::Vec3f& v) {
   return true;
 }
 
-/// A scalar's components are the scalar.
+/// Sets the component ranges of a scalar grid to its value range.
 void finish(GridStats& s, float) { s.component_min = Vec3(s.min), s.component_max = Vec3(s.max); }
 void finish(GridStats&, const nanovdb::Vec3f&) {}
 
-/// 512 values that all count: several at once, NaN and infinities left out.
+/// Extends the ranges by the 512 values of a leaf that all count, in SIMD lanes; NaN and infinities are omitted.
 std::uint32_t widen_all(GridStats& s, const float* values) {
   constexpr int kLanes = 16;
   float lo[kLanes], hi[kLanes];
@@ -115,7 +115,7 @@ void add_tile(GridStats& s, const nanovdb::Coord& origin, std::int32_t edge, con
   if (counted > 0 && !widen(s, value)) s.nan_count += counted;
 }
 
-/// Calls body(part, begin, end) for the whole array in pieces, each with parts of its own.
+/// Calls body(part, begin, end) for ranges of the array in parallel, each with its own `part`, and merges the parts into `all`.
 template <class Part, class Merge, class Body>
 void in_parts(Part& all, std::size_t count, std::size_t grain, const Part& nothing_yet, const Merge& merge_parts, const Body& body) {
   std::mutex mutex;

@@ -16,7 +16,7 @@ constexpr std::size_t kTreeAt = sizeof(nanovdb::GridData), kLeavesAt = kTreeAt +
 
 Error wrong(std::string_view what) { return Error{fmt::format("{} is not what it must be", what)}; }
 
-/// A number at a place that is checked to be inside; never read as a bool or an enumeration.
+/// Reads a number at an offset that the caller has checked; never used for bool or enumerations, whose bytes may be invalid.
 template <class N>
 N number_at(std::span<const std::byte> bytes, std::size_t at) {
   N n;
@@ -30,7 +30,7 @@ bool is_bool(const bool& b) {
   return byte <= 1;
 }
 
-/// Tiles of a mask say the same twice.
+/// Returns true if a tile is valid. A mask's tile stores its bit twice; both must be equal.
 template <class Value>
 bool sound_tile(const Value&, bool) {
   return true;
@@ -40,7 +40,7 @@ bool sound_tile<bool>(const bool& value, bool active) {
   return is_bool(value) && value == active;
 }
 
-/// The counts of the header, and where its arrays must be.
+/// Node counts of the header, and the offsets at which the arrays must begin.
 template <class T>
 struct Layout {
   NanoCounts counts;
@@ -53,7 +53,7 @@ Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
   using Grid = nanovdb::GridData;
   using Tree = nanovdb::TreeData<3>;
   using Root = typename Types::Root;
-  // the grid
+  // grid header
   if (bytes.size() < kLeavesAt + sizeof(Root)) return wrong("its size");
   if (number_at<std::uint64_t>(bytes, offsetof(Grid, mMagic)) != NANOVDB_MAGIC_NUMBER) return wrong("the magic number");
   if (number_at<std::uint32_t>(bytes, offsetof(Grid, mVersion)) != nanovdb::Version().id()) return wrong("the version");
@@ -62,7 +62,7 @@ Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
                         : std::is_same_v<T, nanovdb::Vec3f> ? nanovdb::GridType::Vec3f
                                                             : nanovdb::GridType::Mask;
   if (number_at<std::uint32_t>(bytes, offsetof(Grid, mGridType)) != static_cast<std::uint32_t>(type)) return wrong("the type of the grid");
-  // the tree: none of the sums can overflow, as a count has 32 bits and a node less than 2^20 bytes
+  // tree header: none of the sums can overflow, as a count has 32 bits and a node is smaller than 2^20 bytes
   Layout<T> l;
   const auto count = [&](int level) { return number_at<std::uint32_t>(bytes, kTreeAt + offsetof(Tree, mNodeCount) + 4 * level); };
   l.counts = {count(0), count(1), count(2), 0};
@@ -75,7 +75,7 @@ Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
   for (int level = 0; level < 4; ++level)
     if (number_at<std::uint64_t>(bytes, kTreeAt + offsetof(Tree, mNodeOffset) + 8 * level) != places[level])
       return wrong("the place of the nodes");
-  // the root
+  // root
   l.counts.entries = number_at<std::uint32_t>(bytes, l.root + offsetof(Root, mTableSize));
   if (l.counts.entries > kMaxRootEntries) return wrong("the number of the root's entries");
   if (NanoBuilder<T>::bytes(l.counts) != bytes.size()) return wrong("the size of the grid");
@@ -84,7 +84,7 @@ Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
 
 std::int64_t distance(const void* to, const void* from) { return static_cast<const std::byte*>(to) - static_cast<const std::byte*>(from); }
 
-/// The children of one internal node are the next ones of their array, in order, each at the place of its entry.
+/// Returns true if the children of an internal node follow each other in their array from `first` on, each with the position of its entry.
 template <class Node, class Children, class PlaceOf>
 bool sound_node(const Node& node, const Children& children, std::uint64_t first, std::uint32_t entries, const PlaceOf& place_of) {
   for (std::uint32_t n = 0; n < entries; ++n) {
@@ -121,7 +121,7 @@ struct PlaceInLower {
   }
 };
 
-/// All nodes of an array: their children use up the next array exactly.
+/// Returns true if all nodes of an array are valid and their children use up the next array exactly.
 template <class Nodes, class Children, class PlaceOf>
 bool sound_nodes(const Nodes& nodes, const Children& children, std::uint32_t entries, const PlaceOf& place_of) {
   std::vector<std::uint64_t> first(nodes.size());
@@ -148,7 +148,7 @@ Outcome validate_nano(std::span<const std::byte> bytes) {
   const auto& root = *reinterpret_cast<const typename NanoTypes<T>::Root*>(bytes.data() + layout.root);
   if constexpr (std::is_same_v<T, nanovdb::ValueMask>)
     if (!is_bool(root.mBackground) || root.mBackground) return wrong("the background");
-  // the root's entries
+  // entries of the root
   std::set<std::uint64_t> keys;
   std::uint64_t uppers = 0;
   for (const auto& entry : nodes.entries) {
@@ -165,7 +165,7 @@ Outcome validate_nano(std::span<const std::byte> bytes) {
       if (!is_bool(entry.value)) return wrong("a tile of the root");
   }
   if (uppers != nodes.uppers.size()) return wrong("the number of nodes");
-  // the nodes below
+  // nodes below the root
   if (!sound_nodes(nodes.uppers, nodes.lowers, kUpperEntries, PlaceInUpper{})) return wrong("the place of a node");
   if (!sound_nodes(nodes.lowers, nodes.leaves, kLowerEntries, PlaceInLower{})) return wrong("the place of a leaf");
   return Done{};

@@ -81,7 +81,7 @@ Result<CurveSet> CurveSetBuilder::finish() {
       set.min_corner[i] = std::min(set.min_corner[i], static_cast<double>(p[i]));
       set.max_corner[i] = std::max(set.max_corner[i], static_cast<double>(p[i]));
     }
-  // single precision parts points that lie together far from the origin
+  // far from the origin, single precision rounds neighboring points apart or together
   constexpr double kOfBox = 1e-5;
   if (max_rounding_ > kOfBox * max_abs(set.max_corner - set.min_corner))
     set.note += fmt::format("{}the points lie far from the origin, and are rounded by up to {:.2g}: subtract an offset from them",

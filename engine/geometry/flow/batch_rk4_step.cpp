@@ -62,7 +62,7 @@ void VelocityBricks::fill_brick(const field::Index3& origin, float* out) const {
   }
   if (!grid_.has_mask()) return;
 
-  // a voxel counts if any cell that it is a corner of is valid: a cell is invalid where one of its corners is
+  // a voxel is valid if it is a corner of a valid cell (a cell is invalid if one of its corners is); the others become NaN
   const field::Box& box = grid_.index_box();
   field::Cursor cursor;
   bool valid[1000];
@@ -86,7 +86,7 @@ void VelocityBricks::fill_brick(const field::Index3& origin, float* out) const {
 
 namespace {
 
-constexpr float kRelative2 = 1e-4f;  ///< an error is at most a hundredth of its step: zeros are passed with care
+constexpr float kRelative2 = 1e-4f;  ///< square of the maximum error relative to the step (a hundredth): keeps steps near zeros small
 
 CATENA_INLINE void load_pair(const float* at, Float8& pair) {
   Float4 low, high;
@@ -95,14 +95,14 @@ CATENA_INLINE void load_pair(const float* at, Float8& pair) {
   pair = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// What a sample reads of the bricks, copied once a step: the lanes' stores could otherwise be taken to change it.
+/// Brick counts that sample() needs, copied once a step: otherwise the compiler must assume that the stores of the lanes change them.
 struct View {
   std::uint32_t cells_x, cells_y, cells_z, bricks_x, bricks_y;
   explicit View(const VelocityBricks& b)
       : cells_x(b.cells_x()), cells_y(b.cells_y()), cells_z(b.cells_z()), bricks_x(b.bricks_x()), bricks_y(b.bricks_y()) {}
 };
 
-/// A place exactly on an upper face of the box belongs to the last cell.
+/// Moves a position that is exactly on an upper face of the box into the last cell; returns false if it is outside.
 [[gnu::noinline]] bool onto_last_cell(const View& view, Uint4& c, Float4& f) {
   const std::uint32_t cells[3] = {view.cells_x, view.cells_y, view.cells_z};
   for (int axis = 0; axis < 3; ++axis) {
@@ -114,11 +114,11 @@ struct View {
   return true;
 }
 
-/// Trilinear, along z, then y, then x. The fourth number of a rate is whatever lies behind it.
+/// Trilinear interpolation along z, then y, then x. The fourth component of `k` is undefined.
 CATENA_INLINE bool sample(const VelocityBricks& bricks, const View& view, const Double4& p, Float4& k) {
   const Int4 cell = __builtin_convertvector(p, Int4);
   Float4 f = __builtin_convertvector(p - __builtin_convertvector(cell, Double4), Float4);
-  Uint4 c = (Uint4)cell - 1;  // no cell wraps round
+  Uint4 c = (Uint4)cell - 1;  // unsigned: a negative cell index becomes larger than any cell count
   std::uint32_t x = c[0], y = c[1], z = c[2];
   if (x >= view.cells_x || y >= view.cells_y || z >= view.cells_z) [[unlikely]] {
     if (!onto_last_cell(view, c, f)) {
@@ -170,7 +170,7 @@ CATENA_INLINE void step_all(const VelocityBricks& bricks, const StepControl& con
     g.speed2[i] = dot3(g.k_end[i], g.k_end[i]);
     g.tangent_dot[i] = dot3(g.k[i], g.k_end[i]);
   }
-  // the next step: h * 0.9 (tolerance / error)^(1/4), within 0.2 .. 3, and no longer than the longest
+  // next step size: h * 0.9 (tolerance / error)^(1/4), limited to 0.2 .. 3 times h and to the maximum step size
   for (int i = 0; i < kLanes; ++i) {
     const float relative2 = kRelative2 * g.displacement2[i];
     g.max_error2[i] = control.tolerance2 < relative2 ? control.tolerance2 : relative2;

@@ -14,25 +14,25 @@
 namespace catena::flow {
 namespace {
 
-/// A place that a line passed: local coordinates, the rate there, and the (signed, scaled) time to the next one.
+/// Point of a line: local coordinates, the rate there, and the (signed, scaled) time to the next point.
 struct RawStep {
   double q[3];
   float h;
   float k[3];
 };
 
-/// One direction of one line, fed by the steps of its lane. It accepts or shortens them, sees the
-/// lap, the length and the places where the exact marcher has to help, and turns the steps into knots.
+/// One direction of one line, advanced by the steps of its lane. It accepts or shortens the steps, detects a closed line, the maximum
+/// length and the points where the exact tracer (trace_branch()) must continue, and converts the steps to knots.
 class BatchBranch {
  public:
-  /// `out` is made anew in its memory; `steps` is memory only.
+  /// `out` is reset and filled; `steps` is scratch memory that is reused.
   BatchBranch(const VelocityBricks& bricks, const Flow& flow, const TraceOptions& options, double lap_gap, const Vec3& seed,
               const Vec3& tangent, double sign, std::vector<RawStep>& steps, Branch& out);
   double sign() const { return sign_; }
 
-  /// Puts the lane on the seed; false: `out` is finished already.
+  /// Initializes the lane at the seed; returns false if `out` is already complete.
   bool start(LaneGroup& group, int i);
-  /// Takes what step_lanes() made of the lane and says how it goes on; false: `out` is finished.
+  /// Processes the lane's step from step_lanes() and sets up the next one; returns false if `out` is complete.
   bool take(LaneGroup& group, int i);
 
  private:
@@ -52,17 +52,17 @@ class BatchBranch {
   double sign_;
   std::vector<RawStep>& steps_;
   Vec3 seed_local_{0.0};
-  Vec3 seed_normal_{0.0};  ///< the tangent as a covector of local coordinates
-  double height_ = 0;      ///< above the seed's plane, world units
-  double way_ = 0;         ///< sum of the chords, world units
+  Vec3 seed_normal_{0.0};  ///< the tangent as a covector in local coordinates
+  double height_ = 0;      ///< signed distance from the seed's plane, world units
+  double way_ = 0;         ///< length of the line so far: the sum of its chords, world units
   Branch& out_;
 };
 
-constexpr float kShortest = 1e-4f;   ///< voxels: below it the exact marcher goes on
+constexpr float kShortest = 1e-4f;   ///< voxels: below this step length the exact tracer continues
 constexpr double kFirstStep = 0.25;  ///< voxels
-constexpr double kByHand = 0.5;      ///< voxels: as far as the exact marcher goes at a time
+constexpr double kByHand = 0.5;      ///< voxels: length that the exact tracer covers per call
 
-/// Rates, places and voxels of a batch are far from either end of the double range.
+/// Plain square root: rates, positions and voxel sizes of a batch are far from overflow and underflow.
 double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
 Vec3 vector_of(const Float4& k) { return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2])}; }
 Vec3 vector_of(const float (&k)[3]) { return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2])}; }
@@ -95,7 +95,7 @@ bool BatchBranch::start(LaneGroup& group, int i) {
   return place(group, i, seed_, kFirstStep) || go_by_hand(group, i);
 }
 
-/// The lane at a place; false: it is beside the box by rounding, or too slow for floats.
+/// Sets the lane to a position; returns false if rounding puts it outside the box, or if it is too slow for floats.
 bool BatchBranch::place(LaneGroup& group, int i, const Vec3& world, double first_step) {
   const Vec3 local = bricks_.local_from_index(flow_.field->mapping().index_from_world(world));
   const Double4 q{local.x, local.y, local.z, 0};
@@ -118,7 +118,7 @@ bool BatchBranch::shorten(LaneGroup& group, int i, float factor) {
   return true;
 }
 
-/// The exact marcher, until it has ended the line or is `kByHand` further, where the lane goes on.
+/// Continues with the exact tracer until the line ends (returns false), or in pieces of `kByHand` until the lane can take over (true).
 bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
   std::vector<Knot>& knots = out_.knots;
   const double domain = flow_.field->domain_length();
@@ -128,7 +128,7 @@ bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
     TraceOptions piece = options_;
     const double left = options_.length - std::fabs(from.s);
     if (!(left > 1e-12 * domain) || knots.size() >= options_.max_knots) return false;
-    // a whole line by hand is the seed's own, with its lap
+    // a line that the exact tracer starts at the seed is traced completely, including the test for a closed line
     const bool whole = knots.size() == 1;
     piece.length = whole ? left : std::min(left, kByHand * flow_.field->max_voxel_edge());
     const Branch tail = trace_branch(flow_, from.p, sign_, piece);
@@ -149,7 +149,7 @@ bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
 }
 
 bool BatchBranch::take(LaneGroup& group, int i) {
-  // refused: a stage left the box or its valid cells (NaN), a sharp turn (more than 60 degrees), or too large an error
+  // rejected: a stage left the box or its valid cells (NaN), the line turned by more than 60 degrees, or the error is too large
   const float speed2 = group.speed2[i];
   const RawStep& last = steps_.back();
   const float last2 = last.k[0] * last.k[0] + last.k[1] * last.k[1] + last.k[2] * last.k[2];
@@ -174,11 +174,11 @@ bool BatchBranch::take(LaneGroup& group, int i) {
     add_knots();
     return false;
   }
-  // crept to nothing: near a zero
+  // step length near 0: close to a zero of the field
   return speed2 * group.h[i] * group.h[i] >= kShortest * kShortest || go_by_hand(group, i);
 }
 
-/// The step crosses the seed's plane, in the seed's direction, within the gap of the seed.
+/// Returns true and completes the line if the step crosses the seed's plane in the seed's direction, within lap_gap_ of the seed.
 bool BatchBranch::came_round(const LaneGroup& group, int i) {
   const Vec3 end = vector_of(group.end[i]), off = end - seed_local_;
   const double before = height_, after = dot(off, seed_normal_);
@@ -201,7 +201,7 @@ bool BatchBranch::came_round(const LaneGroup& group, int i) {
   return true;
 }
 
-/// The steps as knots behind the ones that are there; the memory of the steps is free again.
+/// Appends the steps to the knots and clears them.
 void BatchBranch::add_knots() {
   if (steps_.empty()) return;
   const field::Mapping& mapping = flow_.field->mapping();
@@ -219,7 +219,7 @@ void BatchBranch::add_knots() {
     const Vec3 middle = (1.5 / h) * (p_next - p) - 0.25 * (w + w_next);
     const double piece = std::fabs(h) / 6 * (length + 4 * length_of(middle) + length_next);
     if (s + piece > options_.length) {
-      // the length ends within the step
+      // the maximum length is reached within the step
       const Hermite cubic(p, p_next - p, h, w, w_next);
       const double theta = (options_.length - s) / piece;
       if (theta > 1e-9) knots.push_back({sign_ * options_.length, cubic.evaluate(theta), direction(cubic.derivative(theta) / h)});
@@ -236,7 +236,7 @@ void BatchBranch::add_knots() {
 
 constexpr double kLapGap = 0.01;           ///< voxels
 constexpr float kLongestStep = 0.5f;       ///< voxels
-constexpr double kByHandTolerance = 1e-8;  ///< of the exact marcher's pieces: errors grow near saddles
+constexpr double kByHandTolerance = 1e-8;  ///< tolerance of the exact tracer's pieces, as errors grow near saddles
 
 using Slots = std::vector<std::optional<Result<CurvePtr>>>;
 
@@ -247,7 +247,7 @@ std::vector<Result<CurvePtr>> taken(Slots& slots) {
   return results;
 }
 
-/// One worker a core; each takes the next seeds until none is left.
+/// Runs one worker per core, `most` at most; each worker takes seeds until none is left.
 void on_all_cores(std::size_t most, const std::function<void()>& worker) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   parallel_for(std::min(cores, most), 1, [&](std::size_t begin, std::size_t end) {
@@ -255,7 +255,7 @@ void on_all_cores(std::size_t most, const std::function<void()>& worker) {
   });
 }
 
-/// The seeds in Morton order: lines that start near each other run together, through bricks that the cache holds.
+/// Returns the seeds in Morton order: neighboring lines are traced together, through bricks that are in the cache.
 std::vector<std::uint32_t> along_curve(const Flow& flow, std::span<const Vec3> seeds) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
   keys.reserve(seeds.size());
@@ -277,7 +277,7 @@ std::vector<std::uint32_t> along_curve(const Flow& flow, std::span<const Vec3> s
   return order;
 }
 
-/// The lanes of one core: each follows one direction of one line at a time.
+/// The lanes of one core: each traces one direction of one line at a time.
 class Worker {
  public:
   Worker(const VelocityBricks& bricks, const Flow& flow, const BatchOptions& options, std::span<const Vec3> seeds,
@@ -309,11 +309,11 @@ class Worker {
     std::optional<BatchBranch> branch;
     std::size_t seed = 0;
     Vec3 tangent{0.0};
-    Branch forward, backward;  ///< these and the steps: memory that is used again
+    Branch forward, backward;  ///< these and `steps` are memory that is reused for every line
     std::vector<RawStep> steps;
   };
 
-  /// An idle lane stands still at a legal place.
+  /// Parks an idle lane at a valid position with a step of 0.
   void rest(int i) {
     group_.q[i] = Double4{1.5, 1.5, 1.5, 0};
     group_.k[i] = Float4{};

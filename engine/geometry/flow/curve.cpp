@@ -105,7 +105,7 @@ NearestOnCurve::NearestOnCurve(std::vector<CurvePtr> curves) : curves_(std::move
   build_node(lines, 0, lines.size());
 }
 
-/// Curves are parted where they lie apart, by the middles of their ends along the axis that these span.
+/// Builds the subtree of several curves: they are split at the median of the midpoints of their ends, along the longest axis of these.
 void NearestOnCurve::build_node(std::vector<std::uint32_t>& lines, std::size_t begin, std::size_t end) {
   if (end - begin == 1) {
     build_node(lines[begin], 0, static_cast<std::uint32_t>(curves_[lines[begin]]->knots().size() - 1));
@@ -130,7 +130,7 @@ void NearestOnCurve::build_node(std::vector<std::uint32_t>& lines, std::size_t b
   enclose_children(me, right);
 }
 
-/// Of a node whose first child is the next one: its box about both.
+/// Sets the box of a node to enclose its two children: the first one is the next node, the second one is `right`.
 void NearestOnCurve::enclose_children(std::uint32_t parent, std::uint32_t right) {
   Node& node = nodes_[parent];
   node.right = right;

@@ -8,7 +8,7 @@ namespace catena::flow {
 
 namespace {
 
-constexpr double kDifference = 2e-6;  // of L
+constexpr double kDifference = 2e-6;  // step of the differences, as a fraction of L
 
 Vec3 mix(const Vec3& a, const Vec3& b, double t) { return a * (1 - t) + b * t; }
 
@@ -70,7 +70,7 @@ VelocityGradient of_formula(const field::VectorField& field, const Vec3& world, 
   for (Vec3& v : at) v = Vec3(v.x / out.scale, v.y / out.scale, v.z / out.scale);
   out.v = at[0];
   for (int j = 0; j < 3; ++j) {
-    // the step that was taken, as rounded
+    // the actual step, after rounding
     const double step = (world[j] + delta) - (world[j] - delta);
     if (!(step > 0)) {
       out.is_valid = false;
@@ -107,13 +107,13 @@ bool velocity_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::
 
 std::optional<Vec3> find_zero(const Flow& flow, const Vec3& p, const Vec3& reference, double radius, field::Cursor& cursor, int budget,
                               int& evaluations) noexcept {
-  // the speed of interpolated dyads has no isolated zeros
+  // the speed of a field of interpolated dyads has no isolated zeros
   if (flow.is_line_field && flow.field->is_grid()) return std::nullopt;
   const double length = flow.field->domain_length(), delta = 1e-6 * length;
   Vec3 z = p;
   double first_speed = -1;
   for (int iteration = 0; iteration < 8 && budget >= 7; ++iteration, budget -= 7) {
-    // value and Jacobian, scaled by the largest velocity seen
+    // value and Jacobian, scaled by the largest velocity component of the stencil
     Vec3 v, ahead[3], behind[3];
     evaluations += 7;
     if (!velocity_at(flow, z, reference, cursor, v)) return std::nullopt;
@@ -129,7 +129,7 @@ std::optional<Vec3> find_zero(const Flow& flow, const Vec3& p, const Vec3& refer
     if (max_abs(v) == 0) return z;
     Mat3 jacobian;
     for (int axis = 0; axis < 3; ++axis) {
-      // divided before the difference, so that neither end of the double range matters
+      // divided before the subtraction, so that neither overflow nor underflow occurs
       for (int i = 0; i < 3; ++i) jacobian[axis][i] = 0.5 * (ahead[axis][i] / scale - behind[axis][i] / scale);
     }
     Vec3 w;
@@ -147,7 +147,7 @@ std::optional<Vec3> find_zero(const Flow& flow, const Vec3& p, const Vec3& refer
     if (norm(z - p) > radius) return std::nullopt;
     if (norm(step) > 1e-11 * length) continue;
 
-    // converged: a zero, or only the slowest place of a field that never stops
+    // converged: either a zero, or a local minimum of the speed of a field without a zero
     ++evaluations;
     if (!velocity_at(flow, z, reference, cursor, v)) return std::nullopt;
     if (norm(v) <= 1e-3 * first_speed) return z;

@@ -14,7 +14,7 @@ std::optional<Method> parse_method(std::string_view word) {
 
 const char* to_string(Method method) { return kWords[static_cast<int>(method)]; }
 
-// every evaluation comes here: what it calls is part of it, however the files are grouped
+// flatten inlines all calls: every evaluation passes through here, whatever file a callee is in
 [[gnu::flatten]] StopReason direction_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::Cursor& cursor, Vec3& u) noexcept {
   if (flow.is_line_field) {
     const field::LineSample sample = flow.field->sample_line(p, cursor);

@@ -4,13 +4,14 @@ namespace catena::flow {
 
 namespace {
 
-constexpr double kSlack = 1e-12;     ///< voxels: an excursion beyond a face that is only rounding
-constexpr double kSeedSlack = 1e-9;  ///< voxels: a seed on the domain's face
+constexpr double kSlack = 1e-12;     ///< voxels: an excursion outside a face by less is rounding
+constexpr double kSeedSlack = 1e-9;  ///< voxels: a seed this close to a face of the domain counts as inside
 
-/// The first theta at which one coordinate of the piece passes above `face` (mirrored for below), or 2.
+/// Returns the first theta in [0, 1] at which a coordinate (cubic polynomial c0 .. c3) of the piece passes `face` upward (`side` 1) or
+/// downward (-1); 2 if there is none.
 double first_passage(double c0, double c1, double c2, double c3, double face, double side) {
   const auto beyond = [&](double theta) { return side * (c0 + theta * (c1 + theta * (c2 + theta * c3)) - face); };
-  // monotone pieces between the extremes
+  // monotonic intervals between the extrema
   double stations[4] = {0, 1, 1, 1};
   int count = 1;
   const double a = 3 * c3, b = c2, discriminant = b * b - a * c1;
@@ -55,7 +56,7 @@ glm::vec3 CellFlowSource::rounding_error(const Vec3& q) const {
   constexpr double kFar = 500;  // times L
   const Vec3 place = world(q);
   if (max_abs(place) <= kFar * grid_->domain_length()) return glm::vec3(0.0f);
-  // the error of the sum, exactly (Knuth's TwoSum)
+  // exact rounding error of the sum (Knuth's TwoSum)
   const Vec3 within = world_difference(q), &origin = mapping_.origin, rest = place - within;
   return glm::vec3((within - (place - rest)) + (origin - rest));
 }
@@ -99,7 +100,7 @@ bool CellFlowSource::start(const Vec3& seed, const Vec3& u, double sign, Vec3& q
   for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], box.lo[axis], box.hi[axis]);
   reference_ = sign * u;
   sign_ = flow_.is_line_field ? 1 : sign;
-  // the cell of the seed, or one that it lies on the face of (a rounding beside a face is on it)
+  // tries the cell of the seed, then the cells that share the face, edge or corner on which it lies (within kSeedSlack)
   const field::Index3 found = grid_->cell_base(q + Vec3(first_.x, first_.y, first_.z));
   const field::Index3 base{found.x - first_.x, found.y - first_.y, found.z - first_.z};
   const std::int32_t bases[3] = {base.x, base.y, base.z};
@@ -119,12 +120,12 @@ bool CellFlowSource::start(const Vec3& seed, const Vec3& u, double sign, Vec3& q
 StopReason CellFlowSource::seed_tangent_at(const Vec3& place, Vec3& u) {
   Vec3 q, w;
   if (!start(place, Vec3(0.0), 1, q)) return StopReason::outside;
-  // of a line field the side of the nearest voxel
+  // for a line field the reference side is that of the nearest voxel
   if (flow_.is_line_field) reference_ = field::line_axis(load_cell(base_).corner, q - lo_).axis;
   return rate(q, w, u);
 }
 
-// flat, as direction_at (flow.cpp)
+// inlines all calls, as direction_at() (flow.cpp) does
 [[gnu::flatten]] StopReason CellFlowSource::rate(const Vec3& q, Vec3& w, Vec3& u) const {
   const Vec3 f = q - lo_;
   if (flow_.is_line_field) {

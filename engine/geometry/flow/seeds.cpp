@@ -24,7 +24,8 @@ Vec3 on_unit_sphere(double a, double b) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-/// The part of a line (0..1 between its ends) within the box of the domain, index coordinates.
+/// Computes the interval [first, last] (parameters 0 to 1 between the end points) of a segment that lies in the box of the domain, in
+/// index coordinates; returns false if it is empty.
 bool clip(const field::Box& box, const Vec3& from, const Vec3& to, double& first, double& last) {
   first = 0;
   last = 1;
@@ -64,7 +65,7 @@ std::vector<Vec3> seeds_on_sphere(const Vec3& centre, double radius, int count, 
   std::vector<Vec3> seeds;
   for (int i = 0; i < count; ++i) {
     const double at = (i + 0.5) / count;
-    // within the ball the radius must not rise with the height: another irrational number orders it
+    // in the ball the radius must not correlate with the height: a sequence of another irrational number determines it
     const double r = inside ? radius * std::cbrt(fraction(0.5 + i * 0.7548776662466927)) : radius;
     seeds.push_back(centre + r * on_unit_sphere(at, fraction(i * kGoldenAngle / (2 * kPi))));
   }
@@ -72,7 +73,7 @@ std::vector<Vec3> seeds_on_sphere(const Vec3& centre, double radius, int count, 
 }
 
 std::vector<Vec3> seeds_on_isosurface(const field::ScalarField& field, double level, int count) {
-  // the sphere about the domain
+  // bounding sphere of the domain
   const field::Box& box = field.index_box();
   const field::Mapping& mapping = field.mapping();
   const Vec3 centre = mapping.world_from_index(0.5 * (box.lo + box.hi));
@@ -109,21 +110,21 @@ std::vector<Vec3> seeds_on_isosurface(const field::ScalarField& field, double le
 namespace {
 
 constexpr std::size_t kAtOnce = 16;   ///< candidates traced together
-constexpr double kSampleShare = 0.2;  ///< of the test distance: spacing of a line's samples
+constexpr double kSampleShare = 0.2;  ///< spacing of a line's samples, as a fraction of the test distance
 
 struct Sample {
   Vec3 p{0.0};
   double s = 0;
 };
 
-/// The samples of all lines, in cubes of one distance.
+/// Samples of all lines, hashed into cubes whose edge is the separation distance.
 class Neighbours {
  public:
   explicit Neighbours(double distance) : distance_(distance) {}
 
   void add(const Sample& sample) { cubes_[key(cube(sample.p))].push_back(sample); }
 
-  /// Is a sample that counts nearer to p than d <= distance?
+  /// Returns true if a sample accepted by `counts` is nearer to p than d; d must not exceed `distance`.
   template <class Counts>
   bool near(const Vec3& p, double d, Counts&& counts) const {
     const Vec3 middle = cube(p);
@@ -147,7 +148,8 @@ class Neighbours {
   std::unordered_map<std::uint64_t, std::vector<Sample>> cubes_;
 };
 
-/// Walks from the seed, `sign` of s, as far as the line keeps its distance. Adds nothing to the neighbours.
+/// Returns the arc length from the seed in the direction `sign` of s up to which the line keeps its distance from others and itself. Adds
+/// the samples to `own` and `own_neighbours`, not to `neighbours`.
 double reach(const Curve& curve, double sign, double d_test, const Neighbours& neighbours, std::vector<Sample>& own,
              Neighbours& own_neighbours) {
   const double end = sign > 0 ? curve.knots().back().s : -curve.knots().front().s, step = kSampleShare * d_test;
@@ -156,7 +158,7 @@ double reach(const Curve& curve, double sign, double d_test, const Neighbours& n
     const double at = std::min(s, end);
     const Vec3 p = curve.position(sign * at);
     if (neighbours.near(p, d_test, [](const Sample&) { return true; })) return kept;
-    // itself, where it comes back
+    // samples of the same line count if it returns to them: along the line they must be more than 2 * d_test away
     const auto comes_back = [&](const Sample& sample) {
       const double way = std::fabs(sample.s - sign * at), round = curve.is_closed() ? curve.period() - way : way;
       return std::min(way, round) > 2 * d_test;
@@ -201,7 +203,7 @@ std::vector<CurvePtr> trace_evenly_spaced(const Flow& flow, const EvenSpacingOpt
   std::vector<CurvePtr> lines;
   const auto is_free = [&](const Vec3& p) { return !neighbours.near(p, d_sep * (1 - 1e-9), [](const Sample&) { return true; }); };
 
-  // traces the candidates together, takes them in their order
+  // traces the candidates together and accepts them in their order
   std::vector<Vec3> candidates;
   const auto take = [&] {
     const auto traced = tracer.trace(candidates);

@@ -8,10 +8,10 @@
 namespace catena::flow {
 namespace {
 
-/// One direction of a streamline, marched from the seed through a medium with DP5(4) in arc length (medium.h). Steps are
-/// refined until the Hermite midpoint agrees with a half step; on grids every knot that leaves a cell lies on its face, found
-/// on the Hermite and corrected by true steps. No step turns by more than 60 degrees: one that does is halved, down to 1e-9 L,
-/// so that a line never jumps through a zero.
+/// Integrates one direction of a streamline from the seed through a flow source with DP5(4) in arc length (flow_source.h). Steps are
+/// refined until the Hermite midpoint agrees with a half step; on grids every knot that leaves a cell lies on its face, found on the
+/// Hermite and corrected by true steps. No step turns by more than 60 degrees: one that does is halved, down to 1e-9 L, so that a line
+/// never jumps through a zero.
 template <class Medium>
 class March {
  public:
@@ -42,9 +42,9 @@ class March {
  private:
   static LineEnd critical() { return {Termination::critical, SampleStatus::zero}; }
   LineEnd boundary() const { return {Termination::boundary, medium_.outside_status()}; }
-  double stop_step() const { return 1e-9 * domain_; }  ///< a tried step that still turns at this length is at a zero
+  double stop_step() const { return 1e-9 * domain_; }  ///< a step of this length that still turns too far is at a zero
 
-  /// Rates of the stages, with the turn of the motion checked against the step's start.
+  /// Returns the rate function of the Runge-Kutta stages; it stops if the direction turns by more than 60 degrees from the step's start.
   auto rates() {
     return [this](const Vec3& q, Vec3& w) {
       const StopReason stop = medium_.rate(q, w, u_last_);
@@ -53,7 +53,7 @@ class March {
     };
   }
 
-  /// Settles into the cell ahead and takes the rate there.
+  /// Advances to the cell that the motion enters and evaluates the rate there; returns the line's end if it ends here.
   std::optional<LineEnd> start_in_cell() {
     for (int tries = 0; tries < 4; ++tries) {
       Vec3 u;
@@ -69,18 +69,18 @@ class March {
     return std::nullopt;
   }
 
-  /// One accepted step, or one change of the step's length, or the end.
+  /// Takes one accepted step, or changes the step size, or returns the end of the line.
   std::optional<LineEnd> advance(std::vector<Knot>& knots) {
     if (h_ <= 0) h_ = 1e-3 * domain_;
     double h = std::min({h_, medium_.max_step(), options_.max_step, options_.length - s_});
     const bool forced = idle_ > 8;
     if (forced) h = std::min(h, forced_);
 
-    // try it: full step, embedded error, half step against the Hermite
+    // trial step: full step, embedded error, half step against the Hermite
     Step step = runge_kutta_step(tableaus::dp54, q_, w_, h, true, rates());
     if (step.stop != StopReason::none) return shorten(knots, step.stop, h);
     Vec3 u_end = u_last_;
-    // far from the origin nothing is more exact than the place's own rounding: asking for more would make steps without end
+    // far from the origin the tolerance is limited by the rounding of positions: a smaller one would halve the step endlessly
     const double rounding = kRounding * norm(medium_.world_difference(q_));
     const double tolerance = std::max(options_.tolerance * domain_, rounding);
     const double hermite_tolerance = std::max(options_.hermite_tolerance * domain_, rounding);
@@ -93,7 +93,7 @@ class March {
     if (!(gap <= hermite_tolerance)) return reject(h, step_factor(gap, hermite_tolerance, 0.1, 0.9));
     const double grown = h * std::min(step_factor(error, tolerance, 0.5, 3.0), step_factor(gap, hermite_tolerance, 0.5, 3.0));
 
-    // out of the cell: the step ends on the face
+    // the step leaves the cell: it is shortened to end on the face
     CellExit way;
     const bool left = !forced && medium_.find_exit(piece, way);
     if (left) {
@@ -112,7 +112,7 @@ class March {
     if (left) next[way.axis] = way.face;
     if (sign_ > 0 && closes(next, h, piece, knots)) return LineEnd{Termination::lap, SampleStatus::ok};
 
-    // accept
+    // accept the step
     const Vec3 u_start = u_;
     q_ = next;
     w_ = step.end_rate;
@@ -123,7 +123,7 @@ class March {
     std::optional<LineEnd> end;
     if (left && !medium_.cross_face(way)) end = boundary();
     if (!end) end = start_in_cell();
-    // of knots closer than 1e-10 L only the later stays, but the seed always
+    // of knots closer than 1e-10 L only the later one is stored; the seed's is always stored
     const bool close = s_ - std::fabs(knots.back().s) < 1e-10 * domain_;
     if (close && knots.size() > 1) knots.pop_back();
     if (!close || knots.size() > 1 || end) knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_, medium_.rounding_error(q_)});
@@ -146,7 +146,7 @@ class March {
     return std::nullopt;
   }
 
-  /// A stage had no direction, or turned too far: halve, look for the zero, or end here.
+  /// Handles a stage without a direction or with too large a turn: halves the step, searches for a zero, or ends the line.
   std::optional<LineEnd> shorten(std::vector<Knot>& knots, StopReason stop, double h) {
     if (h <= stop_step()) return make_line_end(stop, medium_.outside_status());
     if ((stop == StopReason::still || stop == StopReason::turned) && flow_.min_speed <= 0 && h <= 4 * kCapture * domain_ &&
@@ -158,19 +158,20 @@ class March {
     return std::nullopt;
   }
 
-  /// A zero within reach ends the line on it. (A curved stable manifold is reached no other way: rounding turns the line.)
+  /// Ends the line at a zero within kCapture * L. (The only way to reach a zero along a curved stable manifold: rounding turns the line
+  /// away.)
   std::optional<LineEnd> capture(std::vector<Knot>& knots) {
     int evaluations = 0;
     const Vec3 p = knots.back().p;
     const auto zero = find_zero(flow_, p, u_, kCapture * domain_, zero_cursor_, 56, evaluations);
     if (!zero) return std::nullopt;
     const double way = norm(*zero - p);
-    if (dot(*zero - p, u_) < 0.2 * way) return std::nullopt;  // passing by, or round a centre
+    if (dot(*zero - p, u_) < 0.2 * way) return std::nullopt;  // the zero is beside the line, or the line circles around a center
     if (way > 1e-12 * domain_) knots.push_back({sign_ * (s_ + way), *zero, sign_ * direction(*zero - p)});
     return critical();
   }
 
-  /// The line is back: it crosses the seed's plane within 1e-7 L of the seed, in the seed's direction.
+  /// Tests for a closed line: the step crosses the seed's plane within 1e-7 L of the seed, in the seed's direction.
   bool closes(const Vec3& next, double h, const Hermite& piece, std::vector<Knot>& knots) {
     const Vec3 end = medium_.world(next);
     const double before = height_, after = dot(end - seed_, u_seed_);
@@ -200,11 +201,11 @@ class March {
   field::Cursor zero_cursor_;
   Vec3 seed_{0.0}, u_seed_{0.0};
   double sign_ = 1;
-  Vec3 q_{0.0}, w_{0.0};       ///< where the march is, and its rate
-  Vec3 u_{0.0}, u_last_{0.0};  ///< directions of motion: here, and of the last stage
+  Vec3 q_{0.0}, w_{0.0};       ///< current position and the rate there
+  Vec3 u_{0.0}, u_last_{0.0};  ///< directions of motion: at the current position, and of the last stage
   double s_ = 0, h_ = 0;
-  double height_ = 0;  ///< above the seed's plane
-  int idle_ = 0;       ///< changes of cell without progress
+  double height_ = 0;  ///< signed distance from the seed's plane
+  int idle_ = 0;       ///< number of consecutive cell changes without progress
   double forced_ = 0;
   std::size_t tried_at_ = 0;
 };
@@ -246,7 +247,7 @@ Branch march_in(Medium medium, const Flow& flow, const Vec3& place, double sign,
 template <class Medium>
 Result<CurvePtr> trace_in(Medium medium, const Flow& flow, const Vec3& seed, const TraceOptions& options) {
   CATENA_TRY(const Vec3 u, tangent_in(medium, flow, seed));
-  // forward, and backward unless it came round
+  // backward as well, unless the line is closed
   Branch forward = March<Medium>(medium, flow, options).run(seed, u, 1);
   Branch backward;
   if (forward.end.termination != Termination::lap) backward = March<Medium>(medium, flow, options).run(seed, u, -1);

@@ -7,24 +7,25 @@
 namespace catena::flow {
 namespace {
 
-constexpr double kLeastSwirl = 0.01;      // imaginary part of the pair by |J|
-constexpr double kLeastVorticity = 1e-4;  // |curl v| by |J|
-constexpr double kLeastChange = 1e-6;     // L |J| by |v|
-constexpr double kAlongParticle = 1e-4;   // of L: difference of the acceleration along v, of formulas
+constexpr double kLeastSwirl = 0.01;      // minimum imaginary part of the complex pair, relative to |J|
+constexpr double kLeastVorticity = 1e-4;  // minimum |curl v|, relative to |J|
+constexpr double kLeastChange = 1e-6;     // minimum of L |J|, relative to |v|
+constexpr double kAlongParticle = 1e-4;   // step of the central difference of the acceleration along v for formulas, as a fraction of L
 
 double size_of(const Mat3& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); }
 
-/// The real eigenvalue and its unit vector where the two others are a complex pair; `swirl`: the pair's imaginary part.
+/// Computes the unit eigenvector of the real eigenvalue if the other two form a complex pair, and the pair's imaginary part `swirl`;
+/// returns false if all three are real.
 bool complex_pair(const Mat3& j, Vec3& axis, double& swirl) {
   const double size = size_of(j), trace = j[0][0] + j[1][1] + j[2][2];
   const double minors =
       j[0][0] * j[1][1] - j[1][0] * j[0][1] + j[0][0] * j[2][2] - j[2][0] * j[0][2] + j[1][1] * j[2][2] - j[2][1] * j[1][2];
   const double det = dot(j[0], cross(j[1], j[2]));
   const auto p = [&](double x) { return ((x - trace) * x + minors) * x - det; };
-  // three real roots: x = trace / 3 + t, t^3 + 3 a t = 2 b
+  // three real roots if the discriminant is not positive: x = trace / 3 + t, t^3 + 3 a t = 2 b
   const double third = trace / 3, a3 = minors / 3 - third * third, b2 = third * third * third - 0.5 * (third * minors - det);
   if (!(a3 * a3 * a3 + b2 * b2 > 0)) return false;
-  // a bracket of a real root, and Newton's method within it
+  // Newton's method within a bracket of a real root
   double lo = -2 * size, hi = 2 * size, x = trace / 3;
   for (int i = 0; i < 80; ++i) {
     const double value = p(x);
@@ -39,7 +40,7 @@ bool complex_pair(const Mat3& j, Vec3& axis, double& swirl) {
   const double half = 0.5 * (x - trace), rest = minors + x * (x - trace), under = rest - half * half;
   if (!(under > kLeastSwirl * kLeastSwirl * size * size)) return false;
   swirl = std::sqrt(under);
-  // the null space of J - x: the longest product of two rows
+  // null space of J - x: the longest cross product of two rows
   const Vec3 a(j[0][0] - x, j[1][0], j[2][0]), b(j[0][1], j[1][1] - x, j[2][1]), c(j[0][2], j[1][2], j[2][2] - x);
   for (const Vec3& n : {cross(a, b), cross(b, c), cross(c, a)})
     if (dot(n, n) > dot(axis, axis)) axis = n;
@@ -131,7 +132,7 @@ CoreSample evaluate_criterion(CoreCriterion criterion, const CoreFlow& flow, con
   if (!(turns > 4 * kLeastSwirl * kLeastSwirl * (aa * aa + ab * ab + ba * ba + bb * bb))) return out;
   if (criterion == CoreCriterion::vorticity) out.swirl = 0.5 * std::sqrt(turns);
   if (criterion == CoreCriterion::parallel_vectors) {
-    // about a core D^2 v / Dt^2 is -swirl^2 times the velocity across it
+    // near a core line D^2 v / Dt^2 is -swirl^2 times the velocity orthogonal to it
     const Vec3 along = direction(flow.v);
     out.residual = (second - along * dot(second, along)) * (-1 / (out.swirl * out.swirl));
   } else {
@@ -201,7 +202,7 @@ CoreSample CoreField::evaluate(const Vec3& world, const CoreFlow& flow) {
   if (criterion_ == CoreCriterion::parallel_vectors) {
     const double speed = norm(flow.v);
     if (speed > 0) {
-      // along the particle's way, over a voxel to both sides, or to the side that there is
+      // difference along the particle's path, over a voxel to both sides, or one-sided at the boundary
       const Vec3 way = direction(flow.v) * difference_step_, here = flow.gradient * flow.v;
       Vec3 ahead = here, behind = here;
       const bool is_ahead = acceleration(world + way, ahead), is_behind = acceleration(world - way, behind);

@@ -7,10 +7,10 @@
 namespace catena::flow {
 namespace {
 
-constexpr int kSweeps = 60;  // of Gauss and Seidel: each halves what is left
+constexpr int kSweeps = 60;  // Gauss-Seidel sweeps: each halves the error
 
-/// Derivatives at the knots of the cubic spline through them, by a parameter that grows by h[k] from knot k; an open end bends as the
-/// piece beside it.
+/// Returns the derivatives of the interpolating cubic spline at its knots; the parameter grows by h[k] from knot k. The first and the last
+/// piece of an open spline are parabolas.
 std::vector<Vec3> spline_slopes(const std::vector<Vec3>& p, const std::vector<double>& h, bool closed) {
   const std::size_t n = p.size(), pieces = h.size();
   std::vector<Vec3> m(n);
@@ -35,7 +35,7 @@ std::vector<Vec3> spline_slopes(const std::vector<Vec3>& p, const std::vector<do
   return m;
 }
 
-/// Arc length of a Hermite piece, by Gauss and Legendre's rule of five places.
+/// Returns the arc length of a Hermite piece, by the five-point Gauss-Legendre rule.
 double length_of(const Hermite& piece) {
   constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};
   constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
@@ -54,7 +54,7 @@ std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int 
     const int half = closed ? std::min(reach, (n - 1) / 2) : std::min({reach, i, n - 1 - i});
     if (half < 2) continue;
     const auto at = [&](int k) -> const Vec3& { return places[static_cast<std::size_t>((i + k + n) % n)]; };
-    // least squares, by the way along the chords
+    // least-squares parabola, parametrized by chord length
     Mat3 normal(0.0), right(0.0);
     const auto add = [&](double u, const Vec3& p) {
       const Vec3 powers(1, u, u * u);
@@ -83,7 +83,7 @@ CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const Line
   const std::size_t n = places.size(), pieces = closed ? n : n - 1;
   std::vector<double> h(pieces);
   for (std::size_t k = 0; k < pieces; ++k) h[k] = norm(places[(k + 1) % n] - places[k]);
-  // by the chords, then by the lengths that come of them
+  // parametrized by chord length first, then by the arc lengths of the resulting spline
   std::vector<Vec3> slopes = spline_slopes(places, h, closed);
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t k = 0; k < pieces; ++k) {

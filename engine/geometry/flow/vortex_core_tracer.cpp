@@ -7,12 +7,12 @@ namespace catena::flow {
 namespace {
 
 constexpr int kCoreCorrections = 16, kCoreHalvings = 4, kCoreEndHalvings = 12;
-constexpr double kCoreTurn = 0.5;                // least cosine between two steps
-constexpr double kCoreTolerance = 1e-13;         // of L
-constexpr double kKinkTolerance = 1e-3;          // of the spacing: accepted where grad v has a kink
-constexpr double kSameCore = 0.5;                // of the spacing: two places are of one line
-constexpr double kLastStep = 0.3;                // of a step: the last one of a line
-constexpr std::size_t kMostCoreSteps = 400'000;  // of a line, each way
+constexpr double kCoreTurn = 0.5;                // minimum cosine of the angle between two steps
+constexpr double kCoreTolerance = 1e-13;         // as a fraction of L
+constexpr double kKinkTolerance = 1e-3;          // as a fraction of the spacing: accepted where grad v has a kink
+constexpr double kSameCore = 0.5;                // as a fraction of the spacing: points this close belong to one line
+constexpr double kLastStep = 0.3;                // minimum length of the last step of a line, as a fraction of the step size
+constexpr std::size_t kMostCoreSteps = 400'000;  // per line and direction
 
 }  // namespace
 
@@ -24,7 +24,7 @@ CoreTracer::CoreTracer(const field::VectorField& field, CoreCriterion criterion,
       tolerance_(kCoreTolerance * field.domain_length()),
       rough_(has_kinks ? kKinkTolerance * spacing : 1e-9 * field.domain_length()) {}
 
-/// Newton's method in the plane through `place` across `along`.
+/// Corrects a point to the core line by Newton's method in the plane through `place` orthogonal to `along`.
 CoreTracer::CorrectedPoint CoreTracer::correct(Vec3 place, const Vec3& along) {
   CorrectedPoint out;
   const Vec3 from = place;
@@ -40,7 +40,7 @@ CoreTracer::CorrectedPoint CoreTracer::correct(Vec3 place, const Vec3& along) {
       out.exits_domain = !at_a.is_inside || !at_b.is_inside;
       return out;
     }
-    // least squares: miss has three components and the plane two
+    // least squares: the residual has three components, the plane has two
     const Vec3 fa = (at_a.residual - here.residual) * (1 / difference_), fb = (at_b.residual - here.residual) * (1 / difference_);
     const double aa = dot(fa, fa), ab = dot(fa, fb), bb = dot(fb, fb), det = aa * bb - ab * ab;
     if (!(det > 1e-6 * aa * bb)) return out;
@@ -48,7 +48,7 @@ CoreTracer::CorrectedPoint CoreTracer::correct(Vec3 place, const Vec3& along) {
     Vec3 way = a * ((bb * ra - ab * rb) / det) + b * ((aa * rb - ab * ra) / det);
     if (const double far = norm(way); far > 0.5 * spacing_) way *= 0.5 * spacing_ / far;
     const double full = norm(way);
-    // halved where it does not come nearer
+    // halve the step until the residual decreases
     CoreSample next;
     bool nearer = false;
     for (int k = 0; k < kCoreHalvings && !nearer; ++k, way *= nearer ? 1 : 0.5) {
@@ -77,7 +77,7 @@ std::uint64_t CoreTracer::bucket(std::int64_t x, std::int64_t y, std::int64_t z)
          (static_cast<std::uint64_t>(z) & 0x1fffff) << 42;
 }
 
-/// Whether a line passes by; of the one that is being traced, its last places do not count.
+/// Returns true if a recorded line passes near `place`; the last points of the line `own`, which is being traced, are ignored.
 bool CoreTracer::is_traced(const Vec3& place, std::uint32_t own) const {
   constexpr std::size_t kLast = 8;
   const Vec3 at = place * (1 / spacing_);
@@ -102,12 +102,12 @@ void CoreTracer::record(const Vec3& place) {
   ++point_count_;
 }
 
-/// One way along the line; true: it came back to where it began.
+/// Traces the line in one direction; returns true if it returns to its start (closed line).
 bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, bool& leaves) {
   Vec3 place = from.position;
   std::optional<Vec3> before;
   while (out.points.size() < kMostCoreSteps) {
-    // the way goes on turning as it did
+    // predictor: extrapolates the turn of the last step
     CorrectedPoint next;
     double size = 1;
     for (; size >= 0.25 && !next.ok; size *= 0.5) {
@@ -116,7 +116,7 @@ bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, 
       if (next.ok) break;
     }
     if (!next.ok) {
-      // where it ends, by halving
+      // bisection for the end of the line
       double lo = 0, hi = 2 * size;
       CorrectedPoint end;
       leaves = next.exits_domain;
@@ -132,7 +132,7 @@ bool CoreTracer::follow(const CorrectedPoint& from, Vec3 along, CoreTrace& out, 
         end = at;
       }
       if (end.ok) {
-        // a short last step would turn the spline
+        // a very short last step would bend the spline
         if (norm(end.position - place) < kLastStep * step_ && out.points.size() > 1) {
           out.points.pop_back();
           out.swirls.pop_back();
@@ -182,8 +182,8 @@ bool CoreTracer::trace(const CoreSeed& seed, CoreTrace& out) {
 }
 
 void join_traces(std::vector<CoreTrace>& traces, double reach) {
-  constexpr double kLeads = 0.7;             // least cosine
-  constexpr std::size_t kMostJoined = 3000;  // lines: every two are looked at
+  constexpr double kLeads = 0.7;             // minimum cosine
+  constexpr std::size_t kMostJoined = 3000;  // lines: all pairs are compared
   if (traces.size() > kMostJoined) return;
   const auto reversed = [](CoreTrace& line) {
     std::reverse(line.points.begin(), line.points.end());
@@ -194,7 +194,7 @@ void join_traces(std::vector<CoreTrace>& traces, double reach) {
     const std::size_t n = line.points.size();
     return direction(line.points[n - 1] - line.points[n - std::min<std::size_t>(n, 4)]);
   };
-  /// From the last place of `line` to the first of `other`.
+  /// Returns true if `line` can continue from its last point to the first point of `other`.
   const auto leads = [&](const CoreTrace& line, const CoreTrace& other) {
     const Vec3 way = other.points.front() - line.points.back();
     if (line.last_exits_domain || other.first_exits_domain || norm(way) > reach) return false;
@@ -215,7 +215,7 @@ void join_traces(std::vector<CoreTrace>& traces, double reach) {
             on = leads(traces[i], other);
             if (!on) continue;
           }
-          // the places of the two that overlap are left out
+          // points of `other` that overlap `line` are omitted
           const Vec3 ahead = leaving(traces[i]);
           std::size_t from = 0;
           while (from + 1 < other.points.size() && dot(other.points[from] - traces[i].points.back(), ahead) < 0.1 * reach) ++from;

@@ -14,18 +14,18 @@
 namespace catena::flow {
 namespace {
 
-constexpr int kBlock = 16;             // cells an axis of what is looked at in one piece
-constexpr int kFormulaCells = 48;      // an axis of a formula's domain
-constexpr double kFormulaStep = 5e-4;  // of L
-constexpr double kNear = 1.5;          // cells: longest Newton step to a core
-constexpr double kOnCore = 0.25;       // cells: a place on a core
+constexpr int kBlock = 16;             // cells per axis of the blocks that are searched in parallel
+constexpr int kFormulaCells = 48;      // cells per axis of a formula's domain
+constexpr double kFormulaStep = 5e-4;  // step of the differences for formulas, as a fraction of L
+constexpr double kNear = 1.5;          // cells: maximum Newton step to a core
+constexpr double kOnCore = 0.25;       // cells: a point this close is on a core
 constexpr std::size_t kSeedsABlock = 256, kLeastPlaces = 64;
-constexpr double kVoxelsOfLine = 6, kPartOfLength = 0.02;  // the shortest line by default
-constexpr double kJoined = 2.5;                            // cells: longest gap within a line
-constexpr int kFaired = 6;                                 // knots to each side that a knot of a grid's core is fitted to
+constexpr double kVoxelsOfLine = 6, kPartOfLength = 0.02;  // default minimum length of a line, in voxels and as a fraction of L
+constexpr double kJoined = 2.5;                            // cells: maximum gap that is closed within a line
+constexpr int kFaired = 6;                                 // knots on each side in the least-squares smoothing of a grid's core lines
 constexpr std::size_t kMostPlaces = 4'000'000;
 
-/// What is found in a block of cells.
+/// Results of the search in a block of cells.
 struct BlockSeeds {
   std::vector<CoreSeed> seeds;
   std::size_t turning = 0, on_core = 0;
@@ -97,7 +97,7 @@ class Scan {
         }
   }
 
-  /// The gradients of the block's nodes are formed once.
+  /// Searches the block's nodes; the gradient of each node is computed only once.
   void look_at_nodes(const int* first, const int* count, BlockSeeds& out) const {
     const field::VectorGrid& grid = *field_.grid();
     const Vec3 lo = grid.index_box().lo;
@@ -194,7 +194,7 @@ Result<VortexCoresPtr> trace_cores(const field::VectorField& field, const CoreOp
     }
   join_traces(traces, kJoined * scan.spacing());
 
-  // what is too short or too weak is noise
+  // lines that are too short or too weak are noise
   const double least = options.min_length > 0 ? options.min_length
                        : grid                 ? kVoxelsOfLine * scan.spacing()
                                               : kPartOfLength * field.domain_length();

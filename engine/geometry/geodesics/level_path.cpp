@@ -8,11 +8,11 @@
 namespace catena::geodesics {
 namespace {
 
-constexpr int kMaxCells = 64;      // an axis
-constexpr int kSteps = 32;         // of Newton's, to the level
-constexpr double kOnLevel = 1e-7;  // of L
+constexpr int kMaxCells = 64;      // per axis
+constexpr int kSteps = 32;         // maximum number of Newton steps to the level
+constexpr double kOnLevel = 1e-7;  // tolerance, as a fraction of L
 
-/// Newton's steps along the gradient, none longer than `longest`.
+/// Moves p to the level by Newton's method along the gradient, with steps of at most `longest`; returns false if it does not converge.
 bool reach_level(const field::ScalarField& field, double level, double longest, field::Cursor& cursor, Vec3& p) {
   Vec3 x = p;
   for (int i = 0; i < kSteps; ++i) {
@@ -32,7 +32,7 @@ bool reach_level(const field::ScalarField& field, double level, double longest, 
 
 using Cell = std::array<int, 3>;
 
-/// The domain in cells; its corners are sampled when they are asked for.
+/// Grid of cells over the domain; corner values are sampled on demand.
 class Lattice {
  public:
   Lattice(const field::ScalarField& field, double level) : field_(field), level_(level) {
@@ -90,11 +90,11 @@ class Lattice {
                static_cast<std::size_t>(cells_[0] + 1) +
            static_cast<std::size_t>(c[0]);
   }
-  /// Not a number where the field has no value.
+  /// Returns the value at a corner; NaN where the field has no value.
   double corner(const Cell& c) {
     double& value = values_[index_of_corner(c)];
     if (value != kUnknown) return value;
-    // a corner on the domain's face must not be put outside by rounding
+    // a corner on a face of the domain must not be outside by rounding
     Vec3 at(c[0], c[1], c[2]);
     for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 1e-9, cells_[static_cast<std::size_t>(a)] - 1e-9);
     const field::ScalarSample s = field_.sample(world_at(at), cursor_);
@@ -109,7 +109,7 @@ class Lattice {
   field::Cursor cursor_;
 };
 
-/// Calls visit for the 26 neighbours, and the cell itself.
+/// Calls visit for the cell and its 26 neighbors within the domain.
 template <class Visit>
 void each_around(const Lattice& lattice, const Cell& c, Visit&& visit) {
   for (int z = -1; z <= 1; ++z)
@@ -118,7 +118,7 @@ void each_around(const Lattice& lattice, const Cell& c, Visit&& visit) {
         if (const Cell n{c[0] + x, c[1] + y, c[2] + z}; lattice.contains(n)) visit(n);
 }
 
-/// Dijkstra from cell to cell along places on the surface; the ends are left out.
+/// Dijkstra's algorithm on the cells that the surface crosses, with one surface point each; returns the path without its ends.
 std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, const Vec3& from, const Vec3& to, bool& joined) {
   Lattice lattice(field, level);
   const double longest = field.domain_length() / kMaxCells;

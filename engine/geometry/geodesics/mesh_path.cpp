@@ -8,10 +8,11 @@
 namespace catena::geodesics {
 namespace {
 
-constexpr int kBudget = 20'000;  // nodes of the hierarchy a look-up
-constexpr double kFar = 1e3;     // own frame: the mesh is within 1/2
+constexpr int kBudget = 20'000;  // BVH nodes per query
+constexpr double kFar = 1e3;     // search radius in the local frame, where the mesh lies within 1/2
 
-/// Vertices from a corner of one face to a corner of another; empty: there is no way.
+/// Returns the vertices of a shortest edge path from a corner of one face to a corner of another; empty if there is none, or none is found
+/// within kMaxVisitedVertices.
 std::vector<Vec3> way_along_edges(const mesh::TriangleMesh& mesh, const mesh::ClosestPoint& from, const mesh::ClosestPoint& to,
                                   const Vec3& goal) {
   struct Visited {

@@ -8,15 +8,15 @@ namespace catena::geodesics {
 namespace {
 
 constexpr int kMaxSweeps = 400;
-constexpr double kStill = 1e-6;   ///< of a segment
-constexpr double kLonger = 1.01;  ///< growth that shows a sweep to have gone too far
+constexpr double kStill = 1e-6;   ///< convergence: maximum motion, as a fraction of a segment
+constexpr double kLonger = 1.01;  ///< growth of the length at which a sweep counts as diverging
 
-/// So many segments of equal length along the path.
+/// Returns the path resampled into `segments` segments of equal length.
 std::vector<Vec3> resampled(const std::vector<Vec3>& path, int segments) {
   const double whole = path_length(path);
   std::vector<Vec3> out{path.front()};
   std::size_t k = 1;
-  double before = 0;  // up to path[k - 1]
+  double before = 0;  // length up to path[k - 1]
   for (int i = 1; i < segments; ++i) {
     const double at = whole * i / segments;
     while (k + 1 < path.size() && before + norm(path[k] - path[k - 1]) < at) {
@@ -30,7 +30,7 @@ std::vector<Vec3> resampled(const std::vector<Vec3>& path, int segments) {
   return out;
 }
 
-/// The farthest that a point went.
+/// Relaxes all inner points; returns the largest distance that a point moved.
 double sweep(std::vector<Vec3>& path, double factor, const ProjectToSurface& put_on_surface) {
   double farthest = 0;
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
@@ -44,7 +44,7 @@ double sweep(std::vector<Vec3>& path, double factor, const ProjectToSurface& put
 
 void relax(std::vector<Vec3>& path, const ProjectToSurface& put_on_surface) {
   const auto segments = static_cast<double>(path.size() - 1);
-  double factor = 2 / (1 + std::sin(std::numbers::pi / segments));  // the best of a straight string
+  double factor = 2 / (1 + std::sin(std::numbers::pi / segments));  // optimal over-relaxation for a straight string
   double length = path_length(path);
   std::vector<Vec3> best = path;
   double shortest = length;

@@ -10,7 +10,7 @@ namespace catena::mesh {
 namespace {
 
 constexpr std::size_t kLeaf = 4, kBins = 16;
-constexpr int kSahDepth = 32;  // below it halves: at most 25 levels more for 2^32 faces / 4
+constexpr int kSahDepth = 32;  // deeper nodes are split in halves: at most 25 more levels for 2^32 faces / 4
 
 FaceBox nothing() {
   const double inf = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ struct Bvh::Builder {
     return box;
   }
 
-  /// The first face of the right part.
+  /// Partitions the faces and returns the index of the first face of the right part.
   std::size_t split(std::size_t begin, std::size_t end, int depth) {
     FaceBox box = nothing();
     for (std::size_t i = begin; i < end; ++i) add(box, {centres[order[i]], centres[order[i]]});

@@ -18,9 +18,9 @@ namespace {
 using field::Index3;
 
 constexpr int kBlock = 8;
-constexpr int kWide = kBlock + 1;  ///< voxels that the cells of a block need, each way
+constexpr int kWide = kBlock + 1;  ///< voxels per axis that the cells of a block need
 
-// Corner c of a cell is at (c & 1, c >> 1 & 1, c >> 2). Edge 4 axis + n runs along `axis` from the corner with that bit clear.
+// Corner c of a cell is at (c & 1, c >> 1 & 1, c >> 2). Edge 4 axis + n runs along `axis` from the n-th corner with that bit clear.
 
 constexpr int edge_between(int a, int b) {
   const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
@@ -33,10 +33,10 @@ constexpr int first_corner(int edge) {
   return axis == 0 ? n << 1 : axis == 1 ? (n & 1) | (n >> 1) << 2 : n;
 }
 
-/// Corners of each face, counter-clockwise seen from outside the cell.
+/// Corners of each face, counterclockwise as seen from outside the cell.
 constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-/// Which faces an edge lies in, a bit each.
+/// Bit mask of the faces that contain each edge.
 constexpr auto kFacesOfEdge = [] {
   std::array<unsigned, 12> faces{};
   for (unsigned f = 0; f < 6; ++f)
@@ -44,14 +44,14 @@ constexpr auto kFacesOfEdge = [] {
   return faces;
 }();
 
-/// For each cut edge the next one of its loop. Loops run so that what is above the level is on the left of a piece, seen from outside the
-/// cell. `d`: values less the level; 0 counts as above.
+/// Returns for each cut edge the next one of its loop. Loops are oriented so that values above the level are on the left of a segment,
+/// seen from outside the cell. `d`: values minus the level; 0 counts as above.
 std::array<int, 12> loops_of(const std::array<double, 8>& d) {
   std::array<int, 12> next{};
   next.fill(-1);
   for (const auto& face : kFaces) {
     int enters[2], exits[2], cuts = 0;
-    // in the order around the face: it enters what is above, then exits
+    // around the face: from the edge that enters the region above the level to the edge that leaves it
     int begin = 0;
     while (begin < 4 && d[static_cast<std::size_t>(face[begin])] >= 0) ++begin;
     if (begin == 4) continue;
@@ -92,7 +92,7 @@ class Mesher {
       return Error{fmt::format("{}: the grid's box has {:.0f} blocks of 8^3 voxels, expected at most {:.0f}", name_, all, kMostBlocks)};
     if (lo_.x == hi_.x || lo_.y == hi_.y || lo_.z == hi_.z)
       return Error{name_ + ": the grid is one layer of voxels, and has no cells; a volume was expected"};
-    // two layers of blocks: what is not on one side alone, or beside such, is looked at
+    // two layers of blocks, marked by their side of the level: a block is searched unless it and its neighbors are on one side alone
     across_ = static_cast<std::size_t>(nx + 1);
     const std::size_t layer = across_ * static_cast<std::size_t>(ny + 1);
     std::vector<char> here(layer), above(layer);
@@ -125,7 +125,8 @@ class Mesher {
   }
 
  private:
-  static constexpr double kInFace = 1e3;  ///< longest edges squared: more than all other chords of a loop together
+  /// cost of a chord in a face, in squared longest edges: more than all other chords of a loop together
+  static constexpr double kInFace = 1e3;
   enum Side : char { kBelow, kAbove, kMixed };
 
   static Index3 block_at(const Index3& first, std::int64_t i, std::int64_t j, std::int64_t k) {
@@ -184,7 +185,7 @@ class Mesher {
     std::uint32_t vertex = 0;
   };
 
-  /// The vertex on an edge of a cell; at a corner that has the level it is the one vertex of all edges there.
+  /// Returns the vertex on an edge of a cell. If a corner has exactly the level, all edges there share one vertex.
   Cut cut(const Index3& base, const std::array<double, 8>& corner, int edge) {
     const int axis = edge / 4, from = first_corner(edge);
     const double v0 = corner[static_cast<std::size_t>(from)], v1 = corner[static_cast<std::size_t>(from | 1 << axis)];
@@ -211,7 +212,8 @@ class Mesher {
     return {edge, found->second};
   }
 
-  /// What it costs to join two cuts of a loop by an edge within the cell. In a face of the cell it could be the neighbour's, too.
+  /// Returns the cost of joining two cuts of a loop by an edge inside the cell. In a face of the cell the neighbor could create the same
+  /// edge, which costs kInFace.
   double chord_cost(const Cut& a, const Cut& b) const {
     const Vec3 chord = made_.vertices[b.vertex] - made_.vertices[a.vertex];
     const bool in_face = (kFacesOfEdge[static_cast<std::size_t>(a.edge)] & kFacesOfEdge[static_cast<std::size_t>(b.edge)]) != 0;
@@ -219,8 +221,8 @@ class Mesher {
     return dot(chord, chord) + (in_face ? kInFace * longest * longest : 0);
   }
 
-  /// The loop as triangles with the least sum of their chords: best[i][j] is of the part from cut i to cut j, whose last triangle has its
-  /// third corner at by[i][j]. False: every way to do it has an edge in a face.
+  /// Triangulates the loop with the minimum sum of chord costs: best[i][j] is the cost of the part from cut i to cut j, whose last
+  /// triangle has its third corner at by[i][j]. Returns false if every triangulation has an edge in a face.
   bool fill(const std::array<Cut, 12>& loop, std::size_t n) {
     double best[12][12]{};
     std::size_t by[12][12]{};
@@ -237,7 +239,7 @@ class Mesher {
     return true;
   }
 
-  /// The loop as triangles around one more vertex: from the middle of the cuts along the gradient to the level.
+  /// Triangulates the loop as a fan around an additional vertex: the mean of the cuts, moved along the gradient to the level.
   void fill_around(const Index3& base, const std::array<double, 8>& corner, const std::array<Cut, 12>& loop, std::size_t n) {
     const Vec3 origin(base.x, base.y, base.z);
     Vec3 middle(0.0), gradient(0.0);
@@ -269,7 +271,7 @@ class Mesher {
   }
 
   Outcome ask() const {
-    constexpr double kVertex = 2 * sizeof(Vec3) + 48, kGrowth = 2;  // with its place in the table; vectors double
+    constexpr double kVertex = 2 * sizeof(Vec3) + 48, kGrowth = 2;  // with its entry in the hash table; vectors double their capacity
     const double bytes =
         kGrowth * (kVertex * static_cast<double>(made_.vertices.size()) + sizeof(Triangle) * static_cast<double>(made_.triangles.size()));
     return check_memory_available(name_ + ": the surface", bytes, allowed_);

@@ -17,7 +17,7 @@ std::atomic<std::uint64_t> next_version{1};
 
 constexpr double kSmallest = 1e-100, kLargest = 1e100;
 
-/// Vertices of equal coordinates become one (-0 is 0).
+/// Merges vertices with equal coordinates (-0 equals 0).
 void weld(TriangleSoup& soup) {
   for (Vec3& v : soup.vertices) v = v + Vec3(0.0);
   std::vector<std::uint32_t> order(soup.vertices.size()), renamed(soup.vertices.size());
@@ -36,14 +36,14 @@ void weld(TriangleSoup& soup) {
     for (std::uint32_t& v : t) v = renamed[v];
 }
 
-/// Twice the area over the longest edge.
+/// Returns the triangle's smallest height: twice the area divided by the longest edge.
 double height_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - a, v = c - a, w = c - b;
   const double longest = std::sqrt(std::max({dot(u, u), dot(v, v), dot(w, w)}));
   return longest > 0 ? norm(cross(u, v)) / longest : 0;
 }
 
-/// Only the vertices that a triangle names, in their old order.
+/// Removes vertices that no triangle uses; the others keep their order.
 void compact(std::vector<Vec3>& vertices, std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> renamed(vertices.size(), 0);
   for (const Triangle& t : triangles)
@@ -64,13 +64,14 @@ double bytes_of_soup(const TriangleSoup& soup) {
   return static_cast<double>(soup.vertices.capacity() * sizeof(Vec3) + soup.triangles.capacity() * sizeof(Triangle));
 }
 
-/// What welding takes beside the soup: two lists of vertices, then the triangles that are kept.
+/// Returns the bytes that welding needs beside the soup: two lists of vertices, then the remaining triangles.
 double bytes_to_weld(const TriangleSoup& soup) {
   return static_cast<double>(2 * soup.vertices.size() * sizeof(std::uint32_t) + soup.triangles.size() * sizeof(Triangle));
 }
 
-/// What the rest takes beside that: the vertices in its own frame, their normals, fans and borders; the faces with their neighbours, the
-/// hierarchy (a node for every two faces), and the greater of what making it (boxes, centres, orders) and finding edges takes for a while.
+/// Returns the bytes that the rest needs beside that: the vertices in the local frame, their normals, fans and borders; the faces with
+/// their neighbors; the hierarchy (a node for every two faces); and the larger of the temporary memory for building it (boxes, centers,
+/// orders) and for finding edges.
 double bytes_to_build(std::size_t vertices, std::size_t triangles) {
   constexpr double kVertex = 2 * sizeof(Vec3) + 2 * sizeof(std::uint32_t) + 1;
   constexpr double kHierarchy = sizeof(BvhNode) / 2.0, kBoxes = sizeof(FaceBox) + sizeof(Vec3) + 2 * sizeof(std::uint32_t), kEdges = 3 * 20;
@@ -78,7 +79,7 @@ double bytes_to_build(std::size_t vertices, std::size_t triangles) {
   return static_cast<double>(vertices) * kVertex + static_cast<double>(triangles) * kTriangle;
 }
 
-/// A mesh, and what it counts as held.
+/// A mesh and its reserved bytes.
 struct HeldMesh {
   TriangleMesh mesh;
   MemoryReservation memory;
@@ -98,7 +99,7 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
   self->name_ = name;
   self->version_ = next_version.fetch_add(1);
 
-  // the box of what triangles name, and the exact scale
+  // bounding box of the used vertices, and the exact scale
   Vec3 lo(INFINITY), hi(-INFINITY);
   for (const Triangle& t : soup.triangles)
     for (const std::uint32_t i : t) {
@@ -116,13 +117,13 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
   const double part = std::frexp(length, &exponent);
   self->scale_ = std::ldexp(1.0, part == 0.5 ? exponent - 1 : exponent);
   self->inverse_scale_ = 1 / self->scale_;
-  // a centre of few digits, so that differences with float coordinates stay exact
+  // center rounded to few digits, so that differences with float coordinates are exact
   for (int i = 0; i < 3; ++i) {
     const double step = self->scale_ / 64;
     self->center_[i] = std::round((0.5 * (lo[i] + hi[i])) / step) * step;
   }
 
-  // weld, drop what has no area
+  // weld vertices, drop degenerate triangles
   const std::string what = one_line(name + ": a mesh of " + std::to_string(soup.triangles.size()) + " triangles");
   CATENA_CHECK(check_text_memory_available(what, bytes_of_soup(soup) + bytes_to_weld(soup)));
   weld(soup);
@@ -151,7 +152,7 @@ Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name) {
   }
   self->domain_length_ = max_abs(self->max_corner_ - self->min_corner_);
 
-  // the hierarchy orders the faces
+  // build the hierarchy, which determines the order of the faces
   std::vector<FaceBox> boxes;
   boxes.reserve(kept.size());
   for (const Triangle& t : kept) {

@@ -12,7 +12,7 @@
 namespace catena::statistics {
 namespace {
 
-/// Sums of squares and products about the means.
+/// Means, and sums of squares and products of the deviations from them.
 struct Moments {
   double mean_x = 0, mean_y = 0, xx = 0, yy = 0, xy = 0;
 };
@@ -45,7 +45,7 @@ Result<double> r_of(std::span<const double> x, std::span<const double> y, int le
   if (!has_spread(m.xx, x) || !has_spread(m.yy, y))
     return Error{fmt::format("all {} values of one measure are the same, so that nothing can vary with them", x.size())};
   const double r = m.xy / (std::sqrt(m.xx) * std::sqrt(m.yy));
-  // points on a line, up to round-off
+  // points on a line give exactly 1 or -1 in spite of rounding
   return std::fabs(r) > 1 - 8 * std::numeric_limits<double>::epsilon() ? std::copysign(1.0, r) : r;
 }
 

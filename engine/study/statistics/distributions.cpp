@@ -12,8 +12,8 @@ namespace catena::statistics {
 namespace {
 
 namespace bm = boost::math;
-/// Nothing is thrown: callers check what they ask for. Doubles throughout, so that the last bits do not depend on the width of a long
-/// double.
+/// Policy without exceptions: the callers validate their arguments. Calculations use double, so that results do not depend on the width of
+/// long double.
 using Quiet =
     bm::policies::policy<bm::policies::domain_error<bm::policies::ignore_error>, bm::policies::pole_error<bm::policies::ignore_error>,
                          bm::policies::overflow_error<bm::policies::ignore_error>,
@@ -47,7 +47,7 @@ double noncentral_t_survival(double t, double df, double delta) {
 double solve_noncentrality(double t, double df, double probability) {
   if (t < 0) return -solve_noncentrality(-t, df, 1 - probability);
   if (t > 200) return t * std::sqrt(bm::quantile(bm::complement(ChiSquared(df), probability)) / df);
-  // P(T <= t) falls with delta: bisection
+  // P(T <= t) decreases with delta: bisection
   double low = -10 - t, high = 10 + 4 * t;
   for (int i = 0; i < 100 && high - low > 1e-10 * (1 + t); ++i) {
     const double middle = 0.5 * (low + high);

@@ -11,7 +11,7 @@
 namespace catena::statistics {
 namespace {
 
-/// The sums of all choices of signs, rising.
+/// Returns the sums for all 2^n choices of signs in increasing order.
 std::vector<double> sorted_sums(std::span<const double> values) {
   std::vector<double> sums{0.0};
   for (const double x : values) {
@@ -29,7 +29,8 @@ std::vector<double> sorted_sums(std::span<const double> values) {
 double exact_share(std::span<const double> values, double bound) {
   const std::vector<double> first = sorted_sums(values.subspan(0, values.size() / 2));
   const std::vector<double> second = sorted_sums(values.subspan(values.size() / 2));
-  // the larger the one half, the smaller the other may be; sums come with both signs, so the upper side is half of them
+  // two-pointer search: the larger the sum of one half, the smaller the required sum of the other; sums are symmetric, so the upper tail
+  // is counted and doubled
   double far = 0;
   std::size_t j = second.size();
   for (const double x : first) {

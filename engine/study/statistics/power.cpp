@@ -12,7 +12,7 @@ namespace catena::statistics {
 double paired_power(double effect, int n, double alpha) {
   const double df = n - 1, delta = std::fabs(effect) * std::sqrt(static_cast<double>(n));
   const double critical = t_quantile(1 - 0.5 * alpha, df);
-  // so far beyond that the sum of both tails is 1 to the last bit
+  // both tails together are 1 to the last bit
   if (delta > 100 && delta > 3 * critical) return 1;
   return std::min(1.0, noncentral_t_survival(critical, df, delta) + noncentral_t_cdf(-critical, df, delta));
 }
