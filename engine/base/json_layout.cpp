@@ -64,9 +64,7 @@ std::string_view indentation(std::string_view text, std::size_t at) {
   const std::size_t begin = line_begin(text, at);
   return text.substr(begin, past_blanks(text, begin) - begin);
 }
-/// Returns the line ending of this text ("
-/// ", "\r
-/// " or "\r").
+/// Returns the line ending of this text: LF, CR LF or CR; LF if it has only one line.
 std::string_view line_end_of(std::string_view text) {
   const std::size_t at = text.find_first_of("\r\n");
   return at == kNone ? "\n" : text.substr(at, past_line_end(text, at) - at);

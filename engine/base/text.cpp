@@ -171,7 +171,7 @@ std::string strip_addresses(std::string text) {
       at = end;
       continue;
     }
-    // also removes the brackets around the address and the blank before
+    // also removes the brackets around the address and the blank before them
     if (begin > 0 && end < text.size() && text[begin - 1] == '(' && text[end] == ')') --begin, ++end;
     if (begin > 0 && text[begin - 1] == ' ') --begin;
     text.erase(begin, end - begin);

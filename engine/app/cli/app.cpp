@@ -67,7 +67,7 @@ std::string unknown_word(const CLI::App& program, int argc, char** argv) {
   return {};
 }
 
-// adds --memory MB to every command
+// Adds --memory MB to every command
 void add_memory_limit(CLI::App& program) {
   for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     command
@@ -78,7 +78,7 @@ void add_memory_limit(CLI::App& program) {
   }
 }
 
-// adds --plugin FILE to every visible command
+// Adds --plugin FILE to every visible command
 void add_plugins(CLI::App& program, std::vector<std::string>& plugins) {
   const auto add_to = [&](CLI::App& command) {
     command.add_option("--plugin", plugins, "a shared library with a constraint of your own; may be repeated")->allow_extra_args(false);

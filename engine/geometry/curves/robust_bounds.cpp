@@ -28,7 +28,7 @@ RobustBounds compute_robust_bounds(std::span<const glm::vec3> points) {
     low[a] = at(kShareAtEnds);
     high[a] = at(1 - kShareAtEnds);
   }
-  // too few points, or nearly all at one position: outliers cannot be told apart
+  // with too few points, or nearly all at one position, no point counts as an outlier
   const double widest = max_abs(high - low),
                reach = widest > 0 && points.size() >= kFew ? kFence * widest : std::numeric_limits<double>::infinity();
   for (const glm::vec3& p : points) {

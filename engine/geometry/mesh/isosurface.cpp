@@ -125,7 +125,7 @@ class Mesher {
   }
 
  private:
-  /// cost of a chord in a face, in squared longest edges: more than all other chords of a loop together
+  /// Cost of a chord in a face, in squared longest edges: more than all other chords of a loop together.
   static constexpr double kInFace = 1e3;
   enum Side : char { kBelow, kAbove, kMixed };
 
