@@ -1,5 +1,9 @@
 /// Vectors, matrices and quaternions used throughout Catena: GLM in double precision (single precision is used on the GPU only).
+// A guard beside the pragma: this header is in the precompiled one, which a compiler cache may return as it was before a comment
+// changed. GCC then takes the header for another file, and only the guard keeps it out.
 #pragma once
+#ifndef CATENA_BASE_VEC_H
+#define CATENA_BASE_VEC_H
 #include <algorithm>
 #include <cmath>
 #include <glm/ext/quaternion_double.hpp>
@@ -64,3 +68,5 @@ Quat rotation_from_vector(const Vec3& v) noexcept;
 Quat shortest_arc(const Vec3& a, const Vec3& b) noexcept;
 
 }  // namespace catena
+
+#endif

@@ -35,7 +35,7 @@ Vec3 transport(const Vec3& v, const Vec3& from, const Vec3& to) {
   return direction(w - dot(w, to) * to);
 }
 
-Vec3 orbit_view(const Vec3& v, const Vec3& axis, double angle) {  // v across the axis
+Vec3 rotate_about(const Vec3& v, const Vec3& axis, double angle) {  // v across the axis
   return std::cos(angle) * v + std::sin(angle) * cross(axis, v);
 }
 
@@ -128,7 +128,7 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed)
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
     const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
-    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(orbit_view(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
+    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(rotate_about(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
   }
   return rings;
 }
@@ -145,7 +145,7 @@ std::vector<Ring> framed_rings(const std::vector<ColoredPoint>& points, bool clo
   const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
   const double count = static_cast<double>(rings.size());
   for (std::size_t i = 0; i < rings.size(); ++i)
-    rings[i].normal = orbit_view(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
+    rings[i].normal = rotate_about(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
   return rings;
 }
 

@@ -1,5 +1,5 @@
 /// Isosurface links whose probe is thrown about at random (a device plugged in again, a mode changed): the time of a tick.
-///   thrown_table [TICKS [NODES]]       default 1000000 256
+///   random_probe_table [TICKS [NODES]]       default 1000000 256
 /// Each tick the probe is anywhere in a box 1.2 times the domain, in five identical replays: of each tick the least time, in us, so that
 /// what the machine does beside it does not count; of quantiles the worst of the five, in loads of a chase (chase.h). Then probes that are
 /// thrown ten times and held still: how many ticks pass until the link has come to rest (any status but BUDGET). One line a case: field,

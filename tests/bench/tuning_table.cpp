@@ -1,6 +1,6 @@
 /// Plans against the exhaustive sweep: for five fields and six targets each (error, error, time of the eye; the same of the hand) what a
 /// plan expects, what is observed, and what the chosen setting costs beside the cheapest of the sweep that is as exact.
-///   plan_table DIR > TABLE.csv       DIR: the folder of the data files (carotid_flow.vdb ...)
+///   tuning_table DIR > TABLE.csv       DIR: the folder of the data files (carotid_flow.vdb ...)
 /// The eye is observed on the whole picture against whole converged pictures, the hand along another motion than that of its curve; times
 /// of the chosen setting and of the sweep are of one run in turns. Columns: field, target, setting, stated error, observed error, their
 /// ratio, stated time, observed time, their ratio, cost by the cheapest's, cheapest; ms and 1/255, or us and world units.
@@ -254,7 +254,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) return fmt::print(stderr, "usage: plan_table DIR [FIELD]\n"), 2;
+  if (argc < 2) return fmt::print(stderr, "usage: tuning_table DIR [FIELD]\n"), 2;
   const Case cases[] = {
       {"helix and ball", R"({"analytic": "helix"})", R"({"analytic": "sphere", "resolution": 64})",
        R"("color": "viridis", "range": [0.2, 2], "opacity": [[0.2, 0.6], [2, 0]])"},

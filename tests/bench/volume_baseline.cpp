@@ -1,4 +1,4 @@
-/// Catena as a peer of volume_peers.py (tests/bench/baselines/protocol.h):   volume_peer CASE.json
+/// Catena as a peer of volume_peers.py (tests/bench/baselines/protocol.h):   volume_baseline CASE.json
 ///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP |
 ///   fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth][,end=T] (1/255; < 0: nowhere)
 /// The settings of error=E and time=MS are chosen once, at the azimuth of the picture that is kept. The note of an answer says which,

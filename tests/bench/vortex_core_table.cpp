@@ -1,5 +1,5 @@
 /// Core lines of flows whose cores are known (engine/geometry/flow/vortex_cores.h), by criterion, cells and noise.
-///   core_table [NODES]        default 49, over [-1.2, 1.2]^3
+///   vortex_core_table [NODES]        default 49, over [-1.2, 1.2]^3
 /// Flows: Burgers' vortex about a tilted line, the same in a stream along it that is sheared, Lamb and Oseen's about an arc of radius 1.5
 /// with an axial stream, Hill's ring. Noise: uniform and independent at the nodes, its standard deviation by the greatest speed. One line a
 /// case: recall (the share of the core that a traced line passes within a voxel), root mean square and greatest distance of the traced

@@ -49,7 +49,7 @@ TEST_P(LimitTable, Row) { EXPECT_EQ(said()[GetParam().name] = GetParam().run(), 
 
 INSTANTIATE_TEST_SUITE_P(Table, LimitTable, testing::ValuesIn(rows_to_run()), [](const auto& test) { return test.param.name; });
 
-constexpr const char* kBegin = R"(# LimitTable
+constexpr const char* kBegin = R"(# Extremes
 
 What happens at the ends of what can be asked. What a row expects is written before the row is run, and holds word for word in every run of
 the tests; numbers in it are bounds. Where something else happens, that stands here as a known defect, and the last table says what would

@@ -114,7 +114,7 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
   }
 }
 
-Outcome make_haptic_binding(const FeelOptions& options) {
+Outcome run_feel(const FeelOptions& options) {
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to feel"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
   IoConflictChecker files(scene);
@@ -191,7 +191,7 @@ void add_feel(CLI::App& program, CommandAction& chosen) {
   command->add_option("--stats", options->stats, "ticks, missed deadlines, histograms, JSON");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   add_realtime_options(*command, options->realtime);
-  command->callback([&chosen, options] { chosen = [options] { return make_haptic_binding(*options); }; });
+  command->callback([&chosen, options] { chosen = [options] { return run_feel(*options); }; });
 }
 
 }  // namespace catena::app

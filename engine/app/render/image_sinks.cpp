@@ -28,7 +28,7 @@ std::span<const T> part(const std::vector<T>& values, const render::Band& band, 
 
 /// Converts pixels with RGBA or RGB components.
 template <class To, class From, class Convert>
-std::vector<To> to_imgui_color(std::span<const From> rgba, bool alpha, const Convert& convert) {
+std::vector<To> convert_components(std::span<const From> rgba, bool alpha, const Convert& convert) {
   const std::size_t channels = alpha ? 4 : 3, pixels = rgba.size() / 4;
   std::vector<To> values(channels * pixels);
   for (std::size_t i = 0; i < pixels; ++i)
@@ -90,7 +90,7 @@ Result<std::unique_ptr<ImageSink>> open_image_sink(const std::string& path, cons
     CATENA_TRY(VideoWriter video, VideoWriter::open(path, {shape.width, shape.height, shape.fps, held}));
     return sink_of(std::move(video), [=](VideoWriter& to, const Rows& rows) {
       if (held) return to.write_rows(rows.bytes);
-      return to.write_rows(alpha ? over_black(rows.bytes) : to_imgui_color<std::uint8_t>(rows.bytes, false, as_it_is));
+      return to.write_rows(alpha ? over_black(rows.bytes) : convert_components<std::uint8_t>(rows.bytes, false, as_it_is));
     });
   }
   if (path.ends_with(".exr")) {
@@ -106,10 +106,10 @@ Result<std::unique_ptr<ImageSink>> open_image_sink(const std::string& path, cons
   if (shape.bits == 16)
     return sink_of(std::move(png), [=](render::PngWriter& to, const Rows& rows) {
       return to.write_rows(
-          to_imgui_color<std::uint16_t>(rows.floats, alpha, [](float x) { return std::uint16_t(render::quantize(x, 65535)); }));
+          convert_components<std::uint16_t>(rows.floats, alpha, [](float x) { return std::uint16_t(render::quantize(x, 65535)); }));
     });
   return sink_of(std::move(png), [=](render::PngWriter& to, const Rows& rows) {
-    return to.write_rows(to_imgui_color<std::uint8_t>(rows.bytes, alpha, as_it_is));
+    return to.write_rows(convert_components<std::uint8_t>(rows.bytes, alpha, as_it_is));
   });
 }
 

@@ -140,7 +140,7 @@ Sample sample_of(const Frames& frames, const render::FramePacket& packet) {
 }
 
 /// Chooses the settings that meet the quality goal.
-render::QualityChoice choose_from_list(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
+render::QualityChoice choose_settings(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
   const Sample sample = sample_of(frames, packet);
   if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
   ProgressLine progress("choosing how to draw", 1);
@@ -276,7 +276,7 @@ Outcome render_images(const RenderOptions& given) {
   const auto choose_for = [&](const char* which, bool once) {
     wanted.goal->single_image = once;
     const std::int64_t start = now_ns();
-    const render::QualityChoice choice = choose_from_list(frames, packet, *wanted.goal);
+    const render::QualityChoice choice = choose_settings(frames, packet, *wanted.goal);
     stats.settings_search_ms += ms_since(start);
     frames.settings = choice.settings;
     stats.estimated_rmse = choice.estimated_rmse;

@@ -51,9 +51,9 @@ int step_of(int n, int factor) { return n <= kFlat ? 1 : factor; }
 int left_of(int n, int factor) { return (n - 1) / step_of(n, factor) + 1; }
 
 /// The slices of the full grid that are in use, lowest z first; they must be requested with rising z.
-class SliceSource {
+class SliceWindow {
  public:
-  explicit SliceSource(const VoxelBox& box) : box_(box) {}
+  explicit SliceWindow(const VoxelBox& box) : box_(box) {}
 
   void want(int lo, int hi) {
     while (first_ < lo && !layers_.empty()) layers_.pop_front(), ++first_;
@@ -89,7 +89,7 @@ class SliceSource {
 /// Half-width of the tent filter at a node.
 int reach(int node, int n, int factor) { return n <= kFlat ? 0 : std::min({factor - 1, node, n - 1 - node}); }
 
-float tent(const SliceSource& layers, const Index3& size, const Index3& at, int factor) {
+float tent(const SliceWindow& layers, const Index3& size, const Index3& at, int factor) {
   const int rx = reach(at.x, size.x, factor), ry = reach(at.y, size.y, factor), rz = reach(at.z, size.z, factor);
   const auto has = [&](int i, int j, int k) {
     return layers.valid(at.x + i, at.y + j, at.z + k) && std::isfinite(layers.value(at.x + i, at.y + j, at.z + k));
@@ -135,7 +135,7 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
   source.size = {left_of(n.x, factor), left_of(n.y, factor), left_of(n.z, factor)};
   source.has_mask = box.has_mask;
   CATENA_CHECK(check_dense_memory(path, source.size, box.components, box.has_mask));
-  SliceSource layers(box);
+  SliceWindow layers(box);
   const auto step = [&](int nodes) { return step_of(nodes, factor); };
   source.read = [&](int first, int count, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
     std::size_t i = 0, v = 0;

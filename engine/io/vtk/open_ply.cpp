@@ -39,7 +39,7 @@ std::optional<PlyType> ply_type(std::string_view word) {
   return std::nullopt;
 }
 
-std::size_t read_bytes(PlyType type) {
+std::size_t byte_size(PlyType type) {
   static constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
   return kBytes[static_cast<std::size_t>(type)];
 }
@@ -73,7 +73,7 @@ class PlyNumbers {
       out = number.value_or(0);
       return number.has_value();
     }
-    const std::size_t bytes = read_bytes(type);
+    const std::size_t bytes = byte_size(type);
     if (rest_.size() < bytes) return false;
     char raw[8];
     std::memcpy(raw, rest_.data(), bytes);
@@ -129,7 +129,7 @@ class PlyReader {
     points_->SetDataTypeToDouble();
     for (const PlyElement& element : elements_) {
       std::uint64_t least = 0;
-      for (const PlyProperty& p : element.properties) least += text_ ? 1 : read_bytes(p.list.value_or(p.type));
+      for (const PlyProperty& p : element.properties) least += text_ ? 1 : byte_size(p.list.value_or(p.type));
       if (least > 0 && element.count > numbers.left() / least)
         return Error{fmt::format("says {} of \"{}\", more than its {} bytes can hold", element.count, element.name, numbers.left())};
       if (least > 0) CATENA_CHECK(read_element(element, numbers));

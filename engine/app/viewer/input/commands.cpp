@@ -12,7 +12,7 @@ namespace {
 
 enum class Held : std::uint8_t { no, yes, any };
 
-struct KeyPress {
+struct KeyChord {
   int key = 0;  ///< GLFW key number, or kQuestionMark; 0: none
   Held control = Held::no, shift = Held::any;
   bool told = true;  ///< shown in the list of keys
@@ -23,41 +23,41 @@ constexpr int kQuestionMark = '?';
 struct CommandRow {
   std::optional<Action> action{};  ///< none: the row describes the pointer or the device
   const char* menu = nullptr;      ///< nullptr: in no menu; for an axis view, the axis in the format of render::axis_view
-  KeyPress stroke{}, other{};      ///< either triggers the action
+  KeyChord stroke{}, other{};      ///< either triggers the action
   const char* section = nullptr;   ///< section of the list of keys; nullptr: same line as the row above
   const char* does = nullptr;      ///< description; nullptr: not in the list
   const char* by = nullptr;        ///< input shown in the list if it is not a key
 };
 
 constexpr const char *kEye = "The eye", *kHand = "The hand", *kScene = "The scene", *kWindow = "The window";
-constexpr KeyPress kNoStroke{};
+constexpr KeyChord kNoChord{};
 
 constexpr CommandRow by_pointer(const char* section, const char* by, const char* does) {
   return {.section = section, .does = does, .by = by};
 }
-constexpr KeyPress with_control(int key, Held shift = Held::any, bool told = true) { return {key, Held::yes, shift, told}; }
-constexpr KeyPress with_shift(int key) { return {key, Held::no, Held::yes}; }
-constexpr KeyPress alone(int key) { return {key, Held::no, Held::no}; }
+constexpr KeyChord with_control(int key, Held shift = Held::any, bool told = true) { return {key, Held::yes, shift, told}; }
+constexpr KeyChord with_shift(int key) { return {key, Held::no, Held::yes}; }
+constexpr KeyChord alone(int key) { return {key, Held::no, Held::no}; }
 
 // in the order of the list of keys
 constexpr CommandRow kCommandRows[] = {
     by_pointer(kEye, "left drag", "orbit"),
     by_pointer(kEye, "middle, shift+left", "pan"),
     by_pointer(kEye, "wheel", "zoom"),
-    {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoStroke, kEye, "look along +x"},
-    {Action::view_along_plus_y, "+y", alone(GLFW_KEY_2), kNoStroke, nullptr, "+y"},
-    {Action::view_along_plus_z, "+z", alone(GLFW_KEY_3), kNoStroke, nullptr, "+z, at all that is drawn; with shift along -x, -y, -z"},
+    {Action::view_along_plus_x, "+x", alone(GLFW_KEY_1), kNoChord, kEye, "look along +x"},
+    {Action::view_along_plus_y, "+y", alone(GLFW_KEY_2), kNoChord, nullptr, "+y"},
+    {Action::view_along_plus_z, "+z", alone(GLFW_KEY_3), kNoChord, nullptr, "+z, at all that is drawn; with shift along -x, -y, -z"},
     {Action::view_along_minus_x, "-x", with_shift(GLFW_KEY_1)},
     {Action::view_along_minus_y, "-y", with_shift(GLFW_KEY_2)},
     {Action::view_along_minus_z, "-z", with_shift(GLFW_KEY_3)},
     {Action::fit_view, "Everything", {GLFW_KEY_A}, {GLFW_KEY_HOME}, kEye, "all that is drawn into the picture, from the same direction"},
-    {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoStroke, kEye, "orthographic or perspective"},
-    {Action::reset_view, "First view", {GLFW_KEY_R}, kNoStroke, kEye, "the first view again"},
-    {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoStroke, kEye, "turntable, until T or the mouse"},
+    {Action::toggle_projection, "Orthographic", {GLFW_KEY_O}, kNoChord, kEye, "orthographic or perspective"},
+    {Action::reset_view, "First view", {GLFW_KEY_R}, kNoChord, kEye, "the first view again"},
+    {Action::toggle_turntable, "Turntable", {GLFW_KEY_T}, kNoChord, kEye, "turntable, until T or the mouse"},
     {Action::toggle_fly,
      "Fly",
      {GLFW_KEY_V},
-     kNoStroke,
+     kNoChord,
      kEye,
      "fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it"},
 
@@ -65,46 +65,41 @@ constexpr CommandRow kCommandRows[] = {
     {Action::toggle_probe_mode,
      "The mouse is the hand",
      {GLFW_KEY_H},
-     kNoStroke,
+     kNoChord,
      kHand,
      "the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1"},
     by_pointer(kHand, "space", "the hand's button 1"),
-    {Action::toggle_forces, "Forces", {GLFW_KEY_F}, kNoStroke, kHand, "a haptic device's forces on and off (off at first)"},
+    {Action::toggle_forces, "Forces", {GLFW_KEY_F}, kNoChord, kHand, "a haptic device's forces on and off (off at first)"},
     {Action::register_device,
      "Register in the room",
      {GLFW_KEY_G},
-     kNoStroke,
+     kNoChord,
      kHand,
      "with a headset: touch three places, which says where a haptic device stands; again: not now"},
     by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"),
 
-    {Action::open, "Open...", with_control(GLFW_KEY_O), kNoStroke, kScene, "open; a file can be dropped on the window as well"},
-    {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoStroke, kScene, "save (with the view, if it was moved)"},
-    {Action::save_as, "Save as...", with_control(GLFW_KEY_S, Held::yes), kNoStroke, nullptr, "save as"},
-    {Action::undo, "Undo", with_control(GLFW_KEY_Z, Held::no), kNoStroke, kScene, "undo"},
+    {Action::open, "Open...", with_control(GLFW_KEY_O), kNoChord, kScene, "open; a file can be dropped on the window as well"},
+    {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoChord, kScene, "save (with the view, if it was moved)"},
+    {Action::save_as, "Save as...", with_control(GLFW_KEY_S, Held::yes), kNoChord, nullptr, "save as"},
+    {Action::undo, "Undo", with_control(GLFW_KEY_Z, Held::no), kNoChord, kScene, "undo"},
     {Action::redo, "Redo", with_control(GLFW_KEY_Y), with_control(GLFW_KEY_Z, Held::yes, false), nullptr, "redo"},
-    {Action::play_time_steps, nullptr, {GLFW_KEY_K}, kNoStroke, kScene, "play the steps in time, or stop"},
-    {Action::previous_time_step, nullptr, {GLFW_KEY_COMMA}, kNoStroke, kScene, "the step before"},
-    {Action::next_time_step, nullptr, {GLFW_KEY_PERIOD}, kNoStroke, nullptr, "and after"},
-    {Action::toggle_band_animation, nullptr, {GLFW_KEY_P}, kNoStroke, kScene, "the pulses along streamlines stand or run"},
+    {Action::play_time_steps, nullptr, {GLFW_KEY_K}, kNoChord, kScene, "play the steps in time, or stop"},
+    {Action::previous_time_step, nullptr, {GLFW_KEY_COMMA}, kNoChord, kScene, "the step before"},
+    {Action::next_time_step, nullptr, {GLFW_KEY_PERIOD}, kNoChord, nullptr, "and after"},
+    {Action::toggle_band_animation, nullptr, {GLFW_KEY_P}, kNoChord, kScene, "the pulses along streamlines stand or run"},
 
-    {Action::toggle_panels, "Panels", {GLFW_KEY_TAB, Held::any}, kNoStroke, kWindow, "panels"},
-    {Action::next_stereo_mode, nullptr, {GLFW_KEY_F2}, kNoStroke, kWindow, "the next stereo mode"},
-    {Action::toggle_fullscreen, "Full screen", {GLFW_KEY_F11, Held::any}, kNoStroke, kWindow, "full screen"},
-    {Action::save_image, "Picture as PNG", {GLFW_KEY_F12, Held::any, Held::no}, kNoStroke, kWindow, "write the picture"},
-    {Action::save_window_image, "Window as PNG", {GLFW_KEY_F12, Held::any, Held::yes}, kNoStroke, nullptr, "the window, as SCENE-001.png"},
+    {Action::toggle_panels, "Panels", {GLFW_KEY_TAB, Held::any}, kNoChord, kWindow, "panels"},
+    {Action::next_stereo_mode, nullptr, {GLFW_KEY_F2}, kNoChord, kWindow, "the next stereo mode"},
+    {Action::toggle_fullscreen, "Full screen", {GLFW_KEY_F11, Held::any}, kNoChord, kWindow, "full screen"},
+    {Action::save_image, "Picture as PNG", {GLFW_KEY_F12, Held::any, Held::no}, kNoChord, kWindow, "write the picture"},
+    {Action::save_window_image, "Window as PNG", {GLFW_KEY_F12, Held::any, Held::yes}, kNoChord, nullptr, "the window, as SCENE-001.png"},
     {Action::toggle_help, "Keys and buttons", {GLFW_KEY_F1}, {kQuestionMark}, kWindow, "these keys"},
-    {Action::dismiss,
-     nullptr,
-     {GLFW_KEY_ESCAPE},
-     kNoStroke,
-     kWindow,
-     "closes or cancels what is open, ends flying, hand mode, full screen"},
-    {Action::quit, "Quit", with_control(GLFW_KEY_Q), kNoStroke, kWindow, "quit"},
+    {Action::dismiss, nullptr, {GLFW_KEY_ESCAPE}, kNoChord, kWindow, "closes or cancels what is open, ends flying, hand mode, full screen"},
+    {Action::quit, "Quit", with_control(GLFW_KEY_Q), kNoChord, kWindow, "quit"},
 };
 
 constexpr bool may_meet(Held a, Held b) { return a == b || a == Held::any || b == Held::any; }
-constexpr bool may_meet(const KeyPress& a, const KeyPress& b) {
+constexpr bool may_meet(const KeyChord& a, const KeyChord& b) {
   return a.key != 0 && a.key == b.key && may_meet(a.control, b.control) && may_meet(a.shift, b.shift);
 }
 /// Returns whether every action has exactly one row and every key press triggers at most one action.
@@ -120,7 +115,7 @@ static_assert(is_sound());
 
 const CommandRow& row_of(Action action) { return *std::ranges::find(kCommandRows, std::optional(action), &CommandRow::action); }
 
-bool is(const KeyPress& stroke, const KeyEvent& event) {
+bool is(const KeyChord& stroke, const KeyEvent& event) {
   const auto fits = [](Held wanted, bool held) { return wanted == Held::any || held == (wanted == Held::yes); };
   if (event.type == KeyEvent::Type::character) return stroke.key == kQuestionMark && event.character == U'?';
   return stroke.key == event.key && stroke.key != kQuestionMark && fits(stroke.control, event.control) && fits(stroke.shift, event.shift);
@@ -132,7 +127,7 @@ bool is_fly_key(int key) {
   return std::ranges::find(kKeys, key) != std::end(kKeys);
 }
 
-std::string stroke_words(const KeyPress& stroke) {
+std::string stroke_words(const KeyChord& stroke) {
   std::string text = stroke.control == Held::yes ? "Ctrl+" : "";
   if (stroke.shift == Held::yes) text += "Shift+";
   if (stroke.key >= GLFW_KEY_F1 && stroke.key <= GLFW_KEY_F12) return text + "F" + std::to_string(stroke.key - GLFW_KEY_F1 + 1);

@@ -23,12 +23,12 @@ Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
   return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
 }
 
-render::Camera to_scene_camera(const render::View& view, const Input& input) {
+render::Camera make_viewport_camera(const render::View& view, const Input& input) {
   return render::make_camera(view, std::max(1.0, input.width), std::max(1.0, input.height), Bounds());
 }
 
 void pan(render::View& view, const Input& input) {
-  const render::Camera camera = to_scene_camera(view, input);
+  const render::Camera camera = make_viewport_camera(view, input);
   const double unit = render::pixel_size(camera, norm(view.position - view.target));
   const Vec3 shift = unit * (input.dy * camera.up - input.dx * camera.right);
   view.position += shift;
@@ -46,7 +46,7 @@ double depth_beneath(const Navigation& controls, const render::Camera& camera, c
 }
 
 void move_hand(Navigation& controls, const Input& input) {
-  const render::Camera camera = to_scene_camera(controls.view, input);
+  const render::Camera camera = make_viewport_camera(controls.view, input);
   auto place = render::project(camera, controls.probe);
   if (!place) place = render::project(camera, controls.view.target);  // the probe was behind the camera: bring it back into the image
   if (!place) return;

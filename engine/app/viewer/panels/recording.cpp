@@ -13,8 +13,8 @@ namespace catena::app {
 
 namespace {
 
-/// The first unused file name next to the scene.
-std::string unused_file_name(const std::string& scene_path) {
+/// Returns the first file name of the form SCENE-N.catlog that is not in use next to the scene.
+std::string propose_recording_name(const std::string& scene_path) {
   const std::filesystem::path scene(scene_path);
   const std::filesystem::path base = scene.parent_path() / scene.stem();
   std::error_code ignored;
@@ -29,7 +29,7 @@ void draw_recording(PanelContext& context) {
   static char name[1024] = "";
   if (!recording.is_recording()) {
     if (name[0] == 0) {
-      const std::string proposed = unused_file_name(context.scene.document().path());
+      const std::string proposed = propose_recording_name(context.scene.document().path());
       std::strncpy(name, proposed.c_str(), sizeof name - 1);
     }
     ImGui::SetNextItemWidth(-1);

@@ -67,7 +67,7 @@ void draw_histogram(const char* name, const char* what, const haptics::Histogram
 }
 
 /// Draws the most recent frame times, the latest at the right; the line is the budget of interactive frames.
-void draw_recent_files(const FrameTimes& times, double budget_ms) {
+void draw_recent_frames(const FrameTimes& times, double budget_ms) {
   const auto& ring = times.recent();
   float most = static_cast<float>(1.5 * budget_ms);
   for (const float ms : ring) most = std::max(most, ms);
@@ -90,7 +90,7 @@ void draw_recent_files(const FrameTimes& times, double budget_ms) {
 
 void draw_times(PanelContext& context) {
   const FrameTimes& times = context.frame_times;
-  draw_recent_files(times, context.scheduler.budget_ms());
+  draw_recent_frames(times, context.scheduler.budget_ms());
   draw_histogram("Pictures", "drawing a picture", times.draw_times());
   draw_histogram("Interface", "laying the interface over it", times.interface_times());
   const haptics::ServoStats servo = context.haptic_session.servo().stats();

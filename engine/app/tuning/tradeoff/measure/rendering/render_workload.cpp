@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSettled = 0.3;  // 1/255: the step is short enough if halving it changes less
 
-render::RenderSettings converged_trace_options(double step) {
+render::RenderSettings converged_settings(double step) {
   render::RenderSettings s = render::converged_level(step);
   s.texel_format = render::TexelFormat::r32f;
   return s;
@@ -28,10 +28,10 @@ render::RenderSettings converged_trace_options(double step) {
 Outcome find_truth(RenderWorkload& eye, double seconds) {
   const std::int64_t start = now_ns();
   double step = eye.has_raycast ? 0.5 : 1;
-  CATENA_TRY(eye.reference, render_image(*eye.renderer, eye.packet, converged_trace_options(step)));
+  CATENA_TRY(eye.reference, render_image(*eye.renderer, eye.packet, converged_settings(step)));
   while (eye.has_raycast) {
     const std::int64_t begin = now_ns();
-    CATENA_TRY(render::Image8 finer, render_image(*eye.renderer, eye.packet, converged_trace_options(step / 2)));
+    CATENA_TRY(render::Image8 finer, render_image(*eye.renderer, eye.packet, converged_settings(step / 2)));
     eye.reference_error = render::measure_error(eye.reference, finer).rmse;
     eye.reference = std::move(finer);
     step /= 2;
@@ -81,7 +81,7 @@ Result<ImageDiscretizationError> estimate_image_discretization_error(render::Ren
       return ImageDiscretizationError{
           kNotMeasured,
           "The data's own error is not known: a grid has fewer than nine voxels along an axis, too many to be copied, or is a label map."};
-    CATENA_TRY(pictures[level], render_image(renderer, coarse, converged_trace_options(0.5 / (1 << level))));
+    CATENA_TRY(pictures[level], render_image(renderer, coarse, converged_settings(0.5 / (1 << level))));
   }
   const double at_2h = render::measure_error(pictures[1], pictures[0]).rmse, at_4h = render::measure_error(pictures[2], pictures[0]).rmse;
   const ExtrapolatedError e = extrapolate_from_differences(at_2h, at_4h);
