@@ -8,8 +8,8 @@ namespace catena {
 
 /// Axis-aligned box. A default-constructed box is empty: lo = infinity, hi = -infinity.
 struct Bounds {
-  /// lowest and highest corner, world units
-  Vec3 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
+  Vec3 lo{std::numeric_limits<double>::infinity()};   ///< lowest corner, world units
+  Vec3 hi{-std::numeric_limits<double>::infinity()};  ///< highest corner, world units
 
   /// Returns true when the box contains no point.
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }

@@ -26,8 +26,8 @@ struct DisplayRange {
   /// Outliers below or above the range.
   struct Outliers {
     std::uint64_t count = 0;  ///< number of outliers; 0: none at this end
-    /// Outlier nearest to the range and outlier farthest from it; equal when all outliers have the same value.
-    double nearest = 0, farthest = 0;
+    double nearest = 0;       ///< outlier nearest to the range
+    double farthest = 0;      ///< outlier farthest from it; equals `nearest` when all outliers have the same value
   };
   double lo = 0, hi = 0;              ///< displayed range
   double data_min = 0, data_max = 0;  ///< minimum and maximum of all finite values, outliers included

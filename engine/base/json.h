@@ -21,8 +21,8 @@ enum class Kind { null, boolean, number, string, array, object };
 struct Node {
   Kind kind = Kind::null;  ///< selects which of the members below are meaningful
   int line = 0;            ///< 1-based line of the value; -1: the value comes from no file, and `file` is its location as text
-  /// Range of bytes in the text, a byte order mark included in the count; the value's key and comments are outside of it.
-  std::size_t begin = 0, end = 0;
+  std::size_t begin = 0;   ///< first byte of the value, counted in the text with its byte order mark; key and comments are outside
+  std::size_t end = 0;     ///< byte after the value
   std::shared_ptr<const std::string> file;            ///< file name as given by the user
   std::string label;                                  ///< key of the value, or "chain[2]" for an item of an array; empty at the top level
   bool boolean = false;                               ///< value of a boolean

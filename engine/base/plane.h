@@ -8,8 +8,8 @@ namespace catena {
 
 /// Plane in world space. `normal` need not have unit length.
 struct Plane {
-  /// A point on the plane and a vector normal to it, world units.
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  Vec3 point{0.0};             ///< point on the plane, world units
+  Vec3 normal{0.0, 0.0, 1.0};  ///< vector normal to the plane
   bool operator==(const Plane&) const = default;
 };
 

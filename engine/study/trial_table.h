@@ -21,16 +21,18 @@ namespace catena::study {
 /// One finished trial, as a row of the table.
 struct TrialRow {
   int subject = 1, index = 0, block = 0;  ///< As in Trial
-  /// Name of the task; "advection" or "tracing"
-  std::string task, kind;
-  int dimensions = 2;          ///< 2 or 3
-  std::string condition;       ///< Name of the condition
-  int stimulus = 0, seed = 0;  ///< As in Trial
-  bool training = false;       ///< Excluded from the analysis
-  bool reached_target = true;  ///< False: ended by the timeout
-  /// As in TrialResult; measured on the cursor, not on a proxy
-  double time_s = 0, error_mm = 0, traveled_mm = 0, peak_force_n = 0;
-  Vec3 end_mm{0.0};  ///< End position, world axes, device millimeters
+  std::string task;                       ///< Name of the task
+  std::string kind;                       ///< "advection" or "tracing"
+  int dimensions = 2;                     ///< 2 or 3
+  std::string condition;                  ///< Name of the condition
+  int stimulus = 0, seed = 0;             ///< As in Trial
+  bool training = false;                  ///< Excluded from the analysis
+  bool reached_target = true;             ///< False: ended by the timeout
+  double time_s = 0;                      ///< As in TrialResult, like the next three; measured on the cursor, not on a proxy
+  double error_mm = 0;                    ///< See time_s
+  double traveled_mm = 0;                 ///< See time_s
+  double peak_force_n = 0;                ///< See time_s
+  Vec3 end_mm{0.0};                       ///< End position, world axes, device millimeters
   bool operator==(const TrialRow&) const = default;
 };
 

@@ -59,11 +59,11 @@ struct DeviceCapabilities {
   double workspace_m = 0.2;      ///< edge of the cube of reachable positions, device axes
   Vec3 workspace_center_m{0.0};  ///< center of that cube
   bool has_orientation = false;  ///< the grip's orientation is measured
-  int button_count = 1;
-  bool has_vibration = false;  ///< vibrates in place of force output: changes of the force become vibration
-  double max_force_n = 0;      ///< 0: no force output (pseudo-haptics only)
-  double max_torque_nm = 0;    ///< 0: no torque output
-  Mechanics mechanics{};       ///< bounds of the stiffness
+  int button_count = 1;          ///< number of buttons
+  bool has_vibration = false;    ///< vibrates in place of force output: changes of the force become vibration
+  double max_force_n = 0;        ///< 0: no force output (pseudo-haptics only)
+  double max_torque_nm = 0;      ///< 0: no torque output
+  Mechanics mechanics{};         ///< bounds of the stiffness
 };
 
 /// A haptic device. Owned by the program; it outlives the servo.

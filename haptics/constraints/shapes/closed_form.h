@@ -116,6 +116,7 @@ class FeatureSurface final : public ContactSurface {
   using Memory = NoMemory;
   /// Made by ClosedFormConstraint in every tick.
   FeatureSurface(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
+  /// Returns true: every shape is valid.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
 
   /// Returns no known side.

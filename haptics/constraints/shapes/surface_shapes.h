@@ -21,6 +21,7 @@ class PlaneSurface final : public ContactSurface {
   using Memory = NoMemory;
   /// Made by ClosedFormConstraint in every tick.
   PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
+  /// Returns true: every shape is valid.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
   /// Returns the signed distance; above is the side that the normal points to.
   SideValue evaluate_side(const Vec3& at) noexcept override { return {height(at), true, false}; }
@@ -71,6 +72,7 @@ class SphereSurface final : public ContactSurface {
   SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
       : center_(shape.center), radius_(shape.radius), prevents_tunneling_(shape.prevents_tunneling), memory_(memory), side_(side) {}
 
+  /// Returns true: every shape is valid.
   static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
   /// Returns the signed distance; above is outside.
   SideValue evaluate_side(const Vec3& at) noexcept override { return {height(at), true, false}; }

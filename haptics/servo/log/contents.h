@@ -75,8 +75,10 @@ struct LogGap {
 
 /// End of a log, written when the recording was finished.
 struct LogEnd {
-  /// Number of ticks in the log, number of ticks lost, number of the last tick in the log, hash of the ticks in the log (StateHash).
-  std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;
+  std::uint64_t ticks = 0;       ///< number of ticks in the log
+  std::uint64_t lost = 0;        ///< number of ticks lost
+  std::uint64_t last_tick = 0;   ///< number of the last tick in the log
+  std::uint64_t state_hash = 0;  ///< hash of the ticks in the log (StateHash)
 };
 
 /// Start of a log that begins while the servo runs: the state of the chain after `tick`. The state has the bytes of the file; check it with
