@@ -157,7 +157,12 @@ Outcome TemporaryFile::commit() {
 Result<bool> TemporaryFile::commit_new() {
   if (::link(name_.c_str(), path_.c_str()) != 0) {
     if (errno == EEXIST) return false;
-    // the file system has no hard links
+    // the file system has no hard links; without RENAME_NOREPLACE either, another program may create the file in between
+    if (::renameat2(AT_FDCWD, name_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) == 0) {
+      name_.clear();
+      return true;
+    }
+    if (errno == EEXIST) return false;
     struct stat about {};
     if (::lstat(path_.c_str(), &about) == 0) return false;
     CATENA_CHECK(commit());

@@ -13,6 +13,12 @@ namespace {
 
 bool is_absent(const Key& key, const json::Node& object) { return !key.is_required && object.find(key.name) == nullptr; }
 
+/// Returns the Error "key KEY is missing; EXPECTED was expected" if a required key is absent.
+Outcome check_present(const Key& key, const json::Node& object, const char* expected) {
+  if (!key.is_required || object.find(key.name) != nullptr) return Done{};
+  return json::error_at(object, "key " + in_quotes(key.name) + " is missing; " + expected + " was expected");
+}
+
 json::NumberRange range_of(const Key& key) {
   if (!key.limits.lo || *key.limits.lo != 0) return json::NumberRange::any;
   return key.limits.lo_open ? json::NumberRange::positive : json::NumberRange::non_negative;
@@ -47,6 +53,7 @@ Outcome read_value(const Key& key, const json::Node& object, double& out) {
 }
 
 Outcome read_value(const Key& key, const json::Node& object, int& out) {
+  CATENA_CHECK(check_present(key, object, "a whole number"));
   CATENA_TRY(out, json::get_integer(object, key.name, out, static_cast<int>(*key.limits.lo), static_cast<int>(*key.limits.hi)));
   return Done{};
 }
@@ -58,6 +65,7 @@ Outcome read_value(const Key& key, const json::Node& object, bool& out) {
     out = index == 1;
     return Done{};
   }
+  CATENA_CHECK(check_present(key, object, "true or false"));
   CATENA_TRY(out, json::get_boolean(object, key.name, out));
   return Done{};
 }
@@ -78,12 +86,14 @@ Outcome read_value(const Key& key, const json::Node& object, Vec3& out) {
 
 Outcome read_value(const Key& key, const json::Node& object, Mat3& out) {
   if (is_absent(key, object)) return Done{};
+  CATENA_CHECK(check_present(key, object, "a rotation"));
   CATENA_TRY(out, json::as_rotation(*object.find(key.name), key.name));
   return Done{};
 }
 
 Outcome read_value(const Key& key, const json::Node& object, std::array<std::string, 3>& out) {
   if (is_absent(key, object)) return Done{};
+  CATENA_CHECK(check_present(key, object, "a list of three names"));
   const json::Node& node = *object.find(key.name);
   if (node.kind != json::Kind::array || node.items.size() != 3)
     return json::error_at(node, in_quotes(key.name) + " is no list of three; three names, of x, y and z, were expected");
@@ -95,6 +105,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::array<std::str
 
 Outcome read_value(const Key& key, const json::Node& object, std::vector<double>& out) {
   if (is_absent(key, object)) return Done{};
+  CATENA_CHECK(check_present(key, object, "a list of numbers"));
   const json::Node& node = *object.find(key.name);
   if (node.kind != json::Kind::array || node.items.empty()) return json::error_at(node, wrong_list(key, "numbers [a, b, ...]"));
   out.clear();
@@ -118,7 +129,9 @@ Outcome read_points(const json::Node& node, std::string_view what, std::vector<V
 }
 
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out) {
-  return is_absent(key, object) ? Outcome(Done{}) : read_points(*object.find(key.name), key.name, out);
+  if (is_absent(key, object)) return Done{};
+  CATENA_CHECK(check_present(key, object, "a list of positions [x, y, z]"));
+  return read_points(*object.find(key.name), key.name, out);
 }
 
 Result<Color> as_color(const Vec3& c, const json::Node& node, std::string_view what) {

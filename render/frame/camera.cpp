@@ -236,7 +236,8 @@ double support(const std::vector<FitPoints>& clouds, const Vec3& along) {
 
 View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height, const Vec3& towards_eye, double fovy_deg,
               const Vec3& up) {
-  if (std::ranges::all_of(clouds, [](const FitPoints& c) { return c.points.empty(); })) return fit_view(Bounds(), aspect, towards_eye);
+  if (std::ranges::all_of(clouds, [](const FitPoints& c) { return c.points.empty(); }))
+    return fit_view(Bounds(), aspect, towards_eye, fovy_deg, up);
   Camera axes;
   set_axes(axes, towards_eye, up);
   const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;

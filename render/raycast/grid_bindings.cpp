@@ -100,7 +100,8 @@ shared::TableData table_data(const TransferLut& lut, std::uint32_t start) {
 
 Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const ResidentGrid> next_mirror, const ColorSource& next) {
   const bool same_grid = resident == next_mirror && map.image;
-  if (same_grid && source.colors == next.colors && source.is_categorical == next.is_categorical && source.linear_below == next.linear_below)
+  if (same_grid && source.colors == next.colors && source.is_categorical == next.is_categorical &&
+      source.spread_labels == next.spread_labels && source.linear_below == next.linear_below)
     return false;
   resident = std::move(next_mirror);
   source = next;

@@ -44,6 +44,7 @@ TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
       {R"("training": 1)", R"("trainings": 1)", "did you mean \"training\""},
       {R"("name": "small")", R"("seed": 4)", "\"name\""},
       {R"("dimensions": 2, "field")", R"("dimensions": 4, "field")", "small.json:4:"},
+      {R"("dimensions": 2, "field")", R"("field")", "key \"dimensions\" is missing"},
       {R"("kind": "tracing")", R"("kind": "racing")", "small.json:4:"},
       {R"("kind": "tracing")", R"("kind": "tracing", "target": "circle")", "path's end was expected"},
       {R"("kind": "tracing")", R"("kind": "advection", "target": "end")", "was expected"},
