@@ -126,6 +126,17 @@ Result<std::string> remove_value(std::string_view text, const std::string& file,
   return checked(with_item_removed(text, *w.parent, w.index), file);
 }
 
+Result<std::string> replace_ranges(std::string_view text, const std::string& file, std::vector<Replacement> edits) {
+  std::ranges::sort(edits, {}, &Replacement::begin);
+  std::string out;
+  std::size_t at = 0;
+  for (const Replacement& edit : edits) {
+    out.append(text.substr(at, edit.begin - at)).append(edit.text);
+    at = edit.end;
+  }
+  return checked(out.append(text.substr(at)), file);
+}
+
 const Node* find_value(const Node& root, std::string_view pointer) {
   const auto w = walk(root, pointer);
   return w && w->arrived() ? w->at : nullptr;

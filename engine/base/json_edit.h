@@ -20,6 +20,16 @@ Result<std::string> insert_item(std::string_view text, const std::string& file, 
 /// Removes a member or an item with its comma. Comments around it stay; comments inside it are removed.
 Result<std::string> remove_value(std::string_view text, const std::string& file, std::string_view pointer);
 
+/// Range of bytes in a text, and the text to put there.
+struct Replacement {
+  std::size_t begin, end;
+  std::string text;
+};
+/// Makes the replacement of the key of member number `index` of `container`, a node that json::parse made from `text`.
+Replacement rename_key(std::string_view text, const Node& container, std::size_t index, std::string_view key);
+/// Replaces ranges that do not overlap, in any order.
+Result<std::string> replace_ranges(std::string_view text, const std::string& file, std::vector<Replacement> edits);
+
 /// Returns the value at the pointer; nullptr when there is none.
 const Node* find_value(const Node& root, std::string_view pointer);
 

@@ -142,6 +142,11 @@ Cut tidy(std::string_view text, Cut cut) {
 
 }  // namespace
 
+Replacement rename_key(std::string_view text, const Node& container, std::size_t index, std::string_view key) {
+  const Item item = items_of(text, container)[index];
+  return {item.begin, item.key_end, serialize_string(key)};
+}
+
 std::string with_item_appended(std::string_view text, const Node& root, const Node& container, const std::string& key,
                                const std::string& value) {
   const std::vector<Item> items = items_of(text, container);

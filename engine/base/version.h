@@ -3,6 +3,6 @@
 
 namespace catena {
 
-inline constexpr const char* kVersion = "0.2.0";  ///< MAJOR.MINOR.PATCH
+inline constexpr const char* kVersion = "0.3.0";  ///< MAJOR.MINOR.PATCH
 
 }  // namespace catena

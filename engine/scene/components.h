@@ -397,6 +397,8 @@ struct TuningTargets {
   std::optional<double> max_tick_us;      ///< Maximum time of a tick, us
   /// Returns whether there is a target for images.
   bool has_image_targets() const { return max_image_error || max_image_ms; }
+  /// Replaces the targets for images.
+  void set_image_targets(const TuningTargets& other) { max_image_error = other.max_image_error, max_image_ms = other.max_image_ms; }
   /// Returns whether there is a target for haptics.
   bool has_haptic_targets() const { return max_proxy_error || max_tick_us; }
   bool operator==(const TuningTargets&) const = default;

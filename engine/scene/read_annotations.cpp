@@ -128,7 +128,7 @@ const Table<Label>& label_table() {
     t.bind(schema::color("color", "Of the text.").with_default("readable"), &Label::color);
     t.bind(points_key("size", "Of the text."), &Label::size_pt);
     t.bind(schema::boolean("dot", "A dot at the place."), &Label::show_dot);
-    t.bind(schema::boolean("hidden_behind", "Left out where an opaque surface stands before it."), &Label::hide_when_occluded);
+    t.bind(schema::boolean("occluded", "Left out where an opaque surface stands before it."), &Label::hide_when_occluded);
     return t;
   }();
   return table;

@@ -54,11 +54,6 @@ Outcome take_scale(const Scene& scene, const json::Node& object, ColorBy& by) {
   return Done{};
 }
 
-bool is_table(const json::Node& color) {
-  return color.kind == json::Kind::string ||
-         (color.kind == json::Kind::array && !color.items.empty() && color.items[0].kind == json::Kind::array);
-}
-
 Outcome read_object(const Scene& scene, const json::Node& node, ColorTarget subjects, ColorBy& by) {
   CATENA_CHECK(json::check_known_keys(node, schema::key_names(*color_by_key(subjects).members)));
   const json::Node *field = node.find("field"), *quantity = node.find("quantity"), *value = node.find("value");
@@ -88,34 +83,6 @@ Outcome read_object(const Scene& scene, const json::Node& node, ColorTarget subj
   return take_scale(scene, node, by);
 }
 
-/// Reads the deprecated form: "color_by" as a name, with the color keys next to it.
-Outcome read_word(Scene& scene, const json::Node& item, ColorTarget subjects, ColorBy& by) {
-  const json::Node& node = *item.find("color_by");
-  const std::string name = node.string;
-  by.field = find_field(scene, name);
-  if (!by.field && subjects == ColorTarget::lines && name == kQuantities[0])
-    by.source = ColorBy::Source::speed;
-  else if (!by.field && subjects == ColorTarget::lines && name == kQuantities[1])
-    by.source = ColorBy::Source::arc_length;
-  else if (!by.field && subjects == ColorTarget::lines) {
-    std::vector<std::string_view> names{kQuantities[0], kQuantities[1]};
-    for (const std::string_view field : list_names<FieldSource>(scene)) names.push_back(field);
-    return json::error_at(node, "unknown \"color_by\" " + in_quotes(name) + "; known: " + join_words(names) + suggestion(name, names));
-  } else if (!by.field) {
-    CATENA_TRY(by.field, read_field_name(scene, item, "color_by"));
-  }
-  if (const json::Node* color = item.find("color"); subjects == ColorTarget::lines && color != nullptr && !is_table(*color))
-    return json::error_at(*color,
-                          "\"color\" beside \"color_by\" is no table; rows [value, r, g, b], or the name of a colour map, were expected");
-  CATENA_CHECK(take_scale(scene, item, by));
-  const char* key = by.source == ColorBy::Source::field ? "field" : "quantity";
-  scene.notes.push_back(
-      json::error_at(node, "\"color_by\" as a word, with \"color\", \"range\" and \"transfer\" beside it, is the old way: {\"" +
-                               std::string(key) + "\": " + in_quotes(name) + ", \"color\": ..., ...} says the same")
-          .message);
-  return Done{};
-}
-
 }  // namespace
 
 Key color_by_key(ColorTarget subjects) {
@@ -135,12 +102,19 @@ Key color_by_key(ColorTarget subjects) {
   return schema::object("color_by", schema::concatenate(keys, color_scale_keys()), "Colours by values.");
 }
 
+Outcome read_plain_color(const json::Node& item, Color& out) {
+  const json::Node* color = item.find("color");
+  const bool of_values =
+      color != nullptr && (color->kind == json::Kind::string ||
+                           (color->kind == json::Kind::array && !color->items.empty() && color->items[0].kind == json::Kind::array));
+  if (of_values) return json::error_at(*color, "\"color\" is a table or a colour map; such colours were expected within \"color_by\"");
+  return schema::read_value(schema::color("color", ""), item, out);
+}
+
 Outcome read_color_by(Scene& scene, const json::Node& item, ColorTarget subjects, std::optional<ColorBy>& out) {
   const json::Node* node = item.find("color_by");
   if (node == nullptr) return Done{};
   out.emplace();
-  if (node->kind == json::Kind::string && (subjects == ColorTarget::surfaces || subjects == ColorTarget::lines))
-    return read_word(scene, item, subjects, *out);
   CATENA_CHECK(json::expect_object(*node, "color_by"));
   return read_object(scene, *node, subjects, *out);
 }

@@ -78,21 +78,7 @@ struct MeshItem {
   std::string name;
   MeshSource source;
   SurfaceMesh surface;
-  bool drawn = true;
 };
-
-/// Reads "color" or "color_by".
-Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
-  SurfaceMesh& surface = mesh.surface;
-  CATENA_CHECK(read_color_by(scene, item, ColorTarget::surfaces, surface.color_by));
-  const json::Node* by = item.find("color_by");
-  if (by != nullptr && by->kind == json::Kind::string) return Done{};
-  for (const char* key : {"range", "transfer"})
-    if (const json::Node* node = item.find(key))
-      return json::error_at(*node,
-                            in_quotes(key) + " is given, but nothing says of what; it was expected within \"color_by\": {\"field\": NAME}");
-  return schema::read_value(schema::color("color", ""), item, surface.color);
-}
 
 const Table<MeshItem>& mesh_table() {
   static const auto table = [] {
@@ -112,10 +98,10 @@ const Table<MeshItem>& mesh_table() {
         [](auto& m) -> auto& { return m.source.placement.scale; });
     t.bind(
         schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
-    t.bind(schema::boolean("drawn", "False: it is only felt."), &MeshItem::drawn);
     t.custom(schema::color("color", "Its colour, without `color_by`.").with_default(schema::write_value(SurfaceMesh{}.color)),
-             read_mesh_color);
-    t.companion(color_by_key(ColorTarget::surfaces));
+             [](Scene&, const json::Node& item, MeshItem& mesh) { return read_plain_color(item, mesh.surface.color); });
+    bind_color_by(
+        t, ColorTarget::surfaces, [](auto& m) -> auto& { return m.surface.color_by; });
     t.bind(
         opacity_key("Of one side."), [](auto& m) -> auto& { return m.surface.opacity; });
     t.bind(
@@ -126,7 +112,6 @@ const Table<MeshItem>& mesh_table() {
     t.bind(
         clip_key(), [](auto& m) -> auto& { return m.surface.clipped; });
     t.companion(visible_key());
-    t.deprecated("range").deprecated("transfer");  // next to "color_by" as a name
     return t;
   }();
   return table;
@@ -144,7 +129,7 @@ const Table<Cursor>& cursor_table() {
              });
     t.bind(schema::number("size", "world", "Radius of its ball; half the length of the rods.").positive().with_default("fitted"),
            &Cursor::size);
-    t.bind(schema::boolean("ghost", "Hand, proxies and force shine through what hides them."), &Cursor::show_occluded);
+    t.bind(schema::boolean("show_occluded", "Hand, proxies and force shine through what hides them."), &Cursor::show_occluded);
     t.bind(schema::choice(
                "shape", {"ball", "crosshair"},
                "`crosshair`: three thin rods cross where the hand is; proxies and force are not shown, so that the picture does not "
@@ -180,7 +165,7 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     scene.entities.emplace<Name>(mesh.surface.mesh, {mesh.name});
     scene.entities.emplace<MeshSource>(mesh.surface.mesh, std::move(mesh.source));
     const Entity e = scene.entities.create();
-    if (mesh.drawn) scene.entities.emplace<SurfaceMesh>(e, std::move(mesh.surface));
+    scene.entities.emplace<SurfaceMesh>(e, std::move(mesh.surface));
     return read_visible(scene, e, item);
   });
 }

@@ -50,7 +50,7 @@ const Table<Axes>& axes_table() {
 const Table<Ground>& ground_table() {
   static const auto table = [] {
     Table<Ground> t;
-    t.bind(schema::number("at", "world", "Its z.").with_default("just below what is drawn"), &Ground::z);
+    t.bind(schema::number("height", "world", "Its z.").with_default("just below what is drawn"), &Ground::z);
     t.bind(schema::number("size", "world", "Edge of the ground.").positive().with_default("fitted"), &Ground::size);
     t.bind(schema::number("tile", "world", "Edge of a tile; at most 1000 tiles each way.").positive().with_default("fitted"),
            &Ground::tile_size);
@@ -72,13 +72,13 @@ const Table<Fog>& fog_table() {
   static const auto table = [] {
     Table<Fog> t;
     t.bind(schema::color("color", "What far things turn to.").with_default("the background's"), &Fog::color);
-    t.bind(schema::number("start", "world", "View depth from which the fog thickens.").non_negative().with_default("the nearest thing"),
+    t.bind(schema::number("near", "world", "View depth from which the fog thickens.").non_negative().with_default("the nearest thing"),
            &Fog::near);
-    t.bind(schema::number("end", "world", "View depth at which it is thickest.").positive().with_default("the farthest thing"), &Fog::far);
-    t.bind(schema::number("most", "", "Share of the fog at its end.").within(0, 1), &Fog::max_opacity);
+    t.bind(schema::number("far", "world", "View depth at which it is thickest.").positive().with_default("the farthest thing"), &Fog::far);
+    t.bind(schema::number("max_opacity", "", "Share of the fog at its end.").within(0, 1), &Fog::max_opacity);
     t.check([](Scene&, const json::Node& node, Fog& fog) -> Outcome {
       if (!fog.near || !fog.far || *fog.near < *fog.far) return Done{};
-      return json::error_at(*node.find("end"), "\"end\" of the fog is not beyond its \"start\"; a greater view depth was expected");
+      return json::error_at(*node.find("far"), "\"far\" of the fog is not beyond its \"near\"; a greater view depth was expected");
     });
     return t;
   }();

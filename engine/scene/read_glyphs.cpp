@@ -14,11 +14,11 @@ constexpr std::string_view kOn[] = {"box", "plane", "slice", "isosurface", "mesh
 const Table<field::Box>& glyph_box_table() {
   static const auto table = [] {
     Table<field::Box> t;
-    t.bind(schema::vec3("lo", "world", "Its lowest corner.").required(), &field::Box::lo);
-    t.bind(schema::vec3("hi", "world", "Its highest corner.").required(), &field::Box::hi);
+    t.bind(schema::vec3("min", "world", "Its lowest corner.").required(), &field::Box::lo);
+    t.bind(schema::vec3("max", "world", "Its highest corner.").required(), &field::Box::hi);
     t.check([](Scene&, const json::Node& node, field::Box& box) -> Outcome {
       if (box.lo.x <= box.hi.x && box.lo.y <= box.hi.y && box.lo.z <= box.hi.z) return Done{};
-      return json::error_at(*node.find("hi"), "\"hi\" lies below \"lo\"; a corner above it was expected");
+      return json::error_at(*node.find("max"), "\"max\" lies below \"min\"; a corner above it was expected");
     });
     return t;
   }();
@@ -116,13 +116,14 @@ const Table<GlyphSet>& glyphs_table() {
            &GlyphSet::spacing);
     t.bind(schema::choice("scale", {"magnitude", "constant"}, "Whether they are as long as the vectors."), &GlyphSet::constant_length);
     t.bind(schema::number("length", "world", "Of the longest.").positive().with_default("the spacing"), &GlyphSet::length);
-    t.bind(
-        schema::number("full_speed", "value", "The speed that is as long as that.").positive().with_default("the greatest that is drawn"),
-        &GlyphSet::reference_speed);
+    t.bind(schema::number("reference_speed", "value", "The speed whose glyph has the length `length`.")
+               .positive()
+               .with_default("the greatest that is drawn"),
+           &GlyphSet::reference_speed);
     t.bind(schema::number("min_speed", "value", "Speeds up to this have none.").non_negative(), &GlyphSet::min_speed);
     t.bind(schema::number("radius", "world", "Of the longest one's shaft.").positive().with_default("0.06 of its length"),
            &GlyphSet::radius);
-    t.bind(schema::choice("at", {"center", "tail", "head"}, "What of it lies at its place."), &GlyphSet::anchor);
+    t.bind(schema::choice("anchor", {"center", "tail", "head"}, "What of it lies at its place."), &GlyphSet::anchor);
     t.bind(schema::line_kind_key(), &GlyphSet::is_line_field);
     t.bind(schema::color("color", "Of all, without `color_by`."), &GlyphSet::color);
     bind_color_by(t, ColorTarget::glyphs, &GlyphSet::color_by);
@@ -130,7 +131,7 @@ const Table<GlyphSet>& glyphs_table() {
     t.companion(visible_key());
     t.check([](Scene&, const json::Node& item, GlyphSet& set) -> Outcome {
       if (!set.is_line_field || set.anchor == GlyphSet::Anchor::center) return Done{};
-      return json::error_at(*item.find("at"), "a line has neither head nor tail; \"center\" was expected beside the kind \"line\"");
+      return json::error_at(*item.find("anchor"), "a line has neither head nor tail; \"center\" was expected beside the kind \"line\"");
     });
     return t;
   }();

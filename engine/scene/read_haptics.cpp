@@ -37,7 +37,7 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
 Keys modes_keys() {
   return {schema::identifier("name", "Shown in `--details`.").required(),
           schema::texts("links", "Links of the chain, in the order of this mode.").required(),
-          schema::object("on", {}, "A switch, as of a link.").required()};
+          schema::object("active_when", {}, "A switch, as of a link.").required()};
 }
 
 /// Reads the modes. Whether their links exist is checked when the haptic program is built, because a link may stand for several.
@@ -54,7 +54,8 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
     const json::Node* links = item.find("links");
     if (links == nullptr || links->kind != json::Kind::array)
       return json::error_at(links ? *links : item, "a mode needs \"links\": an array of link names, in the order of the chain");
-    if (item.find("on") == nullptr) return json::error_at(item, "a mode needs \"on\": {\"button\": n} or {\"force_above\": N}");
+    if (item.find("active_when") == nullptr)
+      return json::error_at(item, "a mode needs \"active_when\": {\"button\": n} or {\"force_above\": N}");
     Mode mode{name, {}, item};
     for (const json::Node& link : links->items) {
       CATENA_TRY(std::string link_name, json::as_string(link, "links"));
@@ -84,6 +85,24 @@ const Table<Coupling>& coupling_table() {
     t.bind(schema::choice("force", {"paper", "conservative"},
                           "Of the chain: the paper's sum of pulls, or by virtual work, which slow closed loops take no energy from."),
            &Coupling::force);
+    t.custom(schema::number("max_proxy_error", "world",
+                            "Greatest distance of a streamline link's proxy from its line; links without settings of their own get the "
+                            "fastest ones that keep it.")
+                 .positive()
+                 .with_default("none"),
+             [](Scene& scene, const json::Node& node, Coupling&) -> Outcome {
+               CATENA_TRY(scene.tuning.max_proxy_error, json::get_optional_number(node, "max_proxy_error", json::NumberRange::positive));
+               return Done{};
+             });
+    t.custom(schema::number("max_tick_us", "us", "Longest time of a tick; the same links get the most exact settings that keep it.")
+                 .positive()
+                 .with_default("none"),
+             [](Scene& scene, const json::Node& node, Coupling&) -> Outcome {
+               CATENA_TRY(scene.tuning.max_tick_us, json::get_optional_number(node, "max_tick_us", json::NumberRange::positive));
+               if (!scene.tuning.max_proxy_error || !scene.tuning.max_tick_us) return Done{};
+               return json::error_at(*node.find("max_tick_us"),
+                                     "\"max_proxy_error\" and \"max_tick_us\" exclude each other; one of them was expected");
+             });
     t.check([](Scene&, const json::Node& node, Coupling& coupling) -> Outcome {
       if (coupling.force == CouplingForce::conservative && coupling.method != CouplingMethod::chain)
         return json::error_at(*node.find("force"), "a \"conservative\" force is made of a chain; \"method\" \"chain\" was expected");

@@ -86,17 +86,17 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
 }  // namespace
 
 Keys crop_keys() {
-  return {schema::vec3("lo", "world", "Its lowest corner.").required(), schema::vec3("hi", "world", "Its highest corner.").required()};
+  return {schema::vec3("min", "world", "Its lowest corner.").required(), schema::vec3("max", "world", "Its highest corner.").required()};
 }
 
 Outcome read_crop(const json::Node& node, std::optional<field::Box>& crop) {
   CATENA_CHECK(json::expect_object(node, "crop"));
   CATENA_CHECK(json::check_known_keys(node, schema::key_names(crop_keys())));
   field::Box& box = crop.emplace();
-  CATENA_TRY(box.lo, json::require_vec3(node, "lo"));
-  CATENA_TRY(box.hi, json::require_vec3(node, "hi"));
+  CATENA_TRY(box.lo, json::require_vec3(node, "min"));
+  CATENA_TRY(box.hi, json::require_vec3(node, "max"));
   if (box.lo.x < box.hi.x && box.lo.y < box.hi.y && box.lo.z < box.hi.z) return Done{};
-  return json::error_at(*node.find("hi"), "\"hi\" is not above \"lo\"; a corner above it along each axis was expected");
+  return json::error_at(*node.find("max"), "\"max\" is not above \"min\"; a corner above it along each axis was expected");
 }
 
 Keys grid_source_keys() {

@@ -71,7 +71,7 @@ std::vector<PatternType> made_patterns() {
   bind_count(isosurface);
 
   even.bind(schema::number("distance", "world", "Of the lines from each other.").positive().required(), &Pattern::distance);
-  even.bind(schema::number("test", "", "Lines end nearer than this share of the distance.").with_limits({0.0, 1.0, true}),
+  even.bind(schema::number("termination_ratio", "", "Lines end nearer than this share of the distance.").with_limits({0.0, 1.0, true}),
             &Pattern::termination_ratio);
   even.custom(
       count_key("The most lines.").with_default(std::to_string(kMaxEvenLines)),

@@ -80,7 +80,7 @@ const Table<Slice>& slice_table() {
              read_contours, [](const Scene& scene, const Slice& slice) {
                return slice.contours ? contours_table().write(scene, *slice.contours) : std::string();
              });
-    t.bind(schema::boolean("lit", "Lit as a surface is."), &Slice::lit);
+    t.bind(schema::boolean("shade", "Lit as a surface is."), &Slice::lit);
     t.bind(clip_key(), &Slice::clipped);
     t.companion(visible_key());
     return t;

@@ -8,23 +8,6 @@
 namespace catena::scene {
 namespace {
 
-/// Reads "color" or "color_by".
-Outcome read_line_color(Scene& scene, const json::Node& item, StreamlineSet& set) {
-  const json::Node *by = item.find("color_by"), *color = item.find("color");
-  const bool of_values =
-      color != nullptr && (color->kind == json::Kind::string ||
-                           (color->kind == json::Kind::array && !color->items.empty() && color->items[0].kind == json::Kind::array));
-  CATENA_CHECK(read_color_by(scene, item, ColorTarget::lines, set.color_by));
-  if (by != nullptr && by->kind == json::Kind::string) return Done{};
-  for (const json::Node* node : {of_values ? color : nullptr, item.find("range"), item.find("transfer")})
-    if (node != nullptr)
-      return json::error_at(*node, in_quotes(node->label) +
-                                       (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
-                                       ", but nothing says of what; it was expected within \"color_by\": {\"field\": NAME} or "
-                                       "{\"quantity\": \"speed\" or \"arc_length\"}");
-  return schema::read_value(schema::color("color", ""), item, set.color);
-}
-
 Outcome read_set_seeds(Scene& scene, const json::Node& item, StreamlineSet& set) {
   const json::Node* seeds = item.find("seeds");
   if (seeds == nullptr)
@@ -40,11 +23,11 @@ const Table<StreamlineSet>& streamlines_table() {
     t.custom(seeds_key(), read_set_seeds, [](const Scene& scene, const StreamlineSet& set) { return write_seeds(scene, set.seeds); });
     t.bind(schema::number("radius", "world", "Of the tubes.").positive().with_default("0.003 diagonals of the domain"),
            &StreamlineSet::radius);
-    t.custom(schema::color("color", "Of all lines, without `color_by`.").with_default(schema::write_value(StreamlineSet{}.color)),
-             read_line_color,
-             [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
-    t.companion(color_by_key(ColorTarget::lines),
-                [](const Scene& scene, const StreamlineSet& set) { return set.color_by ? to_json(scene, *set.color_by) : std::string(); });
+    t.custom(
+        schema::color("color", "Of all lines, without `color_by`.").with_default(schema::write_value(StreamlineSet{}.color)),
+        [](Scene&, const json::Node& item, StreamlineSet& set) { return read_plain_color(item, set.color); },
+        [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
+    bind_color_by(t, ColorTarget::lines, &StreamlineSet::color_by);
     t.bind(schema::line_kind_key(), &StreamlineSet::is_line_field);
     t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").non_negative(), &StreamlineSet::min_speed);
     t.bind(schema::number("length", "world", "Longest arc length in each direction. Without it lines of a formula end at its `box`.")
@@ -57,11 +40,10 @@ const Table<StreamlineSet>& streamlines_table() {
            &StreamlineSet::tolerance);
     t.bind(schema::number("arrows", "world", "An arrowhead every so far along a line.").positive().with_default("none"),
            &StreamlineSet::arrow_spacing);
-    t.bind(schema::number("pulse", "world", "Bands of this length run with the flow.").positive().with_default("none"),
+    t.bind(schema::number("animated_bands", "world", "Bands of this length run with the flow.").positive().with_default("none"),
            &StreamlineSet::band_length);
     t.bind(clip_key(), &StreamlineSet::clipped);
     t.companion(visible_key());
-    t.deprecated("range").deprecated("transfer");  // next to "color_by" as a name
     return t;
   }();
   return table;
@@ -74,7 +56,7 @@ const Table<Indicator>& indicator_table() {
     t.bind(schema::number("length", "world", "Of the piece.").positive().with_default("0.1 L"), &Indicator::length);
     t.bind(schema::number("radius", "world", "Of its tube.").positive().with_default("0.004 diagonals of the domain"), &Indicator::radius);
     t.bind(schema::color("color", "Its colour."), &Indicator::color);
-    t.bind(schema::boolean("ahead", "It begins at the cursor and goes with the flow; false: the cursor is its middle."),
+    t.bind(schema::choice("anchor", {"center", "tail"}, "Where the cursor is: in its middle, or at its upstream end."),
            &Indicator::starts_at_cursor);
     return t;
   }();

@@ -75,13 +75,16 @@ Outcome read_background(Scene& scene, const json::Node& node) {
 Outcome read_quality(Scene& scene, const json::Node& node) {
   const std::string& word = node.string;
   bool good = node.kind == json::Kind::string && (word == "draft" || word == "balanced" || word == "reference");
-  for (std::string_view prefix : {"time=", "error="})
+  for (std::string_view prefix : {"time=", "error=", "step="})
     if (node.kind == json::Kind::string && word.starts_with(prefix)) {
       const auto value = parse_double(std::string_view(word).substr(prefix.size()));
-      good = value && std::isfinite(*value) && *value > 0;
+      good = value && std::isfinite(*value) && *value > 0 && (prefix != "step=" || (*value >= 0.01 && *value <= 100));
     }
-  if (!good) return json::error_at(node, "\"quality\" is not known; one of draft, balanced, reference, time=MS, error=E was expected");
+  if (!good)
+    return json::error_at(
+        node, "\"quality\" is not known; draft, balanced, reference, time=MS, error=E or step=VOXELS (0.01 to 100) was expected");
   scene.quality = word;
+  scene.tuning.set_image_targets(image_targets(word));
   return Done{};
 }
 
@@ -94,6 +97,13 @@ Outcome read_jitter(Scene& scene, const json::Node& node) {
 using schema::Section;
 
 }  // namespace
+
+TuningTargets image_targets(std::string_view quality) {
+  TuningTargets targets;
+  if (quality.starts_with("error=")) targets.max_image_error = parse_double(quality.substr(6));
+  if (quality.starts_with("time=")) targets.max_image_ms = parse_double(quality.substr(5));
+  return targets;
+}
 
 Part camera_part() {
   return {{"camera", "The eye. Without it the picture is fitted to what is drawn.", Section::Layout::object, camera_table().keys()},
@@ -108,9 +118,10 @@ Part background_part() {
 }
 
 Part quality_part() {
-  const Key key = schema::text("quality", "`draft`, `balanced`, `reference`, `time=MS` or `error=E`, as of `render --quality`.")
-                      .with_default("\"balanced\"");
-  return {{"quality", "How good the picture is to be, and how fast.", Section::Layout::value, {key}}, read_quality};
+  const Key key =
+      schema::text("quality", "`draft`, `balanced`, `reference`, `time=MS`, `error=E` or `step=VOXELS`, as in `render --quality`.")
+          .with_default("\"balanced\"");
+  return {{"quality", "Accuracy or time of an image.", Section::Layout::value, {key}}, read_quality};
 }
 
 Part jitter_part() {
@@ -141,12 +152,12 @@ struct Box {
 const Table<Box>& box_table() {
   static const auto table = [] {
     Table<Box> t;
-    t.bind(schema::vec3("lo", "world", "Its lowest corner.").required(), &Box::lo);
-    t.bind(schema::vec3("hi", "world", "Its highest corner.").required(), &Box::hi);
+    t.bind(schema::vec3("min", "world", "Its lowest corner.").required(), &Box::lo);
+    t.bind(schema::vec3("max", "world", "Its highest corner.").required(), &Box::hi);
     t.check([](Scene&, const json::Node& node, Box& box) -> Outcome {
       for (int i = 0; i < 3; ++i)
         if (!(box.lo[i] < box.hi[i]))
-          return json::error_at(*node.find("hi"), "\"hi\" is not above \"lo\" on every axis; a box was expected");
+          return json::error_at(*node.find("max"), "\"max\" is not above \"min\" on every axis; a box was expected");
       return Done{};
     });
     return t;

@@ -90,10 +90,10 @@ Table<Widget> cutting_plane_table() {
       t, size_key("release", "And lets it go at this distance, longer than `snap`.", "0.05 L"),
       [](auto& widget) -> auto& { return widget.spec.release; });
   t.bind(
-      schema::choice("turning", {"any", "free", "axis"}, "How the sphere turns; `axis`: about the nearest axis only."),
+      schema::choice("rotation", {"any", "free", "axis"}, "How the sphere turns; `axis`: about the nearest axis only."),
       [](auto& widget) -> auto& { return widget.spec.rotation; });
   t.bind(
-      schema::boolean("touch", "The sphere turns without the button."),
+      schema::boolean("rotate_on_contact", "The sphere turns without the button."),
       [](auto& widget) -> auto& { return widget.spec.rotate_on_contact; });
   t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
     const widget::Spec& spec = widget.spec;
@@ -128,12 +128,12 @@ Table<Widget> isolevel_table() {
 
 Table<Widget> box_widget_table() {
   Table<Widget> t;
-  t.bind(schema::vec3("lo", "world", "Its lowest corner.").required(), kPoint<0>);
-  t.bind(schema::vec3("hi", "world", "Its highest corner, above `lo` on every axis.").required(), kPoint<1>);
+  t.bind(schema::vec3("min", "world", "Its lowest corner.").required(), kPoint<0>);
+  t.bind(schema::vec3("max", "world", "Its highest corner, above `min` on every axis.").required(), kPoint<1>);
   t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
     const auto& [lo, hi] = widget.spec.pose.points;
     for (int i = 0; i < 3; ++i)
-      if (!(lo[i] < hi[i])) return json::error_at(*item.find("hi"), "\"hi\" is not above \"lo\" on every axis; a box was expected");
+      if (!(lo[i] < hi[i])) return json::error_at(*item.find("max"), "\"max\" is not above \"min\" on every axis; a box was expected");
     return Done{};
   });
   return t;
@@ -207,7 +207,7 @@ const Table<Widget>& common_table() {
         t, size_key("radius", "Of a handle's ball, or of a cutting plane's sphere.", "0.012 L; a sphere 0.12 L"),
         [](auto& widget) -> auto& { return widget.spec.radius; });
     bind_size(
-        t, size_key("near", "A handle, or the sphere, is taken hold of within this distance.", "0.03 L; a sphere 0.02 L"),
+        t, size_key("grab_distance", "A handle, or the sphere, is taken hold of within this distance.", "0.03 L; a sphere 0.02 L"),
         [](auto& widget) -> auto& { return widget.spec.grab_distance; });
     bind_size(
         t, size_key("step", "A drag leaves an axis when the hand is this far from it.", "0.02 L"),

@@ -51,7 +51,6 @@ Part screens_part();
 Part background_part();
 Part quality_part();
 Part jitter_part();
-Part tuning_part();
 Part cursor_part();
 Part unit_length_part();
 Part bounding_box_part();
@@ -161,8 +160,10 @@ enum class ColorTarget { rays, surfaces, lines, glyphs, curves, points };
 
 /// Returns the key "color_by" for that kind of object.
 Key color_by_key(ColorTarget subjects);
-/// Reads "color_by"; `out` is empty if the item has none. A word with the color keys beside it, an older form, is accepted with a note.
+/// Reads "color_by"; `out` is empty if the item has none.
 Outcome read_color_by(Scene& scene, const json::Node& item, ColorTarget subjects, std::optional<ColorBy>& out);
+/// Reads "color" of an item that may have "color_by": one color. Error: a table or a color map, which belong into "color_by".
+Outcome read_plain_color(const json::Node& item, Color& out);
 /// Binds "color_by" to a member of T of type std::optional<ColorBy>.
 template <class T, class Access>
 void bind_color_by(Table<T>& table, ColorTarget subjects, Access access) {

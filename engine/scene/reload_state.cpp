@@ -152,7 +152,7 @@ void carry_made(Scene& old, Scene& fresh) {
 // ---- widgets ----
 
 bool same_place(const json::Node& a, const json::Node& b) {
-  for (const char* key : {"type", "center", "normal", "orientation", "position", "from", "to", "lo", "hi", "field"}) {
+  for (const char* key : {"type", "center", "normal", "orientation", "position", "from", "to", "min", "max", "field"}) {
     const json::Node *x = a.find(key), *y = b.find(key);
     if ((x == nullptr) != (y == nullptr) || (x != nullptr && !json::is_equal_value(*x, *y))) return false;
   }

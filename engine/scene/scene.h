@@ -25,7 +25,7 @@ inline constexpr double kMaxSize = 1e30;
 struct Scene {
   std::string path;                           ///< Path it was read from, as it was given
   std::vector<std::string> referenced_files;  ///< All files that the text and the overrides name, as the scene opens them
-  /// Messages: "FILE:LINE: ..." about deprecated keys, problems of the loaded data, and for a data file the classification of its data.
+  /// Messages: "FILE:LINE: ..." about problems of the loaded data, and for a data file the classification of its data.
   std::vector<std::string> notes;
   EntityStore entities;  ///< Fields, visible objects, links, widgets
   /// Derived data, with the same entities as `entities`: traced lines, sorted values, ruler results, polylines for rendering. Can be
@@ -46,10 +46,10 @@ struct Scene {
   std::optional<Ground> ground;             ///< Empty: not rendered
   std::optional<Fog> fog;                   ///< Empty: no fog
   std::vector<Light> lights;                ///< Empty: a headlight
-  std::string quality;                      ///< Image quality: draft, balanced, reference, time=MS or error=E; empty: not specified
-  TuningTargets tuning;                     ///< Without any target: no tuning
-  Entity cursor;                            ///< Entity that has the Cursor component
-  double animation_phase = 0;               ///< Phase of the animated bands of streamlines; only the fractional part is used
+  std::string quality;         ///< Image quality: draft, balanced, reference, time=MS, error=E or step=VOXELS; empty: not specified
+  TuningTargets tuning;        ///< Targets stated by `quality` and "coupling"
+  Entity cursor;               ///< Entity that has the Cursor component
+  double animation_phase = 0;  ///< Phase of the animated bands of streamlines; only the fractional part is used
 
   /// Key of a traced curve: field version, flow and seed. Tubes and links share the curves. Curves without another owner are dropped as
   /// seeds move (drop_unused_curves, streamlines.h), which bounds the memory.
@@ -70,8 +70,8 @@ struct FieldOverride {
   field::AnyField in_memory_field{};
 };
 
-/// Parses tuning targets of the command line, such as "error=2,hand_time=5". The Error message starts with the option and `words`.
-Result<TuningTargets> parse_tuning_targets(std::string_view words);
+/// Returns the targets of an image quality "error=E" or "time=MS"; none for the other qualities, which are fixed settings.
+TuningTargets image_targets(std::string_view quality);
 
 /// Reads and checks a whole scene file. Fields are not loaded, but every file that the scene names must exist. Error: file, line and what
 /// was expected.

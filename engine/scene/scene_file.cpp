@@ -6,6 +6,7 @@
 #include "engine/scene/referenced_files.h"
 #include "engine/scene/scene_from_object.h"
 #include "engine/scene/units.h"
+#include "engine/schema/renames.h"
 
 namespace catena::scene {
 namespace {
@@ -31,7 +32,7 @@ const std::vector<Part>& parts() {
                                      bounding_box_part(), axes_part(),
                                      ground_part(),       fog_part(),
                                      lights_part(),       unit_length_part(),
-                                     tuning_part(),       screens_part()};
+                                     screens_part()};
   return all;
 }
 
@@ -89,6 +90,7 @@ void place_by_pointer(json::Node& node, const std::string& name, const std::stri
 }
 
 Result<Scene> scene_of_root(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
+  CATENA_CHECK(schema::check_names(root, schema::FileKind::scene));
   CATENA_CHECK(check_sizes(root));
   Scene scene;
   scene.path = path;

@@ -56,7 +56,7 @@ const Table<Stereo>& stereo_table() {
                .with_default("the target's"),
            &Stereo::zero_parallax);
     t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMaxStereoViews), &Stereo::view_count);
-    t.bind(schema::boolean("swap", "The right eye's picture in the place of the left eye's."), &Stereo::swap_eyes);
+    t.bind(schema::boolean("swap_eyes", "The right eye's picture in the place of the left eye's."), &Stereo::swap_eyes);
     t.check([](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
       if (stereo.view_count == 2 || !needs_two_views(stereo.mode)) return Done{};
       return json::error_at(*node.find("views"), "\"views\" is " + std::to_string(stereo.view_count) + " with mode \"" +

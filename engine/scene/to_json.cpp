@@ -54,7 +54,7 @@ Members pose_members(widget::Kind kind, const widget::Pose& pose) {
     case widget::Kind::ruler:
       return {{"from", first}, {"to", second}};
     case widget::Kind::box:
-      return {{"lo", first}, {"hi", second}};
+      return {{"min", first}, {"max", second}};
   }
   CATENA_ASSERT(false);
   return {};

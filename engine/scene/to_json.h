@@ -29,7 +29,6 @@ std::string to_json(const std::vector<TransferFunction::OpacityPoint>& table);  
 std::string to_json(const std::vector<TransferFunction::ExtinctionPoint>& table);  ///< "extinction": [[value, sigma], ...]
 std::string to_json(const std::vector<TransferFunction::GradientPoint>& table);    ///< "gradient_opacity": [[gradient, factor], ...]
 std::string to_json(const Camera& camera);
-std::string to_json(const TuningTargets& plan);
 std::string to_json(const ClipPlane& plane);  ///< Item of "clip": {"plane": {"point", "normal"}}
 std::string to_json(const Background& background);
 std::string to_json(const Light& light);

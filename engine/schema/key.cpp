@@ -99,11 +99,11 @@ Key core_criterion_key() {
 }
 
 Key core_length_key() {
-  return number("least_length", "world", "Shorter core lines are left out.").positive().with_default("6 voxels; of a formula 0.02 L");
+  return number("min_length", "world", "Shorter core lines are left out.").positive().with_default("6 voxels; of a formula 0.02 L");
 }
 
 Key core_swirl_key() {
-  return number("least_swirl", "", "So are weaker ones: the mean swirl of a line, by that of the strongest.")
+  return number("min_swirl", "", "So are weaker ones: the mean swirl of a line, by that of the strongest.")
       .within(0, 1)
       .with_default("0.05");
 }

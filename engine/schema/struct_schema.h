@@ -67,11 +67,6 @@ class StructSchema {
     }
     return *this;
   }
-  /// Adds a deprecated key: it is accepted when reading, but not documented or written.
-  StructSchema& deprecated(const std::string& key) {
-    deprecated_.push_back(key);
-    return *this;
-  }
   /// Adds a check that runs after all keys have been read.
   StructSchema& check(Read check) {
     checks_.push_back(std::move(check));
@@ -83,10 +78,7 @@ class StructSchema {
 
   /// Reads all keys of the object. Error: a key is unknown, or a value is missing, of the wrong type or out of range.
   Outcome read(C& context, const json::Node& object, T& out) const {
-    std::vector<std::string_view> names = key_names(keys_);
-    for (const std::string& key : deprecated_)
-      if (object.find(key) != nullptr) names.push_back(key);
-    CATENA_CHECK(json::check_known_keys(object, names));
+    CATENA_CHECK(json::check_known_keys(object, key_names(keys_)));
     return read_own_keys(context, object, out);
   }
   /// Like read(), for an object that also has keys of another schema: unknown keys are not reported.
@@ -136,7 +128,6 @@ class StructSchema {
   Keys keys_;
   std::vector<Row> rows_;
   std::vector<Read> checks_;
-  std::vector<std::string> deprecated_;
 };
 
 }  // namespace catena::schema

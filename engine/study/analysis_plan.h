@@ -5,10 +5,10 @@
 ///   intervals    whether the confidence interval of every listed condition's mean is apart from the baseline's or overlaps it
 ///   tasks        the first of two tasks against the second, paired over subjects, in every listed condition; the pair must be in "compare"
 ///   correlation  correlation of error and time over subjects, in every listed task and condition
-///   weaker       that correlation is closer to 0 in every listed condition than in the baseline
+///   weaker_correlation  that correlation is closer to 0 in every listed condition than in the baseline
 ///   largest      the gain over the baseline, in one task against every other task
 ///   rejections   the fraction of rejected trials, compared with `rejected` of `trials`
-///   none         these data cannot test the claim; `why` gives the reason
+///   untestable   these data cannot test the claim; `reason` states why
 #pragma once
 #include <array>
 
@@ -19,7 +19,7 @@ namespace catena::study {
 /// Measured quantity of a trial.
 enum class Measure { error, time };
 /// Kind of test; the list above describes each.
-enum class TestKind { difference, intervals, tasks, correlation, weaker, largest, rejections, none };
+enum class TestKind { difference, intervals, tasks, correlation, weaker_correlation, largest, rejections, untestable };
 /// Alternative hypothesis of a test. from_test: the test's default, or none where the test has no choice.
 enum class Alternative { from_test, lower, higher, apart, overlap, negative, positive };
 /// The key of the study file: "difference", "intervals", ...
@@ -31,7 +31,7 @@ const char* to_string(Alternative expect);
 struct Finding {
   std::string claim;     ///< The claim, a sentence
   std::string reported;  ///< The claim's numbers as the paper prints them
-  TestKind test = TestKind::none;
+  TestKind test = TestKind::untestable;
   Measure measure = Measure::error;
   bool uses_deviations = false;  ///< `difference`: compares the subjects' standard deviations over their trials instead of their means
   std::vector<int> tasks;        ///< Indices of tasks
@@ -39,7 +39,7 @@ struct Finding {
   std::vector<int> conditions;
   Alternative alternative = Alternative::from_test;  ///< After reading, from_test only where the test has no choice
   int rejected = 0, trials = 0;                      ///< `rejections`: counts that the paper reports
-  std::string why;                                   ///< `none`: why these data cannot test the claim
+  std::string reason;                                ///< `untestable`: why these data cannot test the claim
   /// Source location in the study file, for messages.
   json::Node where;
 };

@@ -8,24 +8,26 @@
 namespace catena::study {
 namespace {
 
-const std::vector<std::string> kAsks{"difference", "intervals", "tasks", "correlation", "weaker", "largest", "rejections", "none"};
+const std::vector<std::string> kAsks{"difference",         "intervals", "tasks",      "correlation",
+                                     "weaker_correlation", "largest",   "rejections", "untestable"};
 const std::vector<std::string> kExpects{"by_test", "lower", "higher", "apart", "overlap", "negative", "positive"};
 
-/// Keys that a test accepts beside "paper", "reported" and "test", and the alternatives for "expect"; the first one is the default.
+/// Keys that a test accepts beside "claim", "reported" and "test", and the alternatives for "alternative"; the first one is the default.
 struct TestForm {
   std::vector<std::string_view> keys;
   std::vector<Alternative> expects;
 };
 
 const TestForm& form_of(TestKind asks) {
-  static const std::vector<TestForm> forms{{{"measure", "of", "tasks", "conditions", "expect"}, {Alternative::lower, Alternative::higher}},
-                                           {{"measure", "tasks", "conditions", "expect"}, {Alternative::apart, Alternative::overlap}},
-                                           {{"measure", "tasks", "conditions", "expect"}, {Alternative::lower, Alternative::higher}},
-                                           {{"tasks", "conditions", "expect"}, {Alternative::negative, Alternative::positive}},
-                                           {{"tasks", "conditions"}, {}},
-                                           {{"measure", "tasks", "conditions"}, {}},
-                                           {{"rejected", "trials"}, {}},
-                                           {{"why"}, {}}};
+  static const std::vector<TestForm> forms{
+      {{"measure", "of", "tasks", "conditions", "alternative"}, {Alternative::lower, Alternative::higher}},
+      {{"measure", "tasks", "conditions", "alternative"}, {Alternative::apart, Alternative::overlap}},
+      {{"measure", "tasks", "conditions", "alternative"}, {Alternative::lower, Alternative::higher}},
+      {{"tasks", "conditions", "alternative"}, {Alternative::negative, Alternative::positive}},
+      {{"tasks", "conditions"}, {}},
+      {{"measure", "tasks", "conditions"}, {}},
+      {{"rejected", "trials"}, {}},
+      {{"reason"}, {}}};
   return forms[static_cast<std::size_t>(asks)];
 }
 
@@ -65,7 +67,7 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
   using T = Finding;
   static const auto table =
       schema::StructSchema<T, const Study>()
-          .bind(schema::text("paper", "The sentence.").required(), &T::claim)
+          .bind(schema::text("claim", "The sentence.").required(), &T::claim)
           .bind(schema::text("reported", "Its numbers, as the paper prints them.").with_default("none"), &T::reported)
           .bind(schema::choice("test", kAsks, "What would bear it out; the kinds are described in study.md.").required(), &T::test)
           .bind(schema::choice("measure", {"error", "time"}, "What is compared."), &T::measure)
@@ -82,14 +84,14 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
                     CATENA_TRY(finding.conditions, read_names(object, "conditions", names_in(study.conditions)));
                     return Done{};
                   })
-          .bind(schema::choice("expect", kExpects,
+          .bind(schema::choice("alternative", kExpects,
                                "`lower` or `higher` than the baseline, or than the second task; intervals `apart` or that `overlap`; a "
                                "`negative` or `positive` correlation.")
                     .with_default("the first of these that the test knows"),
                 &T::alternative)
           .bind(schema::integer("rejected", "", "Trials that the paper left out.", 0, 1'000'000'000), &T::rejected)
           .bind(schema::integer("trials", "", "Of so many.", 0, 1'000'000'000), &T::trials)
-          .bind(schema::text("why", "Why these data cannot say.").with_default("none"), &T::why);
+          .bind(schema::text("reason", "Why these data cannot say.").with_default("none"), &T::reason);
   return table;
 }
 
@@ -97,7 +99,7 @@ const schema::StructSchema<Finding, const Study>& finding_table() {
 Outcome check_finding(const Study& study, const std::vector<std::array<int, 2>>& pairs, Finding& f) {
   const TestForm& form = form_of(f.test);
   for (const auto& [key, node] : f.where.members) {
-    const bool common = key == "paper" || key == "reported" || key == "test";
+    const bool common = key == "claim" || key == "reported" || key == "test";
     if (!common && std::count(form.keys.begin(), form.keys.end(), key) == 0)
       return json::error_at(node, in_quotes(key) + " means nothing to the test \"" + to_string(f.test) + "\"; " +
                                       (form.keys.empty() ? "nothing" : join_alternatives(form.keys)) + " was expected");
@@ -106,8 +108,8 @@ Outcome check_finding(const Study& study, const std::vector<std::array<int, 2>>&
   if (f.alternative != Alternative::from_test && std::count(form.expects.begin(), form.expects.end(), f.alternative) == 0) {
     std::vector<std::string_view> words;
     for (const Alternative e : form.expects) words.push_back(to_string(e));
-    return json::error_at(*f.where.find("expect"),
-                          "\"expect\" is \"" + std::string(to_string(f.alternative)) + "\"; " + join_alternatives(words) + " was expected");
+    return json::error_at(*f.where.find("alternative"), "\"alternative\" is \"" + std::string(to_string(f.alternative)) + "\"; " +
+                                                            join_alternatives(words) + " was expected");
   }
   const json::Node& tasks = json::member_or_parent(f.where, "tasks");
   if (f.test == TestKind::tasks && (f.tasks.size() != 2 || std::count(pairs.begin(), pairs.end(), std::array{f.tasks[0], f.tasks[1]}) == 0))
@@ -116,7 +118,8 @@ Outcome check_finding(const Study& study, const std::vector<std::array<int, 2>>&
     return json::error_at(tasks, "\"tasks\" is not one of several tasks; the one with the largest gain was expected");
   if (f.test == TestKind::rejections && !(f.trials > 0 && f.rejected <= f.trials))
     return json::error_at(f.where, "\"rejected\" of \"trials\" is no share; at least one trial, and at most all rejected, was expected");
-  if (f.test == TestKind::none && f.why.empty()) return json::error_at(f.where, "key \"why\" is missing; the reason was expected");
+  if (f.test == TestKind::untestable && f.reason.empty())
+    return json::error_at(f.where, "key \"reason\" is missing; the reason was expected");
   if (f.test != TestKind::tasks && f.test != TestKind::correlation) {
     if (f.where.find("conditions") != nullptr && std::count(f.conditions.begin(), f.conditions.end(), 0) > 0)
       return json::error_at(*f.where.find("conditions"),

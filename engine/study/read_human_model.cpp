@@ -25,8 +25,8 @@ const StudyTable<HumanModelParameters>& human_model_table() {
           .bind(number("seeing_noise_s", "s", "Correlation time of the noises of seeing.").with_limits({0.0, 100, true}),
                 &T::seeing_noise_s)
           .bind(number("tremor_mm", "mm", "Root mean square of the tremor, each axis.").within(0, 100), &T::tremor_mm)
-          .bind(number("tremor_lo_hz", "Hz", "Its lowest frequency.").with_limits({0.0, 500, true}), &T::tremor_lo_hz)
-          .bind(number("tremor_hi_hz", "Hz", "Its highest frequency.").with_limits({0.0, 500, true}), &T::tremor_hi_hz)
+          .bind(number("tremor_min_hz", "Hz", "Its lowest frequency.").with_limits({0.0, 500, true}), &T::tremor_lo_hz)
+          .bind(number("tremor_max_hz", "Hz", "Its highest frequency.").with_limits({0.0, 500, true}), &T::tremor_hi_hz)
           .bind(number("delay_s", "s", "From what is seen to what the hand does.").within(0, 1), &T::delay_s)
           .bind(number("correction_per_s", "1/s", "How fast a deviation that is seen is taken back.").within(0, 100), &T::correction_per_s)
           .bind(number("stiffness_n_per_mm", "N/mm", "Of the hand about where it wants to be.").with_limits({0.0, 100, true}),
@@ -35,8 +35,8 @@ const StudyTable<HumanModelParameters>& human_model_table() {
           .bind(number("yield_n", "N", "The hand gives way to a greater force.").with_limits({0.0, 1000, true}), &T::yield_n)
           .check([](const NoContext&, const json::Node& node, T& model) -> Outcome {
             if (model.tremor_lo_hz <= model.tremor_hi_hz) return Done{};
-            return json::error_at(json::member_or_parent(node, "tremor_lo_hz"),
-                                  "\"tremor_lo_hz\" is above \"tremor_hi_hz\"; at most that was expected");
+            return json::error_at(json::member_or_parent(node, "tremor_min_hz"),
+                                  "\"tremor_min_hz\" is above \"tremor_max_hz\"; at most that was expected");
           });
   return table;
 }

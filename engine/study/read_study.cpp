@@ -5,6 +5,7 @@
 #include <set>
 
 #include "engine/base/text.h"
+#include "engine/schema/renames.h"
 #include "engine/schema/struct_schema.h"
 #include "engine/study/analysis_plan.h"
 #include "engine/study/study.h"
@@ -135,6 +136,7 @@ Result<Study> parse_study(std::string_view text, const std::string& path) {
   CATENA_TRY(study.document, json::parse(text, path));
   const json::Node& root = study.document;
   CATENA_CHECK(json::expect_object(root, "the study"));
+  CATENA_CHECK(schema::check_names(root, schema::FileKind::study));
   std::vector<std::string_view> keys = schema::key_names(study_table().keys());
   for (const char* key : {"$schema", "tasks", "conditions", "operator", "questionnaire", "compare", "findings"}) keys.push_back(key);
   CATENA_CHECK(json::check_known_keys(root, keys));

@@ -14,8 +14,9 @@ const StudyTable<StimulusRules>& stimulus_table() {
       StudyTable<T>()
           .bind(number("path_mm", "mm", "Length of every correct path.").with_limits({0.0, 1e4, true}), &T::path_mm)
           .bind(number("clearance_mm", "mm", "The start is at least so far from every global streamline.").within(0, 1e4), &T::clearance_mm)
-          .bind(integer("lines", "", "Global streamlines.", 0, 200), &T::context_streamlines)
-          .bind(number("line_mm", "mm", "The longest that one is, each way.").with_limits({0.0, 1e5, true}), &T::context_length_mm)
+          .bind(integer("context_streamlines", "", "Global streamlines.", 0, 200), &T::context_streamlines)
+          .bind(number("context_length_mm", "mm", "The longest that one is, each way.").with_limits({0.0, 1e5, true}),
+                &T::context_length_mm)
           .bind(number("parallel", "",
                        "3D: at least this share of the path's length is seen along the picture plane (across the camera's axis).")
                     .within(0, 1),
@@ -24,7 +25,8 @@ const StudyTable<StimulusRules>& stimulus_table() {
                 &T::crossing_deg)
           .bind(number("turn_deg", "degrees", "The path turns at least this much from its start to its middle or its end.").within(0, 180),
                 &T::turn_deg)
-          .bind(number("bend_mm", "mm", "The path's radius of curvature is nowhere smaller.").within(0, 1e4), &T::min_curvature_radius_mm)
+          .bind(number("min_curvature_radius_mm", "mm", "The path's radius of curvature is nowhere smaller.").within(0, 1e4),
+                &T::min_curvature_radius_mm)
           .bind(integer("candidates", "", "Starts that are tried in a field, before another field is.", 1, 10000), &T::candidates)
           .bind(number("region", "", "Share of the field's box, about its middle, in which starts lie.").with_limits({0.0, 1.0, true}),
                 &T::region);
@@ -35,9 +37,9 @@ const StudyTable<Limits>& limits_table() {
   using T = Limits;
   static const auto table =
       StudyTable<T>()
-          .bind(number("told_s", "s", "What the subject is told; it is not enforced.").with_limits({0.0, 3600, true}),
+          .bind(number("announced_limit_s", "s", "What the subject is told; it is not enforced.").with_limits({0.0, 3600, true}),
                 &T::announced_limit_s)
-          .bind(number("ends_s", "s", "Here a trial ends.").with_limits({0.0, 3600, true}), &T::timeout_s)
+          .bind(number("timeout_s", "s", "Here a trial ends.").with_limits({0.0, 3600, true}), &T::timeout_s)
           .bind(number("reject_error_mm", "mm", "A trial with a larger error is left out of the analysis.").with_limits({0.0, 1e6, true}),
                 &T::reject_error_mm)
           .bind(number("reject_time_s", "s", "So is one that took longer.").with_limits({0.0, 3600, true}), &T::reject_time_s);
@@ -93,7 +95,7 @@ Outcome check_task(const NoContext&, const json::Node& node, Task& task) {
                                                     ? "\"target\" of a tracing task is not \"end\"; the path's end was expected"
                                                     : "\"target\" of an advection task is \"end\"; \"circle\" or \"plane\" was expected");
   if (!(task.start_radius_mm < task.rules.path_mm && task.target_radius_mm < task.rules.path_mm))
-    return json::error_at(node, "\"start_mm\" or \"reach_mm\" is not below the path's length; less was expected");
+    return json::error_at(node, "\"start_radius_mm\" or \"target_radius_mm\" is not below the path's length; less was expected");
   return read_scene_template(task);
 }
 
@@ -117,10 +119,10 @@ const StudyTable<Task>& task_table() {
     t.bind(schema::text("field", "The field of the scene that the path follows.").required(), &T::field);
     bind_object(t, "stimulus", stimulus_table(), &T::rules, "How start and path are chosen.");
     bind_object(t, "limits", limits_table(), &T::limits, "Times and errors.");
-    t.bind(number("start_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.")
+    t.bind(number("start_radius_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.")
                .with_limits({0.0, 1e4, true}),
            &T::start_radius_mm);
-    t.bind(number("reach_mm", "mm", "Tracing: so near, the end is reached.").with_limits({0.0, 1e4, true}), &T::target_radius_mm);
+    t.bind(number("target_radius_mm", "mm", "Tracing: so near, the end is reached.").with_limits({0.0, 1e4, true}), &T::target_radius_mm);
     t.bind(
         number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").with_limits({0.0, 1e4, true}),
         &T::indicator_mm);

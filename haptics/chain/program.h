@@ -12,7 +12,7 @@
 
 namespace catena::haptics {
 
-/// Switch of a link or a mode ("on" in the scene): {"button": n} (n = 1 is bit 0), with "toggle" each press inverts it; or
+/// Switch of a link or a mode ("active_when" in the scene): {"button": n} (n = 1 is bit 0), with "toggle" each press inverts it; or
 /// {"force_above": newtons}, which stays on until the force is at most "force_below" (default: the same). Neither: always on. The force is
 /// the magnitude of the last tick's chain force.
 struct ActivationSwitch {
@@ -23,8 +23,8 @@ struct ActivationSwitch {
   double force_below_n = 0;  ///< force at or below which it goes off, newtons
 };
 
-/// Release cue ("indicate" in the scene): how the user perceives that the probe leaves the link's feature, besides the report of every link
-/// (paper, section 2).
+/// Release cue ("release_cue" in the scene): how the user perceives that the probe leaves the link's feature, besides the report of every
+/// link (paper, section 2).
 ///   m = |p_i - p_(i-1)| / distance, 1 if the link is released: release ratio
 ///   The probe has left the feature from m >= 1 (minus round-off) until m < 0.95.
 ///   detent: a pulse of `amplitude_n` toward the feature when the probe leaves it and when it returns, which falls linearly to zero

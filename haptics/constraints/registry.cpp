@@ -127,7 +127,7 @@ schema::Key free_key(const std::string& above) {
   return schema::choice("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".")
       .with_default("\"none\"");
 }
-schema::Key law_key(const std::string& help) { return schema::choice("law", {"safe", "printed"}, help).with_default("\"safe\""); }
+schema::Key law_key(const std::string& help) { return schema::choice("law", {"robust", "as_published"}, help).with_default("\"robust\""); }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {
   CATENA_CHECK(json::expect_object(link, "a link of the chain"));

@@ -95,7 +95,7 @@ TEST(CouplingSafety, ASnapIsBookedAndGivesNoMore) {
 TEST(CouplingSafety, ModesThatSwitchWhileTheHandIsHeldBookEachSwitch) {
   const std::string scene = R"({"coupling": {"stiffness": 4000, "max_force": 1e6, "ramp_s": 0.02},
     "chain": [{"name": "a", "type": "point", "position": [0, 0, 0]}, {"name": "b", "type": "point", "position": [0.01, 0, 0]}],
-    "modes": [{"name": "first", "links": ["a"], "on": {"button": 1}}, {"name": "second", "links": ["b"], "on": {"button": 2}}]})";
+    "modes": [{"name": "first", "links": ["a"], "active_when": {"button": 1}}, {"name": "second", "links": ["b"], "active_when": {"button": 2}}]})";
   const HapticProgram p = limited(scene, above_the_limit(true));
   std::vector<haptics::SimulatedDevice::Waypoint> path;
   for (int k = 0; k < 20; ++k) path.push_back({0.1 * k, Vec3(0.0), k % 2 == 0 ? 1u : 2u});

@@ -179,9 +179,9 @@ TEST(EnduranceNoAllocation, NoAllocationInAMillionTicksOfAChain) {
   ChainRig chain(make_program(R"({"fields": {"v": {"analytic": "hill"}, "g": {"analytic": "hill", "resolution": 48, "box": [-1.2, 1.2]},
       "s": {"analytic": "sphere"}, "t": {"analytic": "torus", "resolution": 48, "box": [-2, 2]}}, "chain": [
       {"name": "line", "type": "streamline", "field": "g", "seed": [0.5, 0, 0]},
-      {"name": "online", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online", "on": {"button": 1}},
+      {"name": "online", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online", "active_when": {"button": 1}},
       {"name": "shell", "type": "isosurface", "field": "t", "level": 0.35, "free": "above", "release": 0.05},
-      {"name": "ball", "type": "isosurface", "field": "s", "level": 0.7, "on": {"button": 2}},
+      {"name": "ball", "type": "isosurface", "field": "s", "level": 0.7, "active_when": {"button": 2}},
       {"name": "floor", "type": "plane", "point": [0, 0, -0.2], "normal": [0, 0, 1], "free": "above"}],
       "coupling": {"stiffness": 500, "damping": 1, "ramp_s": 0.02}})"));
   Random random(31);

@@ -32,8 +32,8 @@ const Example kExamples[] = {
     {"modulated_friction", R"("type": "modulated_friction", "field": "hill", "surface": "torus")"},
     {"texture", R"("type": "texture", "threshold": 0.01, "wavelength": 0.05)"},
     {"viscosity", R"("type": "viscosity", "time": 0.02)"},
-    {"gradient_force", R"("type": "gradient_force", "field": "torus", "displacement": 0.02, "towards": "low")"},
-    {"vortex_core", R"("type": "vortex_core", "field": "lamb-oseen", "search": 2)"},
+    {"gradient_force", R"("type": "gradient_force", "field": "torus", "displacement": 0.02, "direction": "down_gradient")"},
+    {"vortex_core", R"("type": "vortex_core", "field": "lamb-oseen", "search_radius": 2)"},
     {"snap", R"("type": "streamline", "field": "hill", "seed": [0.5, 0, 0], "snap": 0.05, "release": 0.1)"},
     {"driven", R"("type": "drag", "threshold": {"field": "torus", "map": [[0, 0.001], [1, 0.05]]})"},
 };

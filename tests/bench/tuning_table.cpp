@@ -177,7 +177,7 @@ void eye_rows(const Case& c, scene::Scene& scene, std::vector<scene::Scene>& coa
 }
 
 void hand_rows(const Case& c, scene::Scene scene) {
-  tradeoff::Workload subject{std::move(scene), tradeoff::select_effort(true, false), {}, {}, 1000, {}, {}};
+  tradeoff::Workload subject{std::move(scene), tradeoff::select_effort("quick"), {}, {}, 1000, {}, {}};
   need(tradeoff::add_haptics(subject, {}));
   const auto curves = get(plan::measure_tick_curves(subject));
   for (const std::string& s : subject.skipped) fmt::print(stderr, "{}: {}\n", c.name, s);
@@ -243,8 +243,8 @@ void hand_rows(const Case& c, scene::Scene scene) {
     const double goal = std::max(told, wanted[k].max_proxy_error.value_or(chosen.error));
     const int best = cheapest_within(times.points, goal);
     row(c.name,
-        wanted[k].max_proxy_error ? fmt::format("hand_error={:.3g}", *wanted[k].max_proxy_error)
-                                  : fmt::format("hand_time={:.3g}", *wanted[k].max_tick_us),
+        wanted[k].max_proxy_error ? fmt::format("max_proxy_error={:.3g}", *wanted[k].max_proxy_error)
+                                  : fmt::format("max_tick_us={:.3g}", *wanted[k].max_tick_us),
         chosen.setting, std::max(plans[k].error_anywhere(), 1e-300), chosen.error, plans[k].expected_us(), 1e-3 * chosen.time.median,
         best < 0 ? NAN : chosen.time.median / times.points[static_cast<std::size_t>(best)].time.median,
         best < 0 ? "none" : times.points[static_cast<std::size_t>(best)].setting);

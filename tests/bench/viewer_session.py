@@ -62,7 +62,7 @@ def main():
     seconds = float(sys.argv[3]) if len(sys.argv) > 3 else 60
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "view", scene, "--size", f"{WIDTH}x{HEIGHT}", "--seconds", str(seconds), "--frame-stats", f"{folder}/frames.json",
-                   "--servo-stats", f"{folder}/servo.json", "--window-screenshot", "viewer-session.png"]
+                   "--servo-stats", f"{folder}/servo.json", "--screenshot-ui", "viewer-session.png"]
         window = subprocess.Popen(command)
         begin = time.time()
         rng = random.Random(1)

@@ -46,7 +46,7 @@ constexpr const char* kSphere = R"({"fields": {"s": {"analytic": "sphere"}},
   "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5, "free": "above", "release": 0.3}]})";
 constexpr const char* kChain = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1]},
-            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "on": {"button": 1}},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "active_when": {"button": 1}},
             {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "free": "above"},
             {"name": "pin", "type": "point", "position": [0.1, 0.2, 0.3], "stiffness": 20}], "coupling": {"ramp_s": 0.02}})";
 constexpr const char* kGrids = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
@@ -71,16 +71,16 @@ constexpr const char* kAnisotropic = R"({"fields": {"v": {"file": "circle.vdb"},
   "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "s", "level": 0.5, "field": "v", "threshold": 0.03,
              "tau_min": 0.002, "tau_max": 0.04, "free": "above", "release": 0.4}]})";
 constexpr const char* kDriven = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
-  "chain": [{"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "towards": "high"},
-            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search": 0.6,
+  "chain": [{"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "direction": "up_gradient"},
+            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search_radius": 0.6,
              "stiffness": {"field": "s", "map": [[0.2, 100], [0.8, 400]]}},
             {"name": "drag", "type": "drag", "threshold": {"field": "v", "normalise": true, "map": [[0, 0.001], [1, 0.03]]}}]})";
 constexpr const char* kModes = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "snap": 0.1, "release": 0.25,
-             "indicate": {"cue": "vibration", "amplitude": 0.3, "frequency": 130}},
-            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "indicate": {"cue": "detent"}},
-            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "on": {"force_above": 20, "force_below": 5}}],
-  "modes": [{"name": "swapped", "links": ["surface", "curve"], "on": {"button": 1, "toggle": true}}],
+             "release_cue": {"type": "vibration", "amplitude": 0.3, "frequency": 130}},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "release_cue": {"type": "detent"}},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "active_when": {"force_above": 20, "force_below": 5}}],
+  "modes": [{"name": "swapped", "links": ["surface", "curve"], "active_when": {"button": 1, "toggle": true}}],
   "coupling": {"ramp_s": 0.05, "max_force": 100}})";
 constexpr const char* kMesh = R"({"fields": {}, "meshes": [{"name": "wedge", "file": "wedge.obj", "scale": 2.6}],
   "chain": [{"name": "touch", "type": "mesh", "mesh": "wedge", "free": "above", "release": 0.3}]})";
@@ -95,11 +95,11 @@ constexpr const char* kBalance = R"({"fields": {"v": {"analytic": "circle"}, "s"
 constexpr const char* kWidgets = R"({"fields": {},
   "chain": [{"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 1, 4]}],
   "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0.1, 0], "orientation": [0.8, 0, 0.6, 0], "radius": 0.45,
-               "snap": 0.1, "release": 0.2, "near": 0.04, "step": 0.05},
-              {"name": "box", "type": "box", "lo": [-0.3, -0.6, -0.3], "hi": [0.6, 0.2, 0.3], "near": 0.15},
+               "snap": 0.1, "release": 0.2, "grab_distance": 0.04, "step": 0.05},
+              {"name": "box", "type": "box", "min": [-0.3, -0.6, -0.3], "max": [0.6, 0.2, 0.3], "grab_distance": 0.15},
               {"name": "rake", "type": "rake", "from": [-0.6, 0.2, -0.1], "to": [0.45, 0.05, 0.1]},
               {"name": "level", "type": "cutting_plane", "center": [0, 0, 0.1], "normal": [0, 0, 1], "radius": 0.05, "snap": 0.05,
-               "release": 0.1, "near": 0.02, "step": 0.03}],
+               "release": 0.1, "grab_distance": 0.02, "step": 0.03}],
   "coupling": {"ramp_s": 0.05, "max_force": 100}})";
 
 const Recorded kRecorded[] = {

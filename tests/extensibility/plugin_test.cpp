@@ -219,7 +219,7 @@ TEST_F(Plugin, TheWindowShowsIt) {
   if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
   std::string command = "timeout 90 " + test::on_display("640x480") + "env";
   for (const std::string& word :
-       words({"view", scene, "--plugin", shell, "--size", "600x400", "--frames", "10", "--window-screenshot", folder / "out/w.png"}))
+       words({"view", scene, "--plugin", shell, "--size", "600x400", "--frames", "10", "--screenshot-ui", folder / "out/w.png"}))
     command += " '" + word + "'";
   const auto shown = test::run_program("/bin/sh", {"-c", command});
   EXPECT_EQ(shown.exit_code, 0) << shown.err;

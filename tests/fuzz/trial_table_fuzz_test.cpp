@@ -22,9 +22,9 @@ const std::string kStudy = R"({"name": "s", "tasks": [
   "camera": {"position": [0, 0, 8], "target": [0, 0, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
  "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": []}], )";
 const std::string kAsked = R"("compare": [{"tasks": ["trace", "other"]}], "findings": [
- {"paper": "p", "reported": "r", "test": "difference", "measure": "time", "of": "deviation", "expect": "higher", "conditions": ["held"]},
- {"paper": "p", "test": "tasks", "tasks": ["trace", "other"]}, {"paper": "p", "test": "largest", "tasks": ["trace"]},
- {"paper": "p", "test": "rejections", "rejected": 3, "trials": 9}, {"paper": "p", "test": "none", "why": "w"}]})";
+ {"claim": "p", "reported": "r", "test": "difference", "measure": "time", "of": "deviation", "alternative": "higher", "conditions": ["held"]},
+ {"claim": "p", "test": "tasks", "tasks": ["trace", "other"]}, {"claim": "p", "test": "largest", "tasks": ["trace"]},
+ {"claim": "p", "test": "rejections", "rejected": 3, "trials": 9}, {"claim": "p", "test": "untestable", "reason": "w"}]})";
 
 void check_message(const std::string& message, const char* file, const std::string& text) {
   EXPECT_TRUE(message.starts_with(file)) << message << "\nfor\n" << text;

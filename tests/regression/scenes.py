@@ -52,10 +52,10 @@ def value_of(r, key, schema, link_type):
         return [abs(x) + 0.2 for x in unit(r)] if key == "size" else unit(r)
     if kind == "array":
         return [vector(r) for _ in range(r.randint(2, 5))]
-    if kind == "object" and key == "on":
+    if kind == "object" and key in ("on", "active_when"):
         return {"button": 1}
-    if kind == "object" and key == "indicate":
-        return {"cue": r.choice(["detent", "vibration", "none"])}
+    if kind == "object" and key in ("indicate", "release_cue"):
+        return {"type" if key == "release_cue" else "cue": r.choice(["detent", "vibration", "none"])}
     return {}
 
 

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Whether two builds of catena do the same: pictures, CSV, exit codes, messages and recordings, byte for byte.
 
-  unchanged.py BEFORE AFTER [--generated 200] [--bad 50] [--only WORD] [--exceptions FILE] [--keep FOLDER]
+  unchanged.py BEFORE AFTER [--assets FOLDER] [--generated 200] [--bad 50] [--only WORD] [--exceptions FILE] [--keep FOLDER]
 
-BEFORE and AFTER are programs. Both run on every scene of assets/scenes, on generated and on bad scenes (scenes.py, always the same), and
-on recordings that BEFORE made. Durations in what they print, and notes ("catena: note: ...", what reads but is written in another way now),
-are left out of the comparison, nothing else. The exceptions: lines
-"CASE: why", CASE a shell pattern; they are counted and listed. Exit code 1 where anything else differs.
+BEFORE and AFTER are programs. Both run on every scene of the assets (those of BEFORE: --assets), on generated and on bad scenes (scenes.py,
+always the same, with the names of version 0.2), and on recordings that BEFORE made. Each program first upgrades its own copy of a file, if
+it has `upgrade`: new names are then no difference. A column of a CSV is compared by its values where its name was changed on purpose
+(COLUMNS). Durations in what they print, notes ("catena: note: ...") and progress lines, which depend on time, are left out of the
+comparison, nothing else. The exceptions: lines "CASE: why", CASE a shell pattern; they are counted and listed. Exit code 1 where anything
+else differs.
 """
 import argparse
 import fnmatch
@@ -25,7 +27,8 @@ import scenes
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 DURATION = re.compile(rb"\d+(\.\d+)?(e[-+]?\d+)? ?(us|ms|s|min)\b")
-NOTE = re.compile(rb"catena: note: .*\n")
+NOTE = re.compile(rb"catena: note: .*\n|.*: \d+ %\n|reading .* so far\n")
+COLUMNS = {b"_leaving": b"_release_ratio", b"_left": b"_released", b"_booked": b"_accounted"}
 CUBE = """v -0.6 -0.6 -0.6\nv 0.6 -0.6 -0.6\nv 0.6 0.6 -0.6\nv -0.6 0.6 -0.6\nv -0.6 -0.6 0.6\nv 0.6 -0.6 0.6\nv 0.6 0.6 0.6\nv -0.6 0.6 0.6
 f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"""
 
@@ -40,6 +43,19 @@ def contents(path):
         return file.read()
 
 
+def upgrade(program, name, folder):
+    """Replaces old names in a file, where the program can; a file that it cannot read stays."""
+    run(program, ["upgrade", "--no-backup", name], folder)
+
+
+def with_new_columns(table):
+    """A table whose header has the new names of its columns."""
+    head, end, rows = table.partition(b"\n")
+    for old, new in COLUMNS.items():
+        head = re.sub(old + rb"(?=,|$)", new, head)
+    return head + end + rows
+
+
 def outcome(program, words, folder, outputs):
     """What a command did: exit code, words, and the bytes of its outputs (None: no file)."""
     for name in outputs:
@@ -47,6 +63,7 @@ def outcome(program, words, folder, outputs):
             os.remove(os.path.join(folder, name))
     code, out, err = run(program, words, folder)
     files = [contents(os.path.join(folder, n)) if os.path.exists(os.path.join(folder, n)) else None for n in outputs]
+    files = [with_new_columns(f) if f and n.endswith(".csv") else f for n, f in zip(outputs, files)]
     return {"exit code": code, "stdout": out, "stderr": err, **dict(zip(outputs, files))}
 
 
@@ -93,6 +110,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("before")
     parser.add_argument("after")
+    parser.add_argument("--assets", default=os.path.join(ROOT, "assets"))
     parser.add_argument("--generated", type=int, default=200)
     parser.add_argument("--bad", type=int, default=50)
     parser.add_argument("--only", default="")
@@ -104,7 +122,7 @@ def main():
     folders = [os.path.join(top, side, "catena") for side in ("before", "after")]
     for folder in folders:
         os.makedirs(os.path.join(folder, "data"), exist_ok=True)
-        shutil.copytree(os.path.join(ROOT, "assets"), os.path.join(folder, "assets"), dirs_exist_ok=True)
+        shutil.copytree(options.assets, os.path.join(folder, "assets"), dirs_exist_ok=True)
         shared = os.path.join(os.path.dirname(ROOT), "shared")
         if os.path.exists(shared) and not os.path.exists(os.path.join(folder, "..", "shared")):
             os.symlink(shared, os.path.join(folder, "..", "shared"))
@@ -116,7 +134,7 @@ def main():
     chain_schema = json.loads(run(programs[0], ["info", "--schema"], folders[0])[1])
     if "items" not in chain_schema:  # a schema of whole scenes
         chain_schema = chain_schema["properties"]["chain"]
-    cases = [(name, None) for name in sorted(glob.glob("assets/scenes/**/*.json", root_dir=ROOT, recursive=True))]
+    cases = [(name, None) for name in sorted(glob.glob("assets/scenes/**/*.json", root_dir=os.path.dirname(os.path.abspath(options.assets)), recursive=True))]
     cases += [(name + ".json", text) for name, text in scenes.all_of(chain_schema, options.generated, options.bad)]
     cases = [case for case in cases if options.only in case[0]]
 
@@ -131,6 +149,7 @@ def main():
             if text is not None:
                 with open(os.path.join(folder, name), "w") as file:
                     file.write(text)
+            upgrade(programs[folders.index(folder)], name, folder)
         box = box_of(programs[0], name, folders[0]) if text is None else [(-1.2, 1.2)] * 3
         for folder in folders:
             with open(os.path.join(folder, "probe.csv"), "w") as file:
@@ -147,6 +166,7 @@ def main():
             run(programs[0], ["feel", name, "--device", "recorded:probe.csv", "--seconds", "0.5", "--record", "r.catlog"], folders[0])
             if os.path.exists(os.path.join(folders[0], "r.catlog")):
                 shutil.copyfile(os.path.join(folders[0], "r.catlog"), os.path.join(folders[1], "r.catlog"))
+                upgrade(programs[1], "r.catlog", folders[1])
                 for what, words, outputs in (("log", ["replay", "--log", "r.catlog"], []), ("export", ["export", "r.catlog", "-o", "e.csv"], ["e.csv"])):
                     a, b = both(words, outputs)
                     compare("%s %s" % (name, what), a, b, told)

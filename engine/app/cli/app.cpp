@@ -21,6 +21,7 @@
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
 #include "engine/scene/streamlines.h"
+#include "engine/schema/renames.h"
 
 namespace catena::app {
 
@@ -42,8 +43,14 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
   return std::string(error.what()) + " (see " + command + " --help)";
 }
 
-/// Returns a message on the first unknown command or option of the command line, with the most similar known name; empty if all are known.
+/// Returns a message on the first unknown command or option of the command line, with its new name or the most similar known name; empty
+/// if all are known.
 std::string unknown_word(const CLI::App& program, int argc, char** argv) {
+  for (int i = 2; i < argc && argv[i] != std::string_view("--"); ++i) {
+    const std::string_view word = argv[i], name = word.substr(0, word.find('='));
+    if (const std::string_view now = schema::renamed_option(name); !now.empty())
+      return "the option " + in_quotes(name) + " is now " + in_quotes(now) + "; the new name was expected";
+  }
   const CLI::App* command = nullptr;
   std::vector<std::string> commands, options;
   for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; })) {
@@ -112,6 +119,7 @@ int parse_and_work(int argc, char** argv) {
   add_serve(program, chosen);
   add_study(program, chosen);
   add_view(program, chosen, view_exit_code);
+  add_upgrade(program, chosen);
   add_documents(program, chosen);
   add_memory_limit(program);
   std::vector<std::string> plugins;

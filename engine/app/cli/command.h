@@ -33,6 +33,7 @@ void add_devices(CLI::App& program, CommandAction& chosen);
 void add_serve(CLI::App& program, CommandAction& chosen);
 void add_study(CLI::App& program, CommandAction& chosen);
 void add_documents(CLI::App& program, CommandAction& chosen);
+void add_upgrade(CLI::App& program, CommandAction& chosen);
 void add_view(CLI::App& program, CommandAction& chosen, int& exit_code);
 
 /// Thrown for a failure of the system rather than the input, and for a replay that differs from its recording: exit code 1.

@@ -29,7 +29,8 @@ namespace catena::app {
 namespace {
 
 struct FeelOptions {
-  std::string scene, device, firmware, forces = "off", stats, record, plan;
+  std::string scene, device, firmware, forces = "off", stats, record;
+  HapticTargetOptions targets;
   std::vector<std::string> fields;
   double seconds = 0;
   std::optional<double> rate_hz;
@@ -123,7 +124,7 @@ Outcome run_feel(const FeelOptions& options) {
   files.add_output("--stats", options.stats);
   files.add_output("--record", options.record);
   CATENA_CHECK(files.check());
-  CATENA_TRY(const scene::TuningTargets wanted, plan::resolve_tick_targets(scene, options.plan));
+  const scene::TuningTargets wanted = options.targets.resolve(scene);
   CATENA_TRY(HapticDeviceSetup hand, open_haptic_device(scene, options.device, options.rate_hz, options.firmware));
   // the links are tuned before the first tick, and the tuned text is the one that is recorded
   CATENA_TRY(std::string text, plan::read_scene_text(scene));
@@ -183,8 +184,7 @@ void add_feel(CLI::App& program, CommandAction& chosen) {
       ->check(number_between(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
-  command->add_option("--plan", options->plan,
-                      "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
+  options->targets.add_to(*command);
   command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();

@@ -28,9 +28,7 @@ void add_render(CLI::App& program, CommandAction& chosen) {
       ->check(CLI::Range(8, 16384));
   command->add_option("--quality", options->quality,
                       "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
-  command->add_option(
-      "--plan", options->plan,
-      "error=E (RMSE, 1/255) or time=MS, and hand_error=E (world units) or hand_time=US (a tick): the settings by measured curves");
+  options->targets.add_to(*command);
   add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "how many frames to draw and time (default: 1; with --camera its duration times --fps)")
       ->check(CLI::Range(1, kMaxFrames));
@@ -43,7 +41,8 @@ void add_render(CLI::App& program, CommandAction& chosen) {
   command->add_option("--camera", options->camera, "key frames, CSV: t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]");
   command->add_option("--head", options->head_path,
                       "a tracked head before --screen, CSV: t,x,y,z, world units (default: the camera's position)");
-  command->add_option("--phase", options->animation_phase, "where the pulses of streamlines are, 0 to 1; the frames add one round");
+  command->add_option("--animation-phase", options->animation_phase,
+                      "phase of the animated bands of streamlines, 0 to 1; the frames add one period");
   command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
   command->add_option("--step", options->step, "which step in time, of fields that have several")->check(CLI::Range(0, 1'000'000));
   command->add_option("--steps", options->steps, "steps in time FIRST:LAST or FIRST:LAST:STRIDE, a frame each");

@@ -34,7 +34,7 @@ Result<haptics::DeviceLimits> device_limits(const scene::Scene& scene, const std
 
 /// Tunes the links before the first tick; returns the tuning, if the scene or the options request one.
 Result<std::optional<plan::TickTuning>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
-  CATENA_TRY(const scene::TuningTargets wanted, plan::resolve_tick_targets(scene, options.plan));
+  const scene::TuningTargets wanted = options.targets.resolve(scene);
   double rate_hz = 1000;
   if (scene.device) {
     CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));
@@ -135,8 +135,7 @@ void add_replay(CLI::App& program, CommandAction& chosen) {
   command->add_option("--widgets", options->widgets,
                       "modes and poses of the widgets, CSV: t, NAME_mode, NAME_handle, NAME_held, NAME_x,y,z ..");
   command->add_option("--stats", options->stats, "figures, JSON");
-  command->add_option("--plan", options->plan,
-                      "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
+  options->targets.add_to(*command);
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback(
       [&chosen, options] { chosen = [options] { return options->log.empty() ? replay_scene(*options) : replay_log_file(*options); }; });

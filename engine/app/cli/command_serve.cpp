@@ -16,7 +16,7 @@ namespace {
 const std::string kServedQuality = "time=50";
 
 struct ServeArguments {
-  std::string source, grid, address = "127.0.0.1", size = "1024x768", quality, framed_by;
+  std::string source, grid, address = "127.0.0.1", size = "1024x768", quality, frame_ancestor;
   std::vector<std::string> fields, names;
   int port = 8642;
   double seconds = 0, gpu_memory_mb = 0;
@@ -42,7 +42,7 @@ Outcome start_serving(const ServeArguments& given) {
   CATENA_CHECK(options.adjust_scene(scene));
   const std::string& own = scene.quality.empty() ? kServedQuality : scene.quality;
   CATENA_TRY(options.quality, parse_quality(o.quality.empty() ? own : o.quality));
-  options.is_quality_explicit = !o.quality.empty() || !scene.quality.empty();
+  options.has_fixed_quality = is_fixed_quality(o.quality.empty() ? scene.quality : o.quality);
   options.exit_with_stdin = o.until_stdin_ends;
   options.haptic_options.device = "mouse";
   options.haptic_options.field_options = o.fields;
@@ -50,7 +50,7 @@ Outcome start_serving(const ServeArguments& given) {
   options.server.address = o.address;
   options.server.port = static_cast<std::uint16_t>(o.port);
   options.server.host_names = o.names;
-  options.server.frame_ancestor = o.framed_by;
+  options.server.frame_ancestor = o.frame_ancestor;
   options.width = size.width;
   options.height = size.height;
   options.gpu_memory = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
@@ -70,7 +70,8 @@ void add_serve(CLI::App& program, CommandAction& chosen) {
       ->capture_default_str();
   command->add_option("--name", options->names, "what browsers may call this machine, beside localhost and addresses in numbers")
       ->allow_extra_args(false);
-  command->add_option("--framed-by", options->framed_by, "a page's origin whose frames may show this one, such as http://127.0.0.1:8888");
+  command->add_option("--frame-ancestor", options->frame_ancestor,
+                      "a page's origin whose frames may show this one, such as http://127.0.0.1:8888");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the picture before a page says its own, WxH")->capture_default_str();
   command->add_option("--quality", options->quality,
@@ -81,7 +82,7 @@ void add_serve(CLI::App& program, CommandAction& chosen) {
       ->check(number_between(1, 1e9));
   command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
   command->add_flag("--follow", options->follow, "steps in time that a running program adds are shown as they come, once they are whole");
-  command->add_flag("--until-stdin-ends", options->until_stdin_ends, "end when the standard input does: with the program at its other end");
+  command->add_flag("--exit-with-stdin", options->until_stdin_ends, "end when the standard input does: with the program at its other end");
   add_annotation_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return start_serving(*options); }; });

@@ -1,5 +1,5 @@
-/// catena tradeoff SCENE|FILE -o DIR [--quick|--thorough] [--compare OTHER.json]: error against cost for the settings of a scene
-/// catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
+/// catena tradeoff SCENE|FILE -o DIR [--effort quick|default|thorough] [--compare OTHER.json]: error against cost for the settings of a
+/// scene catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -55,8 +55,11 @@ void add_tradeoff(CLI::App& program, CommandAction& chosen) {
                    "loop of the hand gains")
       ->check(CLI::IsMember({"2", "3", "stiffness", "energy"}));
   command->add_option("-o,--output", options->output, "a folder for the page and the tables; of a figure its script and plots")->required();
-  command->add_flag("--quick", options->quick, "two minutes at most");
-  command->add_flag("--thorough", options->thorough, "larger pictures and more repeats: up to 20 minutes");
+  command
+      ->add_option("--effort", options->effort,
+                   "quick: at most two minutes; default: about five; thorough: larger images and more repeats, up to twenty minutes")
+      ->check(CLI::IsMember({"quick", "default", "thorough"}))
+      ->capture_default_str();
   command->add_option("--compare", options->compare, "the tradeoff.json of another machine or version: side by side on the page");
   command->add_option("--probe", options->probe, "a hand's path of your own, CSV: t,x,y,z[,buttons]");
   command->add_option("--only", options->only, "measure only these")->delimiter(',')->check(CLI::IsMember(measurement_names()));

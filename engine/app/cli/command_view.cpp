@@ -18,8 +18,9 @@ namespace {
 const std::string kQuality = "time=50";
 
 struct ViewArguments {
-  std::string source, grid, device, device_file, head, size = "1024x768", quality, plan, shaders, screenshot, window_screenshot,
-                                                       servo_stats, frame_stats, record, firmware;
+  std::string source, grid, device, device_file, head, size = "1024x768", quality, shaders, screenshot, window_screenshot, servo_stats,
+                                                       frame_stats, record, firmware;
+  HapticTargetOptions targets;
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0, gpu_memory_mb = 0;
@@ -39,7 +40,7 @@ IoConflictChecker files_of(const ViewArguments& o, const scene::Scene& scene) {
   files.add_input(o.device_file);
   files.add_input_folder(o.shaders);
   files.add_output("--screenshot", o.screenshot);
-  files.add_output("--window-screenshot", o.window_screenshot);
+  files.add_output("--screenshot-ui", o.window_screenshot);
   files.add_output("--servo-stats", o.servo_stats);
   files.add_output("--frame-stats", o.frame_stats);
   files.add_output("--record", o.record);
@@ -74,11 +75,9 @@ Outcome open_window(const ViewArguments& given, int& exit_code) {
     const std::string& own = scene.quality.empty() ? kQuality : scene.quality;
     CATENA_TRY(options.quality, parse_quality(options.has_explicit_quality ? o.quality : own));
     options.tuning.scene_target = scene.tuning;
-    CATENA_TRY(options.tuning.target, plan::resolve_targets(scene, o.plan));
-    options.tuning.has_explicit_quality = options.has_explicit_quality || !scene.quality.empty();
-    if (options.has_explicit_quality && !o.plan.empty() && options.tuning.target.has_image_targets())
-      return Error{"--quality " + o.quality + ": goes without error and time of --plan: one of them says how good the picture is to be"};
-    if (options.tuning.has_explicit_quality) options.tuning.target.max_image_error = options.tuning.target.max_image_ms = std::nullopt;
+    options.tuning.target = o.targets.resolve(scene);
+    if (options.has_explicit_quality) options.tuning.target.set_image_targets(scene::image_targets(o.quality));
+    options.tuning.has_fixed_quality = is_fixed_quality(options.has_explicit_quality ? o.quality : scene.quality);
   }
   options.gpu_memory = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
   options.shader_folder = o.shaders;
@@ -122,9 +121,7 @@ void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
       "--quality", options->quality,
       "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest; while something moves "
       "it comes within MS or 50 ms. Default: the scene's, or else time=50");
-  command->add_option(
-      "--plan", options->plan,
-      "error=E (RMSE, 1/255) or time=MS, and hand_error=E (world units) or hand_time=US (a tick): the settings by measured curves");
+  options->targets.add_to(*command);
   command
       ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
       ->check(number_between(1, 1e9));
@@ -133,7 +130,7 @@ void add_view(CLI::App& program, CommandAction& chosen, int& exit_code) {
   command->add_option("--frames", options->frames, "quit after so many frames")->check(number_between(0, std::numeric_limits<int>::max()));
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
-  command->add_option("--window-screenshot", options->window_screenshot, "the same with the panels over it, .png");
+  command->add_option("--screenshot-ui", options->window_screenshot, "the same with the panels over it, .png");
   command->add_flag("--follow", options->follow, "steps in time that a running program adds are shown as they come, once they are whole");
   command->add_flag("--xr", options->headset, "show it in a headset (OpenXR), too: the window mirrors one eye");
   command->add_flag("--no-panels", options->no_panels, "begin without the panels (Tab shows them)");

@@ -48,6 +48,23 @@ Outcome add_annotations(scene::Scene& scene, const AnnotationOptions& options) {
   return Done{};
 }
 
+void HapticTargetOptions::add_to(CLI::App& command) {
+  CLI::Option* error = command
+                           .add_option("--max-proxy-error", max_proxy_error,
+                                       "greatest distance of a streamline link's proxy from its line, world units: links without settings "
+                                       "of their own get the fastest ones that keep it")
+                           ->check(number_above_zero());
+  command.add_option("--max-tick-us", max_tick_us, "longest time of a tick, us: the same links get the most exact settings that keep it")
+      ->check(number_above_zero())
+      ->excludes(error);
+}
+
+scene::TuningTargets HapticTargetOptions::resolve(const scene::Scene& scene) const {
+  scene::TuningTargets targets = scene.tuning;
+  if (is_given()) targets.max_proxy_error = max_proxy_error, targets.max_tick_us = max_tick_us;
+  return targets;
+}
+
 void ColorOptions::add_to(CLI::App& command) {
   command.add_option("--colormap", colormap,
                      "colour map of a data file (catena info --colormaps lists them); lines show their speed by it");

@@ -180,6 +180,16 @@ struct ColorOptions {
   Result<scene::NamedColors> to_named_colors() const;
 };
 
+/// Values of --max-proxy-error E and --max-tick-us T: targets for the links that leave their settings open. At most one is given.
+struct HapticTargetOptions {
+  std::optional<double> max_proxy_error, max_tick_us;
+
+  void add_to(CLI::App& command);
+  bool is_given() const { return max_proxy_error || max_tick_us; }
+  /// Returns the scene's targets, with these in place of its own haptic ones.
+  scene::TuningTargets resolve(const scene::Scene& scene) const;
+};
+
 /// Adds --realtime on|off and --cpu N: real-time scheduling and core of the haptic thread.
 inline void add_realtime_options(CLI::App& command, RealtimeChoice& choice) {
   command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the servo, where permitted")

@@ -12,9 +12,10 @@ std::vector<schema::Section> scene_file_components() {
   for (schema::Section& component : all) {
     if (component.name == "chain") component = haptics::chain_component();
     if (component.name == "device") component = haptics::device_component();
-    // "on" of a mode has the same keys as "on" of a link
+    // "active_when" of a mode has the same keys as that of a link
     for (schema::Key& key : component.keys)
-      if (component.name == "modes" && key.name == "on") key.members = schema::find(haptics::common_keys(), "on")->members;
+      if (component.name == "modes" && key.name == "active_when")
+        key.members = schema::find(haptics::common_keys(), "active_when")->members;
   }
   return all;
 }

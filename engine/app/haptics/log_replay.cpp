@@ -65,7 +65,8 @@ Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, cons
 
 Outcome replay_log_file(const ReplayOptions& options) {
   if (!options.probe.empty()) return Error{"--probe and --log exclude each other: the recording has its own probe"};
-  if (!options.plan.empty()) return Error{"--plan and --log exclude each other: the recording has the plan that was felt"};
+  if (options.targets.is_given())
+    return Error{"--max-proxy-error and --max-tick-us exclude --log: the recording has the settings of its links"};
   CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
   LogProgramBuilder scene(reader.header(), options.scene, options.fields);
   CATENA_TRY(const LinkColumns all_links, read_log_columns(options.log));

@@ -8,6 +8,7 @@
 
 #include "engine/app/cli/command.h"
 #include "engine/app/cli/io_conflicts.h"
+#include "engine/app/cli/options.h"
 #include "engine/app/haptics/tick_csv.h"
 #include "engine/base/result.h"
 #include "haptics/servo/log/contents.h"
@@ -17,7 +18,8 @@ namespace catena::app {
 
 /// Options of `catena replay`: input and output files; empty: not given.
 struct ReplayOptions {
-  std::string scene, probe, log, output, details, widgets, stats, plan;
+  std::string scene, probe, log, output, details, widgets, stats;
+  HapticTargetOptions targets;
   std::vector<std::string> fields;
 };
 

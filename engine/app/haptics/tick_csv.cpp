@@ -86,7 +86,8 @@ std::string details_header(const LinkColumns& columns) {
   std::string line = "t,mode,left_out";
   for (const std::string& name : columns.names())
     line += fmt::format(
-        ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy,{0}_booked",
+        ",{0}_gap,{0}_release_ratio,{0}_released,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy,{0}_"
+        "accounted",
         name);
   return line;
 }

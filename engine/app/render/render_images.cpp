@@ -26,7 +26,6 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kUnreportedFrames = 3;    // frames of one tuned image that are rendered before the reported ones
 constexpr int kMaxTiledPixels = 65536;  // in each direction
 
 template <class T>
@@ -90,21 +89,15 @@ class Frames {
     if (interrupted || interrupt_->is_requested()) throw MachineFailure{"interrupted: nothing half-written was kept"};
     if (!ms) throw MachineFailure{ms.error().message};
     if (outputs != nullptr) CATENA_CHECK(outputs->end_frame());
-    drawing_ms = ms->render_ms;
-    // the next frame may use other settings; the first frame is not recorded, since it includes one-time work
-    if (goal && warm_) goal->record_frame_time(drawing_ms), settings = goal->settings();
-    warm_ = true;
     return extract_ms + ms->wall_ms;
   }
 
   std::unique_ptr<render::Renderer> renderer;
   render::RenderSettings settings;
-  std::optional<plan::ImageTuning> goal;  ///< image tuning that selects the settings of the next frame
   render::TilePlan plan;
   render::BandChannels wants;
   ProgressLine* progress = nullptr;
-  double drawing_ms = 0;  ///< time of the last frame (render/quality)
-  double first_ms = 0;    ///< from process start to the first pixels on the host
+  double first_ms = 0;  ///< from process start to the first pixels on the host
 
  private:
   scene::Scene& scene_;
@@ -117,7 +110,6 @@ class Frames {
   Bounds base_bounds_;
   std::optional<InterruptHandler> interrupt_;  // active while rendering
   double tiles_done_ = 0;
-  bool warm_ = false;
   std::function<Outcome(const render::Band&)> nothing_;
 };
 
@@ -145,27 +137,6 @@ render::QualityChoice choose_settings(Frames& frames, const render::FramePacket&
   if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
   ProgressLine progress("choosing how to draw", 1);
   return machine(render::choose_quality(*frames.renderer, sample.packet, goal, [&progress](double done) { progress.update(done); }));
-}
-
-/// Runs the image tuning if `quality` leaves the settings to it, and reports them before the first image.
-Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const scene::TuningTargets& wanted, const RenderOptions& o,
-                      const scene::Scene& scene, std::FILE* words) {
-  CATENA_TRY(const std::string text, plan::read_scene_text(scene));
-  const Sample sample = sample_of(frames, packet);
-  std::vector<std::string> options = o.fields;
-  options.insert(options.end(), {o.grid, o.colors.colormap, fmt::format("{}", fmt::join(o.colors.range, " ")), o.colors.mapping,
-                                 o.colors.linear_below, o.annotate.title});
-  frames.goal = machine(plan::tune_image(*frames.renderer, sample.packet, wanted, {scene, text, options, sample.share},
-                                         [&](const std::string& line) { say(words, line); }));
-  frames.settings = frames.goal->settings();
-  say(words, frames.goal->summary());
-  return Done{};
-}
-
-/// Formats "observed: error 1.7/255 in 95 ms": the error of the last image, the median of the times.
-std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
-  const auto error = render::measure_single_rmse(*frames.renderer, sample_of(frames, packet).packet, settings);
-  return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", *error) : "not known", quantile(times, 0.5));
 }
 
 /// Size of the finished image. Stereo views in one image are rendered without tiles.
@@ -206,7 +177,7 @@ Outcome render_images(const RenderOptions& given) {
   if (!steps.empty() && o.frames == 0) o.frames = static_cast<int>(steps.size());
   CATENA_CHECK(check_frames(o, steps));
   CATENA_TRY(const ImageSize size, parse_image_size(o.size, kMaxTiledPixels));
-  if (!std::isfinite(o.animation_phase)) return Error{"--phase: expected a finite number"};
+  if (!std::isfinite(o.animation_phase)) return Error{"--animation-phase: expected a finite number"};
   if (o.play_probe && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
   ProbePath path;
   if (o.play_probe) {
@@ -222,10 +193,6 @@ Outcome render_images(const RenderOptions& given) {
   CATENA_TRY(const ImageSize picture, picture_size(o, scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(Quality wanted, parse_quality(quality));
-  CATENA_TRY(scene::TuningTargets plan, plan::resolve_targets(scene, o.plan));
-  if (!o.quality.empty() && !o.plan.empty() && plan.has_image_targets())
-    return Error{"--quality " + o.quality + ": goes without error and time of --plan: one of them says how good the picture is to be"};
-  const bool pinned = !o.quality.empty() || !scene.quality.empty();
   IoConflictChecker files(scene);
   files.add_input(o.probe);
   files.add_input(o.camera);
@@ -234,11 +201,10 @@ Outcome render_images(const RenderOptions& given) {
   CATENA_CHECK(check_outputs(o, shape, motion.frames(), files));
   std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
 
-  const auto tell_plan = [&](const std::string& line) { say(words, line); };
-  if (plan.has_image_targets() && pinned) tell_plan("plan: the picture stays as it is: its quality is stated, " + quality);
-  if (o.probe.empty() && o.plan.find("hand_") != std::string::npos)
-    tell_plan("plan: no hand feels here, so that nothing is chosen for it; --probe PATH.csv was expected");
-  if (!o.probe.empty()) CATENA_CHECK(plan::tune_links(scene, plan, 1000, o.fields, tell_plan));
+  if (o.targets.is_given() && o.probe.empty())
+    return Error{"--max-proxy-error and --max-tick-us: nothing is felt here; --probe PATH.csv was expected beside them"};
+  if (!o.probe.empty())
+    CATENA_CHECK(plan::tune_links(scene, o.targets.resolve(scene), 1000, o.fields, [&](const std::string& line) { say(words, line); }));
   // the chain is validated as well, so that a rendered scene also works with haptics
   CATENA_TRY(const std::shared_ptr<const haptics::HapticProgram> program, haptics::build_program(scene));
   if (o.probe.empty()) {
@@ -268,11 +234,10 @@ Outcome render_images(const RenderOptions& given) {
   frames.settings = wanted.settings;
   frames.wants = required_band_channels(o);
   const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
-  frames.plan =
-      render::stereo_view_count(scene.stereo) > 1
-          ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
-          : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || plan.has_image_targets() || wanted.settings.fast,
-                               frames.renderer->max_image_side());
+  frames.plan = render::stereo_view_count(scene.stereo) > 1
+                    ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
+                    : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast,
+                                         frames.renderer->max_image_side());
   const auto choose_for = [&](const char* which, bool once) {
     wanted.goal->single_image = once;
     const std::int64_t start = now_ns();
@@ -284,17 +249,12 @@ Outcome render_images(const RenderOptions& given) {
                            choice.goal_reached ? "" : " (nothing reached the goal: the nearest was taken)"));
     return choice.is_empty;
   };
-  const bool planned = plan.has_image_targets() && !pinned && render::uses_raycast(packet);
-  if (plan.has_image_targets() && !pinned && !planned) tell_plan("plan: the picture has no settings: nothing in it is drawn by rays");
-  if (planned) {
-    CATENA_CHECK(plan_pictures(frames, packet, plan, o, scene, words));
-    stats.estimated_rmse = frames.goal->expected_error();
-  } else if (wanted.goal) {
+  if (wanted.goal) {
     if (choose_for("", true))
       print_message(
           "note: nothing of the scene is in the picture: it is transparent where the camera looks, or the camera looks elsewhere");
   }
-  if (quality == "reference" && !planned) {
+  if (quality == "reference") {
     stats.estimated_rmse = machine(render::half_step_difference(*frames.renderer, sample_of(frames, packet).packet, frames.settings));
     if (*stats.estimated_rmse > kConverged)
       print_message(
@@ -302,7 +262,7 @@ Outcome render_images(const RenderOptions& given) {
                       "rises within a step. --quality step=0.02 is nearer to the truth",
                       *stats.estimated_rmse));
   }
-  stats.quality_mode = planned ? frames.goal->summary() : wanted.goal ? quality + ": " + describe(frames.settings) : quality;
+  stats.quality_mode = wanted.goal ? quality + ": " + describe(frames.settings) : quality;
   stats.tiles = frames.plan.count();
   stats.device = frames.renderer->stats().device;
 
@@ -312,8 +272,6 @@ Outcome render_images(const RenderOptions& given) {
     const double parts = frames.plan.count() * (more ? double(motion.frames()) : 1.0);
     ProgressLine progress("render", parts);
     frames.progress = parts > 1 ? &progress : nullptr;
-    std::vector<double> took;
-    render::RenderSettings last = frames.settings;
     CATENA_TRY(const double first, frames.draw(0, &outputs));
     stats.first_frame_ms = frames.first_ms;
     stats.downsampled_grids = frames.renderer->stats().downsampled_grids;
@@ -321,27 +279,15 @@ Outcome render_images(const RenderOptions& given) {
     print_scene_notes(scene);
     say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, describe_contents(packet),
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
-    // predictions of the tuning hold once pipelines and GPU-resident grids exist
-    for (int k = 1; k < kUnreportedFrames && planned && motion.frames() == 1; ++k) {
-      CATENA_CHECK(frames.draw(0, nullptr));
-      took.push_back(frames.drawing_ms);
-    }
     stats.frame_ms.push_back(first);
     // render the first image before the search for settings of the sequence
-    if (motion.frames() > 1 && !planned && wanted.goal && wanted.goal->kind == render::QualityGoal::Kind::error &&
-        render::uses_raycast(packet))
+    if (motion.frames() > 1 && wanted.goal && wanted.goal->kind == render::QualityGoal::Kind::error && render::uses_raycast(packet))
       choose_for(" of the sequence", false);
     for (int k = 1; k < motion.frames(); ++k) {
-      last = frames.settings;
       CATENA_TRY(const double ms, frames.draw(k, takes_all_frames(o) ? &outputs : nullptr));
       stats.frame_ms.push_back(ms);
-      took.push_back(frames.drawing_ms);
     }
     frames.progress = nullptr;
-    if (planned) {
-      CATENA_TRY(const render::FramePacket shown, frames.packet(motion.frames() - 1));
-      tell_plan(observed(frames, shown, last, took));
-    }
   }
   if (!o.stats.empty() || motion.frames() > 1)
     say(words, fmt::format("frame {:.1f} ms (median of {})", stats.median_ms(), stats.frame_ms.size()));

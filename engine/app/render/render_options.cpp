@@ -89,6 +89,8 @@ Result<std::vector<int>> parse_steps(const std::string& words) {
   return steps;
 }
 
+bool is_fixed_quality(std::string_view words) { return !words.empty() && !scene::image_targets(words).has_image_targets(); }
+
 Result<Quality> parse_quality(const std::string& words) {
   using Kind = render::QualityGoal::Kind;
   if (words == "draft") return Quality{render::draft_settings(), {}};

@@ -17,7 +17,8 @@ inline constexpr int kMaxFrames = 100000;
 
 /// Values of the options.
 struct RenderOptions {
-  std::string source, grid, output, size = "1024x768", quality, plan, stats, probe;
+  std::string source, grid, output, size = "1024x768", quality, stats, probe;
+  HapticTargetOptions targets;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
   // Outputs.
   int bits = 8;            ///< Bits per channel of -o FILE.png
@@ -78,6 +79,8 @@ struct Quality {
   std::optional<double> interactive_ms = {};  ///< Viewer: target time of a frame while something moves, ms; empty: the default
 };
 
+/// Returns whether a stated quality is fixed settings instead of a target for error or time; false for an empty one.
+bool is_fixed_quality(std::string_view words);
 /// Parses a quality. Error: an unknown word or a number out of range.
 Result<Quality> parse_quality(const std::string& words);
 

@@ -134,13 +134,13 @@ void ServeSession::end_recording() {
 
 void ServeSession::handle(const TuningRequest& wish) {
   if (wish.position) {
-    if (!tuning_.image_tuning && !tuning_.tick_tuning) return send_note("the plan goes by what is not measured yet");
-    return send_note_on_error(scene_.set("/plan", scene::to_json(tuning_.target_at(*wish.position)), "plan"));
+    if (!tuning_.image_tuning && !tuning_.tick_tuning) return send_note("the costs are not measured yet; \"measure\" was expected first");
+    return send_note_on_error(scene_.apply(tuning_.edits_at(*wish.position), "accuracy"));
   }
   set_default_target(tuning_);
   send_note_on_error(measure_tick_costs(tuning_, scene_, haptics_, [this](const std::string& line) { send_note(line); }));
   scene_.mark_changed();
-  if (!tuning_.has_explicit_quality) send_note_on_error(measure_image());
+  if (!tuning_.has_fixed_quality) send_note_on_error(measure_image());
 }
 
 }  // namespace catena::app

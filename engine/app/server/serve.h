@@ -28,7 +28,7 @@ struct ServeOptions {
   std::uint32_t width = 1024, height = 768;
   Quality quality;
   /// The quality was set by the command line or the scene: the tuning does not change it
-  bool is_quality_explicit = false;
+  bool has_fixed_quality = false;
   std::uint64_t gpu_memory = 0;  ///< Limit in bytes; 0: what the driver reports
   double seconds = 0;            ///< Time limit, s; 0: until Ctrl-C
   /// Exits when standard input is closed.

@@ -41,7 +41,7 @@ ServeSession::ServeSession(const ServeOptions& options, const LoadedScene& loade
   camera_.adopt_scene(loaded);
   scene_.set_validator([&hand](scene::Scene& edited) { return hand.validate(edited); });
   scene_.take_changed();
-  tuning_.has_explicit_quality = options.is_quality_explicit;
+  tuning_.has_fixed_quality = options.has_fixed_quality;
 }
 
 namespace {
@@ -217,7 +217,7 @@ Outcome ServeSession::apply_stated_targets() {
     CATENA_CHECK(measure_tick_costs(tuning_, scene_, haptics_, [](const std::string& line) { print_message(line); }));
     scene_.mark_changed();
   }
-  return tuning_.target.has_image_targets() && !tuning_.has_explicit_quality ? measure_image() : Outcome(Done{});
+  return Done{};
 }
 
 Outcome ServeSession::measure_image() {

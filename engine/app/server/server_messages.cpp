@@ -99,7 +99,7 @@ std::string recording_words(const Recording& recording, const std::string& recor
 }
 
 std::string plan_words(const LiveTuning& live) {
-  const bool eye = live.image_tuning && !live.has_explicit_quality, hand = live.tick_tuning && !live.tick_tuning->is_empty();
+  const bool eye = live.image_tuning && !live.has_fixed_quality, hand = live.tick_tuning && !live.tick_tuning->is_empty();
   if (!eye && !hand) return "null";
   std::string links;
   if (hand)

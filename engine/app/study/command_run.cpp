@@ -102,7 +102,7 @@ void add_study_run(CLI::App& study, CommandAction& chosen) {
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
   command->add_option("--quality", options->quality, "of the pictures, as of view: error=2 is as sharp at any time, whatever the machine")
       ->capture_default_str();
-  command->add_flag("--full-screen", options->full_screen, "as large as the screen (F11)");
+  command->add_flag("--fullscreen", options->full_screen, "as large as the screen (F11)");
   add_stereo_options(*command, options->stereo);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, options] { chosen = [options] { return run_study(*options); }; });

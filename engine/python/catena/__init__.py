@@ -341,9 +341,9 @@ def serve(scene, *, fields=None, size=(960, 600), page=None, port=0, options=())
     folder = _Folder()
     try:
         path, arguments = _laid_out(folder.name, scene, fields)
-        command = [_program(), "serve", path, "--port", str(port), "--until-stdin-ends", *arguments, *options]
+        command = [_program(), "serve", path, "--port", str(port), "--exit-with-stdin", *arguments, *options]
         if origin:
-            command += ["--framed-by", f"{parts.scheme}://{parts.netloc}"]
+            command += ["--frame-ancestor", f"{parts.scheme}://{parts.netloc}"]
         told = _os.path.join(folder.name, "told")
         with open(told, "wb") as errors:
             child = _subprocess.Popen(command, stdin=_subprocess.PIPE, stdout=_subprocess.PIPE, stderr=errors, text=True,

@@ -65,18 +65,19 @@ Outcome set_scale(const json::Node& node, const std::string& name, HapticTransfe
 }
 
 Result<Parameter> read_map(const json::Node& node, std::string_view key, json::NumberRange range, const BuildContext& context) {
-  CATENA_CHECK(json::check_known_keys(node, {"field", "map", "of", "normalise", "outside"}));
+  CATENA_CHECK(json::check_known_keys(node, {"field", "map", "quantity", "normalise", "outside"}));
   auto map = std::make_shared<HapticTransferFunction>();
   CATENA_TRY(const std::string name, json::require_string(node, "field"));
   CATENA_TRY(map->field, context.field(*node.find("field"), name));
 
   // quantity of the field that is mapped
   const bool vector = map->field.vector != nullptr;
-  CATENA_TRY(const int of, json::get_choice(node, "of", vector ? 2 : 0, {"value", "gradient", "magnitude"}));
+  CATENA_TRY(const int of, json::get_choice(node, "quantity", vector ? 2 : 0, {"value", "gradient", "magnitude"}));
   map->quantity = static_cast<HapticTransferFunction::Quantity>(of);
   if (vector != (map->quantity == HapticTransferFunction::Quantity::magnitude))
-    return json::error_at(*node.find("of"), fmt::format("\"{}\" is a {} field; \"of\": {} was expected", name, vector ? "vector" : "scalar",
-                                                        vector ? "\"magnitude\"" : "\"value\" or \"gradient\""));
+    return json::error_at(*node.find("quantity"),
+                          fmt::format("\"{}\" is a {} field; \"quantity\": {} was expected", name, vector ? "vector" : "scalar",
+                                      vector ? "\"magnitude\"" : "\"value\" or \"gradient\""));
   CATENA_TRY(map->normalize, json::get_boolean(node, "normalise", false));
   if (map->normalize) CATENA_CHECK(set_scale(node, name, *map));
 
@@ -139,13 +140,13 @@ const Table<ActivationSwitch>& switch_table() {
   return table;
 }
 
-const Table<ReleaseCue>& indication_table() {
+const Table<ReleaseCue>& release_cue_table() {
   static const auto table = [] {
     Table<ReleaseCue> t;
-    t.bind(schema::choice("cue", {"none", "detent", "vibration"}, "A detent is one pulse."), &ReleaseCue::type);
-    t.bind(schema::number("at", "world", "The gap that counts as leaving.").positive().with_default("where it slips or lets go"),
+    t.bind(schema::choice("type", {"none", "detent", "vibration"}, "A detent is one pulse."), &ReleaseCue::type);
+    t.bind(schema::number("distance", "world", "The gap that counts as leaving.").positive().with_default("where it slips or lets go"),
            &ReleaseCue::distance);
-    t.bind(schema::number("from", "", "A vibration begins at this part of `at`.").within(0, 1), &ReleaseCue::onset);
+    t.bind(schema::number("onset", "", "A vibration begins at this fraction of `distance`.").within(0, 1), &ReleaseCue::onset);
     t.bind(schema::number("amplitude", "N", "Force of the cue.").non_negative(), &ReleaseCue::amplitude_n);
     t.bind(schema::number("frequency", "Hz", "Of a vibration.").positive(), &ReleaseCue::frequency_hz);
     t.bind(schema::number("duration", "s", "Of a detent.").positive(), &ReleaseCue::duration_s);
@@ -177,11 +178,12 @@ const Table<Align>& align_table() {
 }  // namespace
 
 schema::Key switch_key() {
-  return schema::object("on", switch_table().keys(), "Its switch: either `button` or `force_above`.").with_default("always on");
+  return schema::object("active_when", switch_table().keys(), "Its switch: either `button` or `force_above`.").with_default("always on");
 }
 
 schema::Key release_cue_key() {
-  return schema::object("indicate", indication_table().keys(), "How the hand is told that it leaves the feature.").with_default("no cue");
+  return schema::object("release_cue", release_cue_table().keys(), "How the hand is told that it leaves the feature.")
+      .with_default("no cue");
 }
 
 schema::Key align_key() {
@@ -192,13 +194,13 @@ schema::Key align_key() {
 
 Result<ActivationSwitch> read_switch(const json::Node& holder) {
   ActivationSwitch on;
-  const json::Node* node = holder.find("on");
+  const json::Node* node = holder.find("active_when");
   if (node == nullptr) return on;
-  CATENA_CHECK(json::expect_object(*node, "on"));
+  CATENA_CHECK(json::expect_object(*node, "active_when"));
   CATENA_CHECK(json::check_known_keys(*node, schema::key_names(switch_table().keys())));
   const bool button = node->find("button") != nullptr, force = node->find("force_above") != nullptr;
   if (button == force)
-    return json::error_at(*node, std::string("\"on\" has ") + (button ? "both" : "neither") +
+    return json::error_at(*node, std::string("\"active_when\" has ") + (button ? "both" : "neither") +
                                      " \"button\" and \"force_above\"; exactly one of them was expected");
   if (const json::Node* other = node->find(button ? "force_below" : "toggle"))
     return json::error_at(*other,
@@ -210,10 +212,10 @@ Result<ActivationSwitch> read_switch(const json::Node& holder) {
 
 Result<ReleaseCue> read_release_cue(const json::Node& link) {
   ReleaseCue out;
-  const json::Node* node = link.find("indicate");
+  const json::Node* node = link.find("release_cue");
   if (node == nullptr) return out;
-  CATENA_CHECK(json::expect_object(*node, "indicate"));
-  CATENA_CHECK(indication_table().read({}, *node, out));
+  CATENA_CHECK(json::expect_object(*node, "release_cue"));
+  CATENA_CHECK(release_cue_table().read({}, *node, out));
   return out;
 }
 

@@ -17,7 +17,7 @@ Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::
 /// Returns the link's `level`; an Error where the field does not attain that value. `key` is the key that names the field.
 Result<double> require_level(const json::Node& link, std::string_view key, const field::ScalarField& field);
 
-/// Parameter values: a number, or an object {"field": NAME, "map": [[value, output], ...], "of": "value" | "gradient" | "magnitude",
+/// Parameter values: a number, or an object {"field": NAME, "map": [[value, output], ...], "quantity": "value" | "gradient" | "magnitude",
 /// "normalise": true, "outside": output}. The model is in haptics/chain/parameter.h.
 
 /// Returns the Parameter under `key`, or `fallback` if the key is absent. An Error where an output lies outside `range`.
@@ -29,16 +29,16 @@ Result<Parameter> require_parameter(const json::Node& link, std::string_view key
 /// Keys that every link accepts besides those of its constraint. The structs that they fill and their models are in
 /// haptics/chain/program.h.
 ///
-/// Schema of "on", the link's switch.
+/// Schema of "active_when", the link's switch.
 schema::Key switch_key();
-/// Schema of "indicate", the release cue.
+/// Schema of "release_cue", the release cue.
 schema::Key release_cue_key();
 /// Schema of "align", the alignment of the tool's axis.
 schema::Key align_key();
 
-/// Reads "on" of a link or a mode; without it, always on.
+/// Reads "active_when" of a link or a mode; without it, always on.
 Result<ActivationSwitch> read_switch(const json::Node& holder);
-/// Reads "indicate" of a link; without it, no cue.
+/// Reads "release_cue" of a link; without it, no cue.
 Result<ReleaseCue> read_release_cue(const json::Node& link);
 /// Reads "align" of a link. An Error where the constraint has no axis: points have none, friction and forces have no primitive at all.
 Result<Align> read_align(const json::Node& link, const Coupling& coupling, const Constraint& constraint);

@@ -48,9 +48,9 @@ class GradientForce final : public Constraint {
 Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "a gradient force", context));
   CATENA_TRY(const Parameter displacement, require_parameter(link, "displacement", json::NumberRange::non_negative, context));
-  CATENA_CHECK(json::require_string(link, "towards"));
-  CATENA_TRY(const int towards, json::get_choice(link, "towards", 0, {"high", "low"}));
-  return std::shared_ptr<const Constraint>(std::make_shared<GradientForce>(field, displacement, towards == 0 ? 1.0 : -1.0));
+  CATENA_CHECK(json::require_string(link, "direction"));
+  CATENA_TRY(const int direction, json::get_choice(link, "direction", 0, {"up_gradient", "down_gradient"}));
+  return std::shared_ptr<const Constraint>(std::make_shared<GradientForce>(field, displacement, direction == 0 ? 1.0 : -1.0));
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ ConstraintType gradient_force_constraint() {
           "Draws the hand up or down a scalar field.",
           "not in the paper",
           {scalar_field_key("field").required(), length_key("displacement", "Largest distance of the proxy from the probe.").required(),
-           schema::choice("towards", {"high", "low"}, "Which values draw the hand.").required()},
+           schema::choice("direction", {"up_gradient", "down_gradient"}, "Towards higher or lower values.").required()},
           build_gradient_force};
 }
 

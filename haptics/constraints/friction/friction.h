@@ -33,8 +33,8 @@ ConstraintType drag_constraint();
 
 /// Drag on a surface, modulated by the field's angle to it: the proxy p_f of the paper's section 6.1, Eqs. 7-9, Figure 5(b).
 ///   u = cos(theta) = sigma_s sigma_v d_s.d_v,  d_s along grad s, d_v along v, sigma the safe normalization (friction_contact.h)
-///   law "safe" (default)   tau_f = (1 - |u|) tau_min + |u| tau_max
-///   law "printed"          tau_f = u tau_min + (1 - u) tau_max     (Eq. 7)
+///   law "robust" (default) tau_f = (1 - |u|) tau_min + |u| tau_max
+///   law "as_published"     tau_f = u tau_min + (1 - u) tau_max     (Eq. 7)
 /// With Eq. 7 as printed, dragging is easiest where the field is along the normal, while the text around it says hardest; and
 /// for u < 0 it exceeds tau_max. It is kept as printed, except that tau_f is never negative. In ill-defined regions u = 0.
 /// u, tau_min, tau_max are evaluated at p_f before it moves; then isotropic drag (drag_constraint) with tau_f.

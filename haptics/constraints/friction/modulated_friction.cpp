@@ -14,7 +14,7 @@ constexpr double kLeast = 0.001, kMost = 0.01;  // of L; defaults of the least a
 
 struct ModulatedFrictionSpec {
   field::VectorFieldPtr field;
-  bool line = false, printed = false;
+  bool line = false, as_published = false;
   double largest_speed = 0, largest_slope = 0;  ///< X of v and of grad s
   Parameter least, most;                        ///< tau_min, tau_max
   ContactSpec contact;
@@ -41,7 +41,7 @@ class ModulatedFriction final : public Constraint {
     if (contact.was_repositioned()) memory.angle = angle(contact.surface_point(), memory, state, scratch);
     const double least = spec_.least.at(before, scratch.parameter_cursor, state.evaluations);
     const double most = spec_.most.at(before, scratch.parameter_cursor, state.evaluations);
-    const double u = memory.angle, hard = spec_.printed ? 1 - u : std::fabs(u);
+    const double u = memory.angle, hard = spec_.as_published ? 1 - u : std::fabs(u);
     const double tau = safe_threshold(equation::drag_threshold(hard, least, most));
     if (norm(contact.gap()) > tau) {
       if (!contact.slide_to(tau)) return contact.handle_lost_surface();
@@ -87,7 +87,7 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "modulated_friction", context));
   spec.field = field;
   CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
-  CATENA_CHECK(schema::read_value(law_key(""), link, spec.printed));
+  CATENA_CHECK(schema::read_value(law_key(""), link, spec.as_published));
   CATENA_TRY(spec.contact, read_contact(link, SurfaceRequirement::required, context));
   const double length = spec.contact.length;
   CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::NumberRange::non_negative, context));
@@ -110,7 +110,7 @@ ConstraintType modulated_friction_constraint() {
        level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
        length_key("tau_min", "Threshold where the field is tangential.").with_default("0.001 L"),
        length_key("tau_max", "Threshold where the field is normal.").with_default("0.01 L"),
-       law_key("`safe`: harder the more normal; `printed`: Eq. 7 to the letter.")},
+       law_key("`robust`: harder the closer the field is to the normal; `as_published`: Eq. 7 as printed in the paper.")},
       build_modulated_friction};
 }
 

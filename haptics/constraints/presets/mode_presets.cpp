@@ -83,7 +83,7 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
     link.members.emplace_back("name", word(*item.find("name"), "name", fmt::format("{}_{}", name, part.suffix)));
     link.members.emplace_back("type", word(*type, "type", std::string(part.type)));
     for (const schema::Key& key : common_keys()) {
-      const bool of_all = key.name == "stiffness" || key.name == "on" || key.name == "enabled";
+      const bool of_all = key.name == "stiffness" || key.name == "active_when" || key.name == "enabled";
       if (key.name == "name" || key.name == "type" || !(of_all || links.empty())) continue;
       if (const json::Node* value = item.find(key.name)) link.members.emplace_back(key.name, *value);
     }

@@ -157,10 +157,10 @@ Result<std::shared_ptr<const Constraint>> build_vortex_core(const json::Node& li
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a vortex core", context));
   CATENA_TRY(const double radius, json::get_number(link, "radius", 0, json::NumberRange::non_negative));
   CATENA_TRY(const double search,
-             json::get_number(link, "search", std::fmax(0.1 * field->domain_length(), 2 * radius), json::NumberRange::positive));
+             json::get_number(link, "search_radius", std::fmax(0.1 * field->domain_length(), 2 * radius), json::NumberRange::positive));
   if (!(search > radius))
-    return json::error_at(*link.find("search"),
-                          fmt::format("\"search\" is {}; a number > \"radius\", which is {}, was expected", search, radius));
+    return json::error_at(*link.find("search_radius"),
+                          fmt::format("\"search_radius\" is {}; a number > \"radius\", which is {}, was expected", search, radius));
   flow::CoreOptions options;
   CATENA_CHECK(schema::read_value(schema::core_criterion_key(), link, options.criterion));
   CATENA_CHECK(schema::read_value(schema::core_length_key(), link, options.min_length));
@@ -181,7 +181,7 @@ ConstraintType vortex_core_constraint() {
                .non_negative()
                .with_initial_value("0.1 L")
                .with_default("0"),
-           schema::number("search", "world", "Longest distance of the core from the probe.")
+           schema::number("search_radius", "world", "Longest distance of the core from the probe.")
                .positive()
                .with_initial_value("0.2 L")
                .with_default("0.1 L or 2 `radius`, the larger"),

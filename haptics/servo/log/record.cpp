@@ -216,8 +216,8 @@ constexpr std::string_view kLinkNames[kLinkWords] = {"x",
                                                      "torque_x",
                                                      "torque_y",
                                                      "torque_z",
-                                                     "booked",
-                                                     "leaving",
+                                                     "accounted",
+                                                     "release_ratio",
                                                      ""};
 
 constexpr std::string_view kWidgetNames[kWidgetWords] = {"x", "y", "z", "x2", "y2", "z2", "qw", "qx", "qy", "qz", "value", ""};
@@ -239,7 +239,7 @@ std::string packed_link_difference(const std::string& link, std::uint64_t a, std
   const auto status = [](std::uint64_t w) -> std::string { return to_string(static_cast<LinkStatus>(byte_of(w, 4))); };
   if (byte_of(a, 4) != byte_of(b, 4)) return said(link + "_status", status(a), status(b));
   if (byte_of(a, 5) != byte_of(b, 5)) return said(link + "_active", std::to_string(byte_of(a, 5)), std::to_string(byte_of(b, 5)));
-  if (byte_of(a, 6) != byte_of(b, 6)) return said(link + "_left", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
+  if (byte_of(a, 6) != byte_of(b, 6)) return said(link + "_released", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
   const auto reason = [](std::uint64_t w) -> std::string { return to_string(static_cast<SampleStatus>(byte_of(w, 7))); };
   if (byte_of(a, 7) != byte_of(b, 7) && byte_of(a, 7) != 0) return said(link + "_reason", reason(a), reason(b));
   return said(link + "_evaluations", evaluations(a), evaluations(b));

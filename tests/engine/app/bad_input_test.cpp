@@ -217,8 +217,8 @@ TEST_F(BadArguments, TraceRenderInfo) {
 TEST_F(BadArguments, AnEmptyNumberIsRefusedByEveryOption) {
   const std::string s = folder_ / "s.json", seeds = folder_ / "seeds.csv", o = folder_ / "o.csv", png = folder_ / "o.png";
   const std::string empty = "the value is empty; a number was expected";
-  for (const char* option : {"--bits", "--antialias", "--tile", "--frames", "--fps", "--orbit", "--zoom", "--phase", "--gpu-memory",
-                             "--eye-separation", "--memory"})
+  for (const char* option : {"--bits", "--antialias", "--tile", "--frames", "--fps", "--orbit", "--zoom", "--animation-phase",
+                             "--gpu-memory", "--eye-separation", "--memory"})
     refused({"render", s, "-o", png, "--size", "16x16", option, ""}, png, {option, empty});
   for (const char* option : {"--length", "--tolerance", "--step", "--min-speed", "--repeat"})
     refused({"trace", s, "--field", "v", "--seeds", seeds, "-o", o, option, ""}, o, {option, empty});

@@ -126,7 +126,7 @@ H                    the mouse is the hand, on what is under the pointer; the wh
 space                the hand's button 1
 F                    a haptic device's forces on and off (off at first)
 G                    with a headset: touch three places, which says where a haptic device stands; again: not now
-device button 1      takes hold of widgets, selects; what the scene's "on" says
+device button 1      takes hold of widgets, selects; what the scene's "active_when" says
 Ctrl+O               open; a file can be dropped on the window as well
 Ctrl+S, Ctrl+Shift+S save (with the view, if it was moved), save as
 Ctrl+Z, Ctrl+Y       undo, redo

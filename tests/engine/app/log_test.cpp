@@ -1,10 +1,12 @@
 /// `catena replay --log`, `export` and `info` of a recording, from the outside: every kind of link, switches, maps, program changes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "engine/app/haptics/log_replay.h"
 #include "haptics/build/build_program.h"
+#include "haptics/servo/log/rewrite.h"
 #include "tests/fuzz/log_bytes.h"
 #include "tests/support/recording_fixture.h"
 #include "tests/support/run_program.h"
@@ -26,22 +28,22 @@ void PrintTo(const Felt& felt, std::ostream* out) { *out << felt.name; }
 const Felt kFelt[] = {
     {"Modes", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "snap": 0.1, "release": 0.25,
-             "indicate": {"cue": "vibration", "amplitude": 0.3, "frequency": 130}},
-            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "indicate": {"cue": "detent"}},
-            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "on": {"force_above": 20, "force_below": 5}}],
-  "modes": [{"name": "swapped", "links": ["surface", "curve"], "on": {"button": 1, "toggle": true}}],
+             "release_cue": {"type": "vibration", "amplitude": 0.3, "frequency": 130}},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "release_cue": {"type": "detent"}},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "active_when": {"force_above": 20, "force_below": 5}}],
+  "modes": [{"name": "swapped", "links": ["surface", "curve"], "active_when": {"button": 1, "toggle": true}}],
   "coupling": {"ramp_s": 0.05, "max_force": 100}})"},
     {"Grids", R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "follow": "online", "seed": [0.5, 0.02, 0.03]},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "free": "below", "release": 0.2,
-             "stiffness": {"field": "s", "map": [[0.2, 100], [0.8, 400]]}, "on": {"button": 2}}], "coupling": {"damping": 1.5}})"},
+             "stiffness": {"field": "s", "map": [[0.2, 100], [0.8, 400]]}, "active_when": {"button": 2}}], "coupling": {"damping": 1.5}})"},
     {"Friction", R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
   "chain": [{"name": "drag", "type": "drag", "threshold": {"field": "v", "normalise": true, "map": [[0, 0.001], [1, 0.03]]}},
             {"name": "along", "type": "friction", "field": "v", "threshold": 0.05},
             {"name": "rough", "type": "texture", "threshold": 0.01, "amplitude": 0.8, "wavelength": 0.07},
             {"name": "oil", "type": "viscosity", "time": 0.004},
-            {"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "towards": "high"},
-            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search": 0.6}], "coupling": {"stiffness": 250}})"},
+            {"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "direction": "up_gradient"},
+            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search_radius": 0.6}], "coupling": {"stiffness": 250}})"},
     {"Shapes", R"({"fields": {},
   "chain": [{"name": "path", "type": "polyline", "points": [[0.7, 0, 0], [0, 0.7, 0.1], [-0.7, 0, 0], [0, -0.6, 0]], "closed": true},
             {"name": "rail", "type": "segment", "from": [-0.5, -0.4, 0], "to": [0.6, 0.5, 0.2], "snap": 0.2, "release": 0.35},
@@ -112,6 +114,40 @@ std::string without_curves(const std::string& path) {
     for (const std::string& column : table.header())
       if (!column.ends_with("_curve")) text += table.text(row, column) + (column == "t" ? "\n" : ",");
   return text;
+}
+
+TEST(Upgrade, ARecordingOfVersion02ReplaysToTheSameHash) {
+  const test::TemporaryFolder folder;
+  make_data(folder.path());
+  test::write_file(folder / "s.json", kFelt[0].scene);
+  const std::uint64_t hash = record_session(folder / "new.catlog", folder / "s.json");
+  const std::string old = folder / "old.catlog";
+  const auto old_names = [](std::string_view scene_text) -> Result<std::string> {
+    std::string text(scene_text);
+    for (const auto& [now, then] :
+         {std::pair{"active_when", "on"}, {"release_cue", "indicate"}, {"{\"type\": \"detent", "{\"cue\": \"detent"}})
+      for (std::size_t at; (at = text.find(now)) != std::string::npos;) text.replace(at, std::string_view(now).size(), then);
+    return text;
+  };
+  ASSERT_TRUE(haptics::log::rewrite_scene_texts(folder / "new.catlog", old, old_names));
+  const auto refused = catena_program({"replay", "--log", old});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("\"indicate\" is now \"release_cue\""), std::string::npos) << refused.err;
+
+  const std::string bytes = test::read_file(old);
+  ASSERT_EQ(catena_program({"upgrade", old}).exit_code, 0);
+  EXPECT_EQ(test::read_file(old + ".bak"), bytes);
+  const auto run = catena_program({"replay", "--log", old, "--stats", folder / "s.txt"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(test::read_file(folder / "s.txt").find(fmt::format("{:016x}", hash)), std::string::npos);
+  EXPECT_EQ(catena_program({"upgrade", old}).out, old + ": has no old names\n");
+
+  test::write_file(folder / "a.json", R"({"fog": {"most": 0.5}})");
+  test::write_file(folder / "a.json.bak", "mine");
+  EXPECT_EQ(catena_program({"upgrade", folder / "a.json"}).exit_code, 2);  // nothing is overwritten
+  EXPECT_EQ(test::read_file(folder / "a.json") + test::read_file(folder / "a.json.bak"), R"({"fog": {"most": 0.5}}mine)");
+  test::write_file(old, bytes.substr(0, 100) + "x" + bytes.substr(101));
+  EXPECT_EQ(catena_program({"upgrade", "--no-backup", old}).exit_code, 2);
 }
 
 class RecordedScene : public testing::TestWithParam<Felt> {};

@@ -233,7 +233,7 @@ TEST(Replay, DetailsTellWhatEveryLinkFeels) {
   test::write_file(folder / "s.json", R"({"coupling": {"stiffness": 200, "max_force": 1000}, "workspace": {"metres_per_unit": 0.5},
     "chain": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.05},
               {"name": "pin", "type": "point", "position": [0, 0, 0], "stiffness": 10}],
-    "modes": [{"name": "pinned", "links": ["pin"], "on": {"button": 2}}]})");
+    "modes": [{"name": "pinned", "links": ["pin"], "active_when": {"button": 2}}]})");
   std::string path = "t,x,y,z,buttons\n";
   for (int k = 0; k < 70; ++k) path += to_text(1e-3 * k) + ",0.2,0," + to_text(0.005 - 1e-3 * k) + (k >= 65 ? ",2\n" : ",0\n");
   test::write_file(folder / "p.csv", path);
@@ -245,17 +245,17 @@ TEST(Replay, DetailsTellWhatEveryLinkFeels) {
   for (std::size_t row = 6; row < 54; ++row) {
     const double depth = 1e-3 * static_cast<double>(row) - 0.005;
     EXPECT_NEAR(table.number(row, "floor_gap"), depth, 1e-12);
-    EXPECT_NEAR(table.number(row, "floor_leaving"), depth / 0.05, 1e-10);
+    EXPECT_NEAR(table.number(row, "floor_release_ratio"), depth / 0.05, 1e-10);
     EXPECT_NEAR(table.number(row, "floor_energy"), 0.5 * 200 * std::pow(0.5 * depth, 2), 1e-12);
     EXPECT_NEAR(table.number(row, "floor_force_z"), 200 * 0.5 * depth, 1e-9);
-    EXPECT_EQ(table.number(row, "floor_left"), 0);
+    EXPECT_EQ(table.number(row, "floor_released"), 0);
     EXPECT_EQ(table.number(row, "floor_stiffness"), 200);
     EXPECT_EQ(table.number(row, "pin_stiffness"), 10);
     EXPECT_NEAR(table.number(row, "floor_force_z") + table.number(row, "pin_force_z"), ticks.number(row, "force_z"), 1e-12);
     EXPECT_EQ(table.text(row, "mode"), "");
   }
-  EXPECT_EQ(table.number(56, "floor_left"), 1);
-  EXPECT_EQ(table.number(56, "floor_leaving"), 1);
+  EXPECT_EQ(table.number(56, "floor_released"), 1);
+  EXPECT_EQ(table.number(56, "floor_release_ratio"), 1);
   EXPECT_EQ(table.text(66, "mode"), "pinned");
   EXPECT_EQ(ticks.number(66, "floor_active"), 0);
   EXPECT_EQ(ticks.number(66, "pin_active"), 1);

@@ -93,7 +93,7 @@ TEST(RenderStereo, TheSceneSaysItAndTheOptionGoesFirst) {
   const Image8 by_option = draw("", {"--stereo", "side-by-side", "--eye-separation", "0.8", "--zero-parallax", "5"}).picture;
   EXPECT_EQ(by_scene.rgba, by_option.rgba);
   EXPECT_EQ(draw(keys, {"--stereo", "mono"}).picture.rgba, draw("", {}).picture.rgba);
-  const std::string swapped = R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5, "swap": true})";
+  const std::string swapped = R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5, "swap_eyes": true})";
   EXPECT_EQ(draw(swapped, {}).picture.rgba, draw(keys, {"--stereo", "cross-eyed"}).picture.rgba);
   // three views of their own
   const std::string three = R"(, "stereo": {"mode": "side-by-side", "views": 3})";

@@ -116,13 +116,13 @@ TEST(StudyAnalysisPlan, MistakesInTheFileAreNamedByLine) {
     EXPECT_TRUE(study.error().message.starts_with("s.json:")) << study.error().message;
     EXPECT_NE(study.error().message.find(words), std::string::npos) << study.error().message;
   };
-  says("\"test\": \"weaker\"", "\"test\": \"weakest\"", "weaker");
+  says("\"test\": \"weaker_correlation\"", "\"test\": \"weakest\"", "weaker_correlation");
   says("\"rejected\": 1, \"trials\": 400", "\"rejected\": 3, \"trials\": 2", "is no share");
-  says("\"why\": \"nobody was asked\"", "\"reported\": \"\"", "\"why\" is missing");
+  says("\"reason\": \"nobody was asked\"", "\"reported\": \"\"", "\"reason\" is missing");
   says("\"tasks\": [\"trace\"], \"conditions\": [\"free\"]", "\"tasks\": [\"trac\"]", "did you mean \"trace\"?");
-  says("[\"follow\", \"trace\"], \"expect\"", "[\"trace\", \"follow\"], \"expect\"", "no pair that \"compare\" has");
-  says("\"expect\": \"overlap\"", "\"expect\": \"lower\"", "apart or overlap was expected");
-  says("\"test\": \"none\", ", "\"test\": \"none\", \"tasks\": [\"trace\"], ", "means nothing to the test \"none\"");
+  says("[\"follow\", \"trace\"], \"alternative\"", "[\"trace\", \"follow\"], \"alternative\"", "no pair that \"compare\" has");
+  says("\"alternative\": \"overlap\"", "\"alternative\": \"lower\"", "apart or overlap was expected");
+  says("\"test\": \"untestable\", ", "\"test\": \"untestable\", \"tasks\": [\"trace\"], ", "means nothing to the test \"untestable\"");
   says("\"of\": \"deviation\", ", "\"of\": \"deviation\", \"conditions\": [\"free\"], ", "names the first condition");
   says("{\"tasks\": [\"follow\", \"trace\"]}", "{\"tasks\": [\"follow\"]}", "names no two tasks");
   says("{\"tasks\": [\"follow\", \"trace\"]}", "{\"tasks\": [\"follow\", \"follow\"]}", "stands twice");

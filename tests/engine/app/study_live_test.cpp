@@ -29,7 +29,7 @@ TEST(StudySession, BeforeATrialBeginsNothingTellsItsCondition) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "study.json", R"({
     "name": "two links", "trials": 1, "training": 0,
-    "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 20, "lines": 0},
+    "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 20, "context_streamlines": 0},
       "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": "$seed"}},
                 "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
     "conditions": [{"name": "free", "chain": [{"name": "floor", "type": "plane", "point": "$start", "normal": [0, 0, 1]}]},
@@ -65,8 +65,8 @@ TEST(StudySession, BeforeATrialBeginsNothingTellsItsCondition) {
 /// All trials start in the middle and end soon after the hand has left the start.
 constexpr const char* kShort = R"({
   "name": "short", "seed": 3, "trials": 4, "training": 0,
-  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "limits": {"ends_s": 0.05},
-    "stimulus": {"path_mm": 20, "lines": 0, "region": 1e-9},
+  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "limits": {"timeout_s": 0.05},
+    "stimulus": {"path_mm": 20, "context_streamlines": 0, "region": 1e-9},
     "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": 5}}, "cursor": {"shape": "crosshair"},
               "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
   "conditions": [{"name": "free", "chain": []},

@@ -178,7 +178,7 @@ TEST(StudyProcedure, GoesOnAfterAnyNumberOfTrialsAndAnswers) {
 
 constexpr const char* kStudy = R"({
   "name": "small", "seed": 3, "trials": 2, "training": 0,
-  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 20, "lines": 0},
+  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 20, "context_streamlines": 0},
     "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": 5}},
               "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
   "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": [{"name": "hold", "type": "drag", "threshold": 0.01}]}],

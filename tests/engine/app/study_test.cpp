@@ -189,7 +189,7 @@ TEST(Study, WhatCouldNotBeDoneOrReadAgainIsRefusedInTheFile) {
 TEST(Study, WithoutGlobalLinesNoneAreDrawn) {
   const test::TemporaryFolder folder;
   std::string text = test::read_file(short_study(folder));
-  text.replace(text.find("\"lines\": 14"), 11, "\"lines\": 0");
+  text.replace(text.find("\"context_streamlines\": 14"), 25, "\"context_streamlines\": 0");
   test::write_file(folder / "none.json", text);
   const auto run = study({"scene", folder / "none.json", "-o", folder / "d.json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -20,7 +20,7 @@ constexpr std::uint32_t kWidth = 640, kHeight = 480;
 
 constexpr const char* kStudy = R"({
   "name": "small", "seed": 3, "trials": 1, "training": 0, "instructions": "pages.txt",
-  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 60, "lines": 2},
+  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 60, "context_streamlines": 2},
     "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": "$seed"}},
               "streamlines": [{"field": "flow", "seeds": ["$middle"], "length": "$half_length", "radius": 0.02}],
               "cursor": {"shape": "crosshair", "size": 0.05}, "background": [0.9, 0.9, 0.9],

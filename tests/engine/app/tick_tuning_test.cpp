@@ -9,20 +9,20 @@
 namespace plan_test {
 
 TEST(TickTuning, TakesForEachLinkTheCheapest) {
-  const TickTuning plan(two_link_curves(), parse_target("hand_error=1e-3"));
+  const TickTuning plan(two_link_curves(), parse_target("max_proxy_error=1e-3"));
   ASSERT_EQ(plan.links().size(), 2u);
   EXPECT_EQ(plan.links()[0].setting, "rk2");
   EXPECT_EQ(plan.links()[1].setting, "euler");
   EXPECT_DOUBLE_EQ(plan.expected_error(), 1e-3);
   EXPECT_DOUBLE_EQ(plan.expected_us(), 1e-3 * (400 + 400 + 200));
-  EXPECT_FALSE(TickTuning(two_link_curves(), parse_target("hand_error=1e-12")).meets_target());
+  EXPECT_FALSE(TickTuning(two_link_curves(), parse_target("max_proxy_error=1e-12")).meets_target());
 }
 
 TEST(TickTuning, SpendsTheTimeOnTheWorstLink) {
-  const TickTuning plan(two_link_curves(), parse_target("hand_time=1.31"));
+  const TickTuning plan(two_link_curves(), parse_target("max_tick_us=1.31"));
   EXPECT_EQ(plan.links()[0].setting, "rk2");
   EXPECT_EQ(plan.links()[1].setting, "rk2");
-  const TickTuning poor(two_link_curves(), parse_target("hand_time=0.01"));
+  const TickTuning poor(two_link_curves(), parse_target("max_tick_us=0.01"));
   EXPECT_FALSE(poor.meets_target());
   EXPECT_EQ(poor.links()[0].setting, "euler");
   const std::vector<double> stops = plan.error_breakpoints();
@@ -35,22 +35,22 @@ TEST(TickTuning, SaysWhereALineIsFarOff) {
   for (LinkCurve& one : curves.links)
     for (Point& p : one.curve.points) p.extra_values = {0, 0, NAN};
   curves.links[0].curve.points[1].extra_values[2] = 0.5;  // L is 2: 1 somewhere, where 2e-4 is expected
-  const TickTuning near(curves, parse_target("hand_error=1e-3"));
+  const TickTuning near(curves, parse_target("max_proxy_error=1e-3"));
   EXPECT_EQ(near.links()[0].setting, "rk2");
   EXPECT_NEAR(near.expected_error(), 1e-3, 1e-12);  // of b
   EXPECT_EQ(near.error_anywhere(), 1);
-  EXPECT_NE(
-      near.summary().find("(far along the line of a, small errors have grown: there up to 1, so that hand_error is kept near its seed"),
-      std::string::npos)
+  EXPECT_NE(near.summary().find(
+                "(far along the line of a, small errors have grown: there up to 1, so that max_proxy_error is kept near its seed"),
+            std::string::npos)
       << near.summary();
   curves.links[0].curve.points[1].extra_values[2] = 2e-4;  // much the same everywhere
-  const TickTuning alike(curves, parse_target("hand_error=1e-3"));
+  const TickTuning alike(curves, parse_target("max_proxy_error=1e-3"));
   EXPECT_EQ(alike.error_anywhere(), alike.expected_error());
   EXPECT_EQ(alike.summary().find("far along"), std::string::npos) << alike.summary();
 }
 
 TEST(TickTuning, GoesIntoTheTextAndLeavesWhatIsStated) {
-  const TickTuning plan(two_link_curves(), parse_target("hand_error=1e-3"));
+  const TickTuning plan(two_link_curves(), parse_target("max_proxy_error=1e-3"));
   const auto text = plan.apply(R"({"chain": [{"name": "b", "method": "dp54"}, {"name": "c"}, {"name": "a"}]})", "s.json");
   ASSERT_TRUE(text) << text.error().message;
   EXPECT_EQ(*text, R"({"chain": [{"name": "b", "method": "dp54"}, {"name": "c"}, {"name": "a", "method": "rk2"}]})");
@@ -74,8 +74,8 @@ TickCurves with_cells() {
 }
 
 TEST(TickTuning, CellsAreCubicOnlyBelowWhatLinearOnesHold) {
-  EXPECT_TRUE(TickTuning(with_cells(), parse_target("hand_error=1e-3")).cubic_fields().empty());
-  const TickTuning fine(with_cells(), parse_target("hand_error=1e-5"));
+  EXPECT_TRUE(TickTuning(with_cells(), parse_target("max_proxy_error=1e-3")).cubic_fields().empty());
+  const TickTuning fine(with_cells(), parse_target("max_proxy_error=1e-5"));
   EXPECT_EQ(fine.cubic_fields(), std::vector<std::string>{"flow"});
   ASSERT_EQ(fine.links().size(), 3u);
   EXPECT_FALSE(fine.links()[0].at_floor);  // 1e-6 L is below it
@@ -85,14 +85,14 @@ TEST(TickTuning, CellsAreCubicOnlyBelowWhatLinearOnesHold) {
   TickCurves noisy = with_cells();
   for (LinkCurve& link : noisy.links)
     if (link.is_cubic) link.curve.discretization_error = 0.8e-4;
-  EXPECT_TRUE(TickTuning(noisy, parse_target("hand_error=1e-5")).cubic_fields().empty());
+  EXPECT_TRUE(TickTuning(noisy, parse_target("max_proxy_error=1e-5")).cubic_fields().empty());
   // a time that linear cells keep and cubic ones do not
-  EXPECT_TRUE(TickTuning(with_cells(), parse_target("hand_time=2.0")).cubic_fields().empty());
-  EXPECT_FALSE(TickTuning(with_cells(), parse_target("hand_time=20")).cubic_fields().empty());
+  EXPECT_TRUE(TickTuning(with_cells(), parse_target("max_tick_us=2.0")).cubic_fields().empty());
+  EXPECT_FALSE(TickTuning(with_cells(), parse_target("max_tick_us=20")).cubic_fields().empty());
 }
 
 TEST(TickTuning, CellsGoIntoTheTextUnlessTheyAreStated) {
-  const TickTuning plan(with_cells(), parse_target("hand_error=1e-5"));
+  const TickTuning plan(with_cells(), parse_target("max_proxy_error=1e-5"));
   const auto open = plan.apply(R"({"fields": {"flow": {"file": "a.vdb"}}})", "s.json");
   ASSERT_TRUE(open) << open.error().message;
   EXPECT_EQ(*open, R"({"fields": {"flow": {"file": "a.vdb", "interpolation": "cubic"}}})");

@@ -245,7 +245,7 @@ TEST(TradeoffParetoChoice, TakesTheKneeOrWhatTheSceneHas) {
 }
 
 TEST(TradeoffTiming, ARunThatIsLateRepeatsLess) {
-  const Effort& whole = select_effort(true, false);
+  const Effort& whole = select_effort("quick");
   EXPECT_EQ(reduce_if_late(whole, 0, 0).rendering_s, whole.rendering_s);
   EXPECT_EQ(reduce_if_late(whole, 0.4 * whole.total_s, 0.5).rendering_s, whole.rendering_s) << "early";
   EXPECT_NEAR(reduce_if_late(whole, 0.75 * whole.total_s, 0.5).rendering_s, 0.5 * whole.rendering_s, 1e-9);
@@ -337,8 +337,8 @@ constexpr const char* kScene = R"({"fields": {"flow": {"analytic": "helix"}, "ba
 TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
-  const auto run = test::run_catena(
-      {"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "interpolation,streamline,isosurface,chain length"});
+  const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only",
+                                     "interpolation,streamline,isosurface,chain length"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Table line = Table::read(folder / "out/hand-streamline-curve.csv");
   double linear = 0, rk4 = 1, selected = 1;
@@ -370,7 +370,7 @@ TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
 TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
-  const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "servo rate"});
+  const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "servo rate"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   std::string chosen[2];
   for (const int k : {0, 1}) {
@@ -386,7 +386,7 @@ TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
   const std::string page = test::read_file(folder / "out/report.html");
   EXPECT_NE(page.find("The reference is a servo at 10 kHz; it differs from one at 20 kHz by "), std::string::npos);
   test::write_file(folder / "eye.json", R"({"fields": {"ball": {"analytic": "sphere"}}, "volumes": [{"field": "ball"}]})");
-  const auto none = test::run_catena({"tradeoff", folder / "eye.json", "-o", folder / "none", "--quick", "--only", "servo rate"});
+  const auto none = test::run_catena({"tradeoff", folder / "eye.json", "-o", folder / "none", "--effort", "quick", "--only", "servo rate"});
   EXPECT_EQ(none.exit_code, 2) << none.out;
   EXPECT_NE(none.err.find("there is nothing to measure"), std::string::npos) << none.err;
   EXPECT_FALSE(test::exists(folder / "none"));
@@ -398,8 +398,8 @@ TEST(TradeoffScene, QualityIsLeftOutWhereNothingIsSampledAlongRays) {
     test::write_file(folder / "s.json", std::string(R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
       "isosurfaces": [{"field": "ball", "level": 1, "opacity": )") +
                                             opacity + "}]}");
-    const auto run =
-        test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "interpolation,quality,step"});
+    const auto run = test::run_catena(
+        {"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "interpolation,quality,step"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     if (run.out.find("left out: The eye:") != std::string::npos) GTEST_SKIP() << run.out;
     for (const char* name : {"Quality", "Step"})
@@ -417,7 +417,7 @@ TEST(TradeoffScene, CubicCellsSayWhatTheyDoToAVolume) {
     test::write_file(folder / "s.json",
                      std::string(R"({"fields": {"g": {"file": "g.vdb"}}, )") +
                          (volume ? R"("volumes": [{"field": "g"}]})" : R"("isosurfaces": [{"field": "g", "level": 0.5}]})"));
-    const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "cells"});
+    const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--effort", "quick", "--only", "cells"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out.find("a cubic volume has no fast rays") != std::string::npos, volume) << run.out;
     EXPECT_NE(run.out.find(volume ? ": linear. " : ": cubic. "), std::string::npos) << run.out;
@@ -427,7 +427,7 @@ TEST(TradeoffScene, CubicCellsSayWhatTheyDoToAVolume) {
 TEST(TradeoffScene, PicturesAreMeasuredOfABareFile) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
-  const auto run = test::run_catena({"tradeoff", folder / "g.vdb", "-o", folder / "out", "--quick", "--only", "memory budget"});
+  const auto run = test::run_catena({"tradeoff", folder / "g.vdb", "-o", folder / "out", "--effort", "quick", "--only", "memory budget"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("left out: The hand:"), std::string::npos) << run.out;
   if (run.out.find("left out: The eye:") != std::string::npos) GTEST_SKIP() << run.out;
@@ -462,7 +462,7 @@ TEST(TradeoffScene, BadInputIsOneLineAndNothingIsWritten) {
                                                                                      {scene, "--compare", folder / "worse.json"},
                                                                                      {scene, "--compare", folder / "none.json"},
                                                                                      {scene, "--probe", folder / "none.csv"},
-                                                                                     {scene, "--quick", "--thorough"},
+                                                                                     {scene, "--effort", "slow"},
                                                                                      {scene, "--only", "luck"},
                                                                                      {scene, "--figure", "2"}}) {
     std::vector<std::string> all{"tradeoff"};

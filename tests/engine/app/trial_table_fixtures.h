@@ -33,15 +33,15 @@ inline const std::string kStudy = R"({
                     {"name": "how", "question": "How was it?"}],
   "compare": [{"tasks": ["follow", "trace"]}],
   "findings": [
-    {"paper": "held is more accurate", "test": "difference", "measure": "error", "tasks": ["trace"]},
-    {"paper": "held is steadier", "test": "difference", "measure": "error", "of": "deviation", "tasks": ["trace"]},
-    {"paper": "the times' intervals overlap", "test": "intervals", "measure": "time", "expect": "overlap"},
-    {"paper": "to follow is less accurate", "test": "tasks", "measure": "error", "tasks": ["follow", "trace"], "expect": "higher"},
-    {"paper": "haste costs accuracy", "test": "correlation", "tasks": ["trace"], "conditions": ["free"]},
-    {"paper": "less so when held", "test": "weaker", "tasks": ["trace"]},
-    {"paper": "the gain is largest when tracing", "test": "largest", "measure": "error", "tasks": ["trace"]},
-    {"paper": "1 of 400 was rejected", "test": "rejections", "rejected": 1, "trials": 400},
-    {"paper": "they liked it", "test": "none", "why": "nobody was asked"}]
+    {"claim": "held is more accurate", "test": "difference", "measure": "error", "tasks": ["trace"]},
+    {"claim": "held is steadier", "test": "difference", "measure": "error", "of": "deviation", "tasks": ["trace"]},
+    {"claim": "the times' intervals overlap", "test": "intervals", "measure": "time", "alternative": "overlap"},
+    {"claim": "to follow is less accurate", "test": "tasks", "measure": "error", "tasks": ["follow", "trace"], "alternative": "higher"},
+    {"claim": "haste costs accuracy", "test": "correlation", "tasks": ["trace"], "conditions": ["free"]},
+    {"claim": "less so when held", "test": "weaker_correlation", "tasks": ["trace"]},
+    {"claim": "the gain is largest when tracing", "test": "largest", "measure": "error", "tasks": ["trace"]},
+    {"claim": "1 of 400 was rejected", "test": "rejections", "rejected": 1, "trials": 400},
+    {"claim": "they liked it", "test": "untestable", "reason": "nobody was asked"}]
 })";
 
 struct StudyFixture {

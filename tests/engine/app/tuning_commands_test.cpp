@@ -60,14 +60,14 @@ class TuningCommand : public ::testing::Test {
 };
 
 TEST_F(TuningCommand, MeasuresOnceAndSaysWhatIsExpectedAndObserved) {
-  scene("", R"(, "plan": {"hand_error": 1e-6})");
+  scene("", R"(, "coupling": {"max_proxy_error": 1e-6})");
   const auto first = replay({});
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.out.find("plan hand_error=1e-06: curve "), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find("max_proxy_error 1e-06: curve "), std::string::npos) << first.out;
   EXPECT_LT(first.out.find("expected: error"), first.out.find("observed: error")) << first.out;
   const std::string kept = test::read_file(only_file());
   // another wish goes by the same curves; so does the page of tradeoff
-  const auto second = replay({"--plan", "hand_error=1e-2"});
+  const auto second = replay({"--max-proxy-error", "1e-2"});
   ASSERT_EQ(second.exit_code, 0) << second.err;
   EXPECT_EQ(test::read_file(only_file()), kept);
   EXPECT_TRUE(app::tradeoff::is_report(only_file()));
@@ -81,26 +81,26 @@ TEST_F(TuningCommand, MeasuresOnceAndSaysWhatIsExpectedAndObserved) {
 
 TEST_F(TuningCommand, LeavesWhatTheSceneStates) {
   scene(R"(, "method": "rk4")");
-  const auto pinned = replay({"--plan", "hand_error=1"});
+  const auto pinned = replay({"--max-proxy-error", "1"});
   ASSERT_EQ(pinned.exit_code, 0) << pinned.err;
-  EXPECT_NE(pinned.out.find("the hand stays as it is"), std::string::npos) << pinned.out;
+  EXPECT_NE(pinned.out.find("no streamline link leaves its settings open"), std::string::npos) << pinned.out;
   scene(R"(, "method": "dp54")");
-  const auto half = replay({"--plan", "hand_error=1e-5"});
+  const auto half = replay({"--max-proxy-error", "1e-5"});
   ASSERT_EQ(half.exit_code, 0) << half.err;
   EXPECT_NE(half.out.find("curve dp54, tolerance 1e-"), std::string::npos) << half.out;
   scene(R"(, "tolerance": 2e-6, "follow": "online")");
-  const auto tolerance = replay({"--plan", "hand_error=1e-13"});
+  const auto tolerance = replay({"--max-proxy-error", "1e-13"});
   ASSERT_EQ(tolerance.exit_code, 0) << tolerance.err;
   EXPECT_EQ(tolerance.out.find("selected"), std::string::npos) << tolerance.out;
   EXPECT_EQ(tolerance.out.find("1e-07"), std::string::npos) << tolerance.out;
 }
 
 TEST_F(TuningCommand, ARecordingRepeatsToTheBitWhateverTheCacheSays) {
-  const std::string path = scene("", R"(, "plan": {"hand_error": 1e-2})");
+  const std::string path = scene("", R"(, "coupling": {"max_proxy_error": 1e-2})");
   const std::string log = folder_ / "r.catlog";
   const auto felt = test::run_catena({"feel", path, "--device", "simulated", "--seconds", "0.3", "--realtime", "off", "--record", log});
   ASSERT_EQ(felt.exit_code, 0) << felt.err;
-  EXPECT_NE(felt.out.find("plan hand_error=0.01: curve "), std::string::npos) << felt.out;
+  EXPECT_NE(felt.out.find("max_proxy_error 0.01: curve "), std::string::npos) << felt.out;
   EXPECT_NE(felt.out.find("observed: error"), std::string::npos) << felt.out;
   const auto repeats = [&](const std::vector<std::string>& words) {
     const auto run = test::run_catena(words);
@@ -119,14 +119,14 @@ TEST_F(TuningCommand, ARecordingRepeatsToTheBitWhateverTheCacheSays) {
   std::filesystem::remove_all(folder_ / "cache");
   repeats({"replay", "--log", log});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "cache"));  // nothing is measured
-  EXPECT_EQ(test::run_catena({"replay", "--log", log, "--plan", "hand_error=1"}).exit_code, 2);
+  EXPECT_EQ(test::run_catena({"replay", "--log", log, "--max-proxy-error", "1"}).exit_code, 2);
 }
 
 TEST_F(TuningCommand, ASampledFieldBecomesCubicWhereThatIsNearerToTheTruth) {
   ASSERT_EQ(test::run_catena({"generate", "lamb-oseen", "--resolution", "25", "-o", folder_ / "g.vdb"}).exit_code, 0);
   const auto scene_with = [&](const char* name, const std::string& field) {
     test::write_file(folder_ / name, R"({"fields": {"flow": )" + field + R"(}, "workspace": {"metres_per_unit": 0.05},
-      "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, 0]}], "plan": {"hand_error": 1e-4}})");
+      "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, 0]}], "coupling": {"max_proxy_error": 1e-4}})");
     return folder_ / name;
   };
   const auto last_proxy = [&](const std::string& scene) {
@@ -156,46 +156,24 @@ TEST_F(TuningCommand, ASampledFieldBecomesCubicWhereThatIsNearerToTheTruth) {
   }
 }
 
-TEST_F(TuningCommand, BadWishesAreOneLine) {
+TEST_F(TuningCommand, BadTargetsAreOneLine) {
   const std::string path = scene();
-  for (const char* words :
-       {"x=3", "error", "error=", "error=0", "error=nan", "error=2,time=3", "hand_error=1,hand_time=1", "error=2,error=2", ","}) {
-    const auto run = replay({"--plan", words});
-    EXPECT_EQ(run.exit_code, 2) << words;
+  const auto refused = [&](const std::vector<std::string>& words) {
+    const auto run = replay(words);
+    EXPECT_EQ(run.exit_code, 2) << words.front();
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_FALSE(test::exists(folder_ / "out.csv"));
-  }
-  const auto eye = replay({"--plan", "error=2"});
-  EXPECT_EQ(eye.exit_code, 2);
-  EXPECT_NE(eye.err.find("nothing is drawn here"), std::string::npos) << eye.err;
-  for (const char* plan : {R"({"erorr": 2})", R"({"error": 2, "time": 3})", "{}", R"({"error": 0})", "3", R"({"hand_time": "x"})"}) {
-    scene("", std::string(", \"plan\": ") + plan);
-    const auto run = replay({});
-    EXPECT_EQ(run.exit_code, 2) << plan;
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  }
-  EXPECT_EQ(test::run_catena({"render", path, "-o", folder_ / "x.png", "--plan", "error=2", "--quality", "draft"}).exit_code, 2);
-  EXPECT_EQ(test::run_catena({"view", path, "--plan", "error=2", "--quality", "draft"}).exit_code, 2);
-}
-
-TEST_F(TuningCommand, PicturesAreDrawnByPlan) {
-  test::write_file(folder_ / "v.json", R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}},
-    "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
-  const auto draw = [&](const std::string& plan) {
-    return test::run_catena({"render", folder_ / "v.json", "-o", folder_ / "v.png", "--size", "96x72", "--plan", plan});
+    return run.err;
   };
-  const auto first = draw("error=3");
-  if (first.exit_code == 1) GTEST_SKIP() << first.err;
-  ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_NE(first.out.find("plan error=3: "), std::string::npos) << first.out;
-  EXPECT_LT(first.out.find("expected: error"), first.out.find("observed: error")) << first.out;
-  const std::string kept = test::read_file(only_file());
-  EXPECT_EQ(draw("time=10000").exit_code, 0);
-  EXPECT_EQ(test::read_file(only_file()), kept);
-  // a stated quality stays
-  test::write_file(folder_ / "v.json", R"({"fields": {"ball": {"analytic": "sphere", "resolution": 24}}, "quality": "draft",
-    "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
-  EXPECT_NE(draw("error=3").out.find("the picture stays as it is"), std::string::npos);
+  for (const char* value : {"", "0", "-1", "nan", "x"}) refused({"--max-proxy-error", value});
+  refused({"--max-tick-us", "inf"});
+  refused({"--max-proxy-error", "1", "--max-tick-us", "1"});
+  EXPECT_NE(refused({"--plan", "error=2"}).find("is now \"--quality, --max-proxy-error or --max-tick-us\""), std::string::npos);
+  for (const char* coupling : {R"({"max_proxy_error": 0})", R"({"max_tick_us": "x"})", R"({"max_proxy_error": 1, "max_tick_us": 1})"}) {
+    scene("", std::string(", \"coupling\": ") + coupling);
+    refused({"--field", "flow=none"});
+  }
+  EXPECT_EQ(test::run_catena({"render", path, "-o", folder_ / "x.png", "--max-tick-us", "5"}).exit_code, 2);  // nothing is felt
 }
 
 }  // namespace plan_program_test

@@ -35,10 +35,14 @@ inline ImageCurve image_curve() {
   return made_curve;
 }
 
-inline scene::TuningTargets parse_target(const char* words) {
-  const auto plan = scene::parse_tuning_targets(words);
-  EXPECT_TRUE(plan) << words;
-  return plan ? *plan : scene::TuningTargets();
+/// The targets of a scene with this quality, or with this key of "coupling": "max_tick_us=5".
+inline scene::TuningTargets parse_target(const std::string& words) {
+  const std::string key = words.substr(0, words.find('='));
+  const auto scene = scene::parse_scene(key.starts_with("max") ? "{\"coupling\": {\"" + key + "\": " + words.substr(key.size() + 1) + "}}"
+                                                               : "{\"quality\": \"" + words + "\"}",
+                                        "s.json");
+  EXPECT_TRUE(scene) << words;
+  return scene ? scene->tuning : scene::TuningTargets();
 }
 
 inline LinkCurve make_link_curve(const std::string& name, double length, std::vector<Point> points) {

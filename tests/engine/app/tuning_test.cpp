@@ -52,7 +52,7 @@ TEST(TuningChoice, TakesTheLeastErrorWithinTheTime) {
 TEST(TuningSlider, GoesFromTheFastestToTheMostExact) {
   app::LiveTuning live;
   live.image_tuning.emplace(image_curve(), parse_target("error=2"));
-  live.tick_tuning.emplace(two_link_curves(), parse_target("hand_error=1"));
+  live.tick_tuning.emplace(two_link_curves(), parse_target("max_proxy_error=1"));
   EXPECT_EQ(live.target_at(0).max_image_error, 8);
   EXPECT_DOUBLE_EQ(*live.target_at(1).max_image_error, 0.1);
   EXPECT_GT(*live.target_at(0).max_proxy_error, *live.target_at(1).max_proxy_error);
@@ -129,8 +129,8 @@ TEST(CurveCache, KeysFollowWhatDeterminesCurves) {
   scene.path = folder / "s.json";
   scene.referenced_files = {folder / "d.raw"};
   const auto key = [&](const char* text) { return CurveKey("eye").add(scene, text).text(); };
-  const std::string before = key(R"({"a": 1, "plan": {"error": 2}})");
-  EXPECT_EQ(key(R"({"a": 1,  "plan": {"error": 3}, "quality": "draft"})"), before);  // what is wanted changes no curve
+  const std::string before = key(R"({"a": 1, "coupling": {"max_proxy_error": 2}})");
+  EXPECT_EQ(key(R"({"a": 1,  "coupling": {"max_tick_us": 3}, "quality": "draft"})"), before);  // what is wanted changes no curve
   EXPECT_NE(key(R"({"a": 2})"), before);
   EXPECT_NE(CurveKey("hand").add(scene, R"({"a": 1})").text(), before);
   test::write_file(folder / "d.raw", "1235");

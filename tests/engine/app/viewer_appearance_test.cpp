@@ -77,7 +77,7 @@ class ViewerAppearance : public testing::Test {
 TEST_F(ViewerAppearance, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBack) {
   if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   test::write_file(scene_, kScene);
-  ASSERT_EQ(on_display(view() + " --frames 4 --window-screenshot " + (folder_ / "w.png")), 0) << log();
+  ASSERT_EQ(on_display(view() + " --frames 4 --screenshot-ui " + (folder_ / "w.png")), 0) << log();
   const auto window = render::read_png(folder_ / "w.png");
   ASSERT_TRUE(window) << log();
   const Spot bar = find(*window, 0, 255, 0), line = find(*window, 255, 0, 255);

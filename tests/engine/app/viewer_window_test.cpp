@@ -111,7 +111,7 @@ TEST_F(ViewerWindow, WhatIsNotSavedIsAskedForBeforeItIsLost) {
 }
 
 TEST_F(ViewerWindow, TheOpenDialogOpensWhatIsTypedAndAFailureLeavesTheScene) {
-  ASSERT_EQ(drive("--size 900x600 --window-screenshot end.png",
+  ASSERT_EQ(drive("--size 900x600 --screenshot-ui end.png",
                   "titled 'untitled'\n"
                   "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'flow.js'; keys Tab Return; titled 'flow.json'\n"
                   "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'none.json'; keys Return; sleep 0.7; titled 'flow.json'\n"

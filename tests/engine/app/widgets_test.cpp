@@ -14,7 +14,7 @@ using namespace catena;
 
 constexpr const char* kScene = R"({"fields": {"d": {"analytic": "gaussian"}},
   "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1], "radius": 0.5,
-               "snap": 0.1, "release": 0.2, "near": 0.05, "step": 0.1}],
+               "snap": 0.1, "release": 0.2, "grab_distance": 0.05, "step": 0.1}],
   "slices": [{"field": "d", "widget": "cut"}]})";
 
 class Widgets : public testing::Test {

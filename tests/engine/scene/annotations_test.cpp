@@ -12,7 +12,7 @@ namespace annotations_test {
 std::string with(const std::string& body) {
   return R"({"fields": {"d": {"analytic": "sphere", "resolution": 5}, "e": {"analytic": "plane"}, "v": {"analytic": "circle"}},
   "volumes": [{"field": "d"}],
-  "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}, {"field": "v", "seeds": [[1, 0, 0]], "color_by": "speed"}],
+  "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}, {"field": "v", "seeds": [[1, 0, 0]], "color_by": {"quantity": "speed"}}],
 )" + body +
          "}";
 }
@@ -28,7 +28,7 @@ TEST(Annotations, EveryKeyIsRead) {
   const auto scene = parse_scene(with(R"("title": "A field",
     "scalar_bars": [{"volume": 0, "title": "rho", "position": "left", "ticks": 9, "format": "%.2f kg"},
                     {"streamlines": 1, "position": "bottom"}, {"field": "v"}, {"field": "d", "position": "top", "title": ""}],
-    "labels": [{"at": [1, 2, 3], "text": "here", "color": [1, 0.5, 0], "size": 20, "dot": false, "hidden_behind": true}, {"at": [0, 0, 0], "text": "µ"}],
+    "labels": [{"at": [1, 2, 3], "text": "here", "color": [1, 0.5, 0], "size": 20, "dot": false, "occluded": true}, {"at": [0, 0, 0], "text": "µ"}],
     "orientation_marker": {"position": "top-right", "size": 120, "names": ["R", "A", "S"]},
     "status": true, "overlay": {"font": "Liberation Sans", "scale": 1.5, "color": [1, 1, 0]})"),
                                  "scene.json");

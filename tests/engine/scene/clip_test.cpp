@@ -8,7 +8,7 @@ namespace clip_test {
 Result<Scene> parse(const std::string& clip) { return parse_scene("{\"fields\": {},\n\"clip\": " + clip + "}", "s.json"); }
 
 TEST(SceneClip, PlanesAndBoxesBecomePlanes) {
-  const auto scene = parse(R"([{"plane": {"point": [1, 2, 3], "normal": [0, 0, -2]}}, {"box": {"lo": [0, 0, 0], "hi": [1, 2, 3]}}])");
+  const auto scene = parse(R"([{"plane": {"point": [1, 2, 3], "normal": [0, 0, -2]}}, {"box": {"min": [0, 0, 0], "max": [1, 2, 3]}}])");
   ASSERT_TRUE(scene);
   ASSERT_EQ(scene->clip_planes.size(), 7u);
   EXPECT_EQ(scene->clip_planes[0].normal, Vec3(0, 0, -2));
@@ -24,14 +24,14 @@ TEST(SceneClip, WrongClipsNameTheirLine) {
   for (const auto& [text, expected] : {std::pair{R"({"plane": 1})", "an array of objects was expected"},
                                        {R"([{}])", "one of \"plane\", \"box\" and \"widget\" was expected"},
                                        {R"([{"plane": {"point": [0,0,0], "normal": [0,0,0]}}])", "a vector other than [0, 0, 0]"},
-                                       {R"([{"box": {"lo": [0,0,0], "hi": [1,0,1]}}])", "a box was expected"},
-                                       {R"([{"box": {"lo": [0,0,0], "hi": [1,1,1], "in": 1}}])", "in"}}) {
+                                       {R"([{"box": {"min": [0,0,0], "max": [1,0,1]}}])", "a box was expected"},
+                                       {R"([{"box": {"min": [0,0,0], "max": [1,1,1], "in": 1}}])", "in"}}) {
     const auto scene = parse(text);
     ASSERT_FALSE(scene) << text;
     EXPECT_NE(scene.error().message.find(expected), std::string::npos) << scene.error().message;
     EXPECT_EQ(scene.error().message.find("s.json:2"), 0u) << scene.error().message;
   }
-  const auto two = parse(R"([{"box": {"lo": [0,0,0], "hi": [1,1,1]}}, {"box": {"lo": [0,0,0], "hi": [1,1,1]}}])");
+  const auto two = parse(R"([{"box": {"min": [0,0,0], "max": [1,1,1]}}, {"box": {"min": [0,0,0], "max": [1,1,1]}}])");
   ASSERT_FALSE(two);
   EXPECT_NE(two.error().message.find("more than 8 clip planes"), std::string::npos);
 }

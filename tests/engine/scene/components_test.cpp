@@ -48,7 +48,7 @@ TEST(Components, WhatIsWrittenReadsBack) {
   comes_back<Isosurface>("isosurfaces", R"({"field": "s", "level": {"widget": "iso"}, "color_by": {"field": "v", "color": "grey"}})");
   comes_back<Slice>(
       "slices",
-      R"({"field": "v", "axis": "y", "at": 0.5, "color": "viridis", "opacity": 0.25, "contours": {"spacing": 0.1}, "lit": true})");
+      R"({"field": "v", "axis": "y", "at": 0.5, "color": "viridis", "opacity": 0.25, "contours": {"spacing": 0.1}, "shade": true})");
   comes_back<Slice>("slices", R"({"field": "s", "point": [0, 1, 2], "normal": [1, 1, 0], "contours": {"levels": [0.5, 1], "width": 2}})");
   comes_back<Slice>("slices", R"({"field": "s", "widget": "cut"})");
   comes_back<StreamlineSet>("streamlines",
@@ -66,15 +66,8 @@ TEST(Components, AnEditorsSchemaIsNamedByAString) {
   EXPECT_FALSE(parse_scene(R"({"$schema": 3})", "s.json"));
 }
 
-TEST(Components, AWordIsReadAsTheObjectIsWithANote) {
+TEST(Components, ALineIsColoredByOneOfFieldAndQuantity) {
   const std::string seeds = R"("streamlines": [{"field": "v", "seeds": [[1, 0, 0]], )";
-  const Scene old = scene_of(seeds + R"("color_by": "speed", "color": "magma", "range": [0, 2]}])");
-  const Scene fresh = scene_of(seeds + R"("color_by": {"quantity": "speed", "color": "magma", "range": [0, 2]}}])");
-  EXPECT_EQ(written<StreamlineSet>(old), written<StreamlineSet>(fresh));
-  ASSERT_EQ(old.notes.size(), 1u);
-  EXPECT_TRUE(old.notes[0].starts_with("s.json:5: \"color_by\" as a word")) << old.notes[0];
-  EXPECT_NE(old.notes[0].find(R"({"quantity": "speed")"), std::string::npos) << old.notes[0];
-  EXPECT_TRUE(fresh.notes.empty());
   const auto both = parse_scene(std::string(kHead) + seeds + R"("color_by": {"quantity": "speed", "field": "s"}}]})", "s.json");
   ASSERT_FALSE(both);
   EXPECT_NE(both.error().message.find("exactly one of them was expected"), std::string::npos) << both.error().message;

@@ -208,7 +208,7 @@ TEST(Document, SavesByteForByteAndWholeOrNotAtAll) {
 const std::string kFiles = R"({
   "fields": {"b": {"file": "data/a.vdb", "grid": "ball"}, "v": {"file": "./data/../data/a.vdb", "grid": "flow"}},
   "device": {"type": "falcon", "firmware": "data/fw.bin"}, // none is opened here
-  "meshes": [{"name": "m", "file": "data/q.obj", "color_by": "b", "transfer": "data/t.json"}],
+  "meshes": [{"name": "m", "file": "data/q.obj", "color_by": {"field": "b", "transfer": "data/t.json"}}],
   "volumes": [{"field": "b", "transfer": "data/t.json"}],
   "isosurfaces": [{"field": "b", "level": 1, "color_by": {"field": "b", "transfer": "data/t.json"}}]
 })";
@@ -223,7 +223,7 @@ void write_files(const test::TemporaryFolder& folder) {
 /// Every string of the text that names a file, as a path.
 void expect_same_files(const Document& a, const Document& b) {
   const auto old_root = json::parse(a.text(), ""), new_root = json::parse(b.text(), "");
-  for (const char* pointer : {"/fields/b/file", "/fields/v/file", "/device/firmware", "/meshes/0/file", "/meshes/0/transfer",
+  for (const char* pointer : {"/fields/b/file", "/fields/v/file", "/device/firmware", "/meshes/0/file", "/meshes/0/color_by/transfer",
                               "/volumes/0/transfer", "/isosurfaces/0/color_by/transfer"}) {
     const fs::path x = json::find_value(*old_root, pointer)->string, y = json::find_value(*new_root, pointer)->string;
     EXPECT_TRUE(y.is_relative()) << y;
@@ -422,7 +422,7 @@ TEST_P(SceneDocumentRoundTrip, IsEditedUndoneAndSaved) {
   camera.position = {0.1, 1.0 / 3, -4};
   std::vector<std::pair<std::string, std::string>> edits{{"/camera", to_json(camera)},
                                                          {"/background", to_json(Color{0.1f, 0.2f, 0.3f})},
-                                                         {"/fog/most", "0.25"},
+                                                         {"/fog/max_opacity", "0.25"},
                                                          {"/quality", "\"draft\""},
                                                          {"/labels/-", R"({"at": [0, 0, 0], "text": "here"})"},
                                                          {"/clip/-", to_json(ClipPlane{{{0.0, 0.0, 0.0}, {0.0, 0.6, 0.8}}})}};

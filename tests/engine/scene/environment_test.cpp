@@ -8,8 +8,8 @@ namespace aids_test {
 Result<Scene> parse(const std::string& rest) { return parse_scene("{\"fields\": {},\n" + rest + "}", "s.json"); }
 
 TEST(SceneEnvironment, TrueFalseAndObjects) {
-  const auto scene = parse(R"("bounding_box": true, "axes": {"ticks": 3, "names": ["u", "v", "w"]}, "ground": {"at": -2, "tile": 0.5},
-    "fog": {"color": [0, 0, 1], "start": 2, "end": 9}, "lights": [{"direction": [1, 0, 0], "intensity": 0.5, "fixed_to": "camera"}])");
+  const auto scene = parse(R"("bounding_box": true, "axes": {"ticks": 3, "names": ["u", "v", "w"]}, "ground": {"height": -2, "tile": 0.5},
+    "fog": {"color": [0, 0, 1], "near": 2, "far": 9}, "lights": [{"direction": [1, 0, 0], "intensity": 0.5, "fixed_to": "camera"}])");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_TRUE(scene->bounding_box.has_value());
   EXPECT_EQ(scene->axes->names[2], "w");
@@ -29,8 +29,8 @@ TEST(SceneEnvironment, WrongOnesNameTheirLine) {
                                        {R"("axes": {"ticks": 1})", "ticks"},
                                        {R"("ground": {"tile": 0})", "tile"},
                                        {R"("ground": {"size": 10, "tile": 0.001})", "at most 1000 tiles"},
-                                       {R"("fog": {"start": 5, "end": 5})", "greater view depth"},
-                                       {R"("fog": {"most": 1.5})", "from 0 to 1 was expected"},
+                                       {R"("fog": {"near": 5, "far": 5})", "greater view depth"},
+                                       {R"("fog": {"max_opacity": 1.5})", "from 0 to 1 was expected"},
                                        {R"("lights": [{"direction": [0, 0, 0]}])", "a vector other than"},
                                        {R"("lights": [{}])", "direction"},
                                        {R"("lights": [{"direction": [1, 0, 0], "fixed_to": "moon"}])", "fixed_to"}}) {

@@ -20,7 +20,7 @@ class Glyphs : public testing::Test {
       "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 1], "normal": [0, 2, 0]},
                   {"name": "seed", "type": "seed", "position": [1, 0, 0]}],
       "slices": [{"field": "s", "axis": "x", "at": 1}, {"field": "s", "axis": "x", "at": 0}],
-      "isosurfaces": [{"field": "s", "level": 1}], "meshes": [{"name": "m", "file": "m.stl", "drawn": false}],)"
+      "isosurfaces": [{"field": "s", "level": 1}], "meshes": [{"name": "m", "file": "m.stl", "visible": false}],)"
                        "\n\"glyphs\": " +
                            glyphs + more + "}",
                        folder_ / "s.json");
@@ -29,10 +29,10 @@ class Glyphs : public testing::Test {
 };
 
 TEST_F(Glyphs, EveryKeyIsRead) {
-  const auto scene = parse(R"([{"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant",
-      "length": 0.5, "full_speed": 2, "min_speed": 0.1, "radius": 0.02, "at": "tail", "color": [1, 0, 0], "clip": false, "visible": false},
+  const auto scene = parse(R"([{"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant",
+      "length": 0.5, "reference_speed": 2, "min_speed": 0.1, "radius": 0.02, "anchor": "tail", "color": [1, 0, 0], "clip": false, "visible": false},
      {"field": "v", "on": {"slice": 1}, "kind": "line", "color_by": {"quantity": "speed", "color": "magma", "range": [0, 2]}},
-     {"field": "v", "on": {"plane": {"widget": "cut"}}, "color_by": {"field": "s"}}, {"field": "v", "on": {"isosurface": 0}, "at": "head"},
+     {"field": "v", "on": {"plane": {"widget": "cut"}}, "color_by": {"field": "s"}}, {"field": "v", "on": {"isosurface": 0}, "anchor": "head"},
      {"field": "v", "on": {"mesh": "m"}}, {"field": "v"}])");
   ASSERT_TRUE(scene) << scene.error().message;
   std::vector<GlyphSet> sets;
@@ -74,13 +74,14 @@ TEST_F(Glyphs, EveryKeyIsRead) {
 }
 
 TEST_F(Glyphs, WhatIsWrittenReadsBack) {
-  for (const std::string item :
-       {R"({"field": "v"})", R"({"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant"})",
-        R"({"field": "v", "on": {"plane": {"axis": "y", "at": 0.5}}, "length": 2, "full_speed": 3, "min_speed": 0.5, "radius": 0.1})",
-        R"({"field": "v", "on": {"plane": {"point": [1, 2, 3], "normal": [0, 1, 1]}}, "at": "head", "color": [1, 0, 0], "clip": false})",
-        R"({"field": "v", "on": {"plane": {"widget": "cut"}}, "kind": "line"})",
-        R"({"field": "v", "on": {"slice": 1}, "color_by": {"quantity": "speed", "color": "magma"}})",
-        R"({"field": "v", "on": {"isosurface": 0}, "color_by": {"field": "s"}})", R"({"field": "v", "on": {"mesh": "m"}})"}) {
+  for (
+      const std::string item :
+      {R"({"field": "v"})", R"({"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant"})",
+       R"({"field": "v", "on": {"plane": {"axis": "y", "at": 0.5}}, "length": 2, "reference_speed": 3, "min_speed": 0.5, "radius": 0.1})",
+       R"({"field": "v", "on": {"plane": {"point": [1, 2, 3], "normal": [0, 1, 1]}}, "anchor": "head", "color": [1, 0, 0], "clip": false})",
+       R"({"field": "v", "on": {"plane": {"widget": "cut"}}, "kind": "line"})",
+       R"({"field": "v", "on": {"slice": 1}, "color_by": {"quantity": "speed", "color": "magma"}})",
+       R"({"field": "v", "on": {"isosurface": 0}, "color_by": {"field": "s"}})", R"({"field": "v", "on": {"mesh": "m"}})"}) {
     const auto scene = parse("[" + item + "]");
     ASSERT_TRUE(scene) << scene.error().message;
     scene->entities.each<GlyphSet>([&](Entity, const GlyphSet& set) { EXPECT_EQ(to_json(*scene, set), item); });
@@ -100,8 +101,8 @@ TEST_F(Glyphs, WrongOnesNameTheirLine) {
         {R"([{"field": "v", "on": {"slice": {"axis": "x", "at": 0}}}])", "slice"},
         {R"([{"field": "v", "on": {"isosurface": -1}}])", "isosurface"},
         {R"([{"field": "v", "on": {"mesh": "n"}}])", "unknown mesh \"n\"; known: m"},
-        {R"([{"field": "v", "on": {"box": {"lo": [0, 0, 0]}}}])", "hi"},
-        {R"([{"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [1, -1, 1]}}}])", "\"hi\" lies below \"lo\""},
+        {R"([{"field": "v", "on": {"box": {"min": [0, 0, 0]}}}])", "max"},
+        {R"([{"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [1, -1, 1]}}}])", "\"max\" lies below \"min\""},
         {R"([{"field": "v", "on": {"plane": {}}}])", "a set of glyphs has no plane"},
         {R"([{"field": "v", "on": {"plane": {"axis": "x", "at": 0, "normal": [1, 0, 0]}}}])", "has both an axis and a point or normal"},
         {R"([{"field": "v", "on": {"plane": {"axis": "x", "at": 0, "offset": 1}}}])", "offset"},
@@ -109,8 +110,8 @@ TEST_F(Glyphs, WrongOnesNameTheirLine) {
         {R"([{"field": "v", "spacing": 0}])", "spacing"},
         {R"([{"field": "v", "length": -1}])", "length"},
         {R"([{"field": "v", "scale": "speed"}])", "magnitude"},
-        {R"([{"field": "v", "at": "middle"}])", "center"},
-        {R"([{"field": "v", "at": "tail", "kind": "line"}])", "neither head nor tail"},
+        {R"([{"field": "v", "anchor": "middle"}])", "center"},
+        {R"([{"field": "v", "anchor": "tail", "kind": "line"}])", "neither head nor tail"},
         {R"([{"field": "v", "color_by": {"quantity": "arc_length"}}])", "speed"},
         {R"([{"field": "v", "color_by": {}}])", "neither"},
         {R"([{"field": "v", "color_by": "speed"}])", "object"},

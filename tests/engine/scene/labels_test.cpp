@@ -150,16 +150,16 @@ TEST_F(LabelScene, WhatCannotBeIsSaidInOneLine) {
 }
 
 TEST_F(LabelScene, AFieldCanBeAPartOfItsFile) {
-  auto scene = read(", \"crop\": {\"lo\": [3.5, 2, 2], \"hi\": [9, 9, 9]}", "}, \"volumes\": [{\"field\": \"m\"}]}");
+  auto scene = read(", \"crop\": {\"min\": [3.5, 2, 2], \"max\": [9, 9, 9]}", "}, \"volumes\": [{\"field\": \"m\"}]}");
   ASSERT_TRUE(scene) << scene.error().message;
   Scene& shown = *scene;
   ASSERT_TRUE(prepare(shown));
   const FieldSource& source = shown.entities.get<FieldSource>(find_field(shown, "m"));
   EXPECT_EQ(source.loaded.get(), source.rendered.get()) << "what is felt is what is drawn";
   EXPECT_EQ(source.loaded.get()->index_box().hi - source.loaded.get()->index_box().lo, Vec3(6, 7, 7));
-  EXPECT_NE(refused(", \"crop\": {\"lo\": [0, 0, 0], \"hi\": [4, 0, 4]}", "}}").find("\"hi\" is not above \"lo\""), std::string::npos);
-  EXPECT_NE(refused(", \"crop\": {\"lo\": [0, 0, 0]}", "}}").find("hi"), std::string::npos);
-  EXPECT_NE(refused(", \"crop\": {\"lo\": [20, 0, 0], \"hi\": [30, 4, 4]}", "}, \"volumes\": [{\"field\": \"m\"}]}").find("no voxels"),
+  EXPECT_NE(refused(", \"crop\": {\"min\": [0, 0, 0], \"max\": [4, 0, 4]}", "}}").find("\"max\" is not above \"min\""), std::string::npos);
+  EXPECT_NE(refused(", \"crop\": {\"min\": [0, 0, 0]}", "}}").find("max"), std::string::npos);
+  EXPECT_NE(refused(", \"crop\": {\"min\": [20, 0, 0], \"max\": [30, 4, 4]}", "}, \"volumes\": [{\"field\": \"m\"}]}").find("no voxels"),
             std::string::npos);
 }
 

@@ -166,11 +166,11 @@ TEST(MeshOnDemand, IsLoadedOnceAndPlaced) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "quad.obj", kQuad);
   auto scene = parse_scene(R"({"meshes": [{"name": "a", "file": "quad.obj", "scale": 3, "offset": [0, 0, 5], "color": [1, 0, 0]},
-                                          {"name": "b", "file": "quad.obj", "drawn": false}]})",
+                                          {"name": "b", "file": "quad.obj", "visible": false}]})",
                            folder / "s.json");
   ASSERT_TRUE(scene) << message_of(scene);
   EXPECT_EQ(scene->entities.count<MeshSource>(), 2u);
-  EXPECT_EQ(scene->entities.count<SurfaceMesh>(), 1u);
+  EXPECT_EQ(scene->entities.count<SurfaceMesh>(), 2u);
   const auto a = resolve_mesh(*scene, "a", {}), again = resolve_mesh(*scene, "a", {}), b = resolve_mesh(*scene, "b", {});
   ASSERT_TRUE(a) << message_of(a);
   EXPECT_EQ(*a, *again);

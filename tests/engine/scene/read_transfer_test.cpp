@@ -241,18 +241,18 @@ TEST_F(ReadTransfer, LinesTakeTheSameKeys) {
     if (scene) scene->entities.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { result = *set.color_by; });
     return result;
   };
-  EXPECT_EQ(by("\"color_by\": \"speed\", \"color\": \"plasma\"").named.map, "plasma");
-  EXPECT_EQ((*by("\"color_by\": \"speed\", \"range\": [0, 3]").named.range)[1], 3);
+  EXPECT_EQ(by("\"color_by\": {\"quantity\": \"speed\", \"color\": \"plasma\"}").named.map, "plasma");
+  EXPECT_EQ((*by("\"color_by\": {\"quantity\": \"speed\", \"range\": [0, 3]}").named.range)[1], 3);
   test::write_file(folder_ / "t.json", R"({"color": [[0, 1, 0, 0], [2, 0, 0, 1]]})");
-  EXPECT_EQ(by("\"color_by\": \"speed\", \"transfer\": \"t.json\"").colors.size(), 2u);
-  for (const char* keys : {"\"color\": \"plasma\"", "\"range\": [0, 1]", "\"transfer\": \"t.json\"", "\"color\": [[0, 0, 0, 0]]"}) {
+  EXPECT_EQ(by("\"color_by\": {\"quantity\": \"speed\", \"transfer\": \"t.json\"}").colors.size(), 2u);
+  for (const char* keys : {"\"color\": \"plasma\"", "\"color\": [[0, 0, 0, 0]]"}) {
     const auto scene = lines(keys);
     ASSERT_FALSE(scene) << keys;
     EXPECT_NE(scene.error().message.find("s.json:2: "), std::string::npos) << scene.error().message;
     EXPECT_NE(scene.error().message.find("\"color_by\""), std::string::npos) << scene.error().message;
   }
   test::write_file(folder_ / "t.json", R"({"extinction": [[0, 1]]})");
-  const auto scene = lines("\"color_by\": \"speed\",\n\"transfer\": \"t.json\"");
+  const auto scene = lines("\"color_by\": {\"quantity\": \"speed\",\n\"transfer\": \"t.json\"}");
   ASSERT_FALSE(scene);
   EXPECT_NE(scene.error().message.find("s.json:3: "), std::string::npos) << scene.error().message;
   EXPECT_NE(scene.error().message.find("no colours"), std::string::npos) << scene.error().message;

@@ -23,7 +23,7 @@ Widget only_widget(const Scene& scene) {
 
 TEST(ReadWidgets, ACuttingPlaneWithAllItsKeys) {
   const auto scene = parse_widget(R"({"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, -7], "radius": 0.5,
-    "snap": 0.1, "release": 0.2, "near": 0.3, "step": 0.4, "turning": "axis", "touch": true, "button": 32, "color": [0, 0.5, 1]})");
+    "snap": 0.1, "release": 0.2, "grab_distance": 0.3, "step": 0.4, "rotation": "axis", "rotate_on_contact": true, "button": 32, "color": [0, 0.5, 1]})");
   ASSERT_TRUE(scene) << scene.error().message;
   const Widget w = only_widget(*scene);
   EXPECT_EQ(w.spec.kind, Kind::cutting_plane);
@@ -61,7 +61,7 @@ TEST(ReadWidgets, AnOrientationThatIsUnitKeepsItsBits) {
 TEST(ReadWidgets, TheOtherKinds) {
   const auto scene = parse(R"("chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
     "widgets": [{"name": "s", "type": "seed", "position": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]},
-      {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 2, 3]},
+      {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 2, 3]},
       {"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [0, 1, 0], "along": ["curve"]}])");
   ASSERT_TRUE(scene) << scene.error().message;
   const auto get = [&](const char* name) { return scene->entities.get<Widget>(find_widget(*scene, name)); };
@@ -74,7 +74,7 @@ TEST(ReadWidgets, TheOtherKinds) {
 
 TEST(ReadWidgets, FollowersTakeTheStatedPoseAtOnce) {
   const auto scene = parse(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 0, 0], "normal": [2, 0, 0]},
-      {"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]}],
+      {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 2, 3]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [1, 0, 0]}],
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut", "side": "behind"}, {"widget": "b"}],
     "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 3}}])");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -120,11 +120,11 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
            {"{" + cut + R"(, "snap": 0.2, "release": 0.2})", "a longer distance than snap's was expected"},
            {"{" + cut + R"(, "radius": 0})", "radius"},
            {"{" + cut + R"(, "step": -1})", "step"},
-           {"{" + cut + R"(, "near": 1e200})", "1e-30 to 1e30"},
+           {"{" + cut + R"(, "grab_distance": 1e200})", "1e-30 to 1e30"},
            {"{" + cut + R"(, "button": 0})", "button"},
            {"{" + cut + R"(, "button": 33})", "button"},
-           {"{" + cut + R"(, "turning": "none"})", "free"},
-           {"{" + cut + R"(, "touch": 1})", "true or false was expected"},
+           {"{" + cut + R"(, "rotation": "none"})", "free"},
+           {"{" + cut + R"(, "rotate_on_contact": 1})", "true or false was expected"},
            {"{" + cut + R"(, "color": [2, 0, 0]})", "color"},
            {"{" + cut + R"(, "orientation": [1, 0, 0, 0]})", "both"},
            {R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0]})", "neither"},
@@ -133,7 +133,7 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
            {R"({"name": "c", "type": "cutting_plane", "center": [0, 0, 0], "orientation": [1, 0, 0, 0.01]})", "unit quaternion"},
            {R"({"name": "l", "type": "isolevel", "position": [0, 0, 0]})", "field"},
            {R"({"name": "l", "type": "isolevel", "field": "w", "position": [0, 0, 0]})", "unknown field"},
-           {R"({"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 0, 1]})", "a box was expected"},
+           {R"({"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 0, 1]})", "a box was expected"},
            {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": "curve"})", "names of links"},
            {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": []})", "names of links"},
            {R"({"name": "u", "type": "ruler", "from": [0, 0, 0], "to": [1, 0, 0], "along": ["curve"]})", "no link of the chain"}})
@@ -149,7 +149,7 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
 TEST(ReadWidgets, WrongFollowersNameTheirLine) {
   const std::string widgets = R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]},
  {"name": "p", "type": "seed", "position": [0, 0, 0]}, {"name": "r", "type": "rake", "from": [0, 0, 0], "to": [0, 0, 1]},
- {"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 1, 1]}], )";
+ {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}], )";
   // followers come first in the text: the order in the file does not matter
   for (const auto& [text, expected] : std::initializer_list<std::pair<std::string, std::string>>{
            {R"("slices": [{"field": "s", "widget": "cat"}])", "did you mean \"cut\""},
@@ -159,7 +159,7 @@ TEST(ReadWidgets, WrongFollowersNameTheirLine) {
            {R"("clip": [{"widget": "p"}])", "a cutting plane or a box was expected"},
            {R"("clip": [{"widget": "cut", "side": "left"}])", "behind"},
            {R"("clip": [{"widget": "b", "side": "front"}])", "keeps its inside"},
-           {R"("clip": [{"widget": "cut", "box": {"lo": [0, 0, 0], "hi": [1, 1, 1]}}])", "one of \"plane\", \"box\" and \"widget\""},
+           {R"("clip": [{"widget": "cut", "box": {"min": [0, 0, 0], "max": [1, 1, 1]}}])", "one of \"plane\", \"box\" and \"widget\""},
            {R"("clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}, "side": "front"}])", "without \"widget\""},
            {R"("clip": [{"widget": "b"}, {"widget": "b"}])", "more than 8 clip planes"},
            {R"("streamlines": [{"field": "v", "seeds": {"widget": "r"}}])", "\"count\" is missing"},

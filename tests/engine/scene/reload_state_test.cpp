@@ -189,7 +189,7 @@ TEST(ReloadState, WhatOthersKeepGoesWithAnEqualDescription) {
 }
 
 TEST(ReloadState, TheHandStaysWhereItIs) {
-  Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25, "ghost": false, "drop_line": true}})");
+  Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25, "show_occluded": false, "drop_line": true}})");
   Cursor& cursor = old.entities.get<Cursor>(old.cursor);
   cursor.probe = {1, 2, 3};
   cursor.names = {"a"};
@@ -305,7 +305,7 @@ TEST(WriteValues, APoseHasTheKeysOfItsKind) {
   EXPECT_EQ(keys(widget::Kind::isolevel), "position=[1, 2, 3] ");
   EXPECT_EQ(keys(widget::Kind::rake), "from=[1, 2, 3] to=[4, 5, 6] ");
   EXPECT_EQ(keys(widget::Kind::ruler), "from=[1, 2, 3] to=[4, 5, 6] ");
-  EXPECT_EQ(keys(widget::Kind::box), "lo=[1, 2, 3] hi=[4, 5, 6] ");
+  EXPECT_EQ(keys(widget::Kind::box), "min=[1, 2, 3] max=[4, 5, 6] ");
 }
 
 }  // namespace carry_over_test

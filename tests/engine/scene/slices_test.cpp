@@ -13,7 +13,7 @@ Result<Scene> parse(const std::string& slices) {
 TEST(SceneSlices, EveryKeyIsRead) {
   const auto scene =
       parse(R"([{"field": "s", "point": [1, 2, 3], "normal": [0, 1, -2], "color": "inferno", "range": [0.5, 2], "opacity": 0.25,
-    "contours": {"levels": [0.5, 1, 1.5], "color": [1, 0, 0], "width": 2.5}, "lit": true, "clip": false},
+    "contours": {"levels": [0.5, 1, 1.5], "color": [1, 0, 0], "width": 2.5}, "shade": true, "clip": false},
     {"field": "s", "axis": "y", "at": -0.5, "color": [[0, 1, 0, 0], [1, 0, 0, 1]], "contours": {"count": 7}},
     {"field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.2}}])");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -77,7 +77,8 @@ TEST(SceneMeshes, LooksAreReadAndChecked) {
     return parse_scene(R"({"fields": {"s": {"analytic": "sphere"}}, "meshes": [{"name": "m", "file": "quad.obj")" + keys + "}]}",
                        folder / "s.json");
   };
-  const auto scene = mesh(R"(, "opacity": 0.5, "shading": "smooth", "edges": true, "color_by": "s", "color": "plasma", "range": [0, 2])");
+  const auto scene =
+      mesh(R"(, "opacity": 0.5, "shading": "smooth", "edges": true, "color_by": {"field": "s", "color": "plasma", "range": [0, 2]})");
   ASSERT_TRUE(scene) << scene.error().message;
   scene->entities.each<SurfaceMesh>([](Entity, const SurfaceMesh& surface) {
     EXPECT_EQ(surface.opacity, 0.5);
@@ -94,8 +95,8 @@ TEST(SceneMeshes, LooksAreReadAndChecked) {
   for (const auto& [keys, expected] : {std::pair{R"(, "opacity": -0.1)", "opacity"},
                                        {R"(, "opacity": 1.1)", "a number from 0 to 1 was expected"},
                                        {R"(, "shading": "round")", "flat"},
-                                       {R"(, "range": [0, 1])", "expected within \"color_by\""},
-                                       {R"(, "color_by": "t")", "unknown field"}}) {
+                                       {R"(, "range": [0, 1])", "unknown key \"range\""},
+                                       {R"(, "color_by": {"field": "t"})", "unknown field"}}) {
     const auto wrong = mesh(keys);
     ASSERT_FALSE(wrong) << keys;
     EXPECT_NE(wrong.error().message.find(expected), std::string::npos) << wrong.error().message;

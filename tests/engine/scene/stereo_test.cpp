@@ -30,7 +30,7 @@ TEST(Stereo, KeysAndDefaults) {
   EXPECT_EQ(plain->stereo.mode, StereoMode::mono);
   EXPECT_FALSE(plain->stereo.separation || plain->stereo.zero_parallax || plain->stereo.swap_eyes);
   const auto scene = parse_scene(
-      R"({"stereo": {"mode": "side-by-side", "separation": 0.25, "zero_parallax": 4, "views": 5, "swap": true}})", "scene.json");
+      R"({"stereo": {"mode": "side-by-side", "separation": 0.25, "zero_parallax": 4, "views": 5, "swap_eyes": true}})", "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->stereo.separation, 0.25);
   EXPECT_EQ(scene->stereo.zero_parallax, 4);
@@ -52,7 +52,7 @@ TEST(Stereo, WrongKeysAreErrorsWithTheirLine) {
   expect(R"({"zero_parallax": 0})", "zero_parallax");
   expect(R"({"views": 1})", "views");
   expect(R"({"mode": "anaglyph", "views": 3})", "2 was expected");
-  expect(R"({"swap": 1})", "swap");
+  expect(R"({"swap_eyes": 1})", "swap");
   expect(R"({"eyes": 2})", "eyes");
 }
 

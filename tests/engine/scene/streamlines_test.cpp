@@ -172,7 +172,8 @@ TEST(SeedPatterns, MistakesAreNamedWithTheirLine) {
   refused("\"seeds\": {\"sphere\": {\"center\": [0, 0, 0], \"radius\": 0, \"count\": 5}}", 3, {"\"radius\" is 0", "> 0"});
   refused("\"seeds\": {\"isosurface\": {\"field\": \"bal\", \"level\": 1, \"count\": 5}}", 3, {"unknown field \"bal\"", "ball"});
   refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 0}}", 3, {"\"distance\" is 0"});
-  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"test\": 1.5}}", 3, {"\"test\" is 1.5", "from 0 to 1"});
+  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"termination_ratio\": 1.5}}", 3,
+          {"\"termination_ratio\" is 1.5", "from 0 to 1"});
   refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"start\": []}}", 3, {"\"start\"", "at least one"});
   refused("\"seeds\": {\"line\": 3}", 3, {"object", "expected"});
   refused("\"seeds\": [[1, 0, 0]], \"tolerance\": 0.5", 3, {"\"tolerance\" is 0.5", "from 0 to 0.01"});
@@ -181,11 +182,12 @@ TEST(SeedPatterns, MistakesAreNamedWithTheirLine) {
 
 TEST(ColoredLines, TheKeysAreChecked) {
   refused("\"seeds\": [[1, 0, 0]], \"color\": [[0, 1, 1, 1]]", 3, {"table", "\"color_by\""});
-  refused("\"seeds\": [[1, 0, 0]], \"color_by\": \"sped\"", 3, {"unknown \"color_by\" \"sped\"", "speed", "ball"});
-  refused("\"seeds\": [[1, 0, 0]], \"color_by\": \"speed\", \"color\": [1, 0, 0]", 3, {"no table", "[value, r, g, b]"});
-  refused("\"seeds\": [[1, 0, 0]], \"color_by\": \"speed\",\n\"color\": [[0, 1, 1, 1],\n[0, 1, 0, 1]]", 5, {"strictly rising"});
-  const auto scene =
-      parse_scene(scene_text("\"seeds\": [[1, 0, 0]], \"color_by\": \"ball\", \"color\": [[0, 0, 0, 1], [2, 1, 0, 0]]"), "s.json");
+  refused("\"seeds\": [[1, 0, 0]], \"color_by\": {\"field\": \"sped\"}", 3, {"\"sped\"", "ball"});
+  refused("\"seeds\": [[1, 0, 0]], \"color_by\": {\"quantity\": \"speed\", \"color\": [1, 0, 0]}", 3, {"\"color\""});
+  refused("\"seeds\": [[1, 0, 0]], \"color_by\": {\"quantity\": \"speed\",\n\"color\": [[0, 1, 1, 1],\n[0, 1, 0, 1]]}", 5,
+          {"strictly rising"});
+  const auto scene = parse_scene(
+      scene_text("\"seeds\": [[1, 0, 0]], \"color_by\": {\"field\": \"ball\", \"color\": [[0, 0, 0, 1], [2, 1, 0, 0]]}"), "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   scene->entities.each<StreamlineSet>([](Entity, const StreamlineSet& set) {
     ASSERT_TRUE(set.color_by);

@@ -71,7 +71,7 @@ TEST(Widgets, SizesFollowWhatIsDrawn) {
   EXPECT_DOUBLE_EQ(handle.grab_distance, 0.12);
   EXPECT_DOUBLE_EQ(handle.step, 0.08);
   // a file's domain: ten times as long
-  Scene scene = parsed("\"widgets\": [" + kCut + R"(, "near": 0.5}], "volumes": [{"field": "s"}])");
+  Scene scene = parsed("\"widgets\": [" + kCut + R"(, "grab_distance": 0.5}], "volumes": [{"field": "s"}])");
   const Entity s = find_field(scene, "s");
   const auto grid = field::try_sample_on_grid(*resolve_field(scene, s, {}), 5, -20, 20);
   ASSERT_TRUE(grid);
@@ -159,7 +159,7 @@ TEST(Widgets, ReportsThatCannotBeMeantAreIgnored) {
 }
 
 TEST(Widgets, APoseThatIsSetOutlivesOlderReports) {
-  Scene scene = parsed("\"widgets\": [" + kSeed + R"(, {"name": "b", "type": "box", "lo": [0, 0, 0], "hi": [1, 1, 1]}])");
+  Scene scene = parsed("\"widgets\": [" + kSeed + R"(, {"name": "b", "type": "box", "min": [0, 0, 0], "max": [1, 1, 1]}])");
   HapticState old = state_of(scene);
   old.widgets[0].pose.points[0] = {9, 9, 9};
   const Entity p = find_widget(scene, "p");
@@ -180,7 +180,7 @@ TEST(Widgets, APoseThatIsSetOutlivesOlderReports) {
 }
 
 TEST(Widgets, SlicesAndClipsFollow) {
-  Scene scene = parsed("\"widgets\": [" + kCut + R"(}, {"name": "b", "type": "box", "lo": [-1, -1, -1], "hi": [1, 1, 1]}],
+  Scene scene = parsed("\"widgets\": [" + kCut + R"(}, {"name": "b", "type": "box", "min": [-1, -1, -1], "max": [1, 1, 1]}],
     "slices": [{"field": "s", "widget": "cut"}], "clip": [{"widget": "cut"}, {"widget": "b"}])");
   driven(scene);
   EXPECT_FALSE(driven(scene).any()) << "nothing moved";

@@ -206,7 +206,7 @@ TEST(AnisotropicFriction, PassesThroughWhereTheSurfaceDoes) {
 
 TEST(AnisotropicFriction, OneNameInAMode) {
   const std::string modes = R"(}, {"name": "p", "type": "point", "position": [0, 0, 0]}],
-    "modes": [{"name": "all", "links": ["p", "skin"], "on": {"button": 1}}, {"name": "part", "links": ["skin_friction"], "on": {"button": 2}}]})";
+    "modes": [{"name": "all", "links": ["p", "skin"], "active_when": {"button": 1}}, {"name": "part", "links": ["skin_friction"], "active_when": {"button": 2}}]})";
   Bench bench(kSphere + modes);
   ASSERT_TRUE(bench.ok);
   EXPECT_EQ(bench.program->modes[0].links, (std::vector<int>{3, 0, 1, 2}));

@@ -134,8 +134,8 @@ TEST(ExtractProgram, RefusesWhatABaselineCannotDo) {
 TEST(ExtractProgram, CopiesCouplingSwitchesAndOrder) {
   scene::Scene scene = scene_of(R"({"coupling": {"stiffness": 300, "damping": 2, "max_force": 5, "ramp_s": 0.5},
     "workspace": {"metres_per_unit": 0.01, "origin": [1, 2, 3]},
-    "chain": [{"name": "b", "type": "point", "position": [0, 0, 1], "on": {"button": 2}},
-              {"name": "a", "type": "point", "position": [0, 0, 0], "stiffness": 0, "on": {"force_above": 1.5}},
+    "chain": [{"name": "b", "type": "point", "position": [0, 0, 1], "active_when": {"button": 2}},
+              {"name": "a", "type": "point", "position": [0, 0, 0], "stiffness": 0, "active_when": {"force_above": 1.5}},
               {"name": "c", "type": "point", "position": [0, 0, 0], "stiffness": 70}]})");
   const auto result = build_program(scene);
   ASSERT_TRUE(result) << result.error().message;
@@ -210,21 +210,21 @@ TEST(ExtractProgram, AMeshLinkHoldsTheDrawnMesh) {
 TEST(ExtractProgram, CommonKeysAreChecked) {
   expect_error(point_with("\"stiffness\": -1"), 3, {"\"stiffness\" is -1", ">= 0 was expected"});
   expect_error(point_with("\"stiffness\": \"x\""), 3, {"\"stiffness\"", "finite number"});
-  expect_error(point_with("\"on\": {}"), 3, {"neither", "expected"});
-  expect_error(point_with("\"on\": true"), 3, {"\"on\"", "object", "expected"});
-  expect_error(point_with("\"on\": {\"button\": 1, \"force_above\": 1}"), 3, {"both", "expected"});
+  expect_error(point_with("\"active_when\": {}"), 3, {"neither", "expected"});
+  expect_error(point_with("\"active_when\": true"), 3, {"\"active_when\"", "object", "expected"});
+  expect_error(point_with("\"active_when\": {\"button\": 1, \"force_above\": 1}"), 3, {"both", "expected"});
   for (const char* bad : {"0", "33", "1.5", "\"a\""})
-    expect_error(point_with("\"on\": {\"button\": " + std::string(bad) + "}"), 3, {"from 1 to 32"});
+    expect_error(point_with("\"active_when\": {\"button\": " + std::string(bad) + "}"), 3, {"from 1 to 32"});
   for (const char* bad : {"0", "-1", "null"})
-    expect_error(point_with("\"on\": {\"force_above\": " + std::string(bad) + "}"), 3, {"> 0 was expected"});
-  expect_error(point_with("\"on\": {\"buton\": 1}"), 3, {"unknown key \"buton\"", "did you mean \"button\"?"});
+    expect_error(point_with("\"active_when\": {\"force_above\": " + std::string(bad) + "}"), 3, {"> 0 was expected"});
+  expect_error(point_with("\"active_when\": {\"buton\": 1}"), 3, {"unknown key \"buton\"", "did you mean \"button\"?"});
 }
 
 TEST(ExtractProgram, ReadsSwitches) {
   scene::Scene scene = scene_of(R"({"chain": [
-    {"name": "a", "type": "point", "position": [0, 0, 0], "on": {"button": 3, "toggle": true}},
-    {"name": "b", "type": "point", "position": [0, 0, 0], "on": {"force_above": 2, "force_below": 0.5}},
-    {"name": "c", "type": "point", "position": [0, 0, 0], "on": {"force_above": 2}},
+    {"name": "a", "type": "point", "position": [0, 0, 0], "active_when": {"button": 3, "toggle": true}},
+    {"name": "b", "type": "point", "position": [0, 0, 0], "active_when": {"force_above": 2, "force_below": 0.5}},
+    {"name": "c", "type": "point", "position": [0, 0, 0], "active_when": {"force_above": 2}},
     {"name": "d", "type": "point", "position": [0, 0, 0]}]})");
   const auto program = build_program(scene);
   ASSERT_TRUE(program) << program.error().message;
@@ -239,20 +239,21 @@ TEST(ExtractProgram, ReadsSwitches) {
 }
 
 TEST(ExtractProgram, SwitchErrorsNameTheirLine) {
-  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"force_below\": 2}"), 4, {"\"force_below\" is above", "expected"});
-  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"force_below\": -2}"), 4, {"\"force_below\" is -2", ">= 0"});
-  expect_error(point_with("\"on\": {\"button\": 1,\n\"force_below\": 2}"), 4,
+  expect_error(point_with("\"active_when\": {\"force_above\": 1,\n\"force_below\": 2}"), 4, {"\"force_below\" is above", "expected"});
+  expect_error(point_with("\"active_when\": {\"force_above\": 1,\n\"force_below\": -2}"), 4, {"\"force_below\" is -2", ">= 0"});
+  expect_error(point_with("\"active_when\": {\"button\": 1,\n\"force_below\": 2}"), 4,
                {"\"force_below\" belongs to \"force_above\"", "was expected"});
-  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"toggle\": true}"), 4, {"\"toggle\" belongs to \"button\"", "was expected"});
-  expect_error(point_with("\"on\": {\"button\": 1,\n\"toggle\": 1}"), 4, {"toggle"});
-  expect_error(point_with("\"on\": {\"toggle\": true}"), 3, {"neither"});
+  expect_error(point_with("\"active_when\": {\"force_above\": 1,\n\"toggle\": true}"), 4,
+               {"\"toggle\" belongs to \"button\"", "was expected"});
+  expect_error(point_with("\"active_when\": {\"button\": 1,\n\"toggle\": 1}"), 4, {"toggle"});
+  expect_error(point_with("\"active_when\": {\"toggle\": true}"), 3, {"neither"});
 }
 
 TEST(ExtractProgram, ReadsIndications) {
   scene::Scene scene = scene_of(R"({"chain": [
-    {"name": "a", "type": "point", "position": [0, 0, 0], "indicate": {"cue": "detent", "at": 0.2, "amplitude": 0.7, "duration": 0.03}},
-    {"name": "b", "type": "point", "position": [0, 0, 0], "indicate": {"cue": "vibration", "from": 0.5, "frequency": 80}},
-    {"name": "c", "type": "point", "position": [0, 0, 0], "indicate": {}},
+    {"name": "a", "type": "point", "position": [0, 0, 0], "release_cue": {"type": "detent", "distance": 0.2, "amplitude": 0.7, "duration": 0.03}},
+    {"name": "b", "type": "point", "position": [0, 0, 0], "release_cue": {"type": "vibration", "onset": 0.5, "frequency": 80}},
+    {"name": "c", "type": "point", "position": [0, 0, 0], "release_cue": {}},
     {"name": "d", "type": "point", "position": [0, 0, 0]}]})");
   const auto program = build_program(scene);
   ASSERT_TRUE(program) << program.error().message;
@@ -270,17 +271,17 @@ TEST(ExtractProgram, ReadsIndications) {
 
 TEST(ExtractProgram, IndicationErrorsNameTheirLine) {
   const auto bad = [](const std::string& keys, std::initializer_list<const char*> parts) {
-    expect_error(point_with("\"indicate\": {\n" + keys + "}"), 4, parts);
+    expect_error(point_with("\"release_cue\": {\n" + keys + "}"), 4, parts);
   };
-  bad("\"cue\": \"bell\"", {"cue", "detent", "vibration"});
-  bad("\"at\": 0", {"\"at\" is 0", "> 0"});
-  bad("\"from\": -0.1", {"\"from\" is -0.1"});
-  bad("\"from\": 1.5", {"\"from\" is 1.5", "0 to 1"});
+  bad("\"type\": \"bell\"", {"type", "detent", "vibration"});
+  bad("\"distance\": 0", {"\"distance\" is 0", "> 0"});
+  bad("\"onset\": -0.1", {"\"onset\" is -0.1"});
+  bad("\"onset\": 1.5", {"\"onset\" is 1.5", "0 to 1"});
   bad("\"amplitude\": -1", {"\"amplitude\" is -1", ">= 0"});
   bad("\"frequency\": 0", {"\"frequency\" is 0", "> 0"});
   bad("\"duration\": 0", {"\"duration\" is 0", "> 0"});
   bad("\"kue\": 1", {"unknown key \"kue\"", "cue"});
-  expect_error(point_with("\"indicate\": true"), 3, {"indicate", "object"});
+  expect_error(point_with("\"release_cue\": true"), 3, {"release_cue", "object"});
 }
 
 /// Two links on lines 2 and 3, `modes` from line 4.
@@ -291,8 +292,8 @@ std::string with_modes(const std::string& modes) {
 }
 
 TEST(ExtractProgram, ReadsModesInOrder) {
-  scene::Scene scene = scene_of(with_modes(R"({"name": "m", "links": ["b", "a"], "on": {"button": 1, "toggle": true}},
-      {"name": "n", "links": [], "on": {"force_above": 3}})"));
+  scene::Scene scene = scene_of(with_modes(R"({"name": "m", "links": ["b", "a"], "active_when": {"button": 1, "toggle": true}},
+      {"name": "n", "links": [], "active_when": {"force_above": 3}})"));
   const auto program = build_program(scene);
   ASSERT_TRUE(program) << program.error().message;
   const std::vector<Mode>& modes = (*program)->modes;
@@ -306,15 +307,15 @@ TEST(ExtractProgram, ReadsModesInOrder) {
 }
 
 TEST(ExtractProgram, ModeErrorsNameTheirLine) {
-  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"z\"], \"on\": {\"button\": 1}}"), 5,
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"z\"], \"active_when\": {\"button\": 1}}"), 5,
                {"\"m\"", "\"z\"", "no link", "one of a, b was expected"});
-  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"a\"], \"on\": {\"button\": 1}}"), 5,
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"a\"], \"active_when\": {\"button\": 1}}"), 5,
                {"\"a\" twice", "each link once was expected"});
-  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"on\": {}}"), 5, {"neither"});
-  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"on\": {\"button\": 40}}"), 5, {"from 1 to 32"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"active_when\": {}}"), 5, {"neither"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"active_when\": {\"button\": 40}}"), 5, {"from 1 to 32"});
   std::string nine;
   for (int i = 0; i < 9; ++i)
-    nine += std::string(i ? ",\n" : "") + "{\"name\": \"m" + std::to_string(i) + "\", \"links\": [], \"on\": {\"button\": 1}}";
+    nine += std::string(i ? ",\n" : "") + "{\"name\": \"m" + std::to_string(i) + "\", \"links\": [], \"active_when\": {\"button\": 1}}";
   expect_error(with_modes(nine), 12, {"too many modes", "8"});
 }
 
@@ -325,13 +326,14 @@ TEST(ExtractProgram, AModesOwnFormIsCheckedWhereTheSceneIsRead) {
     EXPECT_TRUE(scene.error().message.starts_with("scene.json:4: ")) << scene.error().message;
     for (const char* part : parts) EXPECT_NE(scene.error().message.find(part), std::string::npos) << scene.error().message;
   };
-  fails(R"({"name": "m", "on": {"button": 1}})", {"links"});
-  fails(R"({"name": "m", "links": "a", "on": {"button": 1}})", {"links"});
-  fails(R"({"name": "m", "links": [1], "on": {"button": 1}})", {"links"});
-  fails(R"({"name": "m", "links": ["a"]})", {"\"on\""});
-  fails(R"({"links": ["a"], "on": {"button": 1}})", {"name"});
-  fails(R"({"name": "m", "links": [], "on": {"button": 1}, "off": 1})", {"unknown key \"off\""});
-  fails(R"({"name": "m", "links": [], "on": {"button": 1}}, {"name": "m", "links": [], "on": {"button": 1}})", {"duplicate mode name"});
+  fails(R"({"name": "m", "active_when": {"button": 1}})", {"links"});
+  fails(R"({"name": "m", "links": "a", "active_when": {"button": 1}})", {"links"});
+  fails(R"({"name": "m", "links": [1], "active_when": {"button": 1}})", {"links"});
+  fails(R"({"name": "m", "links": ["a"]})", {"\"active_when\""});
+  fails(R"({"links": ["a"], "active_when": {"button": 1}})", {"name"});
+  fails(R"({"name": "m", "links": [], "active_when": {"button": 1}, "off": 1})", {"unknown key \"off\""});
+  fails(R"({"name": "m", "links": [], "active_when": {"button": 1}}, {"name": "m", "links": [], "active_when": {"button": 1}})",
+        {"duplicate mode name"});
   fails("3", {"object"});
 }
 

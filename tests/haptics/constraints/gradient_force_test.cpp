@@ -5,19 +5,19 @@
 namespace catena::haptics::tests {
 namespace gradient_force_test {
 
-ConstraintPtr pull(field::ScalarFieldPtr f, const std::string& towards, const std::string& displacement = "0.2") {
+ConstraintPtr pull(field::ScalarFieldPtr f, const std::string& direction, const std::string& displacement = "0.2") {
   Fields fields;
   fields.named["f"].scalar = std::move(f);
-  return build(
-      R"({"name": "a", "type": "gradient_force", "field": "f", "displacement": )" + displacement + ", \"towards\": \"" + towards + "\"}",
-      fields);
+  return build(R"({"name": "a", "type": "gradient_force", "field": "f", "displacement": )" + displacement + ", \"direction\": \"" +
+                   direction + "\"}",
+               fields);
 }
 
 TEST(GradientForce, IsProportionalToTheGradient) {
   // s = |x|^2 on a grid: |grad s| = 2 |x|, largest in the outermost cells' centres
   const auto f =
       sample_scalar_grid(field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0)), {33, 33, 33}, [](const Vec3& p) { return dot(p, p); });
-  Rig high(pull(f, "high")), low(pull(f, "low"));
+  Rig high(pull(f, "up_gradient")), low(pull(f, "down_gradient"));
   const double largest = 2 * norm(Vec3(2 - 0.0625));
   Random random(1);
   for (int i = 0; i < 300; ++i) {
@@ -36,12 +36,12 @@ TEST(GradientForce, IsProportionalToTheGradient) {
 }
 
 TEST(GradientForce, TheScaleOfTheFieldDoesNotMatter) {
-  Rig one(pull(analytic_field("gaussian"), "high"));
+  Rig one(pull(analytic_field("gaussian"), "up_gradient"));
   Random random(2);
   std::vector<Vec3> path;
   for (int i = 0; i < 100; ++i) path.push_back(random.box(2));
   for (const double scale : {1e-300, 1e-150, 1e150, 1e300}) {
-    Rig other(pull(analytic_field("gaussian", scale), "high"));
+    Rig other(pull(analytic_field("gaussian", scale), "up_gradient"));
     for (const Vec3& x : path) {
       one.tick(x);
       other.tick(x);
@@ -52,14 +52,14 @@ TEST(GradientForce, TheScaleOfTheFieldDoesNotMatter) {
 }
 
 TEST(GradientForce, IsFreeOutsideTheDomainAndIdleOnAPlateau) {
-  Rig grid(pull(sampled_field("sphere", 17), "high"));
+  Rig grid(pull(sampled_field("sphere", 17), "up_gradient"));
   EXPECT_EQ(grid.tick({1, 0.1, 0}).status, LinkStatus::ok);
   EXPECT_GT(norm(grid.state.proxy - Vec3(1, 0.1, 0)), 0.1);
   for (const Vec3& out : {Vec3(2.001, 0, 0), Vec3(1e300, 0, -0.0), Vec3(0, -5, 0)}) {
     EXPECT_EQ(grid.tick(out).status, LinkStatus::free);
     EXPECT_TRUE(bitwise_equal(grid.state.proxy, out));
   }
-  Rig flat(pull(analytic_field("constant"), "high"));
+  Rig flat(pull(analytic_field("constant"), "up_gradient"));
   EXPECT_EQ(flat.tick({-0.0, 0.5, 0}).status, LinkStatus::ok);
   EXPECT_TRUE(bitwise_equal(flat.state.proxy, Vec3(-0.0, 0.5, 0)));
 }
@@ -68,7 +68,7 @@ TEST(GradientForce, VoxelsThatAreNotFiniteAreFree) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto f = sample_scalar_grid(field::Mapping::from_linear(Mat3(0.5), Vec3(-2.0)), {9, 9, 9},
                                     [&](const Vec3& p) { return norm(p) < 0.1 ? nan : p.x; });
-  Rig rig(pull(f, "low"));
+  Rig rig(pull(f, "down_gradient"));
   EXPECT_EQ(rig.tick({0.2, 0.2, 0.2}).status, LinkStatus::free);
   EXPECT_EQ(rig.tick({1.2, 0.2, 0.2}).status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(1.0, 0.2, 0.2)), 1e-6);
@@ -84,11 +84,11 @@ TEST(GradientForce, RefusesBadKeys) {
     EXPECT_EQ(made.error().message.rfind("scene.json:", 0), 0u) << made.error().message;
     EXPECT_NE(made.error().message.find(part), std::string::npos) << made.error().message;
   };
-  fails(R"("field": "v", "displacement": 0.1, "towards": "high")", "scalar field");
-  fails(R"("field": "f", "towards": "high")", "displacement");
-  fails(R"("field": "f", "displacement": 0.1)", "towards");
-  fails(R"("field": "f", "displacement": 0.1, "towards": "up")", "towards");
-  fails(R"("field": "f", "displacement": -0.1, "towards": "low")", "displacement");
+  fails(R"("field": "v", "displacement": 0.1, "direction": "up_gradient")", "scalar field");
+  fails(R"("field": "f", "direction": "up_gradient")", "displacement");
+  fails(R"("field": "f", "displacement": 0.1)", "direction");
+  fails(R"("field": "f", "displacement": 0.1, "direction": "up")", "direction");
+  fails(R"("field": "f", "displacement": -0.1, "direction": "down_gradient")", "displacement");
 }
 
 }  // namespace gradient_force_test

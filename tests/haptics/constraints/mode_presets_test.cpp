@@ -18,15 +18,15 @@ const std::string kSkin = R"({"name": "skin", "type": "anisotropic_friction",
 
 TEST(ReadyMadeModes, AnisotropicFrictionIsThreeLinks) {
   const auto links = expand_link(node_of(kSkin + R"(, "kind": "line", "threshold": 0.02, "tau_min": 0.001,
-    "tau_max": 0.01, "law": "printed", "free": "above", "release": 0.3, "stiffness": 70, "on": {"button": 2}, "indicate": {"cue": "detent"}})"));
+    "tau_max": 0.01, "law": "as_published", "free": "above", "release": 0.3, "stiffness": 70, "active_when": {"button": 2}, "release_cue": {"type": "detent"}})"));
   ASSERT_TRUE(links) << links.error().message;
   ASSERT_EQ(links->size(), 3u);
   const char* names[] = {"skin_surface", "skin_direction", "skin_friction"};
   const char* types[] = {"isosurface", "friction", "modulated_friction"};
   const std::vector<std::string> keys[] = {
-      {"name", "type", "stiffness", "release", "on", "indicate", "field", "level", "free"},
-      {"name", "type", "stiffness", "on", "field", "kind", "threshold", "surface", "level"},
-      {"name", "type", "stiffness", "on", "field", "kind", "surface", "level", "tau_min", "tau_max", "law"}};
+      {"name", "type", "stiffness", "release", "active_when", "release_cue", "field", "level", "free"},
+      {"name", "type", "stiffness", "active_when", "field", "kind", "threshold", "surface", "level"},
+      {"name", "type", "stiffness", "active_when", "field", "kind", "surface", "level", "tau_min", "tau_max", "law"}};
   for (std::size_t i = 0; i < 3; ++i) {
     const json::Node& link = (*links)[i];
     EXPECT_EQ(link.find("name")->string, names[i]);

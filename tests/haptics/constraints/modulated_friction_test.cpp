@@ -40,7 +40,7 @@ TEST(ModulatedFriction, TheThresholdFollowsTheAngle) {
     for (const bool printed : {false, true}) {
       const double expected = printed ? u * 0.01 + (1 - u) * 0.1 : (1 - std::fabs(u)) * 0.01 + std::fabs(u) * 0.1;
       for (const char* level : {"", R"(, "level": 1)"}) {
-        Rig rig(build(modulated(0.01, 0.1, std::string(level) + (printed ? R"(, "law": "printed")" : "")), at_angle(angle)));
+        Rig rig(build(modulated(0.01, 0.1, std::string(level) + (printed ? R"(, "law": "as_published")" : "")), at_angle(angle)));
         const Vec3 a = direction(Vec3(1, 0.4, 0.2)), b = direction(Vec3(1, 0.4, 0.5));
         rig.tick(a);
         EXPECT_NEAR(rig.state.limit, expected, 1e-12) << angle << level << printed;
@@ -58,7 +58,7 @@ TEST(ModulatedFriction, TheThresholdFollowsTheAngle) {
 // the text of the paper: a field along the normal is the hardest to follow; Eq. 7 as printed says the easiest
 TEST(ModulatedFriction, AlongTheNormalIsTheHardest) {
   Rig safe(build(modulated(0.01, 0.1), at_angle(0))), inward(build(modulated(0.01, 0.1), at_angle(3.141592653589793)));
-  Rig printed(build(modulated(0.01, 0.1, R"(, "law": "printed")"), at_angle(0)));
+  Rig printed(build(modulated(0.01, 0.1, R"(, "law": "as_published")"), at_angle(0)));
   for (Rig* rig : {&safe, &inward, &printed}) rig->tick({0, 0, 1});
   EXPECT_NEAR(safe.state.limit, 0.1, 1e-12);
   EXPECT_NEAR(inward.state.limit, 0.1, 1e-12);
@@ -93,7 +93,7 @@ TEST(ModulatedFriction, SafeNormalisation) {
     Fields fields;
     fields.named["s"].scalar = analytic_field("sphere");
     fields.named["v"].vector = std::make_shared<Formula>([bad](const Vec3&) { return Vec3(bad); });
-    Rig safe(build(modulated(0.01, 0.1), fields)), printed(build(modulated(0.01, 0.1, R"(, "law": "printed")"), fields));
+    Rig safe(build(modulated(0.01, 0.1), fields)), printed(build(modulated(0.01, 0.1, R"(, "law": "as_published")"), fields));
     for (Rig* rig : {&safe, &printed}) {
       rig->tick({0, 0.6, 0.8});
       rig->tick({0.6, 0, 0.8});
@@ -106,7 +106,7 @@ TEST(ModulatedFriction, SafeNormalisation) {
 
 // Eq. 7 for u < 0 leaves the range; it must not leave the numbers
 TEST(ModulatedFriction, ThePrintedLawIsNeverNegative) {
-  const std::string law = R"(, "law": "printed")";
+  const std::string law = R"(, "law": "as_published")";
   Rig above(build(modulated(0.01, 0.1, law), at_angle(3.141592653589793)));
   above.tick({0, 0, 1});
   EXPECT_NEAR(above.state.limit, 2 * 0.1 - 0.01, 1e-12);
@@ -119,7 +119,7 @@ TEST(ModulatedFriction, ThePrintedLawIsNeverNegative) {
 
 TEST(ModulatedFriction, LineFieldsHaveNoSign) {
   for (const double angle : {0.4, 2.741592653589793}) {
-    Rig rig(build(modulated(0.01, 0.1, R"(, "kind": "line", "law": "printed")"), at_angle(angle)));
+    Rig rig(build(modulated(0.01, 0.1, R"(, "kind": "line", "law": "as_published")"), at_angle(angle)));
     rig.tick({0, 0, 1});
     EXPECT_NEAR(rig.state.limit, std::cos(0.4) * 0.01 + (1 - std::cos(0.4)) * 0.1, 1e-12);
   }

@@ -36,9 +36,9 @@ TEST(ReadParameter, ANumberOrAMap) {
   EXPECT_EQ(at("0.25", {1, 2, 3}), 0.25);
   EXPECT_TRUE(read("0.25")->is_constant());
   EXPECT_DOUBLE_EQ(at(R"({"field": "plane", "map": [[0, 1], [2, 3]]})", {0, 0, 0.5}), 1.5);
-  EXPECT_DOUBLE_EQ(at(R"({"field": "plane", "of": "gradient", "map": [[0, 1], [2, 3]]})", {0, 0, 0.5}), 2);
+  EXPECT_DOUBLE_EQ(at(R"({"field": "plane", "quantity": "gradient", "map": [[0, 1], [2, 3]]})", {0, 0, 0.5}), 2);
   EXPECT_DOUBLE_EQ(at(R"({"field": "circle", "map": [[0, 1], [2, 3]]})", {0.5, 0, 3}), 1.5);
-  EXPECT_DOUBLE_EQ(at(R"({"field": "circle", "of": "magnitude", "map": [[0, 1], [2, 3]]})", {0.5, 0, 3}), 1.5);
+  EXPECT_DOUBLE_EQ(at(R"({"field": "circle", "quantity": "magnitude", "map": [[0, 1], [2, 3]]})", {0.5, 0, 3}), 1.5);
   const Fields none;
   const auto node = json::parse("{}", "scene.json");
   EXPECT_EQ(get_parameter(*node, "threshold", 9.0, json::NumberRange::positive, none.context())->min(), 9);
@@ -47,11 +47,11 @@ TEST(ReadParameter, ANumberOrAMap) {
 TEST(ReadParameter, NormalisesByTheFieldsOwnRange) {
   // the sampled |x| on -2..2: 0 .. sqrt 12; its largest gradient is 1 (in the cells' centres, all but), the largest |v| 2 sqrt 2
   EXPECT_NEAR(at(R"({"field": "ball", "normalise": true, "map": [[0, 1], [1, 3]]})", {1.5, 0, 0}), 1 + 2 * 1.5 / std::sqrt(12.0), 1e-6);
-  EXPECT_NEAR(at(R"({"field": "ball", "of": "gradient", "normalise": true, "map": [[0, 1], [1, 3]]})", {1.5, 0.7, 0.3}), 3, 2e-3);
+  EXPECT_NEAR(at(R"({"field": "ball", "quantity": "gradient", "normalise": true, "map": [[0, 1], [1, 3]]})", {1.5, 0.7, 0.3}), 3, 2e-3);
   EXPECT_NEAR(at(R"({"field": "swirl", "normalise": true, "map": [[0, 1], [1, 3]]})", {1, 0, 0}), 1 + 2 / std::sqrt(8.0), 1e-6);
   EXPECT_NEAR(at(R"({"field": "gaussian", "normalise": true, "map": [[0, 1], [1, 3]]})", {0, 0, 0}), 3, 1e-14);
   EXPECT_EQ(at(R"({"field": "constant", "normalise": true, "map": [[0, 1], [1, 3]]})", {0, 0, 0}), 1);
-  EXPECT_EQ(at(R"({"field": "constant", "of": "gradient", "normalise": true, "map": [[0, 1], [1, 3]]})", {0, 0, 0}), 1);
+  EXPECT_EQ(at(R"({"field": "constant", "quantity": "gradient", "normalise": true, "map": [[0, 1], [1, 3]]})", {0, 0, 0}), 1);
 }
 
 TEST(ReadParameter, OutsideIsTheFirstOutputOrWhatIsSaid) {
@@ -81,9 +81,9 @@ TEST(ReadParameter, ErrorsNameTheirLine) {
   fails("{\"field\": \"plane\", \"map\": [[0, 1],\n[0, 2]]}", 3, {"do not rise", "> 0"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1],\n[1, 0]]}", 3, {"\"threshold\" is 0", "> 0"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"outside\": 0}", 3, {"\"outside\" is 0"});
-  fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"of\": \"magnitude\"}", 3, {"scalar field", "\"value\" or \"gradient\""});
-  fails("{\"field\": \"circle\", \"map\": [[0, 1]],\n\"of\": \"value\"}", 3, {"vector field", "\"magnitude\""});
-  fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"of\": \"curl\"}", 3, {"of"});
+  fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"quantity\": \"magnitude\"}", 3, {"scalar field", "\"value\" or \"gradient\""});
+  fails("{\"field\": \"circle\", \"map\": [[0, 1]],\n\"quantity\": \"value\"}", 3, {"vector field", "\"magnitude\""});
+  fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"quantity\": \"curl\"}", 3, {"quantity"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"normalise\": 1}", 3, {"normalise"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"normalise\": true}", 3, {"no finite range"});
   fails("{\"field\": \"plane\", \"map\": [[0, 1]],\n\"normalize\": true}", 3, {"unknown key \"normalize\"", "normalise"});

@@ -37,7 +37,7 @@ TEST(Registry, UnknownKeyNamesItsLine) {
 }
 
 TEST(Registry, CommonKeysAreAccepted) {
-  EXPECT_TRUE(try_build(R"({"name": "a", "type": "point", "position": [0, 0, 0], "stiffness": 3, "on": {"button": 1}})"));
+  EXPECT_TRUE(try_build(R"({"name": "a", "type": "point", "position": [0, 0, 0], "stiffness": 3, "active_when": {"button": 1}})"));
 }
 
 TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {

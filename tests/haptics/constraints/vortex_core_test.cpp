@@ -18,7 +18,7 @@ TEST(VortexCore, IsTheZAxisOfStraightVortices) {
   Random random(1);
   for (const char* name : {"helix", "rankine", "lamb-oseen", "circle"})
     for (const double scale : {1.0, -1.0, 1e-300, 1e300}) {
-      Rig rig(core_of(formula(name, scale), R"(, "search": 0.6)"));
+      Rig rig(core_of(formula(name, scale), R"(, "search_radius": 0.6)"));
       for (int i = 0; i < 100; ++i) {
         const Vec3 x(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(-1.5, 1.5));
         rig.tick(x);
@@ -52,7 +52,7 @@ TEST(VortexCore, TheTubeIsFreeInsideAndAWallOutside) {
 
 TEST(VortexCore, OfHillsVortexIsARing) {
   // stagnation ring r = 1 / sqrt 2, z = 0
-  Rig rig(core_of(formula("hill"), R"(, "search": 0.3)"));
+  Rig rig(core_of(formula("hill"), R"(, "search_radius": 0.3)"));
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
     const double a = 0.02 * i, r = 0.7 + random.uniform(-0.15, 0.15), z = random.uniform(-0.15, 0.15);
@@ -70,7 +70,7 @@ TEST(VortexCore, OfASampledTiltedVortex) {
   const auto flow = [&](const Vec3& p) { return 2.0 * cross(w, p - c) + 0.5 * w; };
   Mat3 axes(Vec3(0.08, 0.06, 0) * 1.0, Vec3(-0.06, 0.08, 0), Vec3(0, 0.01, 0.11));
   const auto grid = catena::test::sample_vector_grid(field::Mapping::from_linear(axes, Vec3(-1.0, -2.2, -1.6)), {40, 40, 32}, flow);
-  Rig rig(core_of(grid, R"(, "search": 0.5)"));
+  Rig rig(core_of(grid, R"(, "search_radius": 0.5)"));
   Random random(3);
   for (int i = 0; i < 300; ++i) {
     const double s = random.uniform(-0.5, 0.5);
@@ -87,7 +87,7 @@ TEST(VortexCore, HoldsInMidFlowOnAGrid) {
     for (const bool cubic : {false, true})
       for (const double noise : {0.0, 0.02}) {
         const auto grid = catena::test::sample_core_flow(known, 33, noise, 3);
-        Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->as_cubic()) : grid, R"(, "search": 0.6)"));
+        Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->as_cubic()) : grid, R"(, "search_radius": 0.6)"));
         double longest = 0;
         for (std::size_t k = 10; k + 10 < known.points.size(); ++k)
           for (int i = 0; i < 5; ++i) {
@@ -108,7 +108,7 @@ TEST(VortexCore, IsConservative) {
   for (const catena::test::AnalyticCore& known : catena::test::analytic_cores())
     for (const bool cubic : {false, true}) {
       const auto grid = catena::test::sample_core_flow(known, 33, 0, 3);
-      Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->as_cubic()) : grid, R"(, "search": 0.6)"));
+      Rig rig(core_of(cubic ? field::VectorFieldPtr(*grid->as_cubic()) : grid, R"(, "search_radius": 0.6)"));
       const Vec3 middle = known.points[known.points.size() / 2];
       const auto at = [&](int i) {
         const double a = 6.283185307179586 * i / 4000;
@@ -129,7 +129,7 @@ TEST(VortexCore, IsConservative) {
 }
 
 TEST(VortexCore, DoesNotPullWhereEveryPlaceIsACore) {
-  Rig rig(core_of(formula("abc"), R"(, "criterion": "vorticity", "search": 2)"));
+  Rig rig(core_of(formula("abc"), R"(, "criterion": "vorticity", "search_radius": 2)"));
   for (int i = 0; i < 20; ++i) {
     const Vec3 x(0.1 * i - 1, 0.3, 0.2);
     rig.tick(x);
@@ -168,7 +168,7 @@ TEST(VortexCore, EndsAtTheWallOfTheDomain) {
 }
 
 TEST(VortexCore, SnapsAndReleases) {
-  Rig rig(core_of(formula("helix"), R"(, "search": 1, "snap": 0.1, "release": 0.3)"));
+  Rig rig(core_of(formula("helix"), R"(, "search_radius": 1, "snap": 0.1, "release": 0.3)"));
   EXPECT_EQ(rig.tick({0.2, 0, 0}).status, LinkStatus::released);
   EXPECT_EQ(rig.tick({0.09, 0, 0.2}).status, LinkStatus::ok);
   EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 0.2)), 1e-11);
@@ -184,7 +184,7 @@ TEST(VortexCore, AnotherCoreTakesHoldAfterATickThatIsReleased) {
   };
   const auto mapping = field::Mapping::from_linear(Mat3(0.1), Vec3(-1.2));
   const auto field = catena::test::sample_vector_grid(mapping, {25, 25, 25}, [&](const Vec3& p) { return turn(p, -0.6) + turn(p, 0.6); });
-  for (const char* rules : {R"(, "search": 2)", R"(, "search": 2, "snap": 1, "release": 3)"}) {
+  for (const char* rules : {R"(, "search_radius": 2)", R"(, "search_radius": 2, "snap": 1, "release": 3)"}) {
     Rig rig(core_of(field, rules));
     int curve = -1, released = 0;
     for (int i = 0; i <= 400; ++i) {
@@ -213,7 +213,7 @@ TEST(VortexCore, OnRealDataIsBoundedAndRests) {
   request.path = path;
   request.grid = "velocity";
   const auto velocity = field::load(request)->vector;
-  Rig rig(core_of(velocity, R"(, "search": 1)"));
+  Rig rig(core_of(velocity, R"(, "search_radius": 1)"));
   Random random(5);
   const field::Box& box = velocity->index_box();
   Quantiles work;
@@ -262,10 +262,10 @@ TEST(VortexCore, RefusesBadKeys) {
   };
   fails(R"("field": "s")", "vector field");
   fails(R"("field": "v", "radius": -1)", "radius");
-  fails(R"("field": "v", "search": 0)", "search");
+  fails(R"("field": "v", "search_radius": 0)", "search");
   fails(R"("field": "v", "criterion": "q")", "sujudi-haimes");
   fails(R"("field": "v", "least_swirl": 2)", "least_swirl");
-  fails(R"("field": "v", "radius": 0.3, "search": 0.3)", "> \"radius\"");
+  fails(R"("field": "v", "radius": 0.3, "search_radius": 0.3)", "> \"radius\"");
 }
 
 }  // namespace vortex_core_test

@@ -82,7 +82,7 @@ TEST(ExtractOverlay, ASlicesBarSpansTheValuesThatItsFieldHas) {
 TEST(ExtractOverlay, BarsShowTheColoursOfWhatTheyName) {
   const FramePacket packet = packet_of(R"({"fields": {"d": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
     "volumes": [{"field": "d", "color": [[0, 0, 0, 0], [1, 1, 0, 0.5], [2, 1, 1, 1]]}],
-    "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0]], "color_by": "speed"}],
+    "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0]], "color_by": {"quantity": "speed"}}],
     "scalar_bars": [{"volume": 0}, {"streamlines": 0, "title": "m/s", "position": "bottom", "format": "%.1f"}]})");
   ASSERT_EQ(packet.overlay.scalar_bars.size(), 2u);
   const ScalarBarItem& volume = packet.overlay.scalar_bars[0];
@@ -134,7 +134,7 @@ TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
 }
 
 TEST(ExtractOverlay, TitleLabelsAndMarkerGoOver) {
-  const FramePacket packet = packet_of(R"({"title": "T", "labels": [{"at": [1, 2, 3], "text": "a", "hidden_behind": true}],
+  const FramePacket packet = packet_of(R"({"title": "T", "labels": [{"at": [1, 2, 3], "text": "a", "occluded": true}],
     "orientation_marker": {"position": "top-left"}, "overlay": {"scale": 2, "font": "F"}})");
   const Overlay& overlay = packet.overlay;
   ASSERT_EQ(overlay.texts.size(), 1u);

@@ -43,7 +43,7 @@ TEST(Extract, AMeshIsOneObjectInEveryFrame) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
   auto scene = scene::parse_scene(
-      R"({"meshes": [{"name": "a", "file": "quad.obj", "color": [1, 0, 0]}, {"name": "b", "file": "quad.obj", "drawn": false}]})",
+      R"({"meshes": [{"name": "a", "file": "quad.obj", "color": [1, 0, 0]}, {"name": "b", "file": "quad.obj", "visible": false}]})",
       folder / "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const FramePacket one = packet_of(*scene), two = packet_of(*scene);
@@ -134,7 +134,7 @@ TEST(Extract, GradientFactorsComeAlong) {
 
 TEST(Extract, LinesAreColouredByANamedMapOverARange) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "seeds": [[0.5, 0, 0], [1.5, 0, 0]],
-    "color_by": "speed", "color": "grey", "range": [0, 1]}]})");
+    "color_by": {"quantity": "speed", "color": "grey", "range": [0, 1]}}]})");
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.tubes.size(), 2u);
   EXPECT_NEAR(packet.tubes[0].colors[0].g, 0.5, 1e-3);
@@ -186,7 +186,7 @@ TEST(Extract, TubesAreTheFeltCurve) {
 /// |p| of the ball, by a table from black at 0 to white at 2.
 TEST(Extract, TubesAreColouredByAField) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle + ", " + kSphere + R"(}, "streamlines": [{"field": "v",
-    "seeds": [[0.5, 0, 0.5], [1.5, 0, 0]], "color_by": "s", "color": [[0, 0, 0, 0], [2, 1, 1, 1]]}]})");
+    "seeds": [[0.5, 0, 0.5], [1.5, 0, 0]], "color_by": {"field": "s", "color": [[0, 0, 0, 0], [2, 1, 1, 1]]}}]})");
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.tubes.size(), 2u);
   for (const TubeItem& tube : packet.tubes) {
@@ -196,7 +196,7 @@ TEST(Extract, TubesAreColouredByAField) {
 }
 
 TEST(Extract, TheSpeedIsShownOverItsRangeWithoutATable) {
-  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "color_by": "speed",
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "color_by": {"quantity": "speed"},
     "seeds": {"line": {"from": [0.5, 0, 0], "to": [1.5, 0, 0], "count": 3}}}]})");
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.tubes.size(), 3u);
@@ -208,7 +208,7 @@ TEST(Extract, TheSpeedIsShownOverItsRangeWithoutATable) {
 
 TEST(Extract, AStraightLineHasPlacesForItsColours) {
   scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform"}}, "streamlines": [{"field": "v", "seeds": [[0, 0, 0]],
-    "length": 2, "color_by": "arc_length", "color": [[-2, 0, 0, 0], [2, 1, 0, 0]]}]})");
+    "length": 2, "color_by": {"quantity": "arc_length", "color": [[-2, 0, 0, 0], [2, 1, 0, 0]]}}]})");
   const TubeItem tube = packet_of(scene).tubes.at(0);
   EXPECT_GE(tube.points.size(), 64u);
   for (std::size_t i = 0; i < tube.points.size(); ++i) EXPECT_NEAR(tube.colors[i].r, (tube.points[i].x + 2) / 4, 1e-6);
@@ -236,7 +236,7 @@ TEST(Extract, TooManyArrowsAreRefused) {
 
 TEST(Extract, PulsesMoveWithThePhase) {
   scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform"}}, "streamlines": [{"field": "v", "seeds": [[0, 0, 0]],
-    "length": 2, "color": [1, 0, 0], "pulse": 1}]})");
+    "length": 2, "color": [1, 0, 0], "animated_bands": 1}]})");
   const auto brightest_near = [&](double x) {
     const TubeItem tube = packet_of(scene).tubes.at(0);
     double best = 9, at = 0;
@@ -267,7 +267,7 @@ TEST(Extract, TheIndicatorFollowsTheProbe) {
 
 TEST(Extract, AnIndicatorAheadBeginsAtTheProbe) {
   scene::Scene scene = scene_of("{\"fields\": {" + kCircle +
-                                R"(}, "cursor": {"probe": [1, 0, 0.5]}, "indicator": {"field": "v", "length": 0.4, "ahead": true}})");
+                                R"(}, "cursor": {"probe": [1, 0, 0.5]}, "indicator": {"field": "v", "length": 0.4, "anchor": "tail"}})");
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.indicators.size(), 1u);
   const IndicatorItem& item = packet.indicators[0];
@@ -350,10 +350,10 @@ TEST(Extract, ADropLineEndsOnTheFloor) {
   // down is the world's axis that the view's up is nearest to, but a ground lies across z
   const std::string camera = R"(, "camera": {"position": [0, 0, 9], "target": [0, 0, 0], "up": [0.3, -1, 0]})";
   EXPECT_EQ(foot(line + camera, probe), Vec3(0.1, box.hi.y, 0.3));
-  EXPECT_EQ(foot(line + camera + R"(, "ground": {"at": -7})", probe), Vec3(0.1, 0.2, -7));
+  EXPECT_EQ(foot(line + camera + R"(, "ground": {"height": -7})", probe), Vec3(0.1, 0.2, -7));
   EXPECT_LT(foot(line + R"(, "ground": true)", probe)->z, box.lo.z);
   // nothing is drawn
-  scene::Scene empty = scene_of("{\"cursor\": {\"probe\": [0, 0, 1], \"drop_line\": true, \"ghost\": false}}");
+  scene::Scene empty = scene_of("{\"cursor\": {\"probe\": [0, 0, 1], \"drop_line\": true, \"show_occluded\": false}}");
   EXPECT_EQ(packet_of(empty).cursors[0].foot_point, std::nullopt);
   EXPECT_FALSE(packet_of(empty).cursors[0].show_occluded);
 }

@@ -65,9 +65,9 @@ TEST(ExtractGlyphs, TheyPointAndReachAsTheFieldSays) {
 TEST(ExtractGlyphs, ScaleLengthAndPlace) {
   const std::string head = R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5, )";
   for (const Glyph& glyph : glyphs_of(head + R"("scale": "constant"}])")) EXPECT_NEAR(norm(glyph.tip - glyph.tail), 0.5, 1e-12);
-  const auto full = glyphs_of(head + R"("full_speed": 1, "length": 0.25}])");
+  const auto full = glyphs_of(head + R"("reference_speed": 1, "length": 0.25}])");
   for (const Glyph& glyph : full) EXPECT_NEAR(norm(glyph.tip - glyph.tail), 0.25 * norm(middle(glyph)), 1e-12);
-  const auto tails = glyphs_of(head + R"("at": "tail"}])"), heads = glyphs_of(head + R"("at": "head"}])");
+  const auto tails = glyphs_of(head + R"("anchor": "tail"}])"), heads = glyphs_of(head + R"("anchor": "head"}])");
   ASSERT_EQ(tails.size(), full.size());
   for (std::size_t i = 0; i < full.size(); ++i) {
     EXPECT_LT(norm(tails[i].tail - middle(full[i])), 1e-12);
@@ -166,7 +166,7 @@ TEST(ExtractGlyphs, OnASliceWithinWhatIsSeenOfIt) {
 
 TEST(ExtractGlyphs, OnASurfaceTheyStandOnIt) {
   const auto glyphs = glyphs_of(R"("isosurfaces": [{"field": "s", "level": 1.5, "visible": false}],
-    "glyphs": [{"field": "v", "on": {"isosurface": 0}, "spacing": 0.25, "at": "tail"}])");
+    "glyphs": [{"field": "v", "on": {"isosurface": 0}, "spacing": 0.25, "anchor": "tail"}])");
   ASSERT_GT(glyphs.size(), 250u);
   for (const Glyph& glyph : glyphs) {
     EXPECT_NEAR(norm(glyph.tail), 1.5, 0.01);
@@ -224,7 +224,7 @@ TEST(ExtractGlyphs, TooManyAreAnErrorThatSaysHowMany) {
   EXPECT_NE(e.find("s.json:4: a \"spacing\" of 0.1 would give about 68921 glyphs; a wider one that gives at most 20000 was expected"),
             std::string::npos)
       << e;
-  for (const char* on : {R"("box": {"lo": [0, 0, 0], "hi": [1, 1, 1]})", R"("plane": {"axis": "x", "at": 0})", R"("isosurface": 0)"})
+  for (const char* on : {R"("box": {"min": [0, 0, 0], "max": [1, 1, 1]})", R"("plane": {"axis": "x", "at": 0})", R"("isosurface": 0)"})
     for (const char* spacing : {"1e-3", "1e-9", "1e-30"})
       EXPECT_NE(error_of(std::string(R"("isosurfaces": [{"field": "s", "level": 1}], "glyphs": [{"field": "v", "spacing": )") + spacing +
                          ", \"on\": {" + on + "}}]")

@@ -34,7 +34,7 @@ constexpr const char* kScene = R"({"fields": {"s": {"file": "f.vdb", "grid": "s"
   "isosurfaces": [{"field": "s", "level": 0.5, "color_by": {"field": "s"}}],
   "slices": [{"field": "s", "axis": "z", "at": 10, "contours": {"count": 4}}, {"field": "v", "axis": "y", "at": 10}],
   "streamlines": [{"field": "v", "seeds": [[1, 5, 5], [3, 19.5, 20.6]], "color_by": {"quantity": "speed"}}],
-  "glyphs": [{"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [23, 23, 23]}}, "spacing": 3, "color_by": {"quantity": "speed"}}],
+  "glyphs": [{"field": "v", "on": {"box": {"min": [0, 0, 0], "max": [23, 23, 23]}}, "spacing": 3, "color_by": {"quantity": "speed"}}],
   "scalar_bars": [{"streamlines": 0}, {"glyphs": 0}, {"slice": 1}, {"volume": 0}]})";
 
 struct Ranges {

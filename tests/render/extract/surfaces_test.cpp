@@ -112,7 +112,7 @@ TEST(ExtractMeshes, NormalsColoursAndOpacity) {
     const Vec3 expected = p.x > 0 ? Vec3(0, 0, 1) : p.z > 0 ? Vec3(1, 0, 0) : direction(Vec3(1, 0, 1));
     EXPECT_LE(norm(n - expected), 1e-12) << v;
   }
-  packet = extract(fields + R"(, "color_by": "x", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}]})", folder / "s.json");
+  packet = extract(fields + R"(, "color_by": {"field": "x", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}}]})", folder / "s.json");
   ASSERT_TRUE(packet) << packet.error().message;
   const MeshGeometry& colored = *packet->meshes[0].geometry;
   EXPECT_TRUE(colored.normals.empty());

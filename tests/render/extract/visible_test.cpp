@@ -12,7 +12,7 @@ std::string scene_text(const std::string& visible) {
     "volumes": [{"field": "s"VISIBLE}, {"field": "s"}],
     "isosurfaces": [{"field": "s", "level": 1VISIBLE}],
     "slices": [{"field": "s", "axis": "z", "at": 0VISIBLE}, {"field": "v", "axis": "x", "at": 0.5}],
-    "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "color_by": "speed"VISIBLE}],
+    "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "color_by": {"quantity": "speed"}VISIBLE}],
     "meshes": [{"name": "m", "file": "m.obj"VISIBLE}],
     "scalar_bars": [{"volume": 0}, {"slice": 0}, {"slice": 1}, {"streamlines": 0}]})";
   for (std::size_t at; (at = text.find("VISIBLE")) != std::string::npos;) text.replace(at, 7, visible);

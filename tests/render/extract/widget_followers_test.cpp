@@ -16,7 +16,7 @@ scene::Scene parsed() {
       {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}],
     "slices": [{"field": "s", "widget": "cut", "contours": {"count": 3}}],
     "clip": [{"widget": "cut", "side": "behind"}],
-    "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 4}, "color_by": "speed", "arrows": 0.5}],
+    "streamlines": [{"field": "v", "seeds": {"widget": "r", "count": 4}, "color_by": {"quantity": "speed"}, "arrows": 0.5}],
     "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
     "scalar_bars": [{"streamlines": 0}, {"slice": 0}], "bounding_box": true})",
                                   "s.json");

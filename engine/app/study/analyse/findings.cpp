@@ -220,16 +220,16 @@ struct Judge {
         return tasks(f);
       case TestKind::correlation:
         return correlation(f);
-      case TestKind::weaker:
+      case TestKind::weaker_correlation:
         return weaker(f);
       case TestKind::largest:
         return largest(f);
       case TestKind::rejections:
         return rejections(f);
-      case TestKind::none:
+      case TestKind::untestable:
         break;
     }
-    return {Verdict::not_testable, {}, {f.why}};
+    return {Verdict::not_testable, {}, {f.reason}};
   }
 };
 

@@ -79,8 +79,13 @@ void CurveKey::add_file(const std::string& path) {
 CurveKey& CurveKey::add(const scene::Scene& scene, std::string_view text) {
   const auto root = json::parse(text, scene.path);
   if (root)
-    for (const auto& [name, node] : root->members)
-      if (name != "plan" && name != "quality") add(name).add(json::serialize_node(node));
+    for (const auto& [name, node] : root->members) {
+      if (name == "quality") continue;
+      json::Node settings = node;
+      if (name == "coupling")
+        std::erase_if(settings.members, [](const auto& m) { return m.first == "max_proxy_error" || m.first == "max_tick_us"; });
+      if (name != "coupling" || !settings.members.empty()) add(name).add(json::serialize_node(settings));
+    }
   add(static_cast<double>(scene.time.step));
   std::vector<std::string> files = scene.referenced_files;
   if (!root) files.push_back(scene.path);

@@ -25,8 +25,8 @@ class CurveKey {
   explicit CurveKey(std::string_view sense);
   CurveKey& add(std::string_view words);
   CurveKey& add(double number);
-  /// Adds the scene's text except its targets ("plan", "quality"), its time step, and the files that it refers to: name, size, modification
-  /// time, and the first and last 64 KiB; for a folder, the same of the files in it.
+  /// Adds the scene's text except its targets ("quality"; "max_proxy_error" and "max_tick_us" of "coupling"), its time step, and the files
+  /// that it refers to: name, size, modification time, and the first and last 64 KiB; for a folder, the same of the files in it.
   CurveKey& add(const scene::Scene& scene, std::string_view text);
   /// Returns the 16 hexadecimal digits.
   std::string text() const;

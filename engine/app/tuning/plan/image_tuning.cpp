@@ -223,7 +223,7 @@ std::vector<double> ImageTuning::error_breakpoints() const {
 }
 
 std::string ImageTuning::summary() const {
-  std::string text = fmt::format("plan {}={}: {}; expected: error {:.2g}/255 in {:.3g} ms", targets_.max_image_error ? "error" : "time",
+  std::string text = fmt::format("quality {}={}: {}; expected: error {:.2g}/255 in {:.3g} ms", targets_.max_image_error ? "error" : "time",
                                  to_text(targets_.max_image_error ? *targets_.max_image_error : *targets_.max_image_ms),
                                  render::describe(settings()), expected_error(), expected_ms());
   const Curve& c = curve_.curve;

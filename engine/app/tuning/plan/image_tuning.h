@@ -61,7 +61,7 @@ class ImageTuning {
   int current() const { return current_; }
   const Curve& curve() const { return curve_.curve; }
 
-  /// Returns "plan error=2: fast, step 1; expected: error 1.6/255 in 92 ms", with a remark if the target cannot be met or lies below the
+  /// Returns "quality error=2: fast, step 1; expected: error 1.6/255 in 92 ms", with a remark if the target cannot be met or lies below the
   /// resolvable error.
   std::string summary() const;
 

@@ -186,7 +186,7 @@ Result<std::string> TickTuning::apply(const std::string& text, const std::string
 }
 
 std::string TickTuning::summary() const {
-  std::string text = fmt::format("plan {}={}:", targets_.max_proxy_error ? "hand_error" : "hand_time",
+  std::string text = fmt::format("{} {}:", targets_.max_proxy_error ? "max_proxy_error" : "max_tick_us",
                                  to_text(targets_.max_proxy_error ? *targets_.max_proxy_error : targets_.max_tick_us.value_or(0)));
   for (const TunedLink& link : links_) text += fmt::format("{} {} {}", &link == links_.data() ? "" : ",", link.link, link.setting);
   for (const std::string& field : cubic_fields_) text += fmt::format(", field {} cubic", field);
@@ -198,7 +198,7 @@ std::string TickTuning::summary() const {
     if (link.error_anywhere > 0)
       text += fmt::format(" (far along the line of {}, small errors have grown: there up to {:.2g}{})", link.link, link.error_anywhere,
                           targets_.max_proxy_error && link.error_anywhere > *targets_.max_proxy_error
-                              ? ", so that hand_error is kept near its seed only"
+                              ? ", so that max_proxy_error is kept near its seed only"
                               : "");
   if (!meets_target_)
     text += targets_.max_proxy_error ? " (none is as exact: this is the most exact)" : " (none is as quick: this is the quickest)";

@@ -1,7 +1,7 @@
 /// Tick tuning: the choice of the integration method of each streamline link from measured curves of error against time
 /// (tradeoff/measure/haptics).
-///   hand_error=E  for each link the cheapest setting whose error is at most E, or at most the discretization error if that is larger
-///   hand_time=T   the least error of the worst link for which the whole tick takes at most T microseconds
+///   max_proxy_error=E  for each link the cheapest setting whose error is at most E, or at most the discretization error if that is larger
+///   max_tick_us=T      the least error of the worst link for which the whole tick takes at most T microseconds
 /// An error is the largest distance of a link's proxy from the converged line, world units. The time of a tick is the time without these
 /// links plus what each of them adds. A link that states its method ("follow", "method", "tolerance") keeps it.
 /// If the target lies below the error of linear interpolation, a sampled field that does not state its "interpolation" becomes cubic if
@@ -83,7 +83,7 @@ class TickTuning {
   /// The same for the scene's text, which is returned; `file` names it in messages. An Error if the text cannot be parsed.
   Result<std::string> apply(const std::string& text, const std::string& file) const;
 
-  /// Returns "plan hand_error=1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us a tick", with a remark if the target
+  /// Returns "max_proxy_error 1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us a tick", with a remark if the target
   /// cannot be met.
   std::string summary() const;
 

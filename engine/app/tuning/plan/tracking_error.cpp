@@ -66,7 +66,7 @@ std::string TrackingErrorMonitor::summary(scene::Scene& scene, std::optional<dou
   if (tracks_.empty()) return {};
   const auto off = max_error(scene);
   std::string text = "observed: ";
-  text += off ? fmt::format("error {:.2g} (the cells' own error is not in it)", *off) : "no planned link held";
+  text += off ? fmt::format("error {:.2g} (the cells' own error is not in it)", *off) : "no tuned link held";
   if (us) text += fmt::format(" in {:.3g} us a tick", *us);
   return text + "\n";
 }

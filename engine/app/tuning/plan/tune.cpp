@@ -15,7 +15,7 @@ namespace {
 /// Stores the curves in the cache. A failure is only reported: the curves are then measured in the next run.
 void keep(const CurveCache& store, const std::string& key, const std::string& source, const std::vector<Curve>& curves,
           const MessageCallback& tell) {
-  if (const Outcome kept = store.store(key, source, curves); !kept) tell("plan: the curves are not kept: " + kept.error().message);
+  if (const Outcome kept = store.store(key, source, curves); !kept) tell("tuning: the curves are not kept: " + kept.error().message);
 }
 
 const CurveCache& store_of(const CurveCache* given) {
@@ -23,27 +23,7 @@ const CurveCache& store_of(const CurveCache* given) {
   return given != nullptr ? *given : own;
 }
 
-scene::TuningTargets with(scene::TuningTargets wanted, const scene::TuningTargets& said) {
-  if (said.has_image_targets()) wanted.max_image_error = said.max_image_error, wanted.max_image_ms = said.max_image_ms;
-  if (said.has_haptic_targets()) wanted.max_proxy_error = said.max_proxy_error, wanted.max_tick_us = said.max_tick_us;
-  return wanted;
-}
-
 }  // namespace
-
-Result<scene::TuningTargets> resolve_targets(const scene::Scene& scene, const std::string& words) {
-  if (words.empty()) return scene.tuning;
-  CATENA_TRY(const scene::TuningTargets said, scene::parse_tuning_targets(words));
-  return with(scene.tuning, said);
-}
-
-Result<scene::TuningTargets> resolve_tick_targets(const scene::Scene& scene, const std::string& words) {
-  if (words.empty()) return scene.tuning;
-  CATENA_TRY(const scene::TuningTargets said, scene::parse_tuning_targets(words));
-  if (said.has_image_targets())
-    return Error{one_line("--plan " + words + ": nothing is drawn here; hand_error=E or hand_time=US was expected")};
-  return with(scene.tuning, said);
-}
 
 Result<std::string> read_scene_text(const scene::Scene& scene) {
   if (!is_scene_file(scene.path)) return std::string();
@@ -72,7 +52,7 @@ Result<ImageTuning> tune_image(render::Renderer& renderer, const render::FramePa
       told);
   if (!told.empty()) tell(told);
   if (!curve) {
-    ProgressLine progress("plan: measuring the picture", 1);
+    ProgressLine progress("tuning: measuring the image", 1);
     CATENA_TRY(curve, measure_image_curve(renderer, packet, kind, [&](double done) { progress.update(done); }));
     keep(store, key.text(), work.scene.path, {curve->curve}, tell);
   }
@@ -102,8 +82,8 @@ Result<TickTuning> tune_ticks(scene::Scene& scene, const std::string& text, cons
     const scene::Workspace workspace = scene.workspace;
     const std::optional<double> ramp = scene.coupling.ramp_s;
     CATENA_CHECK(scene::prepare(scene));
-    ProgressLine progress("plan: measuring the hand", 1);
-    tradeoff::Workload subject{std::move(scene), tradeoff::select_effort(true, false), {}, {}, rate_hz, {}, {}};
+    ProgressLine progress("tuning: measuring the links", 1);
+    tradeoff::Workload subject{std::move(scene), tradeoff::select_effort("quick"), {}, {}, rate_hz, {}, {}};
     Result<std::vector<Curve>> measured = Error{};
     const Outcome ready = tradeoff::add_haptics(subject, {});
     subject.rate_hz = rate_hz;
@@ -113,7 +93,7 @@ Result<TickTuning> tune_ticks(scene::Scene& scene, const std::string& text, cons
     scene.coupling.ramp_s = ramp;
     CATENA_CHECK(ready);
     CATENA_CHECK(measured);
-    for (const std::string& sentence : subject.skipped) tell("plan: as it is: " + sentence);
+    for (const std::string& sentence : subject.skipped) tell("tuning: as it is: " + sentence);
     if (!fits(*measured)) return Error{scene.path + ": the hand's curves could not be measured"};
     keep(store, key.text(), scene.path, *measured, tell);
   }
@@ -125,7 +105,7 @@ Result<std::optional<TickTuning>> tune_links(scene::Scene& scene, const std::str
   if (!wanted.has_haptic_targets()) return std::optional<TickTuning>();
   CATENA_TRY(TickTuning plan, tune_ticks(scene, text, wanted, rate_hz, options, tell));
   if (plan.is_empty()) {
-    tell("plan: the hand stays as it is: no streamline link leaves its setting open");
+    tell("tuning: no streamline link leaves its settings open; they stay as they are");
     return std::optional<TickTuning>();
   }
   tell(plan.summary());

@@ -1,4 +1,4 @@
-/// Tuning from targets to settings: resolves the targets ("plan" of a scene, --plan), takes the curves from the cache or measures them with
+/// Tuning from targets to settings: takes the curves from the cache or measures them with
 /// a progress line, and reports both to the user. `tell` receives one line per message.
 #pragma once
 #include <functional>
@@ -14,12 +14,6 @@
 namespace catena::app::plan {
 
 using MessageCallback = std::function<void(const std::string& line)>;
-
-/// Returns the scene's targets; where `words` (the value of --plan) has image targets or haptic targets, those replace the scene's. An
-/// Error if `words` cannot be parsed.
-Result<scene::TuningTargets> resolve_targets(const scene::Scene& scene, const std::string& words);
-/// The same for a command that renders nothing: image targets in `words` are an Error.
-Result<scene::TuningTargets> resolve_tick_targets(const scene::Scene& scene, const std::string& words);
 
 /// Returns the text of the scene file; empty for a data file.
 Result<std::string> read_scene_text(const scene::Scene& scene);

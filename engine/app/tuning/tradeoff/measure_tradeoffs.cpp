@@ -40,7 +40,7 @@ Result<Report> measure(const MeasureOptions& options) {
   CATENA_CHECK(check_files(options, IoConflictChecker(scene)));
   CATENA_CHECK(scene::prepare(scene));
   print_scene_notes(scene);
-  Workload workload{std::move(scene), tradeoff::select_effort(options.quick, options.thorough), {}, {}, 1000, {}, {}};
+  Workload workload{std::move(scene), tradeoff::select_effort(options.effort), {}, {}, 1000, {}, {}};
   CATENA_CHECK(tradeoff::add_haptics(workload, options.probe));
   const auto wanted = [&](const tradeoff::Measurement& m) {
     return options.only.empty() || std::find(options.only.begin(), options.only.end(), m.name) != options.only.end();
@@ -102,7 +102,6 @@ std::vector<std::string> measurement_names() {
 }
 
 Outcome measure_tradeoffs(const MeasureOptions& options) {
-  if (options.quick && options.thorough) return Error{"--quick goes without --thorough"};
   std::optional<Report> other;
   if (!options.compare.empty()) {
     CATENA_TRY(other, tradeoff::read_report(options.compare));

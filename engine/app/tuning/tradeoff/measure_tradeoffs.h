@@ -12,7 +12,7 @@ struct MeasureOptions {
   std::string source, output, compare, probe, grid;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
   std::vector<std::string> only;    ///< Names of measurements to run; empty: all.
-  bool quick = false, thorough = false;
+  std::string effort = "default";
 };
 
 /// Runs the command and prints the result and the files written. If the source is itself a report, nothing is measured and only its page is

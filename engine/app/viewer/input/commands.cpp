@@ -76,7 +76,7 @@ constexpr CommandRow kCommandRows[] = {
      kNoChord,
      kHand,
      "with a headset: touch three places, which says where a haptic device stands; again: not now"},
-    by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"),
+    by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"active_when\" says"),
 
     {Action::open, "Open...", with_control(GLFW_KEY_O), kNoChord, kScene, "open; a file can be dropped on the window as well"},
     {Action::save, "Save", with_control(GLFW_KEY_S, Held::no), kNoChord, kScene, "save (with the view, if it was moved)"},

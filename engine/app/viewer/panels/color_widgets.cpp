@@ -113,8 +113,7 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const std::string& choice = choices[i];
       if (!ImGui::Selectable(choice.c_str(), choice == now) || choice == now) continue;
-      // "color_by" given as a name with the keys next to it: those keys are removed; a stated range or table does not fit other values
-      TextEdits change{{pointer + "/range", std::nullopt}, {pointer + "/transfer", std::nullopt}};
+      TextEdits change;
       if (choice == alone) {
         change.push_back({pointer + "/color_by", std::nullopt});
         change.push_back({pointer + "/color", scene::to_json(color)});
@@ -123,7 +122,6 @@ void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item
         other.source = i > quantities.size() ? What::field : choice == "speed" ? What::speed : What::arc_length;
         if (other.source == What::field) other.field = scene::find_field(scene, choice);
         other.named.map = by && !by->named.map.empty() ? by->named.map : std::string(scene::kDefaultLineColorMap);
-        if (by) change.push_back({pointer + "/color", std::nullopt});
         change.push_back({pointer + "/color_by", scene::to_json(scene, other)});
       }
       edits.set(change, "colours");

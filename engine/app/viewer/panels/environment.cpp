@@ -77,9 +77,9 @@ void draw_scene_view(PanelContext& context) {
     if (ImGui::SliderFloat("fog at the far end", &most, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
       const std::string value = scene::to_json(round_within(most, 0, 1, 1000));
       if (stated_object(context, "fog"))
-        edits.drag("/fog/most", value, "fog");
+        edits.drag("/fog/max_opacity", value, "fog");
       else
-        edits.drag("/fog", "{\"most\": " + value + "}", "fog");
+        edits.drag("/fog", "{\"max_opacity\": " + value + "}", "fog");
     }
   }
   choose_projection(context);

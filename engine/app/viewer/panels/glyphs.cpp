@@ -78,8 +78,8 @@ void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
   const std::string pointer = item_pointer(set.where) + "/on";
   const double speed = length / 500;
   if (set.support == scene::GlyphSet::Support::box && set.box) {
-    edit_vector(edits, "lo", pointer + "/box/lo", set.box->lo, speed);
-    edit_vector(edits, "hi", pointer + "/box/hi", set.box->hi, speed);
+    edit_vector(edits, "min", pointer + "/box/min", set.box->lo, speed);
+    edit_vector(edits, "max", pointer + "/box/max", set.box->hi, speed);
   }
   const json::Node* on = set.where.find("on");
   const json::Node* plane = on != nullptr ? on->find("plane") : nullptr;

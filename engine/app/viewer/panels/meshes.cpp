@@ -16,7 +16,7 @@ void draw_meshes(PanelContext& context) {
       edit_color_scale(edits, surface.where, *surface.color_by);
     else
       edit_color(edits, "colour", surface.color, item_pointer(surface.where) + "/color");
-    edit_simple_keys(edits, "meshes", surface.where, {"drawn"});
+    edit_simple_keys(edits, "meshes", surface.where);
     end_item();
   });
 }

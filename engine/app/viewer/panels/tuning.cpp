@@ -4,7 +4,6 @@
 
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/app/viewer/panels/property_widgets.h"
-#include "engine/scene/to_json.h"
 #include "render/quality/quality.h"
 
 namespace catena::app {
@@ -39,9 +38,9 @@ void draw_hand(PanelContext& context) {
   context.push_command(ObserveTrackingError{});
 }
 
-void draw_plan(PanelContext& context) {
+void draw_tuning(PanelContext& context) {
   const LiveTuning& live = context.tuning;
-  const bool eye = live.image_tuning && !live.has_explicit_quality, hand = live.tick_tuning && !live.tick_tuning->is_empty();
+  const bool eye = live.image_tuning && !live.has_fixed_quality, hand = live.tick_tuning && !live.tick_tuning->is_empty();
   if (!eye && !hand) {
     ImGui::TextWrapped("What a setting costs and what it buys is not measured yet; the picture stands still for some seconds.");
     if (ImGui::Button("Measure")) context.push_command(MeasureCosts{});
@@ -56,17 +55,17 @@ void draw_plan(PanelContext& context) {
   held = place;
   sliding = ImGui::IsItemActive();
   if (sliding) {
-    const scene::TuningTargets wanted = live.target_at(place);
-    ImGui::TextDisabled("%s", scene::to_json(wanted).c_str());
+    for (const scene::Document::Edit& edit : live.edits_at(place))
+      if (edit.value) ImGui::TextDisabled("%s: %s", edit.pointer.c_str(), edit.value->c_str());
   }
-  if (ImGui::IsItemDeactivatedAfterEdit()) context.edits.set("/plan", scene::to_json(live.target_at(place)), "plan");
+  if (ImGui::IsItemDeactivatedAfterEdit()) context.edits.set(live.edits_at(place), "accuracy");
   if (eye) draw_eye(context);
   if (hand) draw_hand(context);
-  if (live.has_explicit_quality) ImGui::TextDisabled("the picture's quality is stated");
+  if (live.has_fixed_quality) ImGui::TextDisabled("the image has fixed settings: its quality is stated");
 }
 
 }  // namespace
 
-Panel plan_panel() { return {"Plan", false, draw_plan}; }
+Panel tuning_panel() { return {"Accuracy", false, draw_tuning}; }
 
 }  // namespace catena::app

@@ -47,8 +47,8 @@ void draw_pose(PanelContext& context, const Row& row) {
       place("position", pose.points[0]);
       break;
     case widget::Kind::box:
-      place("lo", pose.points[0]);
-      place("hi", pose.points[1]);
+      place("min", pose.points[0]);
+      place("max", pose.points[1]);
       break;
     case widget::Kind::rake:
     case widget::Kind::ruler:
@@ -66,7 +66,7 @@ void reset(PanelContext& context, const Row& row) {
   if (!node) return;
   TextEdits edits;
   if (row.widget.spec.kind == widget::Kind::cutting_plane) edits.push_back({row.pointer + "/orientation", std::nullopt});
-  for (const char* key : {"center", "normal", "position", "from", "to", "lo", "hi"})
+  for (const char* key : {"center", "normal", "position", "from", "to", "min", "max"})
     if (const json::Node* value = node->find(key))
       if (const auto v = json::as_vec3(*value, key)) edits.push_back({row.pointer + "/" + key, scene::to_json(*v)});
   context.edits.set(edits, "reset " + row.name);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/numbers.h"
+#include "engine/scene/to_json.h"
 #include "render/quality/quality.h"
 
 namespace catena::app {
@@ -44,27 +46,38 @@ bool LiveTuning::on_rendered(double ms) {
 }
 
 std::optional<Quality> LiveTuning::quality() const {
-  if (!image_tuning || has_explicit_quality) return std::nullopt;
+  if (!image_tuning || has_fixed_quality) return std::nullopt;
   Quality quality{image_tuning->settings(), {}};
   quality.interactive_ms = target.max_image_ms.value_or(std::clamp(image_tuning->expected_ms(), 5.0, 50.0));
   return quality;
 }
 
 scene::TuningTargets LiveTuning::target_at(double place) const {
-  scene::TuningTargets plan;
-  if (image_tuning && !has_explicit_quality) {
+  scene::TuningTargets targets;
+  if (image_tuning && !has_fixed_quality) {
     const std::vector<double> errors = image_tuning->error_breakpoints();
-    plan.max_image_error = rounded_up(errors[index_at(place, errors.size())]);
+    targets.max_image_error = rounded_up(errors[index_at(place, errors.size())]);
   }
   if (tick_tuning && !tick_tuning->is_empty()) {
     const std::vector<double> errors = tick_tuning->error_breakpoints();
-    plan.max_proxy_error = rounded_up(errors[index_at(place, errors.size())]);
+    targets.max_proxy_error = rounded_up(errors[index_at(place, errors.size())]);
   }
-  return plan;
+  return targets;
+}
+
+std::vector<scene::Document::Edit> LiveTuning::edits_at(double place) const {
+  const scene::TuningTargets targets = target_at(place);
+  std::vector<scene::Document::Edit> edits;
+  if (targets.max_image_error) edits.push_back({"/quality", scene::to_json("error=" + to_text(*targets.max_image_error))});
+  if (targets.max_proxy_error) {
+    edits.push_back({"/coupling/max_tick_us", std::nullopt});
+    edits.push_back({"/coupling/max_proxy_error", scene::to_json(*targets.max_proxy_error)});
+  }
+  return edits;
 }
 
 double LiveTuning::slider_position() const {
-  if (image_tuning && !has_explicit_quality)
+  if (image_tuning && !has_fixed_quality)
     return place_of(image_tuning->error_breakpoints(), target.max_image_error.value_or(image_tuning->expected_error()));
   if (tick_tuning && !tick_tuning->is_empty())
     return place_of(tick_tuning->error_breakpoints(), target.max_proxy_error.value_or(tick_tuning->expected_error()));
@@ -87,7 +100,7 @@ Outcome measure_tick_costs(LiveTuning& live, SceneModel& scene, const HapticSess
 Outcome measure_image_costs(LiveTuning& live, ProgressiveScheduler& pacing, render::Renderer& renderer, const render::FramePacket& packet,
                             const SceneModel& scene, const HapticSession& hand, const plan::MessageCallback& tell) {
   if (!render::uses_raycast(packet)) {
-    tell("plan: the picture has no settings: nothing in it is drawn by rays");
+    tell("tuning: the image has no settings: nothing in it is drawn by rays");
     return Done{};
   }
   auto made = plan::tune_image(renderer, packet, live.target, {scene.scene(), scene.document().text(), hand.field_options()}, tell);

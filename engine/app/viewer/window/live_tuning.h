@@ -1,6 +1,6 @@
 /// Tuning of the scene in a window or browser (engine/app/tuning/plan): targets, the cost curves of image and tick once measured, the
 /// measured tracking error, and the slider between fast and exact. The targets stated in the scene's text have precedence; the slider edits
-/// its "plan". Frame thread.
+/// its "quality" and "coupling". Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ namespace catena::app {
 struct LiveTuning {
   scene::TuningTargets target;        ///< Current targets: of the command line, until the scene's text states others.
   scene::TuningTargets scene_target;  ///< Targets of the scene's text when last read.
-  bool has_explicit_quality = false;  ///< The image quality was set explicitly; the tuning does not change it.
+  bool has_fixed_quality = false;     ///< The image has fixed settings (draft, balanced ..); the tuning does not change them.
   std::optional<plan::ImageTuning> image_tuning;
   std::optional<plan::TickTuning> tick_tuning;
   std::optional<plan::TrackingErrorMonitor> observer;
@@ -36,6 +36,8 @@ struct LiveTuning {
   /// Returns the targets at a slider position, 0 fast to 1 exact; and the slider position of the current targets.
   scene::TuningTargets target_at(double place) const;
   double slider_position() const;
+  /// Returns the edits of the scene's text that state the targets at a slider position.
+  std::vector<scene::Document::Edit> edits_at(double place) const;
 
   /// Returns whether the requested frame uses the tuned settings, with every pixel rendered.
   bool matches(const FrameRequest& next) const;

@@ -63,8 +63,6 @@ std::optional<Failure> Session::open() {
   view_without_head_ = context_.navigation.view;
   update_head();
   if (auto failure = viewport_.open()) return failure;
-  if (context_.tuning.target.has_image_targets())
-    if (auto failure = viewport_.apply_tuning()) return failure;
   reset_tracking_observer();
   files_.begin();
   // a device with forces is stopped by its own signal handling on any signal; with a mouse the outputs are finished
@@ -94,7 +92,7 @@ void Session::reset_tuning() {
   live = {};
   const scene::Scene& scene = std::as_const(context_.scene).scene();
   live.target = live.scene_target = scene.tuning;
-  live.has_explicit_quality = context_.options.has_explicit_quality || !scene.quality.empty();
+  live.has_fixed_quality = context_.options.has_explicit_quality || is_fixed_quality(scene.quality);
 }
 
 /// Measures the cost curves of this scene, independent of its targets: the slider uses them.
@@ -103,7 +101,7 @@ std::optional<Failure> Session::measure_costs() {
   set_default_target(live);
   context_.state.show_error(measure_tick_costs(live, context_.scene, context_.haptic_session,
                                                [&](const std::string& line) { context_.state.show_message(line); }));
-  if (live.has_explicit_quality) return std::nullopt;
+  if (live.has_fixed_quality) return std::nullopt;
   return viewport_.apply_tuning();
 }
 

@@ -86,7 +86,7 @@ class Viewport {
   /// image with every pixel is available, for which it waits at most 30 calls.
   void request_screenshot(bool of_window) { requested_screenshot_ = of_window; }
   void write_requested_screenshot();
-  /// Writes the files of --screenshot and --window-screenshot at the end. Returns the failure, if any.
+  /// Writes the files of --screenshot and --screenshot-ui at the end. Returns the failure, if any.
   std::optional<Failure> write_final_screenshots(const std::function<void()>& make_panels);
 
  private:

@@ -254,8 +254,8 @@ TEST(Serve, ThePlanOfTheHandIsMeasuredAndChosen) {
   ASSERT_TRUE(planned(measured));
   EXPECT_NE(word_of(*measured.find("plan"), "hand").find("curve"), std::string::npos);
   page->send(R"({"do": "plan", "place": 0})");
-  const Node chosen = test::wait_for_message(*page, "state", [](const Node& s) { return word_of(s, "undo") == "plan"; });
-  EXPECT_EQ(word_of(chosen, "undo"), "plan");
+  const Node chosen = test::wait_for_message(*page, "state", [](const Node& s) { return word_of(s, "undo") == "accuracy"; });
+  EXPECT_EQ(word_of(chosen, "undo"), "accuracy");
   EXPECT_TRUE(planned(chosen));
 }
 
@@ -281,7 +281,7 @@ TEST(Serve, ThePlanOfTheEyeIsMeasuredAndChosen) {
     page->send(R"({"do": "plan", "place": )" + std::string(place) + "}");
     return eye(test::wait_for_message(*page, "state", [&](const Node& s) {
       const double told = eye(s).empty() ? -1 : number_of(*s.find("plan"), "place");
-      return word_of(s, "undo") == "plan" && told >= least && told <= most;
+      return word_of(s, "undo") == "accuracy" && told >= least && told <= most;
     }));
   };
   const std::string fast = at("0", 0, 0.5), exact = at("1", 1, 1);
@@ -327,7 +327,7 @@ TEST(Serve, EndsWithTheProgramThatStartedIt) {
   ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
   const int before = dup(0);
   dup2(ends[0], 0);
-  test::ServeProcess served(ball.path, {"--until-stdin-ends"});
+  test::ServeProcess served(ball.path, {"--exit-with-stdin"});
   dup2(before, 0);
   for (const int end : {before, ends[0]}) close(end);
   ASSERT_NE(served.port(), 0) << served.err();
@@ -344,7 +344,7 @@ TEST(Serve, BadInputIsOneLine) {
   for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{{"serve", "missing.json"},
                                                                                    {"serve", ball.path, "--address", "localhost"},
                                                                                    {"serve", ball.path, "--port", "99999"},
-                                                                                   {"serve", ball.path, "--framed-by", "*"},
+                                                                                   {"serve", ball.path, "--frame-ancestor", "*"},
                                                                                    {"serve", ball.path, "--quality", "pretty"},
                                                                                    {"serve"}}) {
     const test::ProgramResult result = test::run_catena(bad);

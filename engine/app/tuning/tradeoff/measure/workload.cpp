@@ -104,10 +104,10 @@ std::optional<ProbeMotion> motion_through_surface(scene::Scene& scene, const Nam
   return motion;
 }
 
-const Effort& select_effort(bool quick, bool thorough) {
+const Effort& select_effort(std::string_view name) {
   static constexpr Effort kQuick{"quick", 1.5, 8, 1, 256, 192, 110}, kDefault{"default", 6, 30, 2, 400, 300, 500},
       kThorough{"thorough", 20, 120, 4, 640, 480, 1100};
-  return quick ? kQuick : thorough ? kThorough : kDefault;
+  return name == kQuick.name ? kQuick : name == kThorough.name ? kThorough : kDefault;
 }
 
 Effort reduce_if_late(const Effort& whole, double elapsed_s, double done) {

@@ -24,8 +24,8 @@ struct Effort {
   std::uint32_t width, height;  ///< Size of the images, pixels.
   double total_s;               ///< Wall time for all curves together, seconds.
 };
-/// Returns the effort for the command line flags; `quick` takes precedence.
-const Effort& select_effort(bool quick, bool thorough);
+/// Returns the effort of a name: quick, default or thorough.
+const Effort& select_effort(std::string_view name);
 /// Returns `whole` with less time for timed runs if the run is late: `done` is the fraction of curves (0 to 1) measured within `elapsed_s`.
 Effort reduce_if_late(const Effort& whole, double elapsed_s, double done);
 
