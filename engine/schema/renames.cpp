@@ -170,7 +170,8 @@ std::vector<Match> find_old_names(const json::Node& root, FileKind kind) {
 Outcome distribute_plan(std::string& text, const std::string& file) {
   CATENA_TRY(const json::Node scene, json::parse(text, file));
   const json::Node* plan = scene.find("plan");
-  if (plan == nullptr || plan->kind != json::Kind::object) return Done{};
+  if (plan == nullptr) return Done{};
+  CATENA_CHECK(json::expect_object(*plan, "plan"));
   const auto set = [&](const char* from, const char* to, const char* prefix) -> Outcome {
     const json::Node* value = plan->find(from);
     if (value == nullptr || value->kind != json::Kind::number) return Done{};

@@ -36,6 +36,7 @@ TEST(Renames, DistributesAPlan) {
             R"({ "coupling": {"damping": 1, "max_tick_us": 5}, "quality": "error=2" })");
   EXPECT_EQ(upgraded(R"({"quality": "draft", "plan": {"time": 9, "hand_error": 1e-3}})"),
             R"({"quality": "draft", "coupling": {"max_proxy_error": 0.001}})");
+  EXPECT_EQ(upgraded(R"({"plan": 7})"), "old.json:1: \"plan\" is 7; an object {...} was expected");
 }
 
 TEST(Renames, NestsColorScales) {

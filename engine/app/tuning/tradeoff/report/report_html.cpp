@@ -105,7 +105,7 @@ std::string section(const Curve& c, const Curve* other, const std::vector<std::s
     else if (!p.config_text.empty())
       text += " <b>Ask for it</b> by " + ask(p) + ".";
     else if (c.category == "eye")  // the tuning searches all rendering settings
-      text += fmt::format(" <code>--plan error={:.2g}</code> finds the cheapest picture as exact as that.",
+      text += fmt::format(" <code>--quality error={:.2g}</code> finds the fastest settings of that accuracy.",
                           std::max(p.error, min_resolvable_error(c)));
     text += "</p>\n";
   } else if (!c.choice_reason.empty())
