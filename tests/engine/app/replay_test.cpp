@@ -291,8 +291,8 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
   }
   // the ledger: what the ramp has let into the spring
   const Table links = Table::read(folder / "links.csv");
-  EXPECT_NEAR(links.number(399, "pin_booked"), 0.5 * 800 * 1e-4, 1e-12);
-  EXPECT_NEAR(links.number(100, "pin_booked"), 0.25 * 800 * 1e-4, 1e-12);
+  EXPECT_NEAR(links.number(399, "pin_accounted"), 0.5 * 800 * 1e-4, 1e-12);
+  EXPECT_NEAR(links.number(100, "pin_accounted"), 0.25 * 800 * 1e-4, 1e-12);
 
   test::write_file(folder / "s.json", R"({"chain": [], "device": {"type": "simulated", "slew": -1}})");
   const ProgramResult bad = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
