@@ -96,7 +96,6 @@ constexpr std::pair<std::string_view, std::string_view> kOptions[] = {
     {"--window-screenshot", "--screenshot-ui"},
     {"--phase", "--animation-phase"},
     {"--plan", "--quality, --max-proxy-error or --max-tick-us"},
-
     {"--thorough", "--effort thorough"},
     {"--quick", "--effort quick"},
 };
@@ -130,24 +129,26 @@ struct Match {
 class Finder {
  public:
   void visit(const json::Node& node, const std::string& path, FileKind kind) {
-    for (std::size_t i = 0; i < node.items.size(); ++i) descend(node.items[i], path + "/" + std::to_string(i), kind);
+    for (std::size_t i = 0; i < node.items.size(); ++i)
+      if (has_children(node.items[i])) descend(node.items[i], path + "/" + std::to_string(i), kind);
     for (std::size_t i = 0; i < node.members.size(); ++i) {
       const auto& [key, value] = node.members[i];
       const std::string at = path + "/" + json::escape_pointer_token(key);
       add(node, i, at, kind);
-      descend(value, at, kind);
+      if (has_children(value)) descend(value, at, kind);
     }
   }
   std::vector<Match> found;
 
  private:
+  static bool has_children(const json::Node& node) { return !node.items.empty() || !node.members.empty(); }
   /// Continues with the scene's table in the parts of a study that are scenes and chains.
   void descend(const json::Node& node, const std::string& path, FileKind kind) {
     if (kind == FileKind::study && is_match("/tasks/*/scene", path)) return visit(node, "", FileKind::scene);
     if (kind == FileKind::study && (is_match("/conditions/*/chain", path) || is_match("/conditions/*/chain/*", path)) &&
         node.kind == json::Kind::array)
       return visit(node, "/chain", FileKind::scene);
-    if (!node.items.empty() || !node.members.empty()) visit(node, path, kind);
+    visit(node, path, kind);
   }
   void add(const json::Node& object, std::size_t member, const std::string& path, FileKind kind) {
     const json::Node& value = object.members[member].second;
@@ -213,11 +214,13 @@ Outcome nest_color_words(std::string& text, const std::string& file) {
   std::vector<json::Replacement> edits;
   for (const char* list : {"streamlines", "meshes"}) {
     const json::Node* items = scene.find(list);
-    for (const json::Node& item : items != nullptr ? items->items : std::vector<json::Node>()) {
+    if (items == nullptr) continue;
+    for (const json::Node& item : items->items) {
       const json::Node* word = item.find("color_by");
       if (word == nullptr || word->kind != json::Kind::string) continue;
       const bool is_field = fields != nullptr && fields->find(word->string) != nullptr;
-      const bool is_quantity = items == scene.find("streamlines") && !is_field && (word->string == "speed" || word->string == "arc_length");
+      const bool is_quantity =
+          list == std::string_view("streamlines") && !is_field && (word->string == "speed" || word->string == "arc_length");
       CATENA_TRY(std::string nested, nest_color_by(text.substr(item.begin, item.end - item.begin), file, is_quantity));
       edits.push_back({item.begin, item.end, std::move(nested)});
     }

@@ -56,10 +56,6 @@ Result<ImageTuning> tune_image(render::Renderer& renderer, const render::FramePa
     CATENA_TRY(curve, measure_image_curve(renderer, packet, kind, [&](double done) { progress.update(done); }));
     keep(store, key.text(), work.scene.path, {curve->curve}, tell);
   }
-  // scaled from the sample to the whole image
-  for (tradeoff::Point& point : curve->curve.points) {
-    point.time.lower_quartile /= work.image_share, point.time.median /= work.image_share, point.time.upper_quartile /= work.image_share;
-  }
   return ImageTuning(std::move(*curve), wanted);
 }
 

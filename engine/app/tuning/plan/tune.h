@@ -23,7 +23,6 @@ struct ImageTuningInput {
   const scene::Scene& scene;
   std::string scene_text;                 ///< Text of the scene file; empty for a data file.
   std::vector<std::string> options = {};  ///< Command line options that change the image.
-  double image_share = 1;                 ///< Fraction of the full image that `packet` covers (a tile); measured times are divided by it.
 };
 /// Returns the image tuning of the packet, from cached curves or measured ones. `store`: the curve cache; null: the user's own. An Error if
 /// rendering fails.
