@@ -25,7 +25,7 @@ struct Part {
   Outcome (*read)(Scene&, const json::Node&);  ///< Nullptr: read_root reads it before the others
 };
 
-// In the order of docs/scene.md.
+// In the order of docs/reference/scene.md.
 Part time_part();
 Part fields_part();
 Part chain_part();

@@ -101,8 +101,8 @@ enum class FileKind { field, mesh, curves, points };
 /// Returns the kind of a file. Opens the file only if its extension allows several kinds.
 FileKind detect_file_kind(const std::string& path);
 
-/// Returns the sections of the scene file (engine/schema), from which docs/scene.md, the JSON Schema and the reader are made. The modules
-/// that read the links of "chain" and the keys of "device" describe them.
+/// Returns the sections of the scene file (engine/schema), from which docs/reference/scene.md, the JSON Schema and the reader are made. The
+/// modules that read the links of "chain" and the keys of "device" describe them.
 const std::vector<schema::Section>& scene_components();
 
 /// Returns the entity of that name among those that own a T; none: an entity that is false.

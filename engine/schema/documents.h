@@ -1,5 +1,5 @@
 /// Documents generated from keys: the JSON Schema (draft 2020-12), with which an editor checks a scene while it is written, completes its
-/// keys and shows their help; the Markdown tables of docs/scene.md; and the output of a `keys` command.
+/// keys and shows their help; the Markdown tables of docs/reference/scene.md; and the output of a `keys` command.
 #pragma once
 #include <string>
 #include <utility>
@@ -20,7 +20,7 @@ std::string json_schema(const Section& component);
 /// Returns the schema of the whole scene as a document of its own. A scene may name its schema in its key "$schema".
 std::string json_schema(const std::vector<Section>& components, const std::string& title);
 
-/// The tables of docs/scene.md.
+/// The tables of docs/reference/scene.md.
 
 /// Returns a short name of the value type of a key: "number", "3 numbers", "value or map".
 std::string describe_type(const Key& key);

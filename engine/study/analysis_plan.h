@@ -53,7 +53,7 @@ struct AnalysisPlan {
 /// Reads "compare" and "findings" of a study. Error: unknown names or keys, or a test without the values that it needs.
 Result<AnalysisPlan> read_analysis_plan(const Study& study);
 
-/// The keys of "compare" and "findings", for the study file's schema and docs/study.md.
+/// The keys of "compare" and "findings", for the study file's schema and docs/reference/study.md.
 std::vector<schema::Section> analysis_plan_components();
 
 }  // namespace catena::study

@@ -1,6 +1,6 @@
-/// A study: the experiment of the paper's section 7, described by one JSON file (docs/study.md), so that another experiment needs no code.
-/// Every task is done in every condition on the same stimuli. Tasks differ in what is visible and what the subject has to do, conditions in
-/// the haptic links.
+/// A study: the experiment of the paper's section 7, described by one JSON file (docs/reference/study.md), so that another experiment needs
+/// no code. Every task is done in every condition on the same stimuli. Tasks differ in what is visible and what the subject has to do,
+/// conditions in the haptic links.
 ///
 /// Lengths whose names end in _mm are millimeters of the device; scenes have world units: mm = 1000 * meters_per_unit * world units. Errors
 /// are one line, "FILE:LINE: what; what was expected". A Study is immutable after it is read and can be used on any thread.
@@ -129,7 +129,7 @@ Result<Study> read_study(const std::string& path);
 /// Parses and checks a study file's text. `path` is the file name in messages and the base of relative paths.
 Result<Study> parse_study(std::string_view text, const std::string& path);
 
-/// The keys of the study file, for its schema and docs/study.md.
+/// The keys of the study file, for its schema and docs/reference/study.md.
 std::vector<schema::Section> study_components();
 
 }  // namespace catena::study

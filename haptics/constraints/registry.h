@@ -34,7 +34,7 @@ struct BuildContext {
 /// A constraint type: its name and keys in scenes, its documentation, and its factory.
 struct ConstraintType {
   std::string type;   ///< value of "type" in the scene file
-  std::string help;   ///< one sentence for docs/scene.md
+  std::string help;   ///< one sentence for docs/reference/scene.md
   std::string paper;  ///< equations and sections of the paper that it implements
   schema::Keys keys;  ///< its own keys, besides common_keys()
   /// Builds the constraint of a link whose keys have been checked. Off the tick; an Error names the link's line.

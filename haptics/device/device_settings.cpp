@@ -145,7 +145,7 @@ const SettingsTable& settings_table() {
 }  // namespace
 
 schema::Section device_component() {
-  return {"device", "What the hand holds; docs/devices.md says what each device is.", schema::Section::Layout::object,
+  return {"device", "What the hand holds; docs/user/devices.md says what each device is.", schema::Section::Layout::object,
           settings_table().keys()};
 }
 

@@ -1,5 +1,5 @@
 /// Plug-in interface: constraint types in a shared library, which the program `catena` loads by `--plugin ring.so`, CATENA_PLUGINS or from
-/// the user's folder (docs/library.md). Scenes, the window, recordings and the schema then support the types like built-in ones.
+/// the user's folder (docs/user/library.md). Scenes, the window, recordings and the schema then support the types like built-in ones.
 ///
 ///   ConstraintType ring();                    // haptics/constraints/registry.h
 ///   CATENA_CONSTRAINT_PLUGIN(ring)            // once per plug-in, outside all namespaces; several functions: ring, knot

@@ -1,5 +1,5 @@
-// Runs the table's rows, a test case each, and compares docs/extremes.md with the table. CATENA_WRITE_DOCUMENTS=1 in the environment writes
-// the document from what the rows say (./run docs).
+// Runs the table's rows, a test case each, and compares docs/reference/limits.md with the table. CATENA_WRITE_DOCUMENTS=1 in the
+// environment writes the document from what the rows say (./run docs).
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -76,7 +76,7 @@ std::string document() {
 }
 
 const std::string& path() {
-  static const std::string at = test::source_dir() + "/docs/extremes.md";
+  static const std::string at = test::source_dir() + "/docs/reference/limits.md";
   return at;
 }
 
@@ -89,7 +89,7 @@ const testing::Environment* const kWriter = testing::AddGlobalTestEnvironment(ne
 
 TEST(LimitsDocument, SaysWhatTheRowsSay) {
   if (writes_documents()) return;
-  EXPECT_TRUE(test::read_file(path()) == document()) << "docs/extremes.md is not current; ./run docs writes it";
+  EXPECT_TRUE(test::read_file(path()) == document()) << "docs/reference/limits.md is not current; ./run docs writes it";
 }
 
 TEST(LimitsDocument, EveryRowHasANameOfItsOwnAndIsOneLine) {

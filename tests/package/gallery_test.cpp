@@ -1,4 +1,4 @@
-/// The gallery as a reader would do it: the commands of docs/gallery.md draw the pictures above them.
+/// The gallery as a reader would do it: the commands of docs/user/gallery.md draw the pictures above them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,13 +15,13 @@ namespace gallery_test {
 namespace fs = std::filesystem;
 namespace test = catena::test;
 
-/// Each picture of docs/gallery.md is what the command below it draws: the root mean square of their difference is at most 4/255, and at
-/// most one pixel in fifty differs by more than 32 (edges of thin lines, on other drivers).
+/// Each picture of docs/user/gallery.md is what the command below it draws: the root mean square of their difference is at most 4/255, and
+/// at most one pixel in fifty differs by more than 32 (edges of thin lines, on other drivers).
 TEST(Gallery, TheCommandsDrawThePictures) {
   test::TemporaryFolder folder;
   fs::create_directory_symlink(test::source_dir() + "/assets", folder / "assets");
   fs::create_directories(folder / "out");
-  const std::string text = test::read_file(test::source_dir() + "/docs/gallery.md");
+  const std::string text = test::read_file(test::source_dir() + "/docs/user/gallery.md");
   const std::regex entry("!\\[[^\\]]+\\]\\(\\.\\./(assets/pictures/gallery/([\\w-]+\\.png))\\)\\n\\n```sh\\n([^`]+)```");
   int compared = 0;
   for (auto it = std::sregex_iterator(text.begin(), text.end(), entry); it != std::sregex_iterator(); ++it) {

@@ -23,7 +23,7 @@ inline const std::string& install_prefix() {
   return prefix;
 }
 
-/// What bash says to these lines, errors too, in a folder, where docs/tutorials.md has been obeyed. The first line that fails ends it.
+/// What bash says to these lines, errors too, in a folder, where docs/user/start.md has been obeyed. The first line that fails ends it.
 /// `before`: a program with its options that starts bash.
 inline ProgramResult run_shell(const std::string& folder, const std::string& lines, std::vector<std::string> before = {}) {
   const std::string& at = install_prefix();

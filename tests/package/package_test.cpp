@@ -199,7 +199,7 @@ TEST_F(Package, LinksBetweenInstalledDocumentsHold) {
     }
   }
   EXPECT_GT(links, 100);
-  for (const char* name : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "LICENSE", "docs/scene.md"})
+  for (const char* name : {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "LICENSE", "docs/reference/scene.md"})
     EXPECT_TRUE(fs::exists(root / name)) << name;
 }
 

@@ -120,9 +120,9 @@ std::vector<std::string> user_at_a_display(const std::string& folder) {
   return words;
 }
 
-/// Does what docs/IN/NAME.md says.
+/// Does what docs/user/IN/NAME.md says.
 void follow(const std::string& name, const std::string& in = "tutorials/", bool has_window = false) {
-  const std::string path = "docs/" + in + name + ".md";
+  const std::string path = "docs/user/" + in + name + ".md";
   const Page page = read_page(path);
   test::TemporaryFolder folder;
   const std::string work = folder / name;
@@ -177,7 +177,7 @@ TEST(Tutorials, FromOtherPrograms) {
 
 TEST(Tutorials, EveryPageIsFollowed) {
   std::set<std::string> pages;
-  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/tutorials")) pages.insert(entry.path().stem());
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/docs/user/tutorials")) pages.insert(entry.path().stem());
   EXPECT_EQ(pages, (std::set<std::string>{"first-force", "first-picture", "from-python", "own-constraint", "own-data", "own-experiment"}));
 }
 

@@ -425,7 +425,7 @@ class Pages(unittest.TestCase):
             finally:
                 os.chdir(before)
         # all keys of a scene that name files are known
-        with open(SOURCE + "/docs/scene.md", encoding="utf-8") as file:
+        with open(SOURCE + "/docs/reference/scene.md", encoding="utf-8") as file:
             self.assertEqual(set(re.findall(r"^\| `(\w+)` \| file \|", file.read(), re.M)), set(catena._FILES))
 
     def test_what_a_killed_program_left_is_removed(self):
@@ -460,7 +460,7 @@ class Pages(unittest.TestCase):
 
 class Words(unittest.TestCase):
     def test_the_document_s_example_runs(self):
-        with open(SOURCE + "/docs/library.md", encoding="utf-8") as file:
+        with open(SOURCE + "/docs/user/library.md", encoding="utf-8") as file:
             code = file.read().split("```python\n")[1].split("```")[0]
         before = os.getcwd()
         with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,5 @@
-/// `catena info --json`: the contents of `catena info` as one JSON object on one line of stdout. docs/command-line.md lists its members.
+/// `catena info --json`: the contents of `catena info` as one JSON object on one line of stdout. docs/reference/command-line.md lists its
+/// members.
 #pragma once
 #include <string>
 

@@ -7,7 +7,7 @@
 
 namespace catena::app {
 
-/// The sections of a scene file, in the order of docs/scene.md.
+/// The sections of a scene file, in the order of docs/reference/scene.md.
 std::vector<schema::Section> scene_file_components();
 /// The JSON Schema of a scene file: output of `catena info --schema`.
 std::string scene_json_schema();

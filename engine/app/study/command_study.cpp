@@ -1,5 +1,5 @@
-/// catena study simulate|run|merge|scene|keys|analyse|power: an experiment described by a file (docs/study.md). One source file per
-/// subcommand.
+/// catena study simulate|run|merge|scene|keys|analyse|power: an experiment described by a file (docs/reference/study.md). One source file
+/// per subcommand.
 #include <CLI/CLI.hpp>
 
 #include "engine/app/study/study_commands.h"

@@ -22,7 +22,7 @@ struct ModePreset {
     std::vector<KeyMapping> keys;
   };
   std::string type;   ///< value of "type" in the scene file
-  std::string help;   ///< one sentence for docs/scene.md
+  std::string help;   ///< one sentence for docs/reference/scene.md
   std::string paper;  ///< equations and sections of the paper that it implements
   schema::Keys keys;  ///< its own keys, besides the common ones
   std::vector<LinkTemplate> link_templates;

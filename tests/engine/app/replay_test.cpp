@@ -305,7 +305,7 @@ TEST(Replay, TheExamplesOfTheDocumentsRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.5,0.01,0,0\n0.001,0.49,0.05,-0.01,1\n0.002,0.45,0.1,-0.02,0\n");
   std::string text;
-  for (const char* page : {"README.md", "docs/scene.md", "docs/haptics.md", "docs/devices.md"})
+  for (const char* page : {"README.md", "docs/reference/scene.md", "docs/user/feeling.md", "docs/user/devices.md"})
     text += test::read_file(test::source_dir() + "/" + page);
   int examples = 0;
   for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at + 1), ++examples) {

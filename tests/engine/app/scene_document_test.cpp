@@ -1,6 +1,6 @@
-// docs/scene.md and docs/study.md say what the readers read: every table of keys between "<!-- keys: NAME -->" and "<!-- end -->" is the
-// one that the components' own descriptions make, and none is missing. CATENA_WRITE_DOCUMENTS=1 in the environment writes them anew (./run
-// docs).
+// docs/reference/scene.md and docs/reference/study.md say what the readers read: every table of keys between "<!-- keys: NAME -->" and
+// "<!-- end -->" is the one that the components' own descriptions make, and none is missing. CATENA_WRITE_DOCUMENTS=1 in the environment
+// writes them anew (./run docs).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,8 +53,8 @@ void check_document(const std::string& document, const std::vector<schema::Secti
     EXPECT_TRUE(text == right) << document << " is not current; ./run docs writes it";
 }
 
-TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/scene.md", app::scene_file_components()); }
+TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/reference/scene.md", app::scene_file_components()); }
 
-TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/study.md", study::study_components()); }
+TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/reference/study.md", study::study_components()); }
 
 }  // namespace scene_document_test

@@ -112,7 +112,7 @@ TEST(Vibration, ItStopsOnceWhereItIsNotAllowedAndForgetsWhatWasFeltThere) {
   EXPECT_EQ(sender.next(peaks, 6, true).action, What::vibrate) << "the pulse of before does not last";
 }
 
-// Not a test of its own: the plot of docs/headset.md.
+// Not a test of its own: the plot of docs/user/headset.md.
 TEST(Vibration, Plot) {
   const char* file = std::getenv("CATENA_PLOT");
   if (file == nullptr) GTEST_SKIP() << "CATENA_PLOT=FILE.png draws the map";

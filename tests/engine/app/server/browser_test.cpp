@@ -95,8 +95,8 @@ TEST(BrowserClient, ThePageShowsTurnsFeelsAndChanges) {
   EXPECT_TRUE(browser.wait_until("!document.getElementById('gone').hidden"));
 }
 
-/// Not a test but a measurement (docs/serve.md): CATENA_SCENE, else the scene above, turned for 5 s by a drag in each of the browser's own
-/// frames.
+/// Not a test but a measurement (docs/user/browser.md): CATENA_SCENE, else the scene above, turned for 5 s by a drag in each of the
+/// browser's own frames.
 TEST(BrowserClient, DISABLED_LatencyAndRate) {
   if (test::browser_path().empty()) GTEST_SKIP() << "there is no Chromium here";
   const test::TemporaryFolder folder;
