@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """pip install --no-build-isolation --no-deps .: builds Catena with CMake and installs the module with its library and the programs that it
 starts, all inside of the package's folder. CATENA_BUILD names another build folder than build/pip, CATENA_PRESET another preset than
 release."""

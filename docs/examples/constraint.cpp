@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A constraint of one's own in one file: a ball whose radius is the level of a scalar field. The scene names it like any other; the reader
 // checks its keys, and a misspelt one is answered with what was meant.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A device of one's own before Catena's haptic thread: a mass on a spring, moved by the force that the chain gives. A real one reads its
 // encoders in read() and sends its motors what write() gets.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Catena draws with the instance, device and queue of a Vulkan program that is there already. The program asks before it makes its device
 // what Catena needs of it, lends it, and takes the picture as an image of the same device: nothing goes through the host.
 #include <vulkan/vulkan.h>

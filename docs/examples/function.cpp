@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A field that is a function: a wavy floor, felt exactly as its formula says. A scene names it as it names a file's.
 #include <cmath>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The chain in a loop of one's own, 1000 times a second: no thread, scene or file of Catena. A link is built from the same words that a
 // scene has; here its streamline and its isosurface are of two formulas, and a probe that winds along the flow goes into the ball.
 #include <chrono>

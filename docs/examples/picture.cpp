@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A picture of a scene, or of a bare data file: picture SCENE.json|DATA OUT.png
 #include <cstdio>
 #include <string>

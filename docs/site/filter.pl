@@ -1,4 +1,5 @@
 #!/usr/bin/perl
+# SPDX-License-Identifier: MIT
 # What Doxygen reads of a header, line by line: without what the compiler writes (= default, = delete), friends and plain destructors, and
 # with a comment behind several declarations given to each of them, which Doxygen would give to the last alone.
 use strict;
@@ -18,7 +19,8 @@ sub declared {
 
 my $name = $ARGV[0];
 while (<>) {
-  s/^\/\/\/ /\/\/\/ \\file \"$name\"\n\/\/\/ / if $. == 1;  # what a header says of itself; warnings count one line more
+  $_ = "\n" if $. == 1;  # the licence
+  s/^\/\/\/ /\/\/\/ \\file \"$name\"\n\/\/\/ / if $. == 2;  # what a header says of itself; warnings count one line more
   s/^[^\/]*(= default|= delete);.*$//;
   s/^\s*(virtual )?~\w+\(\)( override)?( noexcept)?;.*$//;
   s/^\s*friend .*$//;

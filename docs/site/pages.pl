@@ -1,4 +1,5 @@
 #!/usr/bin/perl
+# SPDX-License-Identifier: MIT
 # What Doxygen reads of a page of Markdown: each heading with an id that is unique in the site, and links that lead to it. In the plain files
 # a link to "## The file" of user/study.md is study.md#the-file, here it is user-study-the-file.
 use strict;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The target `docs`: the documents and the public headers as a site, build/PRESET/site/index.html. Optional: it needs doxygen.
 if(NOT TARGET catena_library OR NOT PROJECT_IS_TOP_LEVEL)
   return()

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Axis-aligned bounding box in world space, grown point by point. A value type: any thread.
 #pragma once
 #include <limits>

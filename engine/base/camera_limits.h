@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Limits of camera parameters that rendering can still resolve (doubles are converted to floats and squared on the way), and the limits on
 /// the number of lights. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Monotonic wall-clock time and CPU time in nanoseconds, and the time since the process started (for `first_frame_ms`).
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Color in the display (sRGB) encoding, components from 0 to 1: the form used in scene files and in image files.
 #pragma once
 

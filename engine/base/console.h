@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Messages to the user at the terminal. No function here throws or blocks the caller for long: a terminal paused by the user (Ctrl-S), a
 /// frozen remote session or a pipe without a reader can block a write indefinitely, and a thread that drives a device or handles signals
 /// must not wait. Output that is not accepted in time, or not at all (a closed descriptor, a full disk), is dropped; it changes neither the

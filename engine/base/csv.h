@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Strict reader for tables of numbers (CSV): a header row with exact column names (in any order), then rows of finite numbers separated by
 /// commas. CRLF line ends, a byte order mark, blanks around cells, a last line without a line end and blank lines at the end are accepted.
 /// Anything else is an Error "FILE:LINE: what; what was expected". Any thread.

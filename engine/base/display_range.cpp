@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/display_range.h"
 
 #include <fmt/format.h>

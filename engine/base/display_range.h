@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Automatic display range: the range of values that colors span when the user gives none. It contains all values, unless a few outliers or
 /// a fill value (missing data) lie far outside of the others. One value of 1e20 among values from 0 to 1 gives the range 0 to 1.
 ///

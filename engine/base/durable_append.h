@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Append to a table (a text file of rows) such that completed rows survive a crash of the program or of the system.
 #pragma once
 #include <string>

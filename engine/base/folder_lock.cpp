@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/folder_lock.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Exclusive lock on a folder: only one process at a time writes to it.
 #pragma once
 #include <string>

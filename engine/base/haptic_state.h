@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// State that the haptic tick reports to the frame thread: force, links and widgets. Plain, trivially copyable data.
 #pragma once
 #include <algorithm>

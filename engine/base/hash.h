@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// FNV-1a hash, 64 bit, used for `state_hash`.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Helper programs of Catena, each of which does one task in a process of its own. They are installed next to the program that starts them
 /// or in the libexec folder. They receive no environment (except a setting that makes VTK single-threaded) and no descriptors other than
 /// the given ones, and end with the thread that started them (each helper requests that itself).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Best-effort use of huge pages (2 MiB) for large memory that is soon read or written throughout: fewer page faults while it is filled and
 /// fewer TLB misses while it is read. Has no effect where the kernel offers none. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/input_files.h"
 
 #include <atomic>

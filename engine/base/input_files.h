@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registry of the data files that this process has read, by device and inode, so that outputs do not overwrite inputs. Names are not
 /// compared, so symbolic and hard links are recognized. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/json.h"
 
 #include <json/json.h>

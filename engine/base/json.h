@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reader for JSON with comments that retains positions in the text; the scene file and its sections are read with it. The library behind
 /// it (jsoncpp) is private to json.cpp. Every error names the file, the line, the key and what was expected.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Editing of JSON text in place: one value changes; comments, order, blanks and every other byte stay. A location is an RFC 6901 JSON
 /// pointer ("/isosurfaces/0/level"; in a key, "~1" stands for a slash and "~0" for a tilde; "" is the whole document). Inserted text
 /// follows the surrounding layout: a container with its items on separate lines gets another line with the same indentation, any other

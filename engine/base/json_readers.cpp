@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/json.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// JSON text of a string, a number or a list, each on one line.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Memory budget for data: the single place that decides how much may be allocated. Code that reads data whose size comes from a file, a
 /// scene or the user checks the budget here before it allocates. Any thread.
 ///   with a limit (--memory MB)   available = limit - reserved       reserved: bytes counted by MemoryReservation

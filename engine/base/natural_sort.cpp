@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/natural_sort.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Natural order of the files of a series, by the numbers in their names: "wake_2" before "wake_10", "t_1e-3" before "t_0.0015".
 ///   number    digits with an optional decimal fraction and exponent: 10, 0.0015, 1e-3
 ///   sign      a minus after any character except a letter or a digit ("t=-5"); after a letter only when another name of the series has the

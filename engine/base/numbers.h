@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Numbers as text: printed such that they read back exactly, and parsed strictly (the whole text, decimal point, no locale). Any thread.
 #pragma once
 #include <algorithm>

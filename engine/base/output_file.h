@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Output files: checks before anything is written, temporary files (TemporaryFile), and atomic output (OutputFile).
 ///
 /// The checks make sure, before any file is opened for writing, that no output of a run is also an input and that no two outputs are the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Position, orientation and scale of the physical space of the user in the world: a similarity transform, so right angles are preserved.
 ///   world = world_origin + world_from_room * room / meters_per_unit
 /// Room coordinates: meters, x right, y up, z towards the user, as a headset's tracker reports them. A haptic program has the same three

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A plane, and the half space on the side to which its normal points.
 #pragma once
 #include <cstddef>

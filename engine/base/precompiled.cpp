@@ -1,1 +1,2 @@
+// SPDX-License-Identifier: MIT
 // Compiles only the precompiled header (precompiled.cmake).

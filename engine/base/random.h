@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Random numbers that are identical on every system, unlike the distributions of the standard library. Only integer operations, + - * /
 /// and, for normal numbers, square roots and logarithms are used (the latter repeat on one type of system only). Any thread, with one
 /// generator per thread.

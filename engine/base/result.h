@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Two kinds of failure: a bug in Catena, which aborts the program (CATENA_ASSERT), and an error caused by input or by the system (Result).
 #pragma once
 #include <cerrno>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Status of a field sample: why a line ends or a link cannot continue at a position, in addition to its own status.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Symmetric logarithmic scale, used for the values of a color map's control points and for positions along a color bar. With c =
 /// linear_below > 0
 ///   s(v) = v / c                         |v| <= c

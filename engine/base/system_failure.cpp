@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/system_failure.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Text from outside of the program: reading whole files, quoting text in one-line messages, and suggesting the name that was probably
 /// meant. Any thread.
 #pragma once

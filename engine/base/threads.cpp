@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/threads.h"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Starting threads without exceptions: a failure (limits on processes or memory) becomes an Error, because an exception of std::thread
 /// could end a program while it drives a device. Also contains parallel_for.
 #pragma once

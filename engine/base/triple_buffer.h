@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Lock-free triple buffer between one writer thread and one reader thread; neither ever waits. The writer fills a spare slot and publishes
 /// it, the reader acquires the newest one. Used in both directions between the frame thread and the haptic tick. T is trivially copyable.
 #pragma once

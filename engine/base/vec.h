@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Vectors, matrices and quaternions used throughout Catena: GLM in double precision (single precision is used on the GPU only).
 // A guard beside the pragma: this header is in the precompiled one, which a compiler cache may return as it was before a comment
 // changed. GCC then takes the header for another file, and only the guard keeps it out.

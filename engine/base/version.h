@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Semantic version of Catena. Before 1.0 an incompatible change of the public headers raises the middle number. CMake reads it from here.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/vtk_xml_writer.h"
 
 #include <fmt/format.h>

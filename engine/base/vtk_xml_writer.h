@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writer for VTK XML files with appended data: a header with the offset of each array, then the arrays as raw little-endian bytes. An
 /// array is declared in a section of the header; its bytes are generated only when they are written, so no memory of its size is needed.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Debian packages: cmake --preset package && cmake --build --preset package && cpack --config build/package/CPackConfig.cmake
 #   catena          the program, the helpers that it and the library start, manual pages, completion, scenes, the rules for devices
 #   libcatena0.1    the shared library

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Every third-party library in one place. All are Debian 12 packages; `./run packages` lists them.
 find_package(Threads REQUIRED)
 find_package(Vulkan REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A module is one library: every .cpp of one folder. Its edges are declared once, in the top CMakeLists.txt, and written to
 # modules.txt in the build folder; the test repo.layering compares them with every #include of the tree.
 set_property(GLOBAL PROPERTY CATENA_MODULE_LINES "")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Catena as a part of other programs: libcatena.so of the modules' own objects (nothing is compiled twice), the targets catena::field,
 # catena::flow, catena::haptics and catena::render, what is installed, and what `find_package(catena)` reads. The program itself holds the
 # modules; it does not use the library. The readers' programs stay apart, so that OpenVDB and VTK are in neither.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What almost every file includes is parsed once: the standard library, GLM's vectors, fmt. GCC takes a precompiled header only for
 # the very options that it was made with, so files with options of their own are named in catena_without_precompiled().
 add_library(catena_precompiled OBJECT ${PROJECT_SOURCE_DIR}/engine/base/precompiled.cpp)

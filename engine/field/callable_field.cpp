@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/callable_field.h"
 
 #include <utility>

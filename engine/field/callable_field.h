@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Field defined by a C++ function of the application. The haptic tick evaluates the function exactly, at every position; rendering uses
 /// samples of it.
 ///   value = f(x), gradient = df/dx in world units, in a box of the world

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/cell.h"
 
 namespace catena::field {

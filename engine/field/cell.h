@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Trilinear cell: its eight corners determine the whole polynomial, so one fetch gives value, gradient and Hessian exactly.
 ///   s(f) = sum over corners of c_ijk * (x-weight)(y-weight)(z-weight),  f = index - base in [0, 1]^3
 /// Corner order: corner[i + 2 j + 4 k] at base + (i, j, k). Gradients are in index space; Mapping converts them to world space.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Vector field restricted to a box: a sample outside of the box is outside of the domain. Lines of an unbounded field, such as a closed
 /// form, then end at the box. Thread-safety as for the underlying field.
 #pragma once

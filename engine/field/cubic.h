@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cubic cell: the 4 x 4 x 4 samples around a cell give a value and its gradient, both continuous from cell to cell (C1).
 ///   s(f) = sum over i, j, k in -1..2 of c_ijk w_i(f.x) w_j(f.y) w_k(f.z),   f = index - base in [0, 1]^3      (Catmull and Rom, 1974)
 ///   w(t) = (-t + 2 t^2 - t^3, 2 - 5 t^2 + 3 t^3, t + 4 t^2 - 3 t^3, -t^2 + t^3) / 2

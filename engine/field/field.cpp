@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/field.h"
 
 #include <atomic>

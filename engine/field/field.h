@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Fields: immutable, versioned, in world coordinates and double precision. Grids and analytic fields have the same interface, so every
 /// algorithm can be tested against closed forms. One fetch (= one evaluation) gives the value and, for scalar fields, the analytic
 /// gradient: that of the trilinear or cubic cell on grids, that of the formula on analytic fields.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Automatic display range of a field (engine/base/display_range.h), and values sampled across a grid. Not for the haptic tick; any thread.
 #pragma once
 #include <functional>

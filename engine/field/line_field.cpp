@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/line_field.h"
 
 namespace catena::field {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Axis of a line field, in which v and -v mean the same (fibers, eigenvectors of a tensor). Such vectors cannot be interpolated: corners
 /// that differ only in sign would cancel. Instead the dyads of the corners are interpolated,
 ///   M = sum over corners of w_c v_c v_c^T,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/mapping.h"
 
 #include <glm/matrix.hpp>

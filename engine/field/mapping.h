@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Affine map between the index space of a grid and the world: world = J index + origin. J represents anisotropic voxels, rotations and
 /// shears. Analytic fields have J = 1, origin = 0.
 #pragma once

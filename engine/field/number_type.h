@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Number types in files, by name: float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64. Any thread.
 #pragma once
 #include <cmath>

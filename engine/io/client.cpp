@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/client.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module and to engine/geometry/mesh: runs the reader processes, catena-read for .vdb and .npy files and
 /// catena-read-vtk for the formats of VTK and ITK. A reader is sandboxed, with limits on time and memory, and writes its response into a
 /// shared memory file, which is then sealed and mapped here, read-only and without a copy. Only the bounds of a response are checked on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cache of the fields of a time series, with prefetching. Its capacity is a quarter of the available memory (engine/base/memory_limit.h),
 /// checked when a field is added; the least recently used field is evicted first. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Protocol between catena and its reader processes, catena-read (.vdb, .npy) and catena-read-vtk (formats of VTK and ITK).
 /// Private to this module, to engine/io/sandbox, engine/io/vdb and engine/io/vtk, and to the users of geometry (engine/geometry/mesh). Both
 /// sides map one shared memory file:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena.field: NumPy arrays of any type and strides as grids, read in place.
 #include <algorithm>
 #include <array>

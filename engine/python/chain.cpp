@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena.Chain: the haptic force along positions of the probe, tick by tick, exactly as `catena replay` computes it.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena.trace: streamlines through seeds, the same curves that the haptic links use and the image shows.
 #include <cmath>
 

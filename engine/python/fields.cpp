@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena.Field and catena.analytic: values and gradients at many points at a time.
 #include <limits>
 #include <optional>

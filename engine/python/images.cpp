@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena.render: images with the depth and the object of every pixel. One renderer serves the calls of all threads, one at a time.
 #include <algorithm>
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/python/module.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shared declarations of the Python module `catena._catena`. Every function that takes long releases the interpreter's lock; an error is
 /// raised as catena.Error with the one-line message that the program would print. Returned arrays own their memory.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The Python module: `import catena` after `cmake --install`, or from build/PRESET/python. Optional: it needs pybind11-dev and python3-dev.
 if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)  # the system's, whose packages the module works with, not another one of PATH

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena.recording and catena.study_table: recorded data as arrays.
 #include <map>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Text and marks over the scene's image: plain data, read by read_annotations.cpp and laid out by render/extract.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Automatic transfer function from the histogram of a field, for volumes that specify none. Off the tick, any thread.
 ///   range       0.5 to 99.8 percentile of the values within the display range (engine/field/field_display_range.h), cut into 256 bins
 ///   background  b: center of the fullest bin of the lowest 15 % of the bins if these hold over 10 % of the samples; else center of the

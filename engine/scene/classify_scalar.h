@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Kind of data in a scalar grid, from its file's metadata and its values, so that a data file without a scene is shown as a specialist
 /// would show it. Off the tick, any thread; deterministic.
 ///

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/classify_vector.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Kind of vectors in a grid, from their values: a flow, whose magnitudes are speeds, or fibers. Off the tick, any thread; deterministic.
 ///
 /// Evaluated on at most about a quarter of a million vectors, in blocks of 8^3 spread over the box, without invalid cells and without

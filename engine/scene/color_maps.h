@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Color maps by name, for volumes, lines, slices and their scalar bars. Display (sRGB) values.
 ///   viridis, inferno, magma, plasma   N. Smith, S. van der Walt, 2015
 ///   cividis                           J. Nunez, C. Anderton, R. Renslow, PLoS ONE 13(7), 2018: the same with color vision deficiency

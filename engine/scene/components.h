@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Components of the scene's entities: plain structs. Lengths and positions are in world units unless stated otherwise; colors are display
 /// (sRGB) colors as written in the scene file. Members named `where` are the JSON node that an item was read from; error messages take the
 /// file name and line from it.

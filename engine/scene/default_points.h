@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Default visualization of a table of points. Private to this module.
 #pragma once
 #include <string>

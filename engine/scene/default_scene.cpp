@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/default_scene.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Default scene of a data file: the scene text that scene_for_file and Document read, and the data loaded to write it. Private to this
 /// module.
 #pragma once

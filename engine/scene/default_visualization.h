@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Default visualization of grids: parts of a scene file, chosen by the kind of data (classify_scalar.h, classify_vector.h). Private to
 /// this module. Levels and ranges are in the field's unit.
 ///   image        grid that is one or two voxels thick, whatever its kind: a slice in gray with its scalar bar

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Editable scene file. The text keeps its author's comments, order and layout; an edit replaces one value in it. After every edit the
 /// scene is read from this text and takes over the loaded data of the scene before the edit (transfer_state). Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Entity-component store: entities are numbers, components are plain structs in sparse sets, systems are free functions over them.
 /// Frame thread only.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/file_pattern.h"
 
 #include <fmt/format.h>

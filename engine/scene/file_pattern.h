@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// File patterns: names that stand for the files of a series. Any thread.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/follow_files.h"
 
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Following a running simulation: time steps that are added to a file pattern, or to a file with steps, while a scene shows them. A step
 /// is added when it can be read completely and none of its files has changed for a second; until then it is polled.
 ///   frame thread   start_following, followed_sources, apply_steps

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Colors for labels without a color, as different from each other as possible. Each color is the one farthest from all its predecessors in
 /// CIELAB (1976, D65), among colors of medium lightness; lightness counts half, because shading changes it. The first n colors therefore
 /// do not depend on the number of labels, and the first 20 are at least 25 apart. Deterministic; any thread.

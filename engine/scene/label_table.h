@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Label tables: the numbers of a label map with their names and colors. The format is detected from the content:
 ///   FreeSurfer     `17 Left-Hippocampus 220 216 20 0`: number, name, red, green, blue and transparency from 0 to 255
 ///   ITK-SNAP       `17 220 216 20 1 1 1 "Left Hippocampus"`: number, red, green, blue (0 to 255), opacity, visible, in 3-D, name

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Labels of a label map: the numbers that its voxels hold, with names and colors. A field is a label map if it uses nearest-voxel
 /// interpolation and all voxels hold whole numbers; 0 means no label. Frame thread, off the tick.
 #pragma once

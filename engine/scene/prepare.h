@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Preparation of a scene for rendering and haptics: applies widget poses to the objects bound to them, loads the fields and meshes that
 /// visible objects name, and traces their streamlines. Rendering and haptics then only read the scene. Frame thread.
 #pragma once

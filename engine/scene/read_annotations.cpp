@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the overlay of the image: "scalar_bars", "labels", "title", "orientation_marker", "status", "overlay".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"

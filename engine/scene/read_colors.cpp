@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/text.h"
 #include "engine/scene/reader_bindings.h"
 #include "engine/scene/to_json.h"

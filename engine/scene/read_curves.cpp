@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "curves": polylines from a file, or the vortex core lines of a field, rendered as tubes.
 #include "engine/scene/reader_bindings.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the rendered objects "volumes", "isosurfaces", "meshes", and the "cursor".
 #include <filesystem>
 

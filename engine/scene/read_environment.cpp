@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the spatial references "bounding_box", "axes", "ground", "fog" (each true, false or an object), and the list "lights".
 #include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "fields": grids from files, and analytic fields.
 #include <algorithm>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "glyphs": arrows of a vector field on a slice, a plane, an isosurface or a mesh, or in a box.
 #include "engine/base/text.h"
 #include "engine/scene/reader_bindings.h"

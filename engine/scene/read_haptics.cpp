@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the haptic sections "chain", "modes", "coupling", "workspace", "device".
 #include "engine/base/haptic_state.h"
 #include "engine/base/text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads keys of "fields": interpolation between voxels, names and colors of a label map, and label surfaces as fields.
 #include <algorithm>
 #include <cmath>

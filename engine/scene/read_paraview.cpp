@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads ParaView's exported color map: [{"Name", "ColorSpace", "HSVWrap", "RGBPoints": [x, r, g, b, ...], "Points": [x, a, middle,
 /// sharpness, ...], ...}]. Keys that do not affect the colors are ignored. Between points ParaView interpolates in ColorSpace (default
 /// RGB); other spaces than RGB are approximated by kPieces linear pieces. "Points" are opacities, straight lines only (middle 0.5,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads a plane: a point with a normal, an axis with a position on it, or a widget.
 #include "engine/base/text.h"
 #include "engine/scene/readers.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "points": positions from a table, rendered as spheres.
 #include "engine/scene/reader_bindings.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "screens": flat displays for which images are rendered, by their corners.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the seeds of lines: points, a pattern, or a widget.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"

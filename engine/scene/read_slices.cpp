@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "slices": plane, colors, contours.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "streamlines" and the "indicator".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "time": the time step that a scene shows, and the playback rate.
 #include "engine/scene/readers.h"
 

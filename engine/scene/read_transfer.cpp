@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/readers.h"
 #include "engine/schema/values.h"
 

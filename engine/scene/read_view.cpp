@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the camera and the image: "camera", "background", "quality", "jitter", and "clip".
 #include "engine/base/camera_limits.h"
 #include "engine/base/numbers.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads "widgets", which the user grabs and moves with the device, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"

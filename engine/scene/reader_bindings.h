@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Readers for objects that have names in the scene file (fields, meshes, curves, points, widgets): their names and files, and the errors
 /// for unknown names. In the messages `kind` is the singular ("mesh") and `list` the plural or key of all ("meshes"). Private to this
 /// module.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Sections of the scene file, one function per top-level key: its description (engine/schema) and its reader, which checks all keys and
 /// values; errors are "FILE:LINE: what; what was expected". A new section is one file and one line in scene_file.cpp. Private to this
 /// module.

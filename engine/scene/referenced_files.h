@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Files that a scene's text refers to, and the rewriting of the text for another folder. Private to this module.
 #pragma once
 #include <string>

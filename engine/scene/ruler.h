@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Length measured by a ruler widget: the straight distance between its ends, or the length along a link that its "along" names.
 ///   streamline   arc length on the link's curve between the points nearest to the ends; on a closed curve the shorter way
 ///   isosurface   a shortest path on the level set (engine/geometry/geodesics)

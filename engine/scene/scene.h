@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A scene: entities with components, and the parts that exist once. Read from a scene file or created for a data file without a scene.
 /// Data are loaded on first use only: a field is loaded once, and only if something refers to it.
 #pragma once

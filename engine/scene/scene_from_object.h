@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A scene given as an object in memory, such as a Python dict, instead of a file. Off the tick, any thread.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stereo rendering: modes (values of "stereo": {"mode"} and of `--stereo`), eyes and screens.
 #pragma once
 #include <optional>

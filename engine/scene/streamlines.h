@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Streamlines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced).
 ///   points     exact tracer, with the curves cached in the scene: a link in haptic contact with such a line uses the same object
 ///   widget     a seed widget is a point, a rake a pattern

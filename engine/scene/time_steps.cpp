@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/time_steps.h"
 
 #include <fmt/format.h>

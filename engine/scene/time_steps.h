@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Time steps. A field, mesh, curves or points whose file has several steps, or whose "file" is a pattern (files in the order of the
 /// numbers in their names, engine/base/natural_sort.h), follows the scene's current step; a field that states its own step does not. Beyond
 /// the last step of a source its last one is used. Frame thread.

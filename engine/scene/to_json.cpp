@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/to_json.h"
 
 #include "engine/base/json_edit.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// JSON text of values as in the scene file, on one line, for Document::set. Numbers are read back exactly; color components, which are
 /// floats, have the fewest digits that give the same float. Precondition: all numbers are finite.
 #pragma once

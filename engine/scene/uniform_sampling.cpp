@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/uniform_sampling.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Evenly spaced points on a plane, in a box, or on a surface. World coordinates. Deterministic. Off the tick, any thread.
 ///   plane     triangular grid with the spacing between neighbors; one point is the domain's center projected onto the plane, and one
 ///             row is along the world axis most nearly parallel to the plane (of several, the first)

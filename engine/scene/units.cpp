@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/units.h"
 
 #include "engine/base/text.h"

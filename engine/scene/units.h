@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Unit names shown after numbers: "unit": "m/s" of a field, "unit_length": "mm" of the scene. They do not change any number. If the scene
 /// does not state them, those of the data files are used (engine/io/volume/units.h). Frame thread.
 #pragma once

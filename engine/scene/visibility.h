@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// "visible": false for volumes, isosurfaces, slices, streamlines, glyphs, curves, points and meshes: the object is part of the scene but
 /// not rendered. Its index in lists, objects bound to it, and haptics are unaffected. Frame thread.
 #pragma once

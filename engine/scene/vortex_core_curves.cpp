@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/vortex_core_curves.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Curves along the vortex core lines of a field (engine/geometry/flow/vortex_cores.h). Between two knots of a core there are enough points
 /// that a chord deviates from the core by at most 1e-6 L (at most 16 points per interval); each point has the value "swirl". Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Widgets in the scene: their poses, set by the user interface or taken from the tick report, and the objects bound to them: slices, clip
 /// planes, seeds, levels, and links of the chain. World units. Frame thread.
 #pragma once

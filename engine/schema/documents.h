@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Documents generated from keys: the JSON Schema (draft 2020-12), with which an editor checks a scene while it is written, completes its
 /// keys and shows their help; the Markdown tables of docs/reference/scene.md; and the output of a `keys` command.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/schema/documents.h"
 
 #include "engine/base/json_edit.h"

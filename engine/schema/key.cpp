@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/schema/key.h"
 
 #include <cmath>

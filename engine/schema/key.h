@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Key of the scene file, described in a single place: value type, unit, range, default, and one sentence of help. A section of the scene
 /// (a volume, a link of the chain, a light ...) is a list of keys. Its reader and writer (struct_schema.h), the JSON Schema and the tables
 /// of docs/reference/scene.md (documents.h), the list of files that a scene names, and the controls of the window are all generated from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Keys, values and command line options that version 0.3.0 renamed: the one table behind the message for an old name and behind
 /// `catena upgrade`. The table goes in 0.5.0. Any thread.
 #pragma once

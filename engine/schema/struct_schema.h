@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Keys of one struct with the members that store their values: generates the struct's reader and writer. T is the struct, C the context
 /// that reading needs in addition (the scene). A key is bound to a member, or to a reference that a function returns for the struct, and is
 /// then read and written automatically; or it has a custom reader. Conditions on several keys are checks, which run after all keys have

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/schema/values.h"
 
 #include <charconv>

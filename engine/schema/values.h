@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Conversion between JSON and C++ values of a key: read_value checks a value against the range and options of its key, write_value returns
 /// JSON text that reads back to the same value. One pair of functions per type.
 /// An absent key leaves `out` unchanged. An absent required key is an Error for double, text, Vec3, Color and choices; int and bool do not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The analysis plan of a study: the task pairs to compare ("compare") and the paper's claims ("findings"), each with the test that would
 /// support it. Read from the study file. Errors have the form "FILE:LINE: what; what was expected".
 /// The kinds of test:

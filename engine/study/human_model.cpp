@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/human_model.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A model of a subject, for testing a study without people: it computes the hand's target position at every tick from what is visible on
 /// the image. Its results describe the model only and replace no people.
 ///

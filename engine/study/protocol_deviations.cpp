@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/protocol_deviations.h"
 
 #include <fmt/format.h>

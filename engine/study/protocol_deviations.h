@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Checks whether rows match the study's design, which follows from the study and the subject's number alone (session.h), so that a data
 /// file that was truncated, exchanged or edited is reported.
 #pragma once

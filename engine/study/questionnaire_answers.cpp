@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/questionnaire_answers.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The answers to a study's questionnaire: DIR/questionnaire/007.csv for subject 7, with a row `question,answer` for each answered
 /// question, in the study's order; a question is identified by its name. Rows are appended atomically and synced to disk, as trial rows
 /// are. Cells are in the format of RFC 4180, without line breaks in them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/study_tables.h"
 
 #include <algorithm>

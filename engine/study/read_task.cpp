@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/text.h"
 #include "engine/study/study_tables.h"
 #include "engine/study/trial_scene.h"

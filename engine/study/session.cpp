@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/session.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The design of the experiment: which trials a subject does, in which order. A pure function of the study and the subject's number.
 ///   tasks           in blocks, by a Latin square of E. J. Williams (1949): over as many subjects as the square has rows, each task is in
 ///                   each position, and follows each other task, equally often; subject n has row n - 1, cyclically

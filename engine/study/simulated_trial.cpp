@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/simulated_trial.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs a trial with the human model instead of a subject: the trial's scene, the real haptic tick, the simulated device and the trial
 /// scorer. Not for the haptic thread; otherwise any thread, with one object per thread. A trial gives bit-identical results whichever
 /// trials were run before it, on one type of machine.

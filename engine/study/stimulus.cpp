@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/stimulus.h"
 
 #include <fmt/format.h>

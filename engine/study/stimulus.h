@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The stimulus of a trial: start, path and target, found in the trial's vector field under the rules of the paper's section 7.1.
 /// The rules (StimulusRules):
 ///   global lines   `context_streamlines` streamlines through points sampled at random in the field's box

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A study: the experiment of the paper's section 7, described by one JSON file (docs/reference/study.md), so that another experiment needs
 /// no code. Every task is done in every condition on the same stimuli. Tasks differ in what is visible and what the subject has to do,
 /// conditions in the haptic links.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The key tables that read the parts of the study file. Private to this module.
 #pragma once
 #include "engine/schema/struct_schema.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/trial_scene.h"
 
 #include <algorithm>

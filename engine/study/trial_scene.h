@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Makes the scene of a trial, as JSON text: the task's template with the condition's chain in it. These strings in the study file are
 /// placeholders for values of the trial (lengths and positions in world units):
 ///   "$seed"  integer: seed of the stimulus's field            "$lines"  [[x, y, z], ...]: seed point of each global line

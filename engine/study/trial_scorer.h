@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Detects the start and end of a trial and measures its result. `study simulate` and `study run` give it the probe of every tick, which is
 /// the rendered cursor. It is never given a proxy: a proxy that a link holds on the path would have zero error by construction.
 ///   start    the clock starts when the cursor leaves the ball of radius `start_radius_mm` about the start; it must have been inside it

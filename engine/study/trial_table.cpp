@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/trial_table.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The table of finished trials, and the data folder that holds it:
 ///   DIR/study.json        the study file, verbatim; opening the folder with a different study is an error
 ///   DIR/subjects/007.csv  a subject's rows in the order of the session, after a header; each row is appended atomically and synced, and a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/widget/cutting_plane.h"
 
 #include "engine/widget/handles.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The cutting plane widget (paper, section 6.2, Figure 6). Notation: c center, e_i axes, e_2 normal, r radius of the sphere, x probe.
 /// Lists in brackets are the links of the chain in that mode.
 ///   near the plane     |e_2 . (x - c)| <= snap; in mode explore <= release

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/widget/handles.h"
 
 #include "engine/widget/widget.h"

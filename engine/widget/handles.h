@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Widgets with handles, and the translation of any widget (Grip in widget.h): planes across the axes of a frame, through the point at
 /// which the widget was grabbed. World units. Haptic thread: no allocation, lock, throw.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/widget/state_machine.h"
 
 #include <cstring>

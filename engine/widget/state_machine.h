@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// State machine of the widgets (paper, section 6.2): one tick in two phases, before and after the chain runs. Pure functions of specs,
 /// states and input.
 ///   before   step_modes: transitions of all widgets, by `next_mode` alone;  plan_chain: links, order and shapes of the engaged widget

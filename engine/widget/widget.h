@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Widgets: objects in the scene that the user can grab (paper, section 6.2 and Figure 6), as plain specs and states. The state machine
 /// (state_machine.h) is a set of functions over these, run by the tick, so that mouse, haptic device and replayed path drive the same
 /// machine. Lengths in world units. The functions use only + - * / and square roots, so that results are bit-identical everywhere. Any

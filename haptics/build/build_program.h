@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Builds the haptic program from the scene: the links of the chain, the modes and the widgets. Off the tick.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Rotational chain: each link with "align" has a rotational proxy beside its positional proxy, toward which it turns the tool.
 ///   q_0: orientation of the tool;  q_i = A q_(i-1), with A the smallest rotation that turns the tool's axis q_(i-1) a_i onto n_i
 ///   n_i: axis of the link's primitive at its proxy (normal of a plane, tangent of a line). Sign::either: the nearer of +-n_i at first,

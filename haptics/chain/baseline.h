@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Baselines with which the paper compares the chain (section 3): one proxy p for all links, F = K S (p - x) - b v.
 ///   pipe     [6]   the constraints are applied in turn, p = advance_i(p), until all are satisfied; baseline_subspace.cpp
 ///   balance  [13]  p balances the springs to the probe and to the links' linear primitives; baseline.cpp

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Single proxy with linear constraints: moves the proxy by the part of x - p that the primitives at p leave free (Eqs 1-2 for a
 /// line, Eq. 6 for a plane), without correcting drift. A one-sided surface takes part while the probe is behind it; when contact begins,
 /// the proxy is put on the surface. A move to a point at which a primitive does not exist is not made.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Initialization of a link that has just been switched on. Haptic thread: no allocation, lock, throw.
 #pragma once
 #include "haptics/chain/program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Interface of every constraint, state of a link between ticks, and limits of a device.
 #pragma once
 #include <algorithm>

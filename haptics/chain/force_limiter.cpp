@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/force_limiter.h"
 
 namespace catena::haptics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Force limiter, the last step of a tick: computes the commanded force from the chain force. A pure function of (limits, input, state).
 /// The first of these cases that applies decides; the right column is the resulting ForceState:
 ///   fault    no device, watchdog, or a force that is not finite: zero in the same tick                          STOPPED

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Parameter of a link (a threshold, a stiffness, a release distance): a constant, or a haptic transfer function, which maps a field's
 /// quantity at a point to an output, piecewise linearly.
 ///   quantity: of a scalar field its value or |grad s|; of a vector field |v|

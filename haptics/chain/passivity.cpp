@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/passivity.h"
 
 namespace catena::haptics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Energy account of the links, passivity observer over all of them, and passivity controller. World axes; energies in joules, with
 /// displacements in meters of probe travel (device scale applied: x S).
 ///   work      W_i = S f_i(k-1) . (x_k - x_(k-1)): the force of a tick is held until the next tick, so the sum is exact and needs no

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Haptic program: immutable list of the links and the coupling that the haptic thread runs. Built by haptics/build off the tick, passed by
 /// pointer to the haptic thread, and freed by the frame thread when a published epoch shows that no later tick can use it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Ramp of the force: no tick changes the sum of the links' forces by more than the motion of the probe explains plus a ramp allows,
 /// whatever the cause of the change: a switch, a mode, a snap, a release, a search that fails, another sheet, another program.
 ///   f_k: the links' force of tick k, at most max_force;  moved = K |dx|, K = sum of k_i S;  fall = max_force dt / ramp_s

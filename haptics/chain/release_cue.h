@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Release cues: every link reports when the probe leaves its feature, as a ratio and as a haptic cue (third requirement of the paper,
 /// section 2). The model is documented at ReleaseCue in program.h. The cues are triangle waves and linear ramps only, so that results are
 /// bit-identical everywhere. Haptic thread: no allocation, lock or throw.

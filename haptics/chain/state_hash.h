@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Checks of plain data that comes from a file, and the hash of the ticks' results.
 /// Reading a bool or an enumerator that has none of its values is undefined behavior, so the checks inspect the bytes. Off the tick.
 #pragma once

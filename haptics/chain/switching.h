@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Selects the links that run in a tick and their order: switches by button or by force, and the modes of operation (paper, section 6.2).
 /// Haptic thread: no allocation, lock or throw.
 #pragma once

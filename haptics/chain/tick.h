@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One haptic tick: a pure function of (program, state, probe), run by the servo thread, `replay`, the tests and the benchmarks.
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/validate_state.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Check of a state that was read from a file (a log that begins in mid-run). Its bytes may be anything, and ticks use them as indices.
 /// Every count, index, bool and enumerator must be one that a tick of `program` can leave; the memory of a constraint is checked by the
 /// constraint (Constraint::is_sane). Other numbers are not checked, since a tick is safe with any double and a replay compares them; only

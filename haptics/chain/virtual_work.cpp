@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/virtual_work.h"
 
 namespace catena::haptics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Conservative force of a chain (CouplingForce::conservative), by virtual work. The paper's sum of the links' forces is not the gradient
 /// of any energy: along slow closed loops of the probe it gives or takes 0.7 K gap^2 per loop (a plane and a line). With
 ///   E = 1/2 sum w_i k_i |S (p_i - p_(i-1))|^2,   p_i = P_i(p_(i-1)),   g_i = w_i k_i S (p_i - p_(i-1)),   J_i = dP_i at p_(i-1)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/widgets.h"
 
 namespace catena::haptics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Widgets in the tick (paper, section 6.2; engine/widget/state_machine.h): before the chain runs they select which of their links run;
 /// after it they follow its last proxy. The links x, y, z and sphere are shared by all widgets; the present shape of each is in
 /// LinkState::shape.

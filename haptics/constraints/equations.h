@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The equations of the paper's sections 4 and 6.1, each under its number and in its symbols. The constraints move their proxies by these
 /// equations and add their own safeguards. (Eqs. 3 and 4 are steps of an integrator: engine/geometry/flow/runge_kutta.h.)
 ///   x the probe, p the proxy, v the vector field, s the scalar field, s_0 its level, t = v / |v|, n = grad s / |grad s|

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/registry.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registry of all constraint types. A new built-in type is one file with one ConstraintType and one line in registry.cpp.
 #pragma once
 #include <functional>

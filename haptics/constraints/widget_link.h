@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Link of the widgets: its feature is set in every tick (LinkState::shape, filled by haptics/chain/widgets.h) instead of by the scene:
 /// a plane, a sphere or a point, held from both sides, never released. Without a shape, or with one that is not finite, the probe passes
 /// through, FREE. Closed form, no field sample. Not for scene files. World units. Haptic thread: no allocation, lock, or throw.

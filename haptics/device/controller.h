@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A tracked hand controller: time-stamped poses in, vibration out. It has no force output: the chain force goes to a PeakDetector
 /// (haptics/vibration), from which a sender thread takes it. The tracker's thread pushes some 60 to 1000 poses per second; `read` resamples
 /// them to one per tick, without jumps.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Interface between the servo and a haptic device: the pose in, force and torque out. Meters, newtons, the device's own axes.
 /// `read` and `write` run on the haptic thread: no allocation, lock or throw, and they return at once (a device that must wait
 /// for its bus does so in a thread of its own). `stop` may be called from any thread, at any time.

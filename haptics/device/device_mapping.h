@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Mapping between any device and the workspace, by the device settings: encoder dither, axes, scale, clutch, gravity and force switch.
 ///   in:   x_d after the dither filter (dither_filter.h);  x = s A x_d + o,   q = q_o A q_d
 ///         A: workspace axes from device axes;  s: meters of probe travel per meter of device travel;  o, q_o: clutch offset

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Settings of a device: the scene's "device" object, or options of the command line. Off the tick.
 ///   {"type": "falcon", "max_force": 6, "stiffness_cap": "safe", "axes": ["x", "-z", "y"], "clutch_button": 2, ...}
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Position of the probe from encoders, without their dither while the probe is at rest.
 ///   moving   x passes unchanged, without delay, until it has stayed within one encoder step of one position for 30 ms
 ///   at rest  the position is held until x is further than one step from it along one of the device's axes; then x passes in that tick

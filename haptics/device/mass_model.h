@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A point mass held by a simulated user, between two instants one period apart: exact for the linear part, whatever the period.
 ///   m x'' = F + k_h (w - x) + b_h (w' - x') - b x' - f_c x'/|x'|,   F and w' constant over a step; w the user's target position
 /// Each period is divided into a few steps; within one step w is its mean, and the linear part is solved exactly (the matrix

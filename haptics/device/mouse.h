@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Mouse and keyboard as a haptic device without force output: the frame thread writes position and orientation of the probe, the servo
 /// reads them each tick through a triple buffer, so that a slow frame never delays a tick; the probe then rests.
 /// The motion is low-pass filtered (pose_filter.h), because the steps of a 60 Hz display would otherwise reach the tick as jumps.

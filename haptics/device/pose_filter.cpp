@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/pose_filter.h"
 
 #include <cmath>

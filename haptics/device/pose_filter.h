@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Low-pass filter of a pose: input that arrives in steps (frames at 60 Hz, a tracker's samples) reaches the tick without jumps.
 ///   x += (target - x) (1 - exp(-dt / smoothing)),  the same fraction of the remaining rotation, at the tick rate
 /// It comes to rest on the target, bit for bit. Haptic thread: no allocation, lock or throw.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/recorded_path.h"
 
 #include "engine/base/csv.h"

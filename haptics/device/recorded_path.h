@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A device that plays a recorded probe path, one sample per tick, in world units and with its own time. After the last sample
 /// it stays there. The forces written to it are only counted. Haptic thread.
 #pragma once

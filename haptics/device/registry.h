@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registry of the device types: which exist, what they can do, and how they are opened. Off the tick.
 ///   TYPE or TYPE:DETAIL, such as "falcon", "falcon:1" (the second one), "recorded:path.csv"; open_device applies device_mapping.h
 #pragma once

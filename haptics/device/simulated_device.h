@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A device with orientation and torque, without hardware: any device for the position, with a rigid grip that a simulated user turns.
 ///   J w' = k_h log(q_target q^-1) + b_h (w_target - w) - b w + torque,   q' = w q;   semi-implicit Euler in `substeps` of the period, the
 ///   torque held between two ticks as in a real mechanism, so that the maximum stable stiffness is close to 2 b / T

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/spacemouse.h"
 
 #include <poll.h>

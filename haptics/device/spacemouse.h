@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// 3Dconnexion SpaceMouse through libspnav and its daemon spacenavd: six axes in, no force. The cap springs back, so it controls rates:
 ///   x += v dt,  q = exp(w dt) q,  v = v_max r(t),  w = w_max r(r),  r(c) = 0 within the dead zone, then linearly to 1 at 350 counts
 /// Workspace axes, right-handed: x to the right, y up, z towards the user. spacenavd counts z away from the user (left-handed), so

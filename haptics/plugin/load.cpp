@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/plugin/load.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Loads plug-ins: shared libraries with constraint types by users (haptics/plugin/plugin.h). The program decides which ones are loaded
 /// (engine/app/cli/plugins.h). At start-up, in the main thread, before any scene is read.
 #pragma once

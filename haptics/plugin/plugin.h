@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plug-in interface: constraint types in a shared library, which the program `catena` loads by `--plugin ring.so`, CATENA_PLUGINS or from
 /// the user's folder (docs/user/library.md). Scenes, the window, recordings and the schema then support the types like built-in ones.
 ///

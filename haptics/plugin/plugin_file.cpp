@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/plugin/plugin_file.h"
 
 #include <elf.h>

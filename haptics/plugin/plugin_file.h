@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads the properties of a plug-in from the bytes of its file: none of its code runs, and no byte is trusted.
 #pragma once
 #include <string_view>

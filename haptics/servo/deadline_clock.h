@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Deadline clock: the grid of absolute deadlines t_n = first + n T at which a paced servo wakes, as plain arithmetic on nanoseconds.
 ///   A tick belongs to the newest deadline that has passed when it starts. Deadlines without a tick are missed: at the start of every tick,
 ///   ticks + missed = deadlines so far.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Computes the limits of a device from its capabilities and the user's settings. Off the tick.
 /// A device with force output has these limits, unless the settings say otherwise:
 ///   stiffness   safe stiffness at the servo's rate, min(2 b / (T + 2 t_d), f_c / encoder step): 0, so that there is no force, if the

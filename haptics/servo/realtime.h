@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Real-time properties of a thread, as far as the machine permits: fixed priority, memory that is never paged out, a CPU core of its own.
 /// Each property that is not permitted becomes a note of one sentence, and the thread runs without it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs the tick over a recorded probe path: deterministic, without a thread.
 #pragma once
 #include <cstdint>

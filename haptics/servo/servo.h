@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The servo, which runs the ticks in the haptic thread, and the sink that receives every tick.
 #pragma once
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Statistics of a servo: histograms of durations and counters. Fixed size, no allocation, readable while they are being filled.
 /// Buckets of a histogram:
 ///   below 128 ns: one bucket per nanosecond;  above: 128 buckets per octave, each at most 1/128 of its lower bound wide, up to 2^40 ns

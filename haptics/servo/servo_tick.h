@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tick of a servo without its thread and clock: reads the device, runs the tick, writes the force. Also the conversions between the
 /// device's axes and the program's world, which the servo uses too.
 ///   world = origin + R device / S,   device = R^T (world - origin) S,   S in meters per unit

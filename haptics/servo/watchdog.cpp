@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/watchdog.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Watchdog of the servo: detects that the haptic thread does not finish ticks, and cuts the force without its help. A thread reads one
 /// time stamp every few milliseconds.
 ///   now - (end of the last tick) > limit  ->  device.stop(), then the flag is set; one time per stall

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/vibration/peak_detector.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Peaks of the force for devices that vibrate instead of outputting force: how much the force changed and how much of it is friction,
 /// collected until a sender takes them at its own rate. A controller is sent some dozens of vibrations per second while the tick runs at
 /// 1 kHz, so a detent of 2 ms would fall between two calls if the sender used only the newest tick.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/vibration/vibration.h"
 
 #include <algorithm>

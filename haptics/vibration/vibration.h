@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Maps the peaks of the force (peak_detector.h) to vibrations of a controller, each with an amplitude a, a frequency and a duration.
 ///   contact and detents   a = min(1, c / saturation_change_n), frequency pulse_hz, for pulse_s
 ///   friction              a = max_friction_amplitude min(1, f / saturation_friction_n), frequency speed / grain_m, clamped, for 1.5 call

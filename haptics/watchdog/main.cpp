@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program `catena-watchdog`: started by the driver of a USB device, which passes it the device's node (descriptor 3), the shared memory
 // page (descriptor 4) and the lifeline (descriptor 5). It has a session of its own, blocks all signals that can be blocked, and locks its
 // memory.

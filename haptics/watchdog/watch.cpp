@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/watchdog/watch.h"
 
 #include <linux/usbdevice_fs.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Watchdog process of a USB device, and the shared memory page between it and the program that drives the device. The program's threads
 /// write to the page and the watchdog process polls it, so that a tick makes no system call.
 ///   written by the program   numbers of ticks and of packet exchanges; whether a packet with a force may be at the device

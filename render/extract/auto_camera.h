@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Module-internal: automatic camera of a scene without one, fitted to the visible parts of volumes and isosurfaces. Frame thread.
 ///   isosurface   positions whose neighbors lie on both sides of the level
 ///   volume       values with an opacity of at least 2 % over a 25th of the domain's length

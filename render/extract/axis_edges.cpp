@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/extract/axis_edges.h"
 
 #include <cmath>

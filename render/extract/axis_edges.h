@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Choice of the box edges that carry the axes' ticks and numbers: edges on the outline of the box in the image, so that the ticks do not
 /// cover the box's content. Pure functions, any thread.
 ///   outline   edges of which one of the two faces faces the camera; an axis without one (face seen straight on, camera inside the box) may

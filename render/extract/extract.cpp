@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/extract/extract.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Extraction of frame packets, the only interface between scene and renderer: volumes, isosurfaces, meshes, slices, streamline sets,
 /// glyphs, the visible cursor, widgets, background and camera are copied into one packet; the ECS is not read afterwards. Data that must be
 /// loaded or built first is built by prepare_frame() and cached in scene.cache; extract_frame() only reads. The rendered tube and the

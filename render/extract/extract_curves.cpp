@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Curves from files as tubes.
 #include <algorithm>
 #include <cmath>

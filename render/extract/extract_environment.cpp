@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/extract/extract_internal.h"
 
 #include <algorithm>

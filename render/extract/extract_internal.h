@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Module-internal: helpers shared by all parts of the extraction. Frame thread unless stated otherwise.
 #pragma once
 #include <string>

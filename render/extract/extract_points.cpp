@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Points from tables as balls.
 #include <algorithm>
 #include <cmath>

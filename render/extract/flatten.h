@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Flattening of a curve to a polyline fine enough for a tube: every point lies on the curve's Hermite segments; nowhere is the curve
 /// farther from the polyline than `error`, nor the tube's wall on the outside of a bend. Knots that are not needed for this are left out.
 /// Within the core of a spiral, which is invisible inside the tube, segments may turn by any angle.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Flattening of a streamline set to colored polylines. Lines are traced in blocks and flattened on all cores; for a large set only the
 /// polylines are kept. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/extract/widget_shapes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Module-internal: shapes of the widgets, and the outline of a plane in a box. World units.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Camera of one image: a View resolved to axes, a window, near and far for one image size and scene extent, in double precision.
 ///   view axes: right-handed, x right, y up, z towards the viewer (the camera looks along -z = -back)
 ///   clip axes: Vulkan's, x right, y *down*, depth 0 at near and 1 at far

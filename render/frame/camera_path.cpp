@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/frame/camera_path.h"
 
 #include <algorithm>

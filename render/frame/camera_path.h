@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Camera animation through key frames, read from CSV: time t, position p, target t, and optionally up u and the vertical field of view.
 ///   t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]
 /// Seconds (strictly rising), world units, degrees. Between keys: cubic Hermite curves through every key with Catmull-Rom tangents for

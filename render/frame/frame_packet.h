@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Frame packet: everything one image needs, as plain data. render/extract copies it from the scene; the ECS is not read afterwards. Fields
 /// are held by shared pointer (kept alive while the frame uses them); their values are not read in this header.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Items that are drawn over the finished image, as plain data.
 ///   points   lengths and text sizes are in points; the shorter side of an image has kImagePoints of them, so that images of 640 x 480 and
 ///            3840 x 2880 look alike; x to the right, y down

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stereo composition: how the images of several views are packed into one. Every view is rendered at the packet's width and height W x H;
 /// with n views:
 ///   single             the first view                                W x H

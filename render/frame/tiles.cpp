@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/frame/tiles.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tiled rendering of a large or supersampled image: parts of one view, each rendered as an image of its own (View::window). Sizes are in
 /// samples: pixels times `antialias`. Tiles begin at multiples of kTileAlignment, so that every ray grid on which a raycast interpolates
 /// has the same positions in a tile as in the whole image; `margin` samples around a tile are rendered and dropped. Pure functions, any

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/image/encode.h"
 
 #include <png.h>

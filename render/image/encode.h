@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Image compression in memory, for transmission: without alpha, as composited over the background. Any thread.
 ///   JPEG  2 ms and 0.15 MB per million pixels: for moving images (quality 1 to 100, 85 cannot be distinguished from the original in
 ///         motion)

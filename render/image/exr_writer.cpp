@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/image/exr_writer.h"
 
 #include <ImfChannelList.h>

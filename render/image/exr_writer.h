@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writes an OpenEXR file of 32-bit floats row by row (scan lines, ZIP). OpenEXR stores colors as linear light, premultiplied by alpha: see
 /// premultiplied_linear(). Without commit() no file is left behind (engine/base/output_file.h). One thread.
 #pragma once

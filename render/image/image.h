@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Images in host memory and PNG files. Values are display values, stored unchanged; alpha is straight.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/image/image_error.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Error of an image compared with a converged reference, in perceptually relevant measures. Both are rendered without a background
 /// (straight alpha, 8 bits) and compared over one color. Any thread.
 ///   covered     pixels where the alpha of either image is 1/255 or more

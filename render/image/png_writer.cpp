@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/image/png_writer.h"
 
 #include <png.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writes a PNG file row by row, so that a large image is never in memory: 8 or 16 bits, gray, RGB or RGBA (straight alpha). Values are
 /// stored unchanged. Without commit() no file is left behind (engine/base/output_file.h). One thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Interface of the renderer's passes, the targets they share, and the embedded shaders.
 #pragma once
 #include <array>

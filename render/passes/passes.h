@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// List of passes, one per kind of item. renderer.cpp holds them in rendering order. Frame thread.
 #pragma once
 #include "render/passes/pass.h"

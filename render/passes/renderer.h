@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Renderer: renders a frame packet into a finished color image. It holds the list of passes (pass.h), in order:
 ///   environment, widgets, meshes, streamlines, glyphs, points, cursor, isosurfaces, surface colors, slices -> layers -> raycast
 ///   -> x-ray overlay -> compose -> vignette -> overlay

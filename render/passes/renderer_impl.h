@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Implementation of the renderer, shared by two source files: renderer.cpp renders, read_back.cpp reads images back.
 #pragma once
 #include <memory>

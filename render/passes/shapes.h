@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Triangle meshes of the packet's shapes: tubes around polylines and the haptic cursor. CPU code, frame thread.
 ///   tube: rings of `tube_sides` vertices around the points, in a parallel-transport frame (without twist; on a closed line the frame's
 ///         holonomy is distributed over the length), mitered at the corners so that the walls keep the radius, with round caps (half

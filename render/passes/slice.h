@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Slices: a plane through a grid, colored by the trilinear values in the plane, with contour lines. No polygon is generated: each pixel's
 /// ray is intersected with the plane, so that depth and value are exact, also with the camera inside the grid.
 ///   color: the color table, piecewise linear, at full precision

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SphereSet of point sets: one instance of a square each (shaders/shared/sphere.h), 24 bytes.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/passes/stereo_compose.h"
 
 #include <fmt/format.h>

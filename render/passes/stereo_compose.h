@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stereo composition: packs the finished images of several views into one (render/frame/packing.h). Each view is rendered like any image
 /// into the renderer's output image; store_view() swaps that image with another one, so that no view waits for a copy. Frame thread only.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/passes/surface_cache.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cache of rendered isosurfaces (RenderSettings::reuse_rays): while the surfaces, the camera and the lights are unchanged, their rays are
 /// not marched, whatever else moves in front of or behind them. Holds their colors, depths and ids, 20 bytes per pixel, from the first
 /// image that requests reuse. The resulting image is identical to the bit. Frame thread only.

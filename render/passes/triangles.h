@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Lit triangles in the opaque targets: common part of the mesh, streamline, glyph and cursor passes.
 #pragma once
 #include "render/passes/pass.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tubes as rings on the device, from which the vertex shader generates the surface (shaders/shared/tube.h): 36 bytes per ring, where
 /// triangles would take 500 or more. The surface equals that of add_tube (shapes.h), except for rounding to floats and 10-bit colors. It is
 /// drawn in runs of 128 rings: with a number of sides that depends on the width in pixels; if only a few pixels wide, as a camera-facing

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Window image: the finished image, scaled (linear filter) to the window or to UiItems::image_area, with the user interface over it in
 /// window pixels.
 ///   shown.rgb = a rgb + (1 - a) below.rgb, a and rgb of the triangle: vertex color x texture, straight alpha, display values

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/error_estimator.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Error estimation for render settings: measured on a sparse pixel sample grid of one image against converged rays through these pixels
 /// (quality.h defines the measures). Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/fast_settings_search.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Search for the cheapest settings of the fast raycast that meet an error goal (quality.h describes the model): ray steps are tested on
 /// the sample grid, with both kinds of gradients; those that meet the goal there are rendered with every interpolation plan, the cheapest
 /// first, until none is left that would cost less than the best. Requires an ErrorEstimator on which begin() was called and that outlives

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/quality.h"
 
 #include <fmt/format.h>

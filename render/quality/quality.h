@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Search for render settings by error or by time, from measured errors. The error of a setting is measured on the image itself: at the
 /// pixels of a sparse sample grid (every 13th pixel in each direction, or more, until about 6000 of them are covered) against converged
 /// rays.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/ray_path_length.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Path length of exact rays in an image, which determines the cost of a step length before anything is rendered. The rays of some hundred
 /// pixels are traced on the CPU through the grids' own values, every few voxels, like the exact raycast: it skips empty space, except for
 /// bricks next to visible ones, and ends where almost no light is left. A sample counts if any of the rays that are marched together, those

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Choice of the next image's settings, so that moving images are on schedule and static ones become good. Pure logic: no device, no
 /// window, no clock.
 ///   moving: the best of the quality levels whose expected time fits the budget

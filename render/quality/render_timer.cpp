@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/render_timer.h"
 
 #include <algorithm>

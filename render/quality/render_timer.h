@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Render time, excluding other programs on the machine: on a GPU by its own clock (render/vk/timestamp_query.h); with a CPU driver from
 /// the processor time of the process; on a GPU without a clock wall time. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Searches behind choose_quality() (quality.h describes the model): settings for an error or time goal, judged by an ErrorEstimator on
 /// which begin() was called. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/single_image_search.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Search for settings of an image that is rendered only once, at a small cost compared with the image (quality.h defines the errors). Rays
 /// are measured on a small sample grid; a finished image is rendered only if it may become the result.
 ///   1  exact rays, unless even their longest steps take more work than 2: the longest step whose rays meet the error goal

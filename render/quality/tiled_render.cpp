@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/tiled_render.h"
 
 #include <algorithm>

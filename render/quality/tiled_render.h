@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Rendering of an image of any size in bands of whole rows, from the top: tile by tile (render/frame/tiles.h), supersampled if requested,
 /// so that memory is bounded by one row of tiles.
 ///   antialias N: a pixel is the mean of its N x N samples, premultiplied display values (a box filter)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/quality/xr_frame_pacing.h"
 
 #include <fmt/format.h>

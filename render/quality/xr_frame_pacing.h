@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Frame pacing of a headset: chooses the settings of the next frame so that it is on schedule, for a display that shows a frame every
 /// period, whether a new one is ready or not. Pure logic, no device and no clock; uses the quality levels and times of refinement.h.
 ///   budget   headroom times the period. The headroom is 0.8 and falls by a tenth with every missed frame (to 0.25 at least), since the

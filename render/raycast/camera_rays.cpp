@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/camera_rays.h"
 
 #include <glm/matrix.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Conversion of a packet's view to the numbers of shaders/shared/frame.h. Everything that could lose digits is computed here in double
 /// precision; shaders get rays in each grid's own index space, with depths relative to the scene and not to a distant camera.
 #pragma once

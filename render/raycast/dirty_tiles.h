@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Detection of tiles in which the opaque objects in front of the rays have changed since the previous image. While nothing else changes,
 /// only the tiles near such changes are re-marched: a moving cursor over a static volume costs little. Changes are detected by two 32-bit
 /// hashes of the depths of each block of 4 x 4 pixels. Frame thread only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Fast raycast of one volume, with a measured error (render/quality/quality.h): packed codes, pre-integrated transfer function, Hermite
 /// midpoints, skipping of homogeneous bricks; rays on a ray grid of every 4th, 2nd or every pixel, refined where the fourth difference of
 /// the image predicts an interpolation error.   ray grid -> marks -> finer ray grid -> .. -> every pixel A large grid is packed as the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/fast_volume_resources.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Device resources of the fast raycast for one volume: its packed codes (dense or as bricks), the pre-integrated table of its transfer
 /// function, the map of bricks that rays skip, and gradients for shading. Rebuilt when the grid, the transfer function or the need for
 /// gradients changes. Frame thread only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/grid_bindings.h"
 
 #include <algorithm>

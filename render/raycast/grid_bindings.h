@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Bindings of resident grids in ray shaders (shaders/lib/grids.glsl: value image, brick map and mask at three bindings, flag bits); state
 /// of a grid rendered as an isosurface, and of a grid that colors another item.
 #pragma once

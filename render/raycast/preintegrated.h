@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Transfer functions for the fast raycast, whose volumes hold 8-bit codes: pre-integrated over pairs of codes. CPU code.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/projection.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Raycast of one volume by its maximum, minimum or mean value along each ray (Projection in frame_packet.h), in front of the opaque depth.
 ///   maximum, minimum   exact for the trilinear field of the texels, independent of the step: the extrema of each cell's cubic polynomial
 ///   average            midpoints of segments of the step; invalid cells do not count

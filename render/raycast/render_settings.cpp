@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/render_settings.h"
 
 namespace catena::render {

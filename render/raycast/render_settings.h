@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Settings of speed and quality, passed to the renderer and the passes in addition to the packet.
 #pragma once
 #include <cstdint>

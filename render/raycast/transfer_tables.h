@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Lookup tables of transfer functions for the exact raycast and for coloring by another field. CPU code.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Exact raycast of volumes, translucent isosurfaces and layers together (at most MAX_VOLUMES, MAX_SURFACES and MAX_LAYERS; at most
 /// MAX_GRIDS grids including coloring grids, MAX_GRIDS_WITH_LAYERS if there are layers), in front of the opaque depth. Tables and brick
 /// maps are rebuilt only when a transfer function, a level or a grid changes. Frame thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/atlas_plan.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plan of a brick atlas: which bricks of a grid its resident copy stores, and where. Bricks whose 9^3 voxels all have one value share a
 /// slot with the others of the same value. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/brick_map.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Maps for empty-space skipping: the bricks of resident grids and of packed volumes, with the distances that rays may skip.
 #pragma once
 #include <array>

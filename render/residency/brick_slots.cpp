@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/brick_slots.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Layout of the bricks of an atlas in its image: slots of equal size, in a block as near to a cube as their number permits, so that its
 /// longest side is minimal. Slots are numbered x fastest. Any thread.
 #pragma once

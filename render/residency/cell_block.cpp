@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/cell_block.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Voxels of a box of a scalar grid and the validity of its cells, for one brick of a resident grid. (voxel_block.h is the counterpart for
 /// 8-bit codes: validity by voxel.) One object per thread.
 #pragma once

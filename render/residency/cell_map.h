@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Map of the cells of a grid that contain a level, one bit each: a ray fetches the corners of no other cell. One texel of 16 bits per
 /// block of 2^3 cells, x fastest:
 ///   bits 0..7: the block's cells, bit x + 2 y + 4 z

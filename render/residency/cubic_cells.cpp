@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/cubic_cells.h"
 
 #include <algorithm>

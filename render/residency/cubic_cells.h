@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Finds the cells of a brick in which a cubic interpolant (engine/field/cubic.h) may take a value: those whose control points (Bernstein
 /// coefficients of the tensor product, whose minimum and maximum bound the cubic) lie on both sides of it.
 #pragma once

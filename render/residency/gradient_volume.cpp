@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/gradient_volume.h"
 
 #include <cmath>

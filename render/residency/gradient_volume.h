@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Gradients for shading in the fast raycast: central differences over one voxel, in codes per voxel, as half floats (R16G16B16A16_SFLOAT,
 /// fourth component 0), read with linear interpolation. Shading depends on directions only, so that the gradients of plateaus, a thousandth
 /// of those at edges, must be as exact as any other: fixed-point numbers of 8 or 10 bits cannot represent both. Gradients beyond the range

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Conversion of half floats, rounded to nearest even, as in R16F textures.
 #pragma once
 #include <bit>

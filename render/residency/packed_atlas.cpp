@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/packed_atlas.h"
 
 #include <fmt/format.h>

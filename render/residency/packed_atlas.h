@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Large scalar grid packed for the fast raycast: only what is visible under the transfer function, as bricks of 8^3 cells in one image. A
 /// word of 16 bits per voxel holds the codes of two neighbors, so that four fetches give a whole trilinear cell:
 ///   word(x, y, z) = c(x, y, z) | c(x+1, y, z) << 8,  8 x 9 x 9 of them per brick; codes are those of voxel_block.h

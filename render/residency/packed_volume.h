@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Scalar grid packed for the fast raycast: one 32-bit word per voxel with the codes of four neighbors, so that two fetches give a whole
 /// trilinear cell.   word(x, y, z) = c(x, y, z) | c(x+1, y, z) << 8 | c(x, y+1, z) << 16 | c(x+1, y+1, z) << 24 Codes are those of
 /// voxel_block.h; beyond the ends the end codes are held. Their range is the smallest one that includes every cell in which the transfer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/residency_manager.h"
 
 #include <fmt/format.h>

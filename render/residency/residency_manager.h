@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cache of the resident grids that frames use, keyed by (grid version, texel format, layout); entries are dropped when a frame does not
 /// refer to them. They stay within the remaining memory budget of the device: a grid that does not fit is downsampled to 1/2, 1/4 or 1/8 of
 /// its resolution, and rebuilt at full resolution when there is enough memory.

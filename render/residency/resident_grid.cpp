@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/resident_grid.h"
 
 #include <fmt/format.h>

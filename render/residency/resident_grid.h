@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// GPU copy of a scalar grid, built from its NanoVDB data on the CPU, keyed by (grid version, texel format), immutable, can be discarded at
 /// any time.
 ///   dense: one 3D image over the index box; always used for a cubic grid (field::Interpolation), then padded by one voxel on each side,

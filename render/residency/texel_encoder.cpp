@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/texel_encoder.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Encoding of values as texels of a resident grid: value = offset + scale * texel (resident_grid.h describes the formats). Any thread.
 #pragma once
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/voxel_block.h"
 
 #include <algorithm>

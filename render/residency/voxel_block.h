@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Voxels of a box of a scalar grid, as needed for packing: their values, which of them belong to a valid cell, and the 8-bit codes that
 /// represent values in the fast raycast (render/raycast/fast_volume.h).
 #pragma once

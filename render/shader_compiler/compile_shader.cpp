@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/shader_compiler/compile_shader.h"
 
 #include <fmt/format.h>

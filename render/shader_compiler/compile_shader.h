@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Compilation of GLSL to SPIR-V at run time with the glslang library, equivalent to that of the build (Vulkan 1.3, SPIR-V 1.6). One thread
 /// at a time; the first call in a process takes a few hundred milliseconds, the following ones a few.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/stereo/stereo_views.h"
 
 #include <algorithm>

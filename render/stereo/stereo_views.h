@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Views defined by a display: a flat screen in physical space, or the field of view of a headset. Each eye is a View with its own axes,
 /// window and aspect (pixels need not be square). World units, any one unit. Pure functions, any thread.
 #pragma once

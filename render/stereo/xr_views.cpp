@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/stereo/xr_views.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Views of a headset user's eyes, and the initial placement of the world in the local space. Pure functions, any thread.
 #pragma once
 #include "engine/base/placement.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Font file with its metrics and its glyphs as coverage bitmaps (FreeType). Outlines are hinted vertically only: positions along the line
 /// are exact. Sizes in pixels per em, positions in pixels, x right; "top" counts upwards from the baseline. Frame thread.
 #pragma once

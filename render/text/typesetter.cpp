@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/text/typesetter.h"
 
 #include <algorithm>

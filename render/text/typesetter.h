@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Typesetting: from UTF-8 to positioned glyphs, and the atlas of their bitmaps. Frame thread.
 #pragma once
 #include <map>

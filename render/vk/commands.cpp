@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/vk/commands.h"
 
 #include <algorithm>

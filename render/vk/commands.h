@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Recording of GPU work: barriers, copies, render passes. Submitted once; its command buffer is retired to the timeline. Frame thread.
 #pragma once
 #include <vulkan/vulkan.h>

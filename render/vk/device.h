@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Vulkan device with one queue and one timeline semaphore. A GPU is preferred over a CPU driver (lavapipe); the environment variable
 /// CATENA_DEVICE (cpu, gpu, or a part of the device's name) overrides the choice. Retired objects are destroyed when the timeline has
 /// passed the last submission that could use them. Frame thread only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Vulkan instance, its messages, and conversion of every VkResult to a Result with a one-line message.
 #pragma once
 #include <vulkan/vulkan.h>

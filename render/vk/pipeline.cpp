@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/vk/pipeline.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pipelines from SPIR-V words embedded at build time, or from their replacements (ShaderReplacements). Descriptors are pushed; shader
 /// constants are specialized.
 #pragma once

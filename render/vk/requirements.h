@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Requirements on a Vulkan device, for a host application that creates the device itself and lends it to Catena (VulkanProvider,
 /// instance.h): check them before creating the device, and enable these extensions and features besides one's own. Any thread.
 #pragma once

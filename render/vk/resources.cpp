@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/vk/resources.h"
 
 #include <fmt/format.h>

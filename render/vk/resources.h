@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Buffers and images, each with its own memory allocation (there are few). Move-only; destruction is retired to the device's timeline.
 /// Allocations beyond the device's memory budget fail with a one-line Error.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/vk/swapchain.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Swapchain of a window: UNORM images, so that display values are passed through unchanged. present() copies (and scales) a finished
 /// image. FIFO mode with the minimum number of images: no frames are rendered that are never shown, and the latency between input and
 /// display is minimal. Frame thread only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/vk/timestamp_query.h"
 
 #include <bit>

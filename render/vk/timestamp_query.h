@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Execution time of submitted work by the device's clock: a pair of timestamps around each command buffer. On a GPU, unlike wall time, it
 /// excludes other programs and the processor; with a CPU driver it equals wall time.
 ///   auto pair = queries.begin(buffer); .. queries.end(buffer, pair); submit; wait; ns += queries.read_ns(pair);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/xr/actions.h"
 
 #include <algorithm>

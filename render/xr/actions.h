@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Controller input as OpenXR actions, independent of the controller type, and vibration output. The runtime applies the bindings suggested
 /// here for common controllers (KHR simple, Oculus Touch, Valve Index, HTC Vive, Windows motion controllers), and its own choice for
 /// others.

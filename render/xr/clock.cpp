@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/xr/clock.h"
 
 namespace catena::render::xr {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Conversion from CLOCK_MONOTONIC to the runtime's clock by XR_KHR_convert_timespec_time, to locate controllers at the current time and to
 /// record head and controllers with the time stamps of haptic ticks. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/xr/depth_images.h"
 
 #include "shaders/shared/headset.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Depth of a view's image, used by the runtime to reproject it to the head pose between frames (XR_KHR_composition_layer_depth): depth of
 /// opaque objects, and half-opacity depth (alpha exceeds 0.5) of volumes and translucent objects in front of them (from every
 /// kRaySpacing-th pixel's ray):

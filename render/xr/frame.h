@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One frame of the headset, from the wait to the end:
 ///   wait (the runtime predicts the display time) -> begin -> locate the views at that time -> render -> end
 /// The located poses are submitted with the images, so that the runtime can correct for head motion since then. Every frame that was begun

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/xr/frame_waiter.h"
 
 #include <utility>

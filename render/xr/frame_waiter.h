@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Waits for frames on a separate thread: a runtime may block for seconds, during which the window must stay responsive. One wait at a
 /// time.
 #pragma once

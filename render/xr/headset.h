@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Headset as seen by the program: opened before the Vulkan device (which its runtime creates), started on the device, then used frame by
 /// frame.
 ///   auto headset = Headset::open();  options.provider = (*headset)->vulkan_provider(lock);  renderer = Renderer::create(options)

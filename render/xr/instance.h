@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Connection to a headset's runtime: instance, system (the headset itself), its capabilities, and the provider of Vulkan objects for it.
 ///   required: XR_KHR_vulkan_enable2, two views (or as many as the primary stereo configuration has), an opaque or other blend mode
 ///   optional: depth layers, visibility masks, clock conversion, eye gaze; used if capabilities() has them

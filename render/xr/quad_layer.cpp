@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/xr/quad_layer.h"
 
 namespace catena::render::xr {

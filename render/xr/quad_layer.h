@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Flat panel in the local space: an image on a rectangle, on top of the scene. Composited by the runtime, sharp at any distance. Frame
 /// thread.
 #pragma once

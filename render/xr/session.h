@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Session of the headset on a Vulkan device created by its runtime: begun and ended according to the runtime's events (session_state.h),
 /// with the reference spaces in which head and controllers are located. To be destroyed before the device. Frame thread; the queue's lock
 /// is held where the runtime may use the queue.

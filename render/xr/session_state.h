@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// States of a session, as defined by OpenXR, and the action of the program on entering one:
 ///   unknown -> IDLE -> READY -(begin)-> SYNCHRONIZED <-> VISIBLE <-> FOCUSED
 ///   SYNCHRONIZED -> STOPPING -(end)-> IDLE -> EXITING;  READY -> STOPPING (canceled by the runtime);  any -> LOSS_PENDING

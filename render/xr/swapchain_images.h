@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Images owned by the runtime, for one view or a panel. Colors are 8-bit sRGB: Catena's display values are copied unchanged; as an sRGB
 /// image is defined to hold display values, nothing is encoded twice. If a runtime has no sRGB format, its plain format gets the same
 /// bytes. Depths are floats. Images are acquired and released in the layout of an attachment. Frame thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Parts of a view that the lenses never show (XR_KHR_visibility_mask): triangles from the runtime, rendered black right in front of the
 /// eye, so that no ray is marched behind them. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/xr/xr_loader.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The only place that includes OpenXR. Its functions come from the loader library, which is opened when a headset is requested (never
 /// linked): a machine without it gets a one-line Error. Every XrResult becomes a Result with a one-line message. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Volumes, translucent isosurfaces and layers together: the ray is cut where a volume begins or ends, at surfaces and at layers. The
 // includer defines GRID_COUNT and, with layers, HAS_LAYERS.
 layout(constant_id = 2) const int VOLUME_COUNT = 1;   // grids 0 .. VOLUME_COUNT - 1

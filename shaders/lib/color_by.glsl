@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours by another grid at the same world place. Grid j holds a table of colours; `p` is the place in its own index space.
 
 // Alpha: 0 where the value has no colour, as what is no label; else 1.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cubic cell (engine/field/cubic.h): the 4 x 4 x 4 texels about a cell of a grid that is mirrored padded (render/residency/resident_grid.h).
 // Summed by differences from the texel at the cell's corner: texels that are all equal give just that value, and a slope of 0.
 #define CUBIC_OVERSHOOT (61.0 / 128.0)  // of the texels' range, at both ends

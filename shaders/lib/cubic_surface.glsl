@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The first crossing of a level along a ray where the cell is cubic. Along the ray the value is then a polynomial of ninth degree: it is
 // taken at ten places, a cubic laid through each four of them, and what that cubic says of a root is asked of the polynomial itself.
 // Missed is what rises above the level and sinks again between two of ten places by less than the cubic errs there.

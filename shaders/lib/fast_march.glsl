@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One packed volume along a ray: segments between samples s0, s1 with slopes d0, d1 along the ray; the value at the middle by the
 // Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/raycast/transfer_tables.h). A segment
 // within a cube of plain bricks (render/residency/brick_map.h) is as long as the ray's way through it.

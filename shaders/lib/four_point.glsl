@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The four-point cubic half way between b and c.
 vec4 interpolate_midpoint(vec4 a, vec4 b, vec4 c, vec4 d) { return 0.5625 * (b + c) - 0.0625 * (a + d); }
 

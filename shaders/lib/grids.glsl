@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Grids as textures: dense or brick atlas (render/residency), with their masks and brick maps. GRID_COUNT of them are bound.
 // An includer that defines NO_CUBIC leaves cubic grids to another shader: what is never run takes drivers their time all the same.
 // Lavapipe cannot index an array of textures, hence the switches; they fold away where the index is a constant.

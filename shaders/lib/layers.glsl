@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Translucent layers of triangles, the nearest first: premultiplied colours and depths. The includer defines LAYER_COUNT.
 layout(binding = 27) uniform texture2D layer_color_0;
 layout(binding = 28) uniform texture2D layer_color_1;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ambient 0.2, diffuse 0.7, white specular 0.2 with power 20 of the mirrored ray (VTK's power 80 of the half vector). Both sides are
 // lit: the normal is turned towards the eye. Without lights of the scene a headlight sits at the eye. Without a normal only the
 // ambient share is left. The includer declares `frame` with light_count, lights and fog.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The colour of a fragment of triangles: lit, with their edges as dark lines of about a pixel.
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_color;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A vertex of lit triangles, placed: all outputs of the vertex stage. The uniform `frame` (MeshFrameData) is there.
 layout(location = 0) out vec3 out_normal;   // view axes: x right, y up, z forward
 layout(location = 1) out vec3 out_color;

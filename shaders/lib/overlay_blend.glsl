@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The overlay (premultiplied) over the image (straight alpha), in place; `image` is declared before, in its format.
 //   a = o.a + (1 - o.a) p.a,  rgb = (o.rgb + (1 - o.a) p.a p.rgb) / a
 layout(local_size_x = 16, local_size_y = 4) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cell of a packed volume around a position: value in codes, trilinear, and its gradient.
 //   whole (render/residency/packed_volume.h): two words of four codes
 //   IS_BRICKED (render/residency/packed_atlas.h): four words of two codes in the slot that the map names, or the one code of the brick

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which fragments a translucent layer takes (render/passes/passes.h). Depths are compared as the depth buffer holds them, and equal
 // ones by their ids, so that the comparison here and the depth test agree to the bit.
 layout(constant_id = 1) const uint MODE = MODE_OPAQUE;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the nearest voxel counts the weights of the corners are whole, and what stands at the four places is compared.
 // In a trilinear cell the value along a ray is a cubic: its greatest value lies at an end of the segment or at a root of the derivative.
 // In a cubic cell it is of ninth degree: a cubic through each four of ten places says where to look, and the cell itself is asked there.

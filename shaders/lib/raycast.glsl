@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Emission and absorption along the pixel's ray, in front of the opaque depth:
 //   T(t) = S exp(-tau),  tau += sigma h per segment,  C += c (T_before - T_after),  S *= 1 - opacity at a surface
 // Optical depth is summed and the exponential taken of the sum, so that rounding does not pile up over many segments. The value

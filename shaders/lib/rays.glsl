@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ray of a pixel, and where it meets a grid's domain. Depths as in shared/frame.h.
 struct LocalRay {
   vec3 origin, direction;  // local position at depth t: origin + t direction

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The unit vector of octahedral coordinates, two signed 16-bit shares.
 vec3 unpack_direction(uint packed) {
   const vec2 e = unpackSnorm2x16(packed);

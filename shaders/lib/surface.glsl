@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The first crossing of a level along a ray. In a trilinear cell the value along the ray is a cubic; its Bernstein coefficients
 // come exactly from the polar form of the trilinear function (a and b: entry and exit within the cell, F the blossom):
 //   B0 = F(a,a,a)   B1 = (F(b,a,a) + F(a,b,a) + F(a,a,b)) / 3   B2 = (F(a,b,b) + F(b,a,b) + F(b,b,a)) / 3   B3 = F(b,b,b)

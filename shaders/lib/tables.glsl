@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Transfer functions: r, g, b, sigma (per world unit), or in the first component a factor; piecewise linear. Samples, even on the table's
 // scale; after them the function's own points, and the points' values four in a word (render/raycast/transfer_tables.h). Where interpolation
 // between two samples would err the first one's sigma has a minus, and the points count.

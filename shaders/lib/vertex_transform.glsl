@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The place of a vertex of triangles in the picture, and its distances from the clip planes. The uniform `frame` (MeshFrameData) is there.
 out float gl_ClipDistance[MAX_CLIP_PLANES];
 

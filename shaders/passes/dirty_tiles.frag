@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 // Tiles of 16 x 16 pixels. DILATION 0: 1 where the sign of one of its 4 x 4 blocks (opaque_tiles.frag) is another than before. DILATION > 0: 1

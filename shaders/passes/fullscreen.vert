@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #version 460
 // One triangle that covers the picture.
 void main() {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 // The last layer, from what peel.glsl has collected.

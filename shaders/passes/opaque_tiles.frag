@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 // Tiles of 4 x 4 pixels: 1 where something opaque is seen; and a sign of their depths, by which those are known that have changed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #version 460
 // straight alpha, display values; blended over what is there
 layout(binding = 1) uniform sampler2D image;

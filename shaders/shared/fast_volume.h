@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fast raycast of one packed volume (render/raycast/fast_volume.h): data of its passes in addition to FrameData, whose grid 0 is the packed
 // volume with positions relative to its first voxel.
 #ifndef CATENA_SHARED_FAST_VOLUME_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Data shared by the passes of one image. Depth t is measured along the view axis in world units, from the reference depth: the distance
 // from the camera plane is t + reference_depth. Pixel coordinates q are relative to the view axis, i.e. to the center of the image, unless
 // the frustum is off-axis.

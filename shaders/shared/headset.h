@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Conversion of opaque and ray depths to the depth image of a headset's view.
 #ifndef CATENA_SHARED_HEADSET_H
 #define CATENA_SHARED_HEADSET_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shared structs: the headers of this folder are compiled as C++ (GLM types) and as GLSL with scalar block layout, which place members at
 // the same offsets. No booleans, no arrays of unknown length, only 32-bit scalars, vectors and matrices.
 #ifndef CATENA_SHARED_LANGUAGE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Translucent layers (render/passes/passes.h) and slices: shader data in addition to the frame data.
 #ifndef CATENA_SHARED_LAYERS_H
 #define CATENA_SHARED_LAYERS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shapes of the overlay (render/passes/overlay/canvas.h). A shape is a rectangle in its own coordinates, in pixels:
 //   position in the image = origin + x axis_x + y axis_y,  lo <= (x, y) <= hi,  axes are orthogonal unit vectors
 #ifndef CATENA_SHARED_OVERLAY_H

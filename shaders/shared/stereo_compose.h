@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stereo composition of several views into one image: data of stereo_compose.frag and anaglyph.frag.
 #ifndef CATENA_SHARED_PACK_H
 #define CATENA_SHARED_PACK_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tube as rings, from which the vertex shader generates vertices. A tube of a million rings takes 36 MB; as triangles, 0.5 GB.
 #ifndef CATENA_SHARED_TUBE_H
 #define CATENA_SHARED_TUBE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // User interface over a window's image (render/frame/overlay_items.h).
 #ifndef CATENA_SHARED_UI_H
 #define CATENA_SHARED_UI_H

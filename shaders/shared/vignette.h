@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vignette (render/passes/vignette.cpp).
 #ifndef CATENA_SHARED_VIGNETTE_H
 #define CATENA_SHARED_VIGNETTE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Acceptance numbers 1 to 4: the advection function, and what the hand feels of it.
 #include <random>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A hostile hand: jumps, rests, 1e300, denormals, probes that are not finite, buttons at random, clocks that stand still or go back.
 #pragma once
 #include <limits>

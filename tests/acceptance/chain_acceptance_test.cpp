@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Acceptance numbers 9 and 11: the chain of Figure 3(c), and what the scale of a field, or its bad values, may change: nothing.
 #include <limits>
 

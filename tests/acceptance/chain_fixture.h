@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A whole chain driven through the tick: from the text of a scene, or from constraints made by hand.
 #pragma once
 #include "haptics/build/build_program.h"

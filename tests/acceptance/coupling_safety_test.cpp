@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whole scenes on the simulated device: what a switch, a snap or another program puts into the springs is booked, the hand gets
 // no more than that, and a trembling hand on a streamline through an isosurface feels no shaking.
 #include "haptics/device/registry.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What nobody had examined before: thin sheets, a probe tangential to the isosurface, leaving the grid in
 // the middle of a step, a NaN met on the way. Each test says first what is right.
 #include <limits>

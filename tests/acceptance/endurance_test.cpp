@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Endurance: no allocation in a million ticks of a chain, and nothing that is not finite in ten million hostile ticks over every
 // constraint type of the conformance table, on good fields, fields ridden with NaN, and fields scaled to the ends of the doubles.
 #include "engine/base/memory_limit.h"

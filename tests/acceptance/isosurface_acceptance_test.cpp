@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Acceptance number 8: the projector onto an isosurface, on formulas and on grids, judged by closed forms in long double and by the
 // grid's own corner values.
 #include "tests/acceptance/reference_numerics.h"

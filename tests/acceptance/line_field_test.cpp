@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Line fields: fibres of a synthetic heart whose vectors flip sign at random, with noise of 10 degrees and seams of 90.
 #include <numbers>
 #include <random>

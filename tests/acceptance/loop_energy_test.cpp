@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The passivity controller on the simulated device: what loops of the hand gain from two planes at 45 degrees, beyond what the device's own
 // damping takes, for every coupling method and at 1 to 5 loops a second.
 #include <gtest/gtest.h>

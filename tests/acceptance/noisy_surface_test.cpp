@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A slow hand on noisy data: a proxy keeps to its sheet and to its travel, so that the force never jumps; friction keeps its proxy.
 #include "tests/acceptance/chain_fixture.h"
 #include "tests/acceptance/reference_numerics.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A minute's exploration of real data at 1 kHz: a hand that wanders along and around a streamline at 0.05 to 0.2 L/s, with the chain
 // streamline -> isosurface, selected and on line. No tick may run out of budget; the proxy's distance from a streamline that is
 // traced here, by Dormand-Prince 5(4) on a trilinear sampler of this file's own, is stated and bounded. At a tolerance of 1e-12 a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the acceptance tests compare with, written without the product's numerics: long double vectors, a Runge-Kutta march,
 /// Dormand-Prince 5(4) with step control, and the closed forms.
 #pragma once

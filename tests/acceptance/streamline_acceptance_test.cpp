@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Acceptance numbers 5, 6, 7 and 10: the projector onto a streamline, on line and selected, and what happens at critical points.
 #include "haptics/constraints/streamline/online_streamline.h"
 #include "haptics/constraints/streamline/selected_streamline.h"

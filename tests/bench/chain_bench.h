@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the benchmarks of the tick share: fields sampled on 256^3, links from JSON, a hand's path, quantiles as counters.
 #pragma once
 #include <benchmark/benchmark.h>

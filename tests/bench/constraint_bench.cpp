@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Every constraint alone, one benchmark each, on 256^3 grids where it feels a field: nanoseconds a tick and evaluations against
 /// the budget of 257, as counters. A type of the registry without a link here is said at the start.
 #include <cstdio>

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """First frames and GPU memory of `catena render`, each in a process of its own: with the driver's cache of compiled shaders empty (cold)
 and filled (warm), wall times in milliseconds, and GPU bytes a voxel of the grid's box beside the NanoVDB's bytes on the host.
 needs: nothing beside python3; a driver that honours MESA_SHADER_CACHE_DIR (others: warm times only mean something)

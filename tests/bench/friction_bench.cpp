@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The anisotropic friction mode (three links) on 256^3 grids, and each of its links alone: quantiles of a tick and of the
 /// evaluations a link as counters, beside the hand-written floor, one value + gradient fetch on the same walk.
 #include "haptics/constraints/presets/mode_presets.h"

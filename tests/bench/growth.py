@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """How time and memory of one picture grow: the whole program, file to PNG, 1024x768, over grids of 64^3 to 512^3 (--most) and a sparse one
 of 1024^3, as a volume and as an isosurface, and over 1 to 100,000 streamlines (--lines).
 needs: python3-numpy

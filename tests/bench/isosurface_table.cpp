@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Times and depths of one opaque isosurface, on the fields and camera of the comparison with VTK (raw float32 volumes, 1024 x 768).
 ///   isosurface_table RAW N LEVEL [VIEWS [DEPTH_FILE [MODE]]]      MODE: exact (default) | r16f | draft      see isosurface_vs_vtk.py
 /// One JSON line: medians over an orbit of VIEWS pictures, wall and process CPU milliseconds (two threads: half of the CPU time is the

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """An opaque isosurface beside VTK's isosurface mode (vtkGPUVolumeRayCastMapper, sample distance 0.5 voxel), in one run on one machine, in
 alternating rounds: processor and wall time a picture, and the errors of both depths against an independent intersection (numpy,
 double precision: the trilinear field every 0.05 voxel along the pixel's ray, bisection of the first change of sign; see `reference`).

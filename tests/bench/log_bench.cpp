@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What recording costs: `put` beside the tick that it records, bytes a tick, and a servo at 4 kHz that loses none.
 #include <cstdio>
 #include <thread>

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """Ten thousand streamlines as a picture: the whole program, file to PNG, beside VTK (vtkStreamTracer, vtkTubeFilter, a picture off screen).
 needs: python3-vtk9 numpy, an X server (xvfb-run -a)
 usage: many_streamlines.py CATENA FIELD.vti [LINES] [LENGTH] [RADIUS] [ROUNDS]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tick on a mesh of 100,820 triangles (a sphere of radius 1): a hand that slides inside it and taps it, at 0.2 and 1 unit/s.
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """One picture, whole programs: from the file to the PNG. Catena's default and each setting that it can name beside VTK's mapper.
 needs: python3-numpy, python3-scipy, python3-pil, python3-vtk9, xvfb-run; cases made by volume_cases.py
 usage: xvfb-run -a one_picture.py --catena PROGRAM --cases DIR [--rounds N] [--goal E] [--no-vtk] [--processor] [CASE ...]

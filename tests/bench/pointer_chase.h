@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The time of one load that waits for the one before it: the unit, T, in which times of a tick are compared between machines.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Isosurface links whose probe is thrown about at random (a device plugged in again, a mode changed): the time of a tick.
 ///   random_probe_table [TICKS [NODES]]       default 1000000 256
 /// Each tick the probe is anywhere in a box 1.2 times the domain, in five identical replays: of each tick the least time, in us, so that

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """The error that Catena states of one picture beside the true one, over random views of the cases of volume_cases.py.
 needs: python3-numpy, python3-pil
 usage: stated_error.py --catena PROGRAM --cases DIR [--views N] [--goals 1,2,4] [--size WxH] [--seed S]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """Streamlines beside vtkStreamTracer, in one run on one machine: steps a second and the error of both against an independent
 reference (numpy, double precision, RK4 in arc length at a hundredth of a voxel on the same trilinear field).
 needs: python3-vtk9 numpy

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The tick of a streamline and an isosurface on 256^3 grids.
 #include "tests/bench/chain_bench.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plans against the exhaustive sweep: for five fields and six targets each (error, error, time of the eye; the same of the hand) what a
 /// plan expects, what is observed, and what the chosen setting costs beside the cheapest of the sweep that is as exact.
 ///   tuning_table DIR > TABLE.csv       DIR: the folder of the data files (carotid_flow.vdb ...)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A person at the window, for so many seconds, by real X events: orbits, zooms, takes the hand over the data, presses its button, changes
 views, shows and hides the panels. Prints the memory of the process every ten seconds, then the histograms of pictures and ticks.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Catena as a peer of volume_peers.py (tests/bench/baselines/protocol.h):   volume_baseline CASE.json
 ///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP |
 ///   fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth][,end=T] (1/255; < 0: nowhere)

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """Writes the cases of volume_peers.py: DIR/NAME.raw (float32, x fastest), DIR/NAME.json and DIR/NAME-shaded.json.
 needs: python3-numpy, python3-scipy; head: package mricron-data; bone: package invesalius-examples, or its file after --ct
 usage: volume_cases.py -o DIR [--size N] [--ct Cranium.inv3] [NAME ...]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """Volume renderers side by side: what a picture takes at an equal error to each one's own converged picture.
 needs: python3-numpy, python3-scipy, what the peers need; cases made by volume_cases.py
 usage: volume_peers.py --peer NAME=COMMAND ... --cases DIR -o OUT [--only CASE ...] [--rounds N] [--views N] [--modes NAME='MODE; MODE'] [--flicker]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Core lines of flows whose cores are known (engine/geometry/flow/vortex_cores.h), by criterion, cells and noise.
 ///   vortex_core_table [NODES]        default 49, over [-1.2, 1.2]^3
 /// Flows: Burgers' vortex about a tilted line, the same in a stream along it that is sheared, Lamb and Oseen's about an arc of radius 1.5

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a cutting plane adds to the tick of a streamline and an isosurface on 256^3 grids: in no mode, on the plane, turned.
 #include "haptics/constraints/widget_link.h"
 #include "tests/bench/chain_bench.h"

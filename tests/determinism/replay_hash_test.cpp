@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One replay, one state_hash: the committed constants hold in every preset, with and without the thread.
 /// The scenes use + - * / sqrt only (sampled grids, circle, sphere); a change of behaviour changes them, and must say so.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A constraint and a file format that only this test has, each in one place and with one line of registration: they are in the reader, the
 // schema, the writer, the panel, the ruler and the document, with nothing said about them anywhere else.
 #include <gtest/gtest.h>

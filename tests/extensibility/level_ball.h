@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A constraint that only the tests have: a ball whose radius is the level of a field. A test program registers it; the same is a plug-in.
 #pragma once
 #include "haptics/constraints/common/link_schema.h"

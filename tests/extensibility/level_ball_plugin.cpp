@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The plug-in level_ball.so. Its initialiser leaves a mark, so that a test sees whether any of its code has run.
 #include <cstdio>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A plug-in that does what CATENA_TEST_WRONG says, and should not.
 #include <cstdlib>
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plug-ins from the outside: the program loads a constraint that its tree does not have, and says in one sentence why it does not. As root
 // it loads none; where root runs the tests, the program is run as nobody.
 #include <gtest/gtest.h>

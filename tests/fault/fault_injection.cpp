@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Preloaded into the program `catena`: lets one thing of the machine fail, from the beginning of main on.
 ///   CATENA_FAULT=alloc:N    the N-th allocation (malloc and its family, operator new) fails. Those that graphics drivers, the dynamic
 ///                           linker and what they use ask for are not counted: they end the process by themselves

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Every command on a tiny file, while one thing of the machine fails (tests/fault/fault_injection.cpp): no signal ends it, exit code 0, 1
 /// or 2; with another than 0 one line that begins "catena: ", no output and nothing half-written. A sample here; all of it:
 ///   CATENA_FAULT_FIRST=10000 CATENA_FAULT_EVERY=100 build/release/test_fault

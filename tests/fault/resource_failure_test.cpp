@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every command under what a machine, or a shell, may refuse it: exit code 1, or 0 where the command does without; one line that begins
 // "catena: " with the cause; no output. Never 2, which would blame the file, never a signal, never a wait without end.
 #include <fcntl.h>

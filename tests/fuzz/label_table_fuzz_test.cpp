@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tables of labels out of hostile hands: labels that can be shown, or one line with the file's name.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Changes of a recording's bytes that its hashes do not see: what lies behind them is reached.
 #pragma once
 #include <algorithm>

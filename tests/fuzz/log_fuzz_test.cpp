@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The reader of recordings against bytes of all kinds: no crash, no large allocation, ticks in rising order, and what is whole is read.
 #include <gtest/gtest.h>
 

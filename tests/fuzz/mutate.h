@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Deterministic mutations of a text: bytes flipped, cut, doubled, swapped; tokens dropped or taken from elsewhere.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Deterministic mutations of a binary file: bits and bytes changed, numbers made extreme, pieces cut, doubled and exchanged.
 #pragma once
 #include <algorithm>

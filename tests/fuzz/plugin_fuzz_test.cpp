@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A plug-in's file out of hostile hands, before anything of it runs: what it states, or one sentence.
 #include <gtest/gtest.h>
 

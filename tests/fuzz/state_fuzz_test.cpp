@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A recording that begins in mid-run holds the chain's raw state. Forged, with good hashes, it is refused before a tick indexes with it,
 /// or it is harmless: run these under the sanitizers.
 #include <gtest/gtest.h>

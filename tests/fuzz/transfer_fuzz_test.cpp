@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// TransferEditor files out of hostile hands: a transfer function that can be drawn, or one line with the file's name.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tables of trials and questions about them out of hostile hands: what is read can be written and read again; else one line.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Damaged NIfTI files, plain and compressed, and raw volumes of any stated shape: a grid that can be sampled, or one line; never more
 /// memory than is allowed.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of the command line: numbers at the ends of doubles in scenes, tables and options, and a grid that is full.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of the coupling: rates, irregular clocks, and springs from none to far beyond what is passive.
 #include "haptics/device/registry.h"
 #include "haptics/servo/device_limits.h"

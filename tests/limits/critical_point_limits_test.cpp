@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of critical points: of every type, traced, and under the hand.
 #include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/engine/geometry/flow/lambda_field.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the rows of the flow share: a line that is integrated in every tick, and how a traced one ends.
 #pragma once
 #include "engine/geometry/flow/curve.h"

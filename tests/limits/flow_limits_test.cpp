@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of the flow: limit cycles, discontinuities, ways out of the domain; traced, and under the hand.
 #include "haptics/constraints/streamline/selected_streamline.h"
 #include "tests/engine/geometry/flow/lambda_field.h"

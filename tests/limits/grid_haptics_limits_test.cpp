@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of the world: grids of any size, shape and place, and values of any size, under the hand.
 #include "tests/acceptance/chain_fixture.h"
 #include "tests/engine/geometry/flow/lambda_field.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of the world under the eye: grids of any size, shape and place, values of any size, and grids with nothing to show.
 #include "tests/limits/limits_table.h"
 #include "tests/limits/render_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of pictures: their sizes, fields of view, eyes in odd places, and how many lines are in them.
 #include "tests/limits/limits_table.h"
 #include "tests/limits/render_fixture.h"

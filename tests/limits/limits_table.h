@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The table of extremes: what happens at the ends of what can be asked. A row's expectation is written before the row is run, and holds
 /// word for word: run() says what happened in sentences that hold on every machine, such as "status OK; off the line at most 1e-09 L".
 /// docs/reference/limits.md is made from the table. A number within a sentence is a bound, never a measured figure.

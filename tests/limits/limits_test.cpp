@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs the table's rows, a test case each, and compares docs/reference/limits.md with the table. CATENA_WRITE_DOCUMENTS=1 in the
 // environment writes the document from what the rows say (./run docs).
 #include <gtest/gtest.h>

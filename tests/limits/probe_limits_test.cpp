@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of the hand: what a probe may do, and in what worlds.
 #include <cstring>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The hand that several rows share.
 #pragma once
 #include <cmath>

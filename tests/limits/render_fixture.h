@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The eye of the rows: scenes drawn on the CPU driver with the validation layer on, and raw files to draw.
 #pragma once
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of .vdb grids whose voxels are counted from far away, indices of 1e7 at the same place of the world; and of points that lie far
 // away.
 #include <openvdb/openvdb.h>

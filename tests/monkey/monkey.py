@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A monkey at the window: types, clicks, drags and drops at random, as fast as X takes it, until the time is over. Needs python3-xlib and a
 display of its own; its seed repeats what it does (not when the window sees it).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The gallery as a reader would do it: the commands of docs/user/gallery.md draw the pictures above them.
 #include <gtest/gtest.h>
 

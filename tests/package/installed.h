@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Catena as it is installed: below the build folder, once for all tests of this program.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Catena as other programs get it: installed below the build folder, with programs built against that which know nothing of this tree.
 #include <gtest/gtest.h>
 

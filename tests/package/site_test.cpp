@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The documents and the public headers as a site: Doxygen, whose warnings are errors, finds a sentence for every public name, and every
 /// link of every page leads to a file.
 #include <gtest/gtest.h>

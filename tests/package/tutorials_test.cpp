@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The tutorials as a reader would do them: their blocks are taken out of the pages and run with what is installed, and what they print is
 /// what the page says. In a page
 ///   "Save as `NAME`:" and a block   is a file

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Python module as a user has it: run by ctest with the build's module in PYTHONPATH, CATENA the program, SOURCE the checkout."""
 import csv
 import html

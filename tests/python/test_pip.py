@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What `pip install --no-build-isolation --no-deps .` does, without the compiler: setup.py builds the wheel with a `cmake` that configures and
 installs as it is asked to, and where it should compile takes what this build has made. Run by ctest with BUILD, SOURCE and CMAKE."""
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scenes for unchanged.py: generated ones that use every part of a scene, and bad ones. All by one seed: the same scenes everywhere."""
 import copy
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Whether two builds of catena do the same: pictures, CSV, exit codes, messages and recordings, byte for byte.
 
   unchanged.py BEFORE AFTER [--assets FOLDER] [--generated 200] [--bad 50] [--only WORD] [--exceptions FILE] [--keep FOLDER]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The documents: every relative link leads to a file and to a heading, every file of the tree that they name is there, every Suite.Case
 /// that they name is a test, and README says the scene that assets/scenes/first.json holds.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the linker and the compiler were asked for is in the programs: position independent, relocations read-only before main, no
 // stack that can be executed, stack canaries, checked copies of the C library, checked containers of the C++ library.
 #include <elf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Every #include of the tree against the edges declared in CMakeLists.txt (written to modules.txt at configure time).
 #include <gtest/gtest.h>
 

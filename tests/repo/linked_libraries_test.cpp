@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the built programs hold: `catena` has no way to read a .vdb file itself.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A link with an axis and nothing else, so that the rotational chain is tested in closed form.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A test case as a process of its own: what is stopped, killed or limited must not be the test program.
 #pragma once
 #include <sys/types.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A simulated hand on the very tick, without a thread: read, tick, write. And what the hand has got, by an account of its own.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The counting operators new and delete behind AllocationCounter: linked into every test program.
 #include <cstdlib>
 #include <new>

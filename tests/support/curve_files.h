@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tractograms as bytes, written field by field from the formats' descriptions.
 #pragma once
 #include <algorithm>

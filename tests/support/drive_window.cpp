@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/drive_window.h"
 
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Drives `catena view` on a virtual display with real key and pointer events, by a shell script. Nothing waits for a time where it can
 /// wait for a title or a file.
 #pragma once

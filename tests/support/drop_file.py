@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Drops a file onto a window as a file manager does (XDND, version 5). Needs python3-xlib.
 
     drop_file.py WINDOW_ID FILE      exit code 0: the window has taken it; 1: it did not answer or refused

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sanitizer builds only. The Vulkan loader unloads its driver and layers, and the leak checker then takes what their globals
 // held for lost: here libraries stay loaded to the end. The validation layer also loses some small blocks of its own, lavapipe
 // 22.3 one shader of every pipeline that uses discard, and OpenXR's loader 1.0.20 what it keeps of every instance; undestroyed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Meshes with known answers: box, sphere, sheet, plate, wedge, and their files.
 #pragma once
 #include <cmath>

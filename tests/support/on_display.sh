@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # A command on a virtual display of its own: sh on_display.sh SCREEN COMMAND...
 # The server chooses its own number, so that two tests at once never take the same, and stays when its last program has ended.
 screen=$1

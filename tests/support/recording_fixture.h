@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Recordings for the tests of haptics/servo/log: ticks driven without a thread, with everything that can happen to a probe.
 #pragma once
 #include <cmath>

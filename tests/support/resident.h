@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Memory of this process that is in use now.
 #pragma once
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs the program `catena` as a user would.
 #pragma once
 #include <string>

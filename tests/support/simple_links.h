@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Constraints as small as can be, so that the chain, the tick and the servo are tested without a real one.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Helpers of all tests: where things are, a folder that vanishes, text files, the shared data folder.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tests draw on lavapipe with the validation layer on: the same pictures on every machine. CATENA_TEST_DEVICE names another device
 /// ("gpu", or a part of its name): a few tests compare with pictures or costs that lavapipe alone has, and skip there.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/xr_runtime/runtime.h"
 
 #include <time.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Inside the runtime: objects by handle, and what every entry does first: count the call, play a scripted failure, take the lock.
 #pragma once
 #include <deque>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A headset's runtime for tests, loaded by the real loader. What it plays, and what it has seen: plain data in the library, shared with
 /// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
 ///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before

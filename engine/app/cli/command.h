@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shared by all subcommands: registration, errors and exit codes, opening scenes, progress output.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena devices [--json]: lists the haptic devices.
 /// catena devices test NAME [--forces] [--seconds S] [--firmware FILE]: a safe self-test.
 #include <fmt/core.h>

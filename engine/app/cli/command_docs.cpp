@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena documents man FOLDER | completion FILE: manual pages and the shell completion, generated from the descriptions of all commands.
 /// Meant for packagers of Catena: `catena --help` does not list it.
 #include <CLI/CLI.hpp>

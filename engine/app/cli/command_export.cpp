@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena export FILE.catlog -o TICKS.csv [--details FILE.csv] [--poses FILE.csv]: a recording as tables, without the scene's files.
 /// catena export SCENE --isosurface I|--slice I|--streamlines I|--mesh M|--field F|--probe PATH.csv -o OUT: a part of a scene.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena feel SCENE [--device NAME] [--seconds S] [--rate HZ] [--forces on|off] [--stats FILE.json]: haptics without a window.
 #include <fmt/core.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena generate NAME -o OUT.vdb --resolution N [--box LO HI]
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena import IN -o OUT: converts any file that Catena reads to a format that it writes (engine/io/volume/write_field.h).
 #include <fmt/core.h>
 

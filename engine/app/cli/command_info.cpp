@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; a mesh's triangles, box and open edges; the contents
 /// of a scene or a recording.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena render SCENE|FILE -o FILE.{png,exr,mp4,webm,gif} [--size WxH] [--quality Q] [--frames N --orbit DEG] ..
 /// Defines the options; engine/app/render does the work.
 #include <CLI/CLI.hpp>

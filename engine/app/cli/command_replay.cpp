@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena replay SCENE --probe PATH.csv -o TICKS.csv [--details LINKS.csv] [--widgets W.csv] [--stats FILE.json]
 /// catena replay [SCENE] --log FILE.catlog [-o TICKS.csv] ...: repeats a recording and compares the results bit by bit (log_replay.h)
 #include <fmt/core.h>

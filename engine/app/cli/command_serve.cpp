@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena serve SOURCE [--port N] [--address A]: shows the scene in a browser.
 #include <CLI/CLI.hpp>
 #include <memory>

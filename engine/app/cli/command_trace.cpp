@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--tolerance T]
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena tradeoff SCENE|FILE -o DIR [--effort quick|default|thorough] [--compare OTHER.json]: error against cost for the settings of a
 /// scene catena tradeoff --figure 2|3|stiffness|energy -o DIR: figures of the paper
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena upgrade FILE...: rewrites scenes, studies and recordings of version 0.2 with the names of 0.3 (engine/schema/renames.h). The old
 /// file stays beside the new one as FILE.bak.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena view SCENE|FILE [--device NAME] [--seconds S] [--servo-stats FILE.json]: the interactive window.
 #include <CLI/CLI.hpp>
 #include <memory>

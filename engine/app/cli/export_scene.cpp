@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/export_scene.h"
 
 #include <fmt/core.h>

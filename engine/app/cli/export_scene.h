@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Export of one part of a scene to a file for other programs: `catena export SCENE`.
 #pragma once
 #include <optional>

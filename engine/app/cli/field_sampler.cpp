@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/field_sampler.h"
 
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Samples all fields of a scene at points in the world, for the columns of a table or the point values of a mesh.
 #pragma once
 #include <string>

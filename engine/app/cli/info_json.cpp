@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/info_json.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena info --json`: the contents of `catena info` as one JSON object on one line of stdout. docs/reference/command-line.md lists its
 /// members.
 #pragma once

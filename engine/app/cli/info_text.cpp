@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/info_text.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Human-readable output of `catena info` for data files, on stdout.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/io_conflicts.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The input and output files of one run of a command. All checks of outputs against inputs and against each other are done here.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One-line JSON for `catena info --json`: strings are sanitized for a terminal, numbers that are not finite become null.
 #pragma once
 #include <fmt/format.h>

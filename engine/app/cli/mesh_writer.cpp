@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/mesh_writer.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writers of triangle meshes for other programs, selected by file extension:
 ///   .vtp   VTK's XML PolyData, raw appended: doubles, with the normals and the values at every point
 ///   .ply   binary, doubles, with the normals

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/options.h"
 
 #include <CLI/CLI.hpp>

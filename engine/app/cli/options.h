@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Command-line options that several commands share: numbers, --size, --stereo, annotations, colors, real time.
 ///
 /// Numeric options such as --rate and --seconds are finite numbers within bounds. CLI11's own checks let "nan" through, print bounds of 309

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/plugins.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Loads plug-ins (haptics/plugin), and identifies them in recordings.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/polyline_writer.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writers of polylines, as a table or for ParaView.
 ///   .csv   line,s,x,y,z,tx,ty,tz: arc length, position and unit tangent, rows in ascending s; numbers read back exactly
 ///   .vtp   VTK's XML PolyData, raw appended doubles: one polyline per line. Points carry s, tangent, velocity and line; cells carry line,

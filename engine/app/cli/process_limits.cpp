@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/process_limits.h"
 
 #include <fcntl.h>

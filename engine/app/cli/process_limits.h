@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Handles the process limits that a shell or a service manager sets (ulimit, prlimit), at the start of the program:
 ///   stack      of new threads: at least 2 MiB, whatever the limit is, because a thread's default stack size is taken from the limit. Of
 ///              the first thread: raised to 8 MiB as far as the hard limit allows; below 1 MiB the program does not start

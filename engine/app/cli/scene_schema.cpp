@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/cli/scene_schema.h"
 
 #include "engine/scene/scene.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The schema of a scene file, assembled from the modules that read its parts: the scene, the constraints, the devices.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/contact_summary.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Human-readable summary of the haptic contact along a probe path: one sentence per link, in device units.
 ///   skin: pressed 12.5 mm deep, own share at most 3.8 N; held 3.88 of 6.00 s. Gap 0.25 units; ticks FREE 2120 OK 3881
 /// "pressed" is used for a one-sided link, "pulled ... off" for all others. The depth is the longest distance from the link's probe to its

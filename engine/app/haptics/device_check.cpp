@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/device_check.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Self-test of a device: reads it for some seconds and, only if requested, applies small test forces. Without `forces` only zero force is
 /// written. With `forces`, when the device's forces are enabled and the grip has rested for half a second, a test force is applied along
 /// each axis in both directions: it rises linearly to at most `push_n`, stays constant, and falls. The check ends at once if the grip moves

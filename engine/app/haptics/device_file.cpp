@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/device_file.h"
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// --device-file FILE.json: the settings of a device as an object of their own, with the keys of a scene's "device"
 /// (docs/reference/scene.md). They replace the scene's "device" in every scene, so that the settings of a device on the desk are stored in
 /// one place. A file that does not exist has no effect; it is created when there are settings to store. Errors: "FILE:LINE: what; what was

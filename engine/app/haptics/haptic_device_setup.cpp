@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/haptic_device_setup.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Setup of a haptic device for a scene: workspace scale, initial probe position, device and program.
 #pragma once
 #include <memory>

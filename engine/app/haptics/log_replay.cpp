@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/log_replay.h"
 
 #include <fmt/chrono.h>

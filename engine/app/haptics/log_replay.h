@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena replay --log`: runs the ticks of a recording and compares every bit of the results, including forces. Exit code 0: all equal; 1:
 /// a difference, or ticks that the recording lacks; 2: no recording, or no scene to run.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/probe_playback.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The probe in an image: after a probe path, at a time along it, or at rest at the probe position of the scene's cursor.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/recording.h"
 
 #include "engine/app/cli/command.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Recording of every tick of a session: --record FILE, or the viewer's switch. Written by a thread other than the haptic thread. Frame
 /// thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/signal_handlers.h"
 
 #include <fmt/core.h>

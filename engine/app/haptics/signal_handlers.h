@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Signal handlers that end a command gracefully or stop the device on a crash.
 ///
 /// Ctrl-C, Ctrl-Z, a closed terminal or pipe and `kill` set a flag that the command polls, so that a command that holds a device shuts it

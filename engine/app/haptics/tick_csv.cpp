@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/haptics/tick_csv.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writers of the tick CSV, the details CSV and the widget CSV, shared by `replay` and `export`. Numbers read back exactly.
 #pragma once
 #include <array>

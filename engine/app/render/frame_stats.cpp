@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/render/frame_stats.h"
 
 #include <fmt/core.h>

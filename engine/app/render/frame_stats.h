@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Statistics of `render --stats`.
 #pragma once
 #include <cstdint>

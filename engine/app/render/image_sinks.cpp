@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/render/image_sinks.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Destinations of an image's pixels: one sink per file. A sink is fed with bands of rows from the top; a file is written completely or not
 /// at all.
 #pragma once

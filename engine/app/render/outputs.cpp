@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/render/outputs.h"
 
 #include <fmt/core.h>

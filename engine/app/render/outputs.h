@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The output files of `catena render`. A numbered name ("turn_%03d.png") denotes one file per frame of a sequence; a plain name denotes
 /// the image of the first frame.
 #pragma once

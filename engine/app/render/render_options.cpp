@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/render/render_options.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Options of `catena render`, as given on the command line, and the camera and quality that follow from them.
 #pragma once
 #include <optional>

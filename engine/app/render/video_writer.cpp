@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/render/video_writer.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writes frames to a video through a pipe to ffmpeg (no shell, no library): .mp4 (H.264), .webm (VP9, with alpha if requested), .gif (one
 /// palette). The video is written to a temporary file in the same folder and renamed by commit(); without commit() the file is removed and
 /// ffmpeg is killed. Colors of .mp4 and .webm are tagged BT.709, limited range. One thread; SIGPIPE is ignored while a writer is open.

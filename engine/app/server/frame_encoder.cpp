@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/frame_encoder.h"
 
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// FrameEncoder renders frames without a window and encodes the last one. Frame thread.
 #pragma once
 #include <memory>

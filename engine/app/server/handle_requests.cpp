@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Carries out the requests of the viewer in control.
 #include <utility>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Requests of a page, as they arrive over the network: one JSON object with the key "do". Anything else is rejected, and every number is
 /// checked to be finite and within bounds. Pure, any thread.
 ///   {"do": "move", "number": N, "pieces": [[x, y, dx, dy, wheel, held], ...]}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena serve` shows a scene in browsers: progressively refined images, with the mouse as the haptic device. It is the viewer
 /// (engine/app/viewer) with a network in place of the display: same scene, haptics, controls and frame scheduling. All pages share one
 /// session: the first page is in control of the probe, the camera and all edits; the others watch. The scene file is never written.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// ServeSession is the main loop of `catena serve`: requests of the pages -> newest haptic state -> frame -> pages. Frame thread.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/served_recording.h"
 
 #include <stdlib.h>

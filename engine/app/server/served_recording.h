@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// ServedRecording is the recording of `catena serve`: every haptic tick from the start to the stop of the recording, in a private folder
 /// below the system's temporary folder. The folder is removed at exit; if the program was killed, the next program that records removes the
 /// folder because its lock is free. There is one file at a time, the newest, which pages can download; it has at most kMaxBytes. Frame

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/server_messages.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Messages to a page: JSON objects of one member each, and frames. Frame thread. The keys are those of the protocol.
 ///   {"role": {"hand": "yours" | "free" | "taken", "viewers": N}}                     whether this page is in control
 ///   {"scene": {"name", "isosurfaces": [...], "volumes": [...], "maps": [...]}}       what can be edited

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study analyse DIR -o OUT: evaluates the trials of a data folder and writes tables, JSON and an HTML page.
 #include <fmt/core.h>
 

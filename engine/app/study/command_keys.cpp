@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study keys [PART | --schema]: prints the keys of a study file.
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study merge DIR... -o DIR: merges the subjects of several data folders of one study into one folder.
 #include <fmt/core.h>
 

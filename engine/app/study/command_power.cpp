@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study power STUDY.json --effect D [--power P] [--alpha A]: number of subjects needed to find a difference of that size.
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study run STUDY.json --subject N --device NAME -o DIR: runs one subject's session in the window, with a haptic device.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study scene STUDY.json --subject S --trial T -o SCENE.json: writes a trial as a scene, for `render` and `view`.
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--model NAME=NUMBER] [--record]: simulates sessions with the human
 /// model, on all cores. Training trials are omitted: the model does not learn. Trials that the folder already holds are not repeated, so
 /// that an interrupted run continues.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// catena study simulate|run|merge|scene|keys|analyse|power: an experiment described by a file (docs/reference/study.md). One source file
 /// per subcommand.
 #include <CLI/CLI.hpp>

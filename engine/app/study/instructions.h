@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The instructions of a study: a text file that anybody can write and translate. Pure functions, any thread.
 ///
 ///   # introduction                 a line "# NAME" starts the pages of a moment: "introduction", "before TASK" (before the first trial of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/study/live_session.h"
 
 #include <unistd.h>

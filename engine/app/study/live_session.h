@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// LiveSession runs a Procedure with a haptic device: it opens the scene of each trial, begins and ends the trial, and saves finished
 /// trials and answers to disk. It has no window: the caller passes key presses and shows the scenes that next_scene() returns. Frame
 /// thread.

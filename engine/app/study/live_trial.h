@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// LiveTrial runs one trial with a subject and a real device: its scene, the haptics before and during the trial, its recording, and its
 /// scorer, which gets every tick of the servo at any frame rate.
 ///   open()    opens the scene with a ball at the start, and without the links that not all conditions share: before the trial begins,

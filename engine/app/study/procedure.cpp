@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/study/procedure.h"
 
 #include <fmt/format.h>

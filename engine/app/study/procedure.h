@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Procedure is the state machine of one subject's session, without a user interface. Inputs are the user's key presses and the outcomes of
 /// trials; outputs are what to show. It uses no files, scene or clock. Frame thread.
 ///

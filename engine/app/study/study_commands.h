@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The subcommands of `catena study`: each function adds one to `study` and sets `chosen` if the user selected it.
 #pragma once
 #include "engine/app/cli/command.h"

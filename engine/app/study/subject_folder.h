@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// SubjectFolder stores what a session of one subject writes to disk, and reads what an earlier session, interrupted at any moment, has
 /// left:
 ///   DIR/subjects/007.csv               the finished trials (engine/study/trial_table.h)

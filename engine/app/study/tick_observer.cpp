@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/study/tick_observer.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// TickObserver copies every tick of a running servo to the frame thread, where a trial is scored, and forwards it to the recording. The
 /// haptic thread copies a few words into a ring buffer and never waits. A tick that does not fit into the buffer sets a flag, so that a
 /// trial with dropped ticks is detected.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Command `catena view`: a window that shows the scene while the device (by default the mouse) touches it. Other devices have their forces
 /// off until F enables them; the mouse has no actuators, so its force is only shown. The servo thread runs the haptic program; the frame
 /// thread takes its latest state and never waits for it.

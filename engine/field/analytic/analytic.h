@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Fields given by a formula, with exact gradients: closed forms against which every algorithm is tested, and demonstration data.
 /// Vector fields: circle saddle node rankine lamb-oseen hill abc helix uniform vortices.
 /// Scalar fields: sphere plane torus constant linear gaussian marschner-lobb tanh.

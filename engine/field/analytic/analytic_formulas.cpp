@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scalar closed forms with exact gradients. sphere, plane, linear and constant use only + - * / and sqrt: their results are
 // bit-identical on every machine.
 //   sphere          |x|, gradient 0 at the center               plane      z

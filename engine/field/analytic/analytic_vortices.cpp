@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vortices in a uniform stream, with random parameters from a seed. The field differs for every seed and is divergence-free.
 //   v(p) = v_0 + sum_i w_i x (p - c_i) / (1 + |p - c_i|^2 / r_i^2)^2
 // |v_0| = 0.5; c_i in [-2, 2]^3, r_i from 0.4 to 0.9, |w_i| from 1 to 2.5 with either sense of rotation. In two dimensions c_i, v_0 and v

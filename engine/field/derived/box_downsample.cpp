@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/derived/box_downsample.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Downsampling of a scalar grid by an integer factor, for uses where the full resolution does not fit into memory.
 ///   Coarse voxel c is the box average of the fine voxels factor c .. factor c + factor - 1 along each axis and lies at their center:
 ///   fine index = factor c + (factor - 1) / 2

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Halo samples: extrapolated values for samples that a cubic cell needs and the data do not have. Missing are samples outside of the box
 /// of voxels, samples excluded by a mask of voxels, and values that are not finite. A mask of cells makes no sample missing, and neither
 /// does an axis with a single slice. Each missing sample that has a present one among its 26 neighbors gets one halo sample, computed once,

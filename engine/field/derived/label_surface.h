@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Label maps (segmentations: scalar grids whose voxels hold integer labels) and the surface of one or several labels. Not for the haptic
 /// tick; any thread. Results do not depend on the number of threads.
 ///

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Largest magnitude X of a field, by which safe normalization divides, and the magnitudes as a grid. Reads the whole field, so not for the
 /// haptic tick.
 ///   vector grids: max |v| over the active voxels; scalar grids: max |grad s| over the centers of the cells

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/grid/dense.h"
 
 #include <fmt/format.h>

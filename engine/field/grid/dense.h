@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Grids from volumes that are read slice by slice, so nothing of the size of the whole volume is allocated besides the grid. Private to
 /// this module.
 #pragma once

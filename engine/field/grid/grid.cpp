@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sampling of grids: finds the cell that contains a point and evaluates its polynomial.
 #include "engine/field/grid/grid.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Fields sampled on a grid. The NanoVDB buffer on the CPU is the authoritative copy; a GPU-resident copy is made from it and can be
 /// discarded at any time. NanoVDB and OpenVDB are used in the private headers and .cpp files of this module only.
 #pragma once

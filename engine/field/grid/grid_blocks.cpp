@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reads the values and the validity of boxes of voxels, by the tree's blocks of 8^3.
 #include <cmath>
 #include <vector>

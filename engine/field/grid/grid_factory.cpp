@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Creates grids from buffers and from values in memory (constant blocks become tiles: the background of an image costs no memory).
 #include "engine/field/grid/grid_factory.h"
 

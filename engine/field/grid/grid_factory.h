@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Makes a grid from NanoVDB buffers and checks what a field requires. Private to this module.
 #pragma once
 #include <array>

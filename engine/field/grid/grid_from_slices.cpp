@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/grid/grid_from_slices.h"
 
 #include <fmt/format.h>

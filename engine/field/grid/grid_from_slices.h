@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Grid from numbers that the application has in memory, in any form. The application is called for them slice by slice, so only the grid
 /// itself is allocated in addition.
 #pragma once

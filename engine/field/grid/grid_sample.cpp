@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Samples any field on a cube of nodes. Nodes at which the field has no value are marked invalid.
 #include <cmath>
 #include <type_traits>

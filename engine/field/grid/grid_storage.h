@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// NanoVDB buffers of a grid, and the cell cache in a Cursor. Private to this module.
 /// When there is a mask, `valid_cells` has one bit per cell, at its base voxel: set when all eight corners of the cell are valid and the
 /// mask of cells, where there is one, does not exclude it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/nanovdb/nano_builder.h"
 
 #include <fmt/format.h>

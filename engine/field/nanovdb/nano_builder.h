@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Memory of a NanoVDB buffer: anonymous memory, zero when reserved (pages that are never touched take no memory), or a slice of a mapped
 /// file, which stays mapped as long as it is used. Aligned to pages, except for slices; copies share the memory. Private to this module and
 /// to engine/io/vdb.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/nanovdb/nano_statistics.h"
 
 #include <array>

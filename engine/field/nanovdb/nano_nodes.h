@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Queries of a mask by leaves and by aligned regions of 8^3, 128^3 or 4096^3 voxels. The cost grows with the number of nodes in the
 /// region. Private to this module.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Validation of NanoVDB buffers that other programs wrote. They are untrusted: every byte that a fetch or a traversal of the nodes would
 /// follow is compared with the byte that NanoBuilder would have written; values are arbitrary. Private to this module.
 ///   Sizes and counts match the buffer exactly; the arrays of nodes have the required offsets; each child is the next one of its array

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: decodes numbers from bytes of either byte order.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/curves/curves.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Polylines loaded from a file, such as the fibers of a tractogram, or traced. Every reader returns this plain struct; the same object
 /// is rendered and used for haptics. Points are in world units (in patient space: mm, +x to the right, +y to the front, +z to the head) and
 /// in single precision, as such files store them. Immutable after creation; reading is safe from any thread and does not allocate.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Points from a text table: .csv, .tsv, .xyz. The first line names the columns; x, y and z are required, in any order and case. Cells are
 /// separated by commas, semicolons or tabs, otherwise by blanks. A numeric column becomes point values under its name (an empty cell or
 /// "nan": no value); a column of text is left out. Points are world units in single precision; a compact set far from the world's origin is

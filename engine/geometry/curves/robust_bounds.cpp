@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/curves/robust_bounds.h"
 
 #include <algorithm>

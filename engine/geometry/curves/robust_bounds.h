@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Bounding box of a point set without its outliers. The 5th and 95th percentiles along each axis are estimated from a sample; a point is
 /// an outlier when it lies outside of them by more than twice the widest of the three ranges. Uniformly or normally distributed points have
 /// no outliers, nor have sets of fewer than 20 points. Deterministic; any thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/flow/batch_rk4_step.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to the batch tracer: one Runge-Kutta step of eight lines at once.
 ///   Classical RK4 in the field's own (scaled) time. The rate k5 at the end of the step is the first rate of the next step and gives a
 ///   third-order error estimate:  error = |h| / 10 |k4 - k5|                 (Hairer, Norsett, Wanner I, II.4)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Traces many streamlines at once, for images and tables of whole seed sets. The selected line of a link, and the tubes that show it, come
 /// from trace() (curve.h); batch lines have a coarser, documented tolerance and are an order of magnitude cheaper.
 ///   grids: RK4 with an error estimate (batch_rk4_step.h), eight lines per core, on all cores. Knots are the steps; the arc length

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Streamlines as arc-length curves: the cubic between two knots, the traced curve, and its point nearest to a query point.
 /// Any thread; functions for the haptic thread are noexcept and neither allocate nor lock.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/flow/derivatives.h"
 
 #include <glm/matrix.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Velocity and velocity gradient of a vector field at a position, free of overflow and underflow over the whole double range.
 ///   grids: exact derivatives of the trilinear or cubic cell, one fetch;  formulas: central differences over 2e-6 L, seven fetches
 /// Also a Newton search for a zero of the field near a position: nodes, saddles, centers. Central differences over 2e-6 L; minimum-norm

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A direction field, its integration method and its orientation: the unit direction u = v/|v| of a Flow at a position, along which
 /// arc-length integration proceeds. Correct for |v| from 1e-323 to 1e308.
 /// Line fields (v ~ -v) use the axis of the interpolated dyads (engine/field/line_field.h), oriented to the side of a reference direction;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a line is traced through: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell faces are exact
 /// numbers. Both classes have the interface that the exact tracer (trace.cpp) uses:
 ///   start(seed, u, sign, q)   starts at the seed, along sign * u; false: outside the domain

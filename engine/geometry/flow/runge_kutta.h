@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One explicit Runge-Kutta step of q' = rate(q), for any space (world or index coordinates) and any tableau.
 /// Bitwise reversible: only products (h a) k are formed, so that h -> -h and k -> -k give the same sums.
 /// Any thread; no allocation, lock or throw.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Seed points for streamlines, and evenly spaced streamlines. Deterministic. World coordinates. Off the haptic thread; any thread.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/numbers.h"
 #include "engine/geometry/flow/curve.h"
 #include "engine/geometry/flow/derivatives.h"

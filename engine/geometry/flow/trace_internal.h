@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: shared by the exact tracer and the batch tracer.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/flow/vortex_core_criterion.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: the criterion of a vortex core line, evaluated from velocity v and its gradient at a position.
 ///   grids      v as the field is interpolated, linear or cubic; grad v computed at the nodes and interpolated linearly, so that it is
 ///              continuous across cell faces. At a node: central differences, averaged over the 3 x 3 adjacent rows with weights 1, 2, 1;

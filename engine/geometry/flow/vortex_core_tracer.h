@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: traces core lines from seeds and corrects each point across the line. Off the haptic thread; one object per
 /// field.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/flow/vortex_cores.h"
 
 #include <fmt/format.h>

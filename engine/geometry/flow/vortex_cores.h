@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Vortex core lines of a steady flow, traced once for haptics and rendering. With J = grad v:
 ///   sujudi-haimes     v - (v.e) e = 0, e the real unit eigenvector of J where the two others are a complex pair (Sujudi and Haimes, 1995);
 ///                     the same set as v || J v there (Roth and Peikert, 1998). First order: exact where the core is straight

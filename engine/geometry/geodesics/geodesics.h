@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Short paths on surfaces, for the ruler: a coarse path is found first, which fixes the side on which it passes obstacles, and is then
 /// shortened on the surface itself. The result is a geodesic homotopic to the coarse path. World units. Off the haptic thread; any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Bounding volume hierarchy (BVH) over the faces of a mesh: binary, flat, the boxes of two children in one cache line, leaves of at most
 /// four consecutive faces. Split by the surface-area heuristic (16 bins), by halves where the tree would become too deep.
 /// Boxes are floats, rounded outward. Built off the haptic thread; a traversal is bounded by its node budget and a fixed stack.

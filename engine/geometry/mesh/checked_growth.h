@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: vectors whose final length no header states check the memory budget before they grow.
 #pragma once
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Extracts the isosurface s(x) = level of a grid as triangles, cell by cell:
 ///   vertices   lie on cell edges, where the trilinear interpolation attains the level: v0 + t (v1 - v0) = level; rarely, where a loop of
 ///              cuts crosses a face twice, there is one more inside the cell

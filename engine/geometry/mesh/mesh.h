@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Triangle mesh for haptics and rendering: welded, indexed, with adjacency and a bounding volume hierarchy. Immutable; open edges,
 /// non-manifold edges and misoriented faces are allowed and counted.
 /// `vertices` are in world units, double precision. Data for the haptic thread are in the mesh's local (normalized) frame:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Loads curves from tractograms; the formats are rows of a registry.
 ///   .tck  MRtrix: a text header up to END, then triples of floats (datatype Float32LE, Float32BE, Float64LE, Float64BE) in scanner
 ///         millimeters; a triple of NaN ends a line, a triple of infinities the file

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads MRtrix tracks: "mrtrix tracks", lines "key: value", "END"; "file: . OFFSET" gives the offset of the triples.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads TrackVis files (trackvis.org/docs/?subsect=fileformat); what the header leaves undefined is read as NiBabel does.
 #include <fmt/format.h>
 

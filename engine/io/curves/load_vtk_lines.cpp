@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads lines and points read by the program catena-read-vtk: VTK polylines, and vertices of any VTK data.
 #include "engine/base/text.h"
 #include "engine/geometry/curves/point_set.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/mesh/load_mesh.h"
 
 #include "engine/base/text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Loads triangle meshes: STL (binary and ASCII) and OBJ here; PLY, GIFTI and VTK surfaces through catena-read-vtk. Corners with equal
 /// coordinates are welded; stored normals, colors, texture coordinates, groups and materials are ignored: the outward side is where the
 /// corners are counter-clockwise. OBJ polygons become triangle fans. Rejected with one line "FILE: place: what; what was expected": numbers

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads Wavefront OBJ: lines "v x y z", "f a b c ..." with corners "v", "v/vt", "v//vn", "v/vt/vn" (from 1, or negative: from the last),
 // '#' starts a comment up to the end of the line, '\' continues on the next line. All other known statements are ignored.
 #include <algorithm>

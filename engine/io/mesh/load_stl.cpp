@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads STL: binary with an 80-byte header of any content, the number of triangles, and 50 bytes for each (normal, three corners, two
 // ignored bytes), little-endian floats; or text, "solid NAME / facet normal x y z / outer loop / vertex x y z (3 times) / endloop /
 // endfacet / ... / endsolid". A file is binary if its length matches its number of triangles, whatever its first word is.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads surfaces read by the program catena-read-vtk: PLY, GIFTI, VTK polygons, and the outer surfaces of volumes.
 #include "engine/io/client.h"
 #include "engine/io/mesh/load_mesh.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/sandbox/npy.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Header of an array written by NumPy (NEP 1, versions 1.0 to 3.0). Any thread.
 ///   shape (d0, d1, d2)   [z, y, x]: the last index is x, as is usual for images and simulations in NumPy; axes_xyz: the first is x.
 ///                        With fewer than three the missing ones are 1. With four, the last (axes_xyz: the first) being 2 or 3: vectors

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/sandbox/opened_files.h"
 
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tracks the files that a sandboxed reader opens by name: their identity, refused names, and the CPU time limit that depends on their
 /// size. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs code in a helper program before the constructors of its shared libraries. Some of these start threads, and throw when the system
 /// refuses them, long before main().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/sandbox/response_file.h"
 
 #include <sys/mman.h>

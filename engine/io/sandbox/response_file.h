@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The shared memory file for request and response (engine/io/protocol.h), from the reader's side.
 #pragma once
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Sandbox of a process that handles an untrusted file; entered before the first byte is read. Afterwards only the open descriptors can be
 /// used: no file can be opened (Landlock where the kernel supports it, and seccomp), no socket, program or process created, no memory made
 /// executable, no other process affected. There are no capabilities, even when started by root. The process is killed with the thread that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vdb/handle_request.h"
 
 #include <fmt/format.h>

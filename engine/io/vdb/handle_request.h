@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Handles a request in catena-read, inside the sandbox: one response per process.
 #pragma once
 #include <span>

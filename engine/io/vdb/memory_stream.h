@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Input streams over bytes in memory that throw when read past the end: OpenVDB does not detect every short read.
 #pragma once
 #include <cstddef>

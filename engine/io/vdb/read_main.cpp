@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program catena-read: reads one .vdb or .npy file for catena, sandboxed, into the shared memory file that is its descriptor 3
 // (engine/io/protocol.h).
 #include <fcntl.h>

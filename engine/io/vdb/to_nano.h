@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Converts OpenVDB trees to NanoVDB buffers: values and active states are preserved at every tree level; numbers become floats.
 /// Only the buffer is allocated, nothing per node; leaves are filled in parallel.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vdb/vdb_directory.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The directory of a .vdb file, read without OpenVDB. Names and types are cheap to read this way, and truncation is detected before
 /// OpenVDB reads the file.
 ///   header: magic i64, file version u32, library major and minor u32, has-offsets u8, uuid 36 bytes; metadata; grid count i32;

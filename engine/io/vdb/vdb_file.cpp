@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vdb/vdb_file.h"
 
 #include <openvdb/io/GridDescriptor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A .vdb file in memory, with its directory; grids are read one by one. OpenVDB's own file class opens files by name, which the sandbox
 /// forbids, and does not validate its input; this one reads from bytes and throws at their end.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vdb/write_grids.h"
 
 #include <openvdb/io/Archive.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writes a .vdb file in catena-write, inside the sandbox, from a stream of leaves and tiles (engine/io/volume/vdb_stream.h).
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program catena-write: receives grids block by block on its descriptor 3 and writes them as a .vdb file to its descriptor 4.
 #include <sys/socket.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/crop.h"
 
 #include <fmt/format.h>

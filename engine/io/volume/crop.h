@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Crops a grid to the voxels that a world box needs: those in the box's bounding box along the axes of the grid, rounded outward. The
 /// cropped grid has a value wherever both the box and the full grid have one, bitwise equal to the full grid's (except in cubic cells near
 /// the faces, which need samples from outside). The domain ends with the crop, so that the probe never reaches a voxel that was not loaded;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/data_files.h"
 
 #include <algorithm>

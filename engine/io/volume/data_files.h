@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Data that span several files: finds these files, so that no output overwrites one. Any thread.
 #pragma once
 #include <string>

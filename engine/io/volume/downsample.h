@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Resolution levels: a grid reduced to every 2nd, 4th or 8th node, for both rendering and haptics.
 ///   level L retains the nodes 0, f, 2 f, ... of each axis, f = 2^L; the domain ends at the last of them. Axes of one node, and of two (an
 ///           image is stored as two slices), are not reduced

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/formats.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registry of the file formats that hold fields, by file extension (any case). Everything that needs or prints extensions uses this
 /// registry. To add a format: a reader with a row of the registry, NAME_format() below, and a line in formats.cpp. Any thread.
 #pragma once

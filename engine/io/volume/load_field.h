@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reading and writing of fields (formats: formats.h; in .vdb: float, half, double and integer scalars, and 3-vectors). Every Error is one
 /// complete message that names the file, the problem and what was expected. .vdb files are read and written by separate processes,
 /// catena-read and catena-write (engine/io/vdb): a damaged file crashes the reader, not the calling program. No header makes a reader

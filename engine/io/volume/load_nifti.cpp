@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads NIfTI-1 volumes. The library reads the header and opens the (compressed) stream; the voxels are decoded here, because the
 // library's own reader turns NaN into 0. World: the sform, else the qform, else the voxel sizes; millimeters, RAS, as stored.
 #include <nifti1_io.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads raw numbers, x fastest, little-endian, slice by slice; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads OpenVDB files from the response of the program catena-read, which is untrusted and validated here.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Loads voxel data from the responses of the reader programs: the formats of VTK and ITK, and NumPy's. The responses are untrusted and
 // validated here.
 #include <fmt/format.h>

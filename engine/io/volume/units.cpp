@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/units.h"
 
 #include <nifti1_io.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Meaning of the numbers in a file: the unit of a grid's values and of world lengths, as short names ("m/s", "mm"), and the kind of data.
 /// Any thread.
 ///   NIfTI: xyz_units of the header (m, mm, µm); values: none, the format cannot store their unit

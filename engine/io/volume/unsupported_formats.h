@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// File formats that are not read, by file extension (any case; Zarr is a folder), and how common free programs convert them to a
 /// supported format. Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/vdb_stream.h"
 
 #include <fcntl.h>

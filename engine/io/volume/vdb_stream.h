@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module and to engine/io/vdb: a .vdb file is written by the process catena-write, which receives it leaf by leaf and
 /// writes a temporary file, renamed to its final path when complete. The stream has a header per grid, then records of 32 bytes; a leaf's
 /// record is followed by its mask (64 bytes) and, unless the grid is a mask, by its 512 values. The response is empty, or the error

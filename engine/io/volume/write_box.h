@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: a grid as a dense box of voxels, for formats that store nothing else. One writer per format.
 #pragma once
 #include <cstdint>

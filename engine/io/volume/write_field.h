@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writes grids for other programs. The file extension selects the format:
 ///   .vdb           unchanged: the tree of the grid and its masks: "valid" of voxels, and also "valid_cells" if there is a cell mask
 ///   .vti           VTK XML image data, raw appended floats; rotated and mirrored axes, but no sheared ones; invalid voxels are hidden

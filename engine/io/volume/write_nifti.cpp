@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes NIfTI-1; the library creates the header and the stream. The sform holds the exact axes; if they are orthogonal the qform holds the
 // same, for programs that read only the qform.
 #include <nifti1_io.h>

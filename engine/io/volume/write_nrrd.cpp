@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes NRRD 5: a text header, a blank line, raw floats. world = space origin + sum of space directions * index. The components of
 // vectors are along the world's axes, which the identity as "measurement frame" states.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes .vdb: the nodes of grids in memory, or the slices of a file that is being read, are sent unchanged to the program catena-write.
 #include <fmt/format.h>
 

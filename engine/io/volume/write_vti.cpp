@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writes VTK's XML image data. world = origin + direction (spacing * index): the columns of `direction` are the unit axes.
 #include <fmt/format.h>
 

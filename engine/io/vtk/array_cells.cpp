@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <vtkAppendFilter.h>
 #include <vtkCellData.h>
 #include <vtkCellDataToPointData.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/arrays.h"
 
 #include <vtkCellData.h>

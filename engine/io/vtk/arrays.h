@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The arrays of a file by name, across blocks, and how each becomes a field.
 ///   image       one block that is an image: voxel by voxel; cell values are placed at the cell centers
 ///   resampled   any other data whose cells have a volume (resample.h); cell values are first averaged at the points

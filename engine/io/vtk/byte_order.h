@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Heuristic for numbers that were read in the wrong byte order. Nothing is changed: the file specifies its byte order, or the format
 /// prescribes one (legacy .vtk: big-endian), and a guess may be wrong.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/cell_samples.h"
 
 #include <vtkCell.h>

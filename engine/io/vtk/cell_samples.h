@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to resampling: evaluates single cells, samples random positions in cells with VTK's interpolated values, and measures the
 /// resampling error at them.
 #pragma once

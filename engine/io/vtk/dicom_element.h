@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: values of a DICOM data set, by tag. Missing, empty or malformed elements have no value; nothing throws.
 #pragma once
 #include <gdcmDataSet.h>

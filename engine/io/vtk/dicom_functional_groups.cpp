@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/dicom_functional_groups.h"
 
 #include <fmt/format.h>

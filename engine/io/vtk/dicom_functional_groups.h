@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: looks up DICOM elements in the functional groups of frames, and reads the keys that distinguish frames.
 #pragma once
 #include "engine/io/vtk/dicom_element.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/dicom_headers.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: geometry and value encoding from the header of a DICOM file, one record per frame. A file with one image has one
 /// frame. Lengths are millimeters; positions and directions are in DICOM's patient space (LPS): +x to the left, +y to the back, +z to the
 /// head.

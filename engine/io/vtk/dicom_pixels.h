@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: reads the pixels of DICOM files as numbers.
 #pragma once
 #include <functional>

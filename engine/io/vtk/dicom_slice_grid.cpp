@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/dicom_slice_grid.h"
 
 #include <fmt/format.h>

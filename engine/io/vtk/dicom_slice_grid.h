@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: resamples the frames of a DICOM volume to equal distances.
 #pragma once
 #include "engine/io/vtk/dicom_volumes.h"

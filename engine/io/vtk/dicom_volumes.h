@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: groups frames of DICOM files into volumes. A volume is a stack of frames of the same series, size, pixel spacing
 /// and orientation, ordered by position along the normal, with one frame at each position, on a straight line:
 ///   origin + j step, step = (last - first) / (n - 1), which need not be along the normal (a tilted gantry)

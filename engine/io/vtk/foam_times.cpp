@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/foam_times.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The time folders of an OpenFOAM case ("0", "0.5", "1e-05"), and the fields in them.
 #pragma once
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/gdcm_guard.h"
 
 #include <unistd.h>

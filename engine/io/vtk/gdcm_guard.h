@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: guarded calls of GDCM on untrusted files. Packaged GDCM validates its input by assertions, which would end the
 /// reader at the first damaged file of a folder; here they end the call only. One thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Geometry in a file: triangles (polygons, strips and the surfaces of volume cells are triangulated), lines, and points that are on
 /// neither.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/handle_request.h"
 
 #include <fmt/format.h>

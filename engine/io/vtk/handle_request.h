@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Handles a request in catena-read-vtk, inside the sandbox: one response per process.
 #pragma once
 #include "engine/io/sandbox/response_file.h"

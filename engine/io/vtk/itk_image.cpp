@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/itk_image.h"
 
 #include <fmt/format.h>

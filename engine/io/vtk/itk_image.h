@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: shared by the readers of medical images (open_itk.cpp, open_dicom.cpp).
 #pragma once
 #include <itkImageIOBase.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Private to this module: identifies the dimensions of a NetCDF file by the CF conventions, and reorders grids to x, y, z.
 /// The axis of a dimension follows from its coordinate variable, by the first available of
 ///   axis = X, Y, Z or T

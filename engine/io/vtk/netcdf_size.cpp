@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The header (NetCDF's "classic format specification"), big-endian; N is 4 bytes, in CDF-5 8; OFFSET is 4 bytes, in CDF-2 and CDF-5 8:
 //   "CDF" version, N records (all ones: not known), dimensions, attributes, variables; each list is a 4-byte tag, N entries, the entries
 //   dimension   name, N length (0: that of the records)

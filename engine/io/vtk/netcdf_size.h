@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Checks the size that a NetCDF file of the classic formats (CDF-1, CDF-2, CDF-5) must have by its own header. The NetCDF library returns
 /// zeros past the end of a file; files of NetCDF-4 are checked by the HDF5 library itself.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/netcdf_values.h"
 
 #include <fmt/format.h>

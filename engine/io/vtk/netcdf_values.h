@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The values of one NetCDF variable as its attributes define them (NetCDF Users' Guide, appendix A; CF conventions, 2.5.1 and 8.1).
 ///   stored     numbers of the variable's type; "_Unsigned" reinterprets integers of the same size
 ///   missing    stored = _FillValue, or one of missing_value; without a _FillValue the library's default fill value of the type, except for

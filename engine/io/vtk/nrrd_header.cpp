@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/nrrd_header.h"
 
 #include <fmt/format.h>

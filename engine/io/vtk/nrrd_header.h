@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Space and kind of the data in an NRRD file (teem.sourceforge.net/nrrd/format.html), parsed from the text of its header, because the
 /// results of a library depend on its version.
 ///   world = origin + sum over axes of direction[axis] * index[axis];   vector in space = sum over k of frame[k] * component[k]

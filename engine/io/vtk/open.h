@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A file as read by VTK, ITK and related libraries: blocks of data, each with its arrays, before they are converted to fields.
 #pragma once
 #include <vtkDataSet.h>

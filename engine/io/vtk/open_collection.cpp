@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens collections: text files that name the files of a series with their times. ParaView's .pvd (XML; several parts may make up one step)
 // and .series (JSON: .vtk.series, .vtu.series and so on). The parts of the requested step become blocks, as in a multi-block file.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens DICOM: a file, or a folder with everything below it. Headers are read first and grouped into volumes (dicom_volumes.h), then the
 // pixels of the requested volume. Patient space +x left, +y posterior (LPS) becomes Catena's +x right, +y anterior (RAS).
 #include <fmt/format.h>

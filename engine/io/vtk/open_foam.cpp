@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens OpenFOAM cases.
 #include <fmt/format.h>
 #include <vtkAppendFilter.h>

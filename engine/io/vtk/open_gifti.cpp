@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens GIFTI surfaces with the GIFTI library: points and triangles, millimeters, patient space (right, anterior, superior). Shape and
 // function files without points belong to a surface in another file, and are refused.
 #include <fmt/format.h>

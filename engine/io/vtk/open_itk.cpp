@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens NRRD and MetaImage with ITK. Of an NRRD ITK provides only the numbers: its versions convert the space
 // left-anterior-superior differently, so that the header is read here (nrrd_header.h). MetaImage uses patient space with +x left, +y
 // posterior (LPS); Catena, like NIfTI, uses +x right, +y anterior (RAS): both formats are converted, unless the file states that its space

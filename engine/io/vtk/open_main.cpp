@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Replaces the C library's functions that open files, for catena-read-vtk only: the format libraries link to these. Anything but a regular
 // file or a folder is refused without blocking, and opened files are recorded (engine/io/sandbox/opened_files.h).
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Opens NetCDF files (CF): VTK finds the coordinates, the values come from the NetCDF library (netcdf_values.h).
 #pragma once
 #include <vtkAlgorithm.h>

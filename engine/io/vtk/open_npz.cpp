@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens NumPy's .npz: arrays in a zip file, each as an image under the name with which it was saved.
 #include <fmt/format.h>
 #include <vtkFloatArray.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens PLY (Turk, 1994): text or binary of either byte order, elements with properties of any type. Read are the vertices with x, y, z as
 // doubles and their other single numbers as values, faces (polygons) and strips of triangles; other elements are ignored. VTK's own reader
 // rounds coordinates to single precision, which merges vertices that lie far from the origin.

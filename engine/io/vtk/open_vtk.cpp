@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opens VTK's own formats, and the simulation formats that VTK reads.
 #include <fmt/format.h>
 #include <vtkAlgorithm.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shared by the VTK readers, and by the files of this module that create a VTK reader of their own.
 #pragma once
 #include <vtkAlgorithm.h>

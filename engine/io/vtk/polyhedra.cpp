@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/polyhedra.h"
 
 #include <vtkCellType.h>

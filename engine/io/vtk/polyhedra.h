@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Splits polyhedra into tetrahedra, so that interpolated values are continuous and linear functions exact. VTK's mean value coordinates
 /// lose accuracy near faces, and its inside test uses random rays.
 ///   a polyhedron    is split into tetrahedra of its center, a face center and an edge of that face; triangular faces have no center

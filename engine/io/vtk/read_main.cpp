@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program catena-read-vtk: reads one file, or one folder, for catena, with VTK, ITK and similar libraries, into the shared memory file
 // that is its descriptor 3 (engine/io/protocol.h). It is sandboxed: it can only open files in the folder of the named file.
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Resamples values on cells of any shape and order to a regular grid with a mask.
 ///   h       voxel edges along x, y, z: the median extents of the cells, refined by a common factor until the error is small enough, the
 ///           grid has its maximum size, or finer voxels do not help

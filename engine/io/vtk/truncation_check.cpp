@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/truncation_check.h"
 
 #include <malloc.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Detects values that a reader never wrote because the file is truncated. The readers of VTK and ITK do not always report that, and the
 /// previous contents of the memory would be taken for data. New memory is therefore filled with a byte; if an array ends with that byte,
 /// the file is read again with another fill byte: an array that changes with the fill byte was not written to its end.

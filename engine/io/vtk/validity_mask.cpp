@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/vtk/validity_mask.h"
 
 #include <vtkCellData.h>

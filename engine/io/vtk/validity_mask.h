@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Which points and cells of a file are valid data, by VTK's flags (the array vtkGhostType, of any number type) and by a mask array.
 ///   cell    invalid if it is HIDDENCELL or REFINEDCELL, is a DUPLICATECELL that occurs elsewhere in the file, is masked, or has a point
 ///           that is HIDDENPOINT or masked: like IsCellVisible of vtkStructuredGrid and vtkImageData, for cells of every kind

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Collects the errors of the libraries: VTK writes them to an output window, ITK throws exceptions.
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """See and feel scientific fields from Python.
 
     import numpy as np, catena

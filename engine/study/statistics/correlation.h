@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Statistics of two measures of the same subjects: Pearson's correlation, the difference of two correlations, the regression line. Pure
 /// functions, any thread. Where a value cannot be computed, an Error gives the reason: too few values, a value that is not finite, no
 /// spread.

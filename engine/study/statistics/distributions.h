@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Distribution functions for tests and confidence intervals: Student's t, the noncentral t, the normal and the beta distribution, from
 /// Boost.Math. Pure functions, any thread. Arguments are not checked; a result outside the domain is NaN.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Sign-flip permutation test of paired differences, without the assumption that they are normally distributed: if the two conditions were
 /// equal, each difference would have either sign equally often. p is the fraction of all 2^n sign patterns whose sum is at least as far
 /// from 0 as the observed one (R. A. Fisher, The Design of Experiments, 1935, section 21). Sums within 1e-12 of the sum of |d| count as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/study/statistics/power.h"
 
 #include <fmt/format.h>

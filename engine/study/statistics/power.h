@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Power of a paired t-test, and the number of subjects needed for a given power. With n subjects and a true effect size d_z (mean of the
 /// differences divided by their standard deviation), t has the noncentral t distribution with n - 1 degrees of freedom and
 /// delta = d_z sqrt(n); power = P(|t| > the critical t of a two-sided test at alpha). (J. Cohen, Statistical Power Analysis for the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Statistics of a sample and of paired samples: mean and standard deviation, the paired t-test with its effect size, Holm's correction for
 /// multiple tests. Units are those of the values. Pure functions, any thread; the same input gives the same bits. Where a value cannot be
 /// computed, an Error gives the reason: too few values, a value that is not finite, no spread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Process-wide cache of search trees, shared by all links and programs built from the same data; a tree lives while something holds it.
 /// Off the tick; any thread.
 #pragma once

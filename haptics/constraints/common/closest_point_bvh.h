@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Global closest-point search over many small elements (segments, points): a static bounding volume hierarchy with a few elements per
 /// leaf. A search may take several ticks: each call visits a bounded number of nodes, keeps its stack in SearchState, and the next call
 /// resumes with its own probe. The search compares |x - q|^2, or, for a probe x further than 16 half extents R from the center c of the

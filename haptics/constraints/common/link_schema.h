@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Readers of the scene keys that several link types share: fields, levels, parameters, switches, release cues and axes. Off the tick.
 #pragma once
 #include "engine/schema/key.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Morton codes: the bits of a point's coordinates, interleaved, so that neighbors in this order are mostly neighbors in space.
 /// G. M. Morton, IBM technical report (1966). Any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Contact rules shared by all penetrable surfaces: the free side, release, re-engagement.
 ///   free = above | below: where value - level has that sign (or is 0) the probe moves freely and the proxy equals the probe bit for
 ///   bit; a crossing is detected within the tick that makes it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pull-back J^T f of a force f on the proxy to the probe, by virtual work, with the Jacobian J = dp/dx of the constraint's projection.
 /// For closest-point projections J is symmetric.
 ///   point 0;  line t t^T;  plane I - n n^T

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/common/snap.h"
 
 #include <fmt/format.h>

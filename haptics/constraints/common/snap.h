@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Snap and release with hysteresis around any constraint (paper, section 2: engaging and leaving a feature).
 ///   released:  the proxy equals the incoming probe x bit for bit, status RELEASED; the constraint seeks its closest feature point f in the
 ///              background. Engages in the tick in which |x - f| <= snap.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The classical volume mode: a force along the gradient of a scalar field, proportional to the gradient's magnitude.
 ///   p = x +- displacement min(1, |grad s| / X) grad s / |grad s|,  X the field's largest gradient (engine/field/derived/magnitude.h)
 /// so that the force is at most k_i S displacement. The normalization is safe: any scale of the field gives the same proxy.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/forces/forces.h"
 
 #include "haptics/constraints/common/link_schema.h"

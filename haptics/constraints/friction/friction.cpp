@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/friction/friction.h"
 
 #include "engine/field/derived/magnitude.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Friction perpendicular to a vector field, tangential to a surface: the proxy p_c of the paper's section 6.1, Figure 5(a).
 ///   e = x - p,  d = v_t / |v_t|,  v_t = v - (v.n) n (n: the surface's normal; without a surface v_t = v)
 ///   along d     the proxy follows the streamline of v_t until |e.d| <= b,  b = tau (1 - f) / f, f the safe normalization's factor

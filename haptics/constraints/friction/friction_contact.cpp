@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/friction/friction_contact.h"
 
 #include "engine/field/grid/grid.h"

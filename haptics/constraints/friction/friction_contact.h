@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Safe normalization (the sigma of the paper's Eq. 9), and friction on a surface. An absolute eps would break under a change of units:
 ///   m = max|v_i|; not 0 < m < inf: direction 0, factor 0.   w = v / m, r = |w|, d = w / r, q = min((m / X) r, 1e3),
 ///   factor = q^2 / (q^2 + 1e-12), X the field's largest magnitude (engine/field/derived/magnitude.h); X = 0 gives 0.

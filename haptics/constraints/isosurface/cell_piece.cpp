@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/isosurface/cell_piece.h"
 
 #include "haptics/constraints/common/pull_back.h"

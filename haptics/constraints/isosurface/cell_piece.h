@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One cell piece of a sampled level set: a trilinear cell with some of its axes held. See isosurface/cell_walk.h.
 #pragma once
 #include "engine/field/grid/grid.h"

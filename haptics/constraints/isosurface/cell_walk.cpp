@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/isosurface/cell_walk.h"
 
 #include <bit>

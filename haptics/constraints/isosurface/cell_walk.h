@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Walk over the trilinear cells of a sampled level set to the local closest point. Haptic thread.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/isosurface/closest_point.h"
 
 #include "haptics/constraints/equations.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The closest point of a smooth level set to the probe x, one field sample per iteration.
 ///   n = grad s / |grad s|, l = (s - level) / |grad s|, e = x - p, delta = n.e, t = e - delta n
 ///   (I + delta B) u = t on the tangent plane (|eigenvalues| >= 0.1, less after 12 steps), |u| <= D;  p+ = p + u + (-l - u'Bu / 2) n

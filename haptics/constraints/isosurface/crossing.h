@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// First crossing of a level by the path of the probe between two ticks, however thin the solid that the path passes through:
 ///   trilinear cells   exact: along a straight segment the value in one cell is a cubic, whose extremes are all checked
 ///   else              by steps of half a voxel, or L/256; between two points on the same side, at the intersection of their tangents if

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/isosurface/domain_wall.h"
 
 #include "engine/field/grid/grid.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Closest point at a domain wall of a cubic grid: the end of its box, or a cell made invalid by a mask or a value that is not finite.
 /// Walks along the trilinear cells of the same samples, whose surface lies near the cubic's, up to the walls (isosurface/cell_walk.h); from
 /// there onto the cubic's own level. Faces through the point that have nothing behind them are walls, and held:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/isosurface/isosurface.h"
 
 #include "haptics/constraints/common/link_schema.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Keeps the proxy on the level set s(x) = level of a scalar field, at the closest point to the probe.   (paper, Eqs. 5-6,
 /// safeguarded; the printed form lags behind the closest point and fails on steep profiles)
 /// Keys: `field`, `level`, `free` (none | above | below, by field value), `release`; the rules are those of common/one_sided_contact.h.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/isosurface/level_set_field.h"
 
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A scalar field seen from one level: value, slope and distance in one counted field sample.
 ///   sigma = s - level,  n = grad s / |grad s|,  distance = sigma / |grad s|  (signed, a length)
 /// Grids are sampled at the nearest point of their domain. Haptic thread.

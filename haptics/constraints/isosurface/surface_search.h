@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The closest point of a strongly folded level set to the probe x, where the quick iteration of isosurface/closest_point.h fails.
 /// Every point kept is on the level; f = |x - p|^2 / 2 decreases from point to point:
 ///   u = (I + delta B)^-1 t in a trust region (|eigenvalues|), then back to the level along n: Newton, bisection inside a bracket

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/mesh/god_object.h"
 
 #include "haptics/constraints/mesh/mesh_walk.h"

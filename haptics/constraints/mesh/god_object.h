@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// God-object of a one-sided mesh.            (Zilles and Salisbury 1995, section 3 of the paper)
 ///   from its position it moves to the point closest to the probe that no touched face forbids:
 ///     q = argmin |q - x|  subject to  n_i . q - d_i >= gap  for the faces i that it touches (at most three are active)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/mesh/mesh.h"
 
 #include "haptics/constraints/common/one_sided_contact.h"

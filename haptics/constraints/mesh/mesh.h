@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Keeps the proxy on a triangle mesh.                                  (section 3 of the paper; Zilles and Salisbury 1995)
 ///   free none: held from both sides, at the local closest point (mesh/mesh_walk.h)
 ///   free above (the side that the normals point to: outside) or below: a god-object (mesh/god_object.h). The contact depends on the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/mesh/mesh_walk.h"
 
 namespace catena::haptics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The point closest to x in front of a few planes: a convex problem of three unknowns, solved by trying every set of one, two or
 /// three planes as the active set (six planes: 41 sets).
 ///   argmin |q - x|  subject to  n_i . q - e_i >= 0

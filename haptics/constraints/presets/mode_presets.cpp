@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/presets/mode_presets.h"
 
 #include <fmt/format.h>

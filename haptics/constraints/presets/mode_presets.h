@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Mode presets: one element of a scene's chain that expands to several links, in order.      (paper, section 6.1)
 ///   anisotropic_friction   NAME_surface    isosurface: the probe on a level of a scalar field (p_s)
 ///                          NAME_direction  friction across the tangential component of a vector field (p_c)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A line segment a..b, part of `segment` and `polyline`, and the constraint of shapes whose closest point is a formula.
 ///   s = d . (x - a);  foot = a where s <= 0, b where s >= |b - a| (both bit for bit), else a + s d
 /// Finite for |x| up to 1e300. Lengths in world units. LineSegment: any thread; allocates nothing.

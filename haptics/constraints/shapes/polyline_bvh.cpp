@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/shapes/polyline_bvh.h"
 
 namespace catena::haptics {

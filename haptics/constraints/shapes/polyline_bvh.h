@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Global closest point of a long polyline: a closest_point_bvh.h over runs of eight consecutive segments.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The proxy on connected line segments, at the local minimum of the distance to the probe that lies downhill from the proxy (shapes.h,
 /// polyline_constraint). Start, `seek` and re-engagement: the globally closest point (common/closest_point_bvh.h); the probe passes,
 /// BUDGET, until that search has ended.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Keeps the proxy at a point: p = position. Keys: `position` (world units), `release` (releases at that distance, re-engages within a
 /// tenth of it). Closed form, no field sample. Haptic thread: no allocation, lock, or throw.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/shapes/shapes.h"
 
 #include "haptics/constraints/shapes/surface_shapes.h"

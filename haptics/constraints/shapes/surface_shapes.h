@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plane and sphere as surfaces for the contact rules of common/one_sided_contact.h. World units.
 /// Haptic thread: no allocation, lock, throw.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Online streamline, and its steps through the cells of a sampled line field (CellStepper).
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/streamline/selected_streamline.h"
 
 #include "engine/geometry/flow/curve.h"

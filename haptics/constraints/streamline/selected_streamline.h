@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Selected streamline: the proxy is an arc length s on an immutable curve; no field samples in a tick (0 evaluations).
 ///   g(s) = (x - c(s)) . c'(s);  march knot by knot to where g changes sign, then the root of g on that interval's Hermite interpolant.
 /// The root is always bracketed by the interval's two knots, so it does not depend on the proxy's history: sweeping back and forth gives

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The streamline link (paper, section 4, Eqs. 1-4): keeps the proxy on the streamline through a seed, at the local minimum of
 /// the distance to the probe that lies downhill from the proxy.
 ///   selected (a seed, no method): moves on the traced arc-length curve, the object that is rendered; selected_streamline.h

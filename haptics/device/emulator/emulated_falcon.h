@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The boot ROM of the emulated Falcon's processor: responds to a handshake, echoes a boot stream, starts the loaded program.
 ///   1. at 9600 baud  0A 43 0D -> 0A 44 2C 0D   2. at 142857 baud, DTR low  41 -> 41   3. every image byte is echoed
 /// Boot stream: LSB-first 16-bit words: key 0x08AA, 8 reserved, entry (high, low), blocks {size, address high, low, data}, size 0.

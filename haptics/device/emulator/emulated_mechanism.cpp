@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/emulator/emulated_mechanism.h"
 
 #include <numbers>

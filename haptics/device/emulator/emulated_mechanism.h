@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The emulated Falcon's delta mechanism: the leg angles of a grip position, and the force of its motors.
 /// Written from the published formulas, independently of the driver's kinematics, so that each verifies the other.
 ///   u = x cos(phi) + y sin(phi) - r,  v = -x sin(phi) + y cos(phi) - s,  w = z,  cos(theta3) = (v + f) / b

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/emulator/emulated_transport.h"
 
 #include <ctime>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Transport from the driver directly to the emulated Falcon, without libusb: `catena feel SCENE --device emulated-falcon` runs the
 /// real driver over it on any machine. Each read returns the bytes available, or after the latency time the chip's idle packet.
 /// `paced`: a reply comes no earlier than a millisecond after the last one, as over the bus. Any thread; it locks the device.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/process/device_host.h"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Process side of a device that is held by a separate process (device_page.h): the loop between the shared page and the device.
 #pragma once
 #include "haptics/device/process/device_page.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Protocol between the program and a process that holds a haptic device for it: one page of shared memory, and a socket whose closing
 /// reports that the other side has exited. Neither waits for the other: poses go one way and forces the other through triple buffers, so
 /// that each side takes the newest value whenever it reads. Times are of CLOCK_MONOTONIC, which both processes share.

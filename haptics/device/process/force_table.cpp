@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/process/force_table.h"
 
 #include <fcntl.h>

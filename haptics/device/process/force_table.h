@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Force table that `catena-device` writes while it runs: t,force_x,force_y,force_z, seconds of CLOCK_MONOTONIC and newtons, device axes. A
 /// row where the force has changed, and 100 rows per second where it is constant. Disk space is reserved ahead of the rows, so that a full
 /// disk is detected while there is still space for the rows that end a push: from then on only the first and last rows of pushes are

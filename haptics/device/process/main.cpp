@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program `catena-device`: runs a haptic device for catena, which starts it and passes it the shared memory page (descriptor 3,
 // haptics/device/process/device_page.h), the lifeline (descriptor 4) and the force table that it writes (descriptor 5). It has a session of
 // its own, blocks all signals that can be blocked, and outlives the program only as long as it takes to release the device.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/process/process_device.h"
 
 #include <fcntl.h>

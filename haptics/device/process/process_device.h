@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Program side of a device that is held by a separate process, `catena-device` (device_page.h): whatever happens to the program, the
 /// device is released, and an observer of the process can tell. read() and write() exchange plain data through shared memory: they never
 /// wait, lock or allocate. A process that has exited, or that is unresponsive for 100 ms, gives status `lost`.

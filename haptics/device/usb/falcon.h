@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The Novint Falcon as a Device. A thread of its own owns the bus: newest force -> packet out, packets in -> newest pose, one
 /// round trip after the other (1-2 ms); `read` and `write` exchange plain data with it through triple buffers and never wait.
 ///   force: converted with the Jacobian of the newest pose; zero when no force was written for `command_timeout_s` (an unresponsive servo;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Firmware that a Falcon needs after each power-up: a TI C2000 boot stream of 16-bit words, low byte first
 ///   key 0x08AA, 8 reserved words, entry address (high, low), then blocks {size in words, address high, address low, data},
 ///   ending with a block of size 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The Novint Falcon's two packets, 16 bytes each, both of the form  '<' 12 nibbles  byte  byte '>'.
 ///   to the device:   '<', three int16 motor counts (4 nibbles each, low one first), control, 'A', '>'; bytes 1-14 are value + 0x41
 ///   from the device: the same with three int16 encoder counts; byte 13 - 0x41: bits 0-3 buttons, bits 4-6 homed per axis

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The delta mechanism of the Novint Falcon: meters, radians, newtons, the device's own axes (z out of the device, y up).
 /// With a, b, c, d = e, f, r, s of the mechanism and leg angle phi = 105, -15, -135 degrees, per leg
 ///   u = x cos(phi) + y sin(phi) - r,  v = -x sin(phi) + y cos(phi) - s,  w = z

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One opened Falcon whose firmware runs: one packet out, packets in until a frame, and the interpretation of the frames. It has no thread
 /// and uses only the clock that it is given, so that a test can run it cycle by cycle. I/O thread.
 ///   homing:  the homing bit in every packet, red, zero force, until all three axes are homed in three frames in a row; the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/usb/ftdi.h"
 
 namespace catena::haptics::usb {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Byte transport of one opened USB device: the part of libusb that a driver needs, and that a test can emulate.
 /// Vendor control requests without data, bulk OUT, bulk IN of one 64-byte packet. One thread at a time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/usb/libusb_transport.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Transport over libusb: finds, opens and claims a device, detects when it is plugged in (hotplug where libusb supports it, else by
 /// polling), and converts libusb's errors to UsbError. One thread at a time for each object.
 #pragma once

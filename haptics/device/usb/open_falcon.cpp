@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/usb/falcon.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/usb/watchdog_process.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A driver's side of the watchdog process (haptics/watchdog): the shared memory page, and the process that is started for an open device
 /// and ended with it. Not on the haptic thread; the page's atomic values may be used on any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/log/block_file.h"
 
 #include <fcntl.h>

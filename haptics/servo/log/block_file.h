@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Input and output of a log as blocks (format.h): byte sources, the writer of blocks and the reader of blocks. Off the tick.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Contents of a log besides its ticks (header, programs, state, gaps, end) and their conversion to and from bytes. Off the tick.
 #pragma once
 #include <optional>

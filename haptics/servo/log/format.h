@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// File format of a recording, and the serialization of its payloads: numbers and strings are appended to bytes, and read back with every
 /// length checked against the bytes that remain.
 #pragma once

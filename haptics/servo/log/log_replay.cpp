@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/log/log_replay.h"
 
 #include <utility>

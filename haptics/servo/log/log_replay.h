@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Replay of a log: runs the tick on the recorded inputs and compares all results with the recorded ones, bit by bit. Off the tick.
 #pragma once
 #include <functional>

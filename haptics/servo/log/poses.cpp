@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/log/poses.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Poses of the user in a session with a headset, besides the probe: head, hands and gaze at the time when a frame is displayed, as
 /// predicted by the runtime. Optional part of a recording (format.h, POSES); a recording without a headset has none. Meters of the stage
 /// space, axes of the runtime; the gaze direction is -z.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/log/reader.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Reads a log, complete or truncated at any byte: programs, ticks and gaps in their order. Uses the memory of one block. Off the tick.
 ///   CATENA_TRY(LogReader log, LogReader::open(path));
 ///   for (LogEvent e = log.next(); e != LogEvent::done; e = log.next()) if (e == LogEvent::tick) use(log.tick());

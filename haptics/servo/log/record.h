@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Record of one tick in a log: input, result and timings of the servo, as 64-bit words.
 ///   0      t_s of the probe                    1-3   probe position, world units
 ///   4-7    probe orientation w x y z           8     bytes: u32 buttons, u8 condition, u8 forces_on, u8 force_state, i8 mode

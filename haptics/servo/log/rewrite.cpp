@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/log/rewrite.h"
 
 #include <unistd.h>

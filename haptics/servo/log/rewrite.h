@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Copy of a recording with other scene texts; ticks, states and hashes stay to the bit. Off the tick.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/log/tick_block_writer.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Ring buffer from the haptic thread to the writer's thread of a log, and the conversion of ticks to blocks.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Recorder of every tick of a servo: `put` copies a tick into a ring buffer and returns; the writer's thread writes the blocks (format.h).
 ///
 /// Three threads: the frame thread opens the log, adds programs, reads the status and finishes; the haptic thread calls `put`; the writer's

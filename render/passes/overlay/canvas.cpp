@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/passes/overlay/canvas.h"
 
 #include <algorithm>

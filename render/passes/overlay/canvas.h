@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Drawing list of the overlay pass: shapes and glyphs in pixels of the whole image, in painter's order. Positions are continuous: the
 /// center of pixel (i, j) is at (i + 0.5, j + 0.5), y down. Rebuilt for every frame. Frame thread.
 #pragma once

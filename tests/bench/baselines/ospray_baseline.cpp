@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// OSPRay's renderer `scivis` as a peer of volume_peers.py (protocol.h). Not part of Catena's build; with OSPRay 3.1 in PREFIX and Catena's
 /// preset release built:
 ///   g++ -std=c++20 -O2 -I. -IPREFIX/include tests/bench/baselines/ospray_baseline.cpp -LPREFIX/lib -Wl,-rpath,PREFIX/lib -lospray

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How far a picture is from the converged one: the measures of render/image/image_error.h, for pictures [height, width, 4] of bytes, red, green,
 blue over black and alpha."""
 import numpy as np

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What volume_peers.py asks of a program that it compares ("a peer"), for peers in C++:   PEER CASE.json
 ///
 /// CASE.json: "raw": a file of float32 beside it, x fastest, voxel (i, j, k) at the place (i, j, k); "dims": [nx, ny, nz];

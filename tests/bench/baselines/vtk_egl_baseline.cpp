@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// VTK's GPU mapper on a GPU without a display, as a peer of volume_peers.py (protocol.h). Not part of Catena's build; with Debian's
 /// libvtk9-dev, libegl-dev and Catena's preset release built:
 ///   g++ -std=c++20 -O2 -I. -I/usr/include/vtk-9.1 tests/bench/baselines/vtk_egl_baseline.cpp build/release/libcatena_engine_base.a

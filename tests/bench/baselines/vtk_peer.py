@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: MIT
 """VTK as a peer of volume_peers.py (protocol: protocol.h):   vtk_peer.py CASE.json
 needs: python3-vtk9, python3-numpy, an X display (xvfb-run -a) and LIBGL_ALWAYS_SOFTWARE=1
 mode: MAPPER STEP IMAGE_DISTANCE, MAPPER being gpu (vtkOpenGLGPUVolumeRayCastMapper) or cpu (vtkFixedPointVolumeRayCastMapper, two threads);

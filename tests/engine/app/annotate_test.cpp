@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Text and legends from the outside: scenes and bare files that ask for them, and a machine without a font.
 #include <gtest/gtest.h>
 

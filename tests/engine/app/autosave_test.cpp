@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Nothing that was done in the window is lost: by a kill, by a key, by the window's close button.
 #include "engine/app/viewer/scene/autosave.h"
 

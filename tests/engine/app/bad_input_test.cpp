@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Every kind of bad input, from the outside: exit code 2, one clear line on stderr, no output file.
 #include <gtest/gtest.h>
 

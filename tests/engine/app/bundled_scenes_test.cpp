@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The scenes of assets/scenes work in a fresh clone: where nothing but the folder `assets` is there, every one is drawn, and names no file
 /// but those beside it and those of packages that `./run` installs.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/input/camera_motion.h"
 
 #include <gtest/gtest.h>

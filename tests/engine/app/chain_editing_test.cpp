@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the chain and widget panels write into the scene's text.
 #include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/scene/ruler.h"

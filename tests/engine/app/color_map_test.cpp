@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Colour maps through the program: a ramp of values shows the map; data files are coloured as asked.
 #include <gtest/gtest.h>
 

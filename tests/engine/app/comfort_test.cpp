@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Turns in steps, and how far the picture narrows while the world moves.
 #include "engine/app/viewer/xr/comfort.h"
 

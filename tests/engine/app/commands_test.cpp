@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The table of commands: which stroke asks for what, and what menu and list of keys say of it.
 #include "engine/app/viewer/input/commands.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena info --cost`: what a scene will take, and with --measure what it took. Times are not judged here: they are a benchmark's.
 #include <gtest/gtest.h>
 

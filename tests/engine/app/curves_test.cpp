@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Curves from files: their colours in the picture, what `info` says, what is wrong with a scene that names them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A haptic device on the desk, registered to the room of a headset: known places, known answer, and what becomes of it.
 #include "engine/app/viewer/xr/device_registration.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What signals do to a program that holds a device: asked to end, or crashed.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The self-test of devices (device_check.h) on devices that behave and that do not, and `catena devices` from the outside.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Edits that panels note: what becomes of them in the queue of commands, and which of them are one step of undo.
 #include "engine/app/viewer/edit/edits.h"
 

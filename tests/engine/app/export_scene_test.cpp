@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena export SCENE` and `catena import` to other formats, from the outside: what is written holds what closed forms say.
 #include <gtest/gtest.h>
 

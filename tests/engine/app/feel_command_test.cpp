@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena feel` from the outside.
 #include <gtest/gtest.h>
 #include <pty.h>

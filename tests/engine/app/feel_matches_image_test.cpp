@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // "Feel": what the hand feels is the very thing that is drawn. Random pixels of each kind of thing are pointed at; the link that the window
 // makes of that is felt by the tick of `replay`, and the place where it holds the hand is held against the depth that the picture shows.
 #include <gtest/gtest.h>

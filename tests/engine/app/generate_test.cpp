@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `generate`, `info`, `import` from the outside.
 #include <gtest/gtest.h>
 

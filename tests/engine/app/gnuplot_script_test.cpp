@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Impl of the scripts that draw a report's plots.
 #include <gtest/gtest.h>
 

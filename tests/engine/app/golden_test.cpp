@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pictures that were opened, looked at and kept (tests/golden), with two tolerances: the whole may be off by little on average, single
 /// pixels by much, but few of them. CATENA_GOLDEN_WRITE=1 writes them anew: open them before you commit.
 #include <gtest/gtest.h>

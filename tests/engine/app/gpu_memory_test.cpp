@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena render --gpu-memory`: what does not fit is drawn coarser, said on stderr and in the statistics; what fits at no resolution is
 /// one line.
 #include <gtest/gtest.h>

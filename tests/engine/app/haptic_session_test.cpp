@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What holds the probe in the window, without a window: programs, devices and recordings change while the servo runs.
 #include "engine/app/viewer/input/haptic_session.h"
 

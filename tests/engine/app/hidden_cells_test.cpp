@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One small file with a layer of hidden cells, one cell thick, asked by every command at the same places.
 #include <gtest/gtest.h>
 

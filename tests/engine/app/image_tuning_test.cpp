@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plans of the eye: the servo of pictures, and the settings that are offered.
 #include <gtest/gtest.h>
 

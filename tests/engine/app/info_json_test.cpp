@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena info --json`: what info tells, for programs.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every command with every output over every input, and with every input something that is no file: one line, exit code 2, nothing written,
 // nothing waited for.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/layout.h"
 
 #include <gtest/gtest.h>

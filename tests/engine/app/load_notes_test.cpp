@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What became of a file's values is told by every command that loads it, and once; the range of a resampled field is the file's own.
 #include <gtest/gtest.h>
 

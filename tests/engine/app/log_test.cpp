@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena replay --log`, `export` and `info` of a recording, from the outside: every kind of link, switches, maps, program changes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // FuzzInputs that lie in several files: no part is overwritten, and no part that is a pipe is waited for.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/input/navigation.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena render` beyond one 8-bit picture: 16 bits, EXR, depth, ids, tiles, antialiasing, sequences, cameras, outputs that cannot be.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A scene from its text, open for editing as the window has it.
 #pragma once
 #include <gtest/gtest.h>

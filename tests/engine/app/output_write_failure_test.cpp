@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Standard output and standard error that cannot be written: what is lost is said, and nothing else changes.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

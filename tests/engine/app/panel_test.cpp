@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pointing at a panel: the pixel that a ray means, and what a press does at its edges.
 #include "engine/app/viewer/xr/panel.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Places under the pointer against closed forms.
 #include "engine/app/viewer/input/pick.h"
 

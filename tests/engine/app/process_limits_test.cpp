@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program under limits that a shell or a service manager sets: one sentence and a defined exit code, never a signal.
 #include <fcntl.h>
 #include <gtest/gtest.h>

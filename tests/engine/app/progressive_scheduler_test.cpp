@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Which picture the window shows next, told the times; and the phase of pulses, told the clock.
 #include "engine/app/viewer/window/progressive_scheduler.h"
 

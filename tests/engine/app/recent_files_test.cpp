@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/scene/file_browser.h"
 
 #include <gtest/gtest.h>

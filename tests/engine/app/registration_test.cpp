@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A device's place in the room from three touches: exact ones, careless ones, and those that say too little.
 #include "engine/app/viewer/xr/registration.h"
 

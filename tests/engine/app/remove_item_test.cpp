@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What goes with an item that is removed in the window, and what a second Feel takes over.
 #include "engine/app/viewer/edit/remove_item.h"
 

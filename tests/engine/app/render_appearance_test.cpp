@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// "projection" and "color_by" through the program.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena render` of slices and translucent meshes from the outside.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena render` from the outside: pictures with a known answer, statistics, and one scene for both senses.
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena replay` and `catena trace` from the outside: the acceptance figures of the first scenes.
 #include <gtest/gtest.h>
 

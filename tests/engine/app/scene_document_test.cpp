@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // docs/reference/scene.md and docs/reference/study.md say what the readers read: every table of keys between "<!-- keys: NAME -->" and
 // "<!-- end -->" is the one that the components' own descriptions make, and none is missing. CATENA_WRITE_DOCUMENTS=1 in the environment
 // writes them anew (./run docs).

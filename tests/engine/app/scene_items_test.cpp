@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the panels add to a scene, what belongs together, and the values behind histograms.
 #include <gtest/gtest.h>
 

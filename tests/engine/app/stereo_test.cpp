@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena render --stereo` from the outside: sizes, eyes, keys and errors.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena study analyse` and `study power`: each kind of finding, what is left out and why, subjects with gaps, hostile rows, mistakes in
 /// what is asked, and the commands from the outside.
 #include <gtest/gtest.h>

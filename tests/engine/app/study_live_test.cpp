@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Live sessions without a window: killed at any moment, and gone on with.
 #include "engine/app/study/live_session.h"
 

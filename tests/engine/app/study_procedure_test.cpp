@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a subject goes through, without a window: instructions, the procedure, what is kept on the disk.
 #include "engine/app/study/procedure.h"
 

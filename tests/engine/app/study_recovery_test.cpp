@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena study analyse` finds what is planted as often as the power says, and what is not, as seldom as alpha says: by the very code that
 /// analyses a data folder.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // `catena study` from the outside: simulate, shard, merge, go on after a kill, a study of one's own, and mistakes.
 #include <gtest/gtest.h>
 

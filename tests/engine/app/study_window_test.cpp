@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // catena study run as a subject meets it: in a window on a virtual display, with real keys and a scripted mouse that goes along each path.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plans of the hand: links, cells and their texts.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Three places touched by a device and by a controller: the motion that is known beforehand, and touches that do not count.
 #include "engine/app/viewer/xr/touch_registration.h"
 

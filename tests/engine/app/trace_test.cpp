@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena trace` from the outside: patterns, tolerances and the .vtp file.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A tracked head before a screen: what is shown of one that follows, leaps and is lost, and the window's picture beside render's.
 #include "engine/app/viewer/input/tracked_head.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena tradeoff SCENE`: what it measures with (the floor, the front, the choice, times in turns), its report written and read, and
 /// the command from the outside.
 #include <gtest/gtest.h>

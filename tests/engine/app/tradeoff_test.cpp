@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena tradeoff --figure N` from the outside: the figures of the paper and the manners of the command.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a hand does to the points of a transfer function, without a window.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A study of two tasks with findings of all kinds, and tables of trials that are made with a known difference or with none.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plans from the outside: the commands.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

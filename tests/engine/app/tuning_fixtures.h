@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Curves with known answers, and plans of them.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plans: the choice on curves with known answers, the slider, the store against damage and malice.
 #include <gtest/gtest.h>
 #include <sys/stat.h>

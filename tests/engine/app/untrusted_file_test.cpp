@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Files of strangers, from the outside: what reaches the terminal, and how much memory they take.
 #include <gtest/gtest.h>
 #include <sys/resource.h>

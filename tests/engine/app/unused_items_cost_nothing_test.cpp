@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a scene has and does not use costs nothing: bytes loaded and mirrored, pipelines, images, copies to the device, grids made and
 // fetches of the tick are those of the scene without it, and so is the picture.
 #include <gtest/gtest.h>

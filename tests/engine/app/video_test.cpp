@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Video through ffmpeg: what comes out, and what happens without it, when it fails, and on Ctrl-C.
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The transfer function and the isolevel edited in the window with real pointer events: what is saved, what is one step of undo.
 #include <gtest/gtest.h>
 

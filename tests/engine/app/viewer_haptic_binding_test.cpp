@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // "Feel" in a real window: a scene without a chain, the pointer on its surface, H, the wheel.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Strokes that come faster than pictures: none is lost, none comes in another order, and the interface never sees a modifier change within
 // one of its frames.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the command line of the window says of the hand and of the picture's quality, on a virtual display.
 #include <gtest/gtest.h>
 

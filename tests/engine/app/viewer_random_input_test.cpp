@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A monkey at the window for a few seconds; longer by hand: CATENA_MONKEY_SECONDS=1800 CATENA_MONKEY_SEED=3 build/release/test_engine_app
 // --gtest_filter='*Monkey*' (tests/monkey/monkey.py).
 #include <gtest/gtest.h>

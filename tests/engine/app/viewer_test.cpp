@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The window itself, on a virtual display (Xvfb), with real pointer events where xdotool is there.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A cutting plane held by the mouse in a real window, through all its modes, to the saved scene; a file dropped as a file manager does.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The window as a whole, on a virtual display with real pointer and key events: panels, files, questions, pictures, a lost device.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena view --xr` on the scripted runtime (tests/xr_runtime) and a virtual display.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What happens to `catena view --xr` where the session or the runtime goes, does not come, or does not answer.
 #include "tests/engine/app/viewer_xr_fixture.h"
 

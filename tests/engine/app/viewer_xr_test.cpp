@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // catena view --xr against the scripted runtime (tests/xr_runtime), on a virtual display; what its hands do, without one.
 #include <gtest/gtest.h>
 

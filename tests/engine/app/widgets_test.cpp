@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena replay --widgets`: a cutting plane held by a scripted hand, against closed forms.
 #include <gtest/gtest.h>
 

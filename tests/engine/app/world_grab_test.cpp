@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The world in the hand: what is held stays where it is held, with one hand and two.
 #include "engine/app/viewer/xr/world_grab.h"
 

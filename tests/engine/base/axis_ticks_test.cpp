@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/numbers.h"
 
 #include <gtest/gtest.h>

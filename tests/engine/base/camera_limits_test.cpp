@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/camera_limits.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The range that pictures show where nobody states one: outliers and fill values are left out, and nothing of ordinary data is.
 #include "engine/base/display_range.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/durable_append.h"
 
 #include <gtest/gtest.h>

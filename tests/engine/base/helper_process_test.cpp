@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/helper_process.h"
 
 #include <fcntl.h>

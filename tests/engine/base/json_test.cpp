@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/base/json.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The order of series of files by the numbers in their names.
 #include "engine/base/natural_sort.h"
 

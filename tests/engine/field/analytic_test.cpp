@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/analytic/analytic.h"
 
 #include <gtest/gtest.h>

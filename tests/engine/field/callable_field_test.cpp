@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Fields that a program brings: functions, and numbers that it gives layer by layer.
 #include "engine/field/callable_field.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Masks of cells beside masks of voxels: a cell is valid where both say so, in the grid and in what is made of it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cubic cells against a sampler of this file's own: dense arrays in long double, ghosts by Lagrange's formula along rows, weights from
 // the cubic Hermite form. And what the interpolation is for: smoothness, exactness for polynomials of second degree, the domain.
 #include <gtest/gtest.h>

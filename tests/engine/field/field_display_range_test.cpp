@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The display range of grids: exact ends and counts, whatever is sampled, masked or constant; and what is scaled by it.
 #include "engine/field/field_display_range.h"
 

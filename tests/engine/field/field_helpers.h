@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Helpers of the field tests: repeatable random numbers, mappings of every kind, an independent trilinear formula, reading.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Label maps: the nearest voxel's value, never a mix; surfaces of labels where they belong.
 #include "engine/field/derived/label_surface.h"
 

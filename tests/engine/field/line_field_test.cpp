@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/line_field.h"
 
 #include <gtest/gtest.h>

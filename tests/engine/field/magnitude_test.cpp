@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/field/derived/magnitude.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Sizes that headers, layouts and scenes state are believed only as far as the memory limit goes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The field of vortices: nowhere divergent, another at every seed, flat in two dimensions, and the same bits everywhere.
 #include <gtest/gtest.h>
 

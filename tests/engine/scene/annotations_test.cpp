@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a scene writes over its picture: every key, and one line for every mistake.
 #include "engine/scene/annotations.h"
 

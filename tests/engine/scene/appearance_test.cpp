@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// "projection", "color_by" and "jitter" of the scene file.
 #include <gtest/gtest.h>
 

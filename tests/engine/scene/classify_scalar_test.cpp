@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/classify_scalar.h"
 
 #include <gtest/gtest.h>

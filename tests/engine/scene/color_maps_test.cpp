@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/color_maps.h"
 
 #include <gtest/gtest.h>

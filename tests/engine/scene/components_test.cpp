@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a component's description writes reads back as the same component; "color_by" as a word reads as the object does, with a note.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/document.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/entity_store.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // "glyphs": every key, what is written reads back, wrong ones name their line.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/scene/label_table.h"
 
 #include <gtest/gtest.h>

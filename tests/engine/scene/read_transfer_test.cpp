@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The colours and opacities of a scene: maps by name, ranges, transfer files, ParaView's colour maps.
 #include <gtest/gtest.h>
 

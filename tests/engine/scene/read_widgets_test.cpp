@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// "widgets" of the scene file, and the keys by which others follow them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Patterns of files, and steps that are added while a scene shows them.
 #include "engine/scene/follow_files.h"
 

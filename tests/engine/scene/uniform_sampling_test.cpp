@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Places that are evenly spaced: how far neighbours are from each other, and places of the surface from them, as measured.
 #include "engine/scene/uniform_sampling.h"
 

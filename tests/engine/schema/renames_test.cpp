@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/schema/renames.h"
 
 #include <gtest/gtest.h>

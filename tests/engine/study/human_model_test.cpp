@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The model of a subject and the trial that it does.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The study file: what it says, and what is said of mistakes in it, with the line of the mistake.
 #include <gtest/gtest.h>
 

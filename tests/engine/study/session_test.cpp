@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The design over 24 subjects: the Latin square, the interleaving of conditions, and seeds that follow from the subject's number.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The paper's rules for stimuli over 200 seeds a task, looked at another way than they are made: with Runge and Kutta's method at small
 // fixed steps here, from the field of the trial's own scene.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The study of the paper, and small ones that a test changes a line of.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The judge against cases that are worked out by hand: lengths in world units, of which one is 10 mm.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rows of trials: they read back to the bit, and a line that a kill has torn is dropped, not the rest.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stands in for catena-read when it has been taken over: does what the "file" that it is asked for says. A file that begins with
 // HANG, SPIN, EXIT, ABORT or KEEP (ends, but leaves a process that could write) is an order; all else is the answer, copied as it is.
 #include <fcntl.h>

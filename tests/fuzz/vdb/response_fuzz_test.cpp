@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the reader's process hands over is foreign, too: it may have been taken over. Its answers are forged here, whole and in parts.
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Small .vdb files of every kind that OpenVDB writes: each compression, each number type, tiles, masks, shared trees, no offsets.
 #pragma once
 #include <openvdb/io/Stream.h>

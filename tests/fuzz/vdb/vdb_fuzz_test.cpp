@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Damaged .vdb files through the whole path: the reader's process, its answer, the grid, a few fetches. Longer:
 ///   CATENA_FUZZ_INPUTS=100000 build/release/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
 /// prints how they ended. CATENA_FUZZ_KEEP=FOLDER keeps the files, so that they can be tried on another build.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// "align" from the scene to the hand: the keys, and the tool's axis on the features of every kind of link.
 #include <gtest/gtest.h>
 

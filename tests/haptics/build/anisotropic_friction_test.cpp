@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ready-made mode of section 6.1 through the whole tick: on a sphere, on sampled fields, on real data.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/build/build_program.h"
 
 #include <gtest/gtest.h>

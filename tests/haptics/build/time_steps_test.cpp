@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Steps in time, as the hand meets them: a series of files, of which the next one takes the place of the one that is felt.
 #include "engine/scene/time_steps.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The rotational chain in closed form: constraints that hold the proxy and have a fixed, or turning, axis.
 #include "haptics/chain/alignment.h"
 

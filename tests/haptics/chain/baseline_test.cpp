@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/baseline.h"
 
 #include <limits>

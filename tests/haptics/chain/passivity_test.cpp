@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ledger through the tick; the loop that it keeps quiet is closed in tests/haptics/servo/closed_loop_test.cpp.
 #include "haptics/chain/passivity.h"
 

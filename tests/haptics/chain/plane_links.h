@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Links whose order matters, and a hand for them: projections on planes that are not perpendicular to each other.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rule of ramp.h at the chain: whatever is switched, ordered, replaced or lost, no tick changes the force by more than K |dx| +
 // max_force dt / ramp_s, and after the ramp it is that of the links.
 #include "haptics/chain/ramp.h"

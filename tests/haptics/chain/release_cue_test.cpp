@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/release_cue.h"
 
 #include <limits>

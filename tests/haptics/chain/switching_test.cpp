@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/chain/switching.h"
 
 #include "tests/haptics/chain/plane_links.h"

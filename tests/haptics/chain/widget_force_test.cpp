@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // No switch, reorder or change of shape makes a force jump; what a tick costs in memory; that it repeats; hostile input.
 #include <random>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Seed, rake, box, isolevel and ruler by scripted paths, against closed forms.
 #include "tests/haptics/chain/plane_links.h"
 #include "tests/haptics/chain/widget_probe.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cutting plane by scripted paths, against closed forms (paper, section 6.2).
 #include <random>
 

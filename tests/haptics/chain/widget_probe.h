@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A hand that drives widgets through the tick.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <array>
 
 #include "tests/haptics/constraints/constraint_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What all closed forms share: hostile probes, hostile sizes, a proxy on its feature to round-off, energy, primitives.
 #include "tests/haptics/constraints/constraint_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every constraint must keep, whatever it is: finite output, rest when the probe rests, bounded fetches, no allocation,
 // the same bits for the same input. A type of the registry without examples here fails.
 #include "engine/base/memory_limit.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Helpers of the constraint tests: fields by name, a constraint from a piece of JSON, a link driven tick by tick.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Work of a chain along slow closed loops of the hand, in units of K gap^2: by the paper's sum of pulls, and by virtual work, which is the
 // gradient of an energy. The work is a trapezoid rule over the parameter of the loop, refined until half the step changes it by less than
 // 1e-10 of K gap^2; gap is the hand's largest distance from the last proxy. Prints the table of pairs.

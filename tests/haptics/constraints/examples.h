@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The examples of every constraint type, and the fields that they name: what the conformance and the endurance tests run over.
 /// A new type adds its row to examples().
 #pragma once

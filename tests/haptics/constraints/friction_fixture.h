@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A hand that stays on a surface, for the friction links: the proxies of an isosurface link along a random walk.
 #pragma once
 #include "haptics/constraints/isosurface/level_set_field.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/flow/curve.h"
 #include "tests/haptics/constraints/friction_fixture.h"
 

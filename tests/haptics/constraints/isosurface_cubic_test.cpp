@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Isosurfaces of cubic grids in the hand: the closest point, its normal, and the walls of the domain. Judged by the field's own samples,
 // by closed forms (the cubic repeats planes and paraboloids exactly) and beside linear cells.
 #include "tests/haptics/constraints/constraint_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Folded and steep formulas: the marschner-lobb ripples (radius of curvature down to L / 2000) and the far flank of a gaussian.
 // Judged by formulas of this file, not by the field's own. A proxy is good: OK, off the level by at most 1e-11 L, tangential
 // residual at most 1e-6 L; it may take 20 still ticks, then it rests bit for bit.

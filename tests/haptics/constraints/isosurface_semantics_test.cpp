@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sides, release, thin sheets, the edge of the data, broken voxels: the exact meaning of an isosurface link.
 #include "tests/haptics/constraints/constraint_fixture.h"
 

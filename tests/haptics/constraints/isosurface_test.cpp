@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Number 8 of the acceptance tests (figures printed when they fail), then the rules of sides, release and the domain's edge.
 #include "tests/haptics/constraints/constraint_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Meshes that are hard on a god-object: seams, parts that cut each other, rough and stepped bodies.
 #include "tests/haptics/constraints/mesh_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Felt meshes, and what a mesh is by brute force: the closest point over all triangles, inside by crossings of a ray.
 #pragma once
 #include "tests/haptics/constraints/constraint_fixture.h"

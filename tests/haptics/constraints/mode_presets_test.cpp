@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/presets/mode_presets.h"
 
 #include "tests/haptics/constraints/constraint_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/shapes/polyline_bvh.h"
 
 #include "tests/haptics/constraints/constraint_fixture.h"

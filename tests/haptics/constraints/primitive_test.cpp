@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The linear primitives that stand for curves and surfaces near a place: what the baselines combine.
 #include "tests/haptics/constraints/constraint_fixture.h"
 

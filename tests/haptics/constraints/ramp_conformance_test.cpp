@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rule of ramps (haptics/chain/ramp.h) for every constraint and every cause of a step: no tick changes the force by more than
 // K |dx| + max_force dt / ramp_s. Prints the table of the largest steps by type and cause, in units of that bound.
 #include "haptics/chain/tick.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/common/link_schema.h"
 
 #include "tests/haptics/constraints/constraint_fixture.h"

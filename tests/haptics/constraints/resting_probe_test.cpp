@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The energy test of every constraint: an observer at the hand does not see a proxy that moves by itself, so the
 // ledger is read tick by tick with the probe held still after a motion. What goes in there, the hand gets for nothing.
 #include "haptics/chain/tick.h"

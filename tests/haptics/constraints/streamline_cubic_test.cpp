@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // StreamlineTracing of cubic grids in the hand: the line that is felt is the line that is drawn.
 #include "engine/geometry/flow/curve.h"
 #include "tests/haptics/constraints/constraint_fixture.h"

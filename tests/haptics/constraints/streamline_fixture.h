@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Builds streamline links from scene text, over named fields, and drives them tick by tick.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/streamline/online_streamline.h"
 
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/constraints/streamline/streamline.h"
 
 #include <cstring>

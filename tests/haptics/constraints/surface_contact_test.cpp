@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Friction on surfaces that are hostile: noise, broken voxels, masks, thin sheets, jumps from sheet to sheet.
 #include "haptics/constraints/friction/friction_contact.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A one-sided link holds a hand by the sheet by which it came in, until `release` and through no other door, whatever the body's thickness,
 // tilt and curvature, and whatever the hand's speed and the rate.
 #include "tests/haptics/constraints/constraint_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/haptics/constraints/constraint_fixture.h"
 
 namespace catena::haptics::tests {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/load_field.h"
 #include "tests/engine/geometry/flow/analytic_cores.h"
 #include "tests/haptics/constraints/constraint_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A tracker of few samples a second, late, lost and found, against a hand that is known at every tick.
 #include "haptics/device/controller.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/dither_filter.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A Falcon in memory, played by a test: a boot loader, then firmware that answers each command by a frame. What it hears and
 /// how it fails is scripted. LockedRange, so that a test may turn its knobs while the driver's thread runs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/usb/falcon_codec.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/device/usb/falcon_boot.h"
 
 #include <gtest/gtest.h>

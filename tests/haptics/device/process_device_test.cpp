@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A device in a process of its own: what becomes of the force when the program is killed, seen from outside.
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A device that says what the test says and remembers what it was told.
 #pragma once
 #include "haptics/device/device.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The simulated 6-DOF device in a closed loop with the rotational chain.
 #include "haptics/device/simulated_device.h"
 

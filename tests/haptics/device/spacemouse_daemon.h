@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// spacenavd as libspnav sees it: an AF_UNIX stream of eight 32-bit words an event, after a greeting that newer daemons answer.
 #pragma once
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The SpaceMouse through the real libspnav, against an emulated daemon.
 #include "haptics/device/spacemouse.h"
 

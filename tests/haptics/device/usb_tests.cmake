@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The emulated Falcon, and the unmodified libusb in front of it: through umockdev (label usb), and within one process.
 catena_tests(haptics/device/emulator MODULES haptics/device)
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The loop closed through a simulated mechanism: the derived linear limits, the passive limit, and what the controller
 // makes of springs above it. Unpaced and deterministic.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Late, stuck, lost, NaN: from the device to what it is sent, through the running thread.
 #include <gtest/gtest.h>
 

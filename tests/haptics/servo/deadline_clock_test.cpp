@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/deadline_clock.h"
 
 #include <gtest/gtest.h>

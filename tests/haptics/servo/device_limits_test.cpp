@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/device_limits.h"
 
 #include <gtest/gtest.h>

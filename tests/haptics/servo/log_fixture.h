@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the tests of the recording share: a log read to its end, a servo that is as fast as its log.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A recording whose process is killed at any moment opens, has no hole, and repeats to the bit.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

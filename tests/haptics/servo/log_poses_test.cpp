@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Head, hands and gaze in a recording: to bytes and back, beside ticks, and damaged.
 #include "haptics/servo/log/poses.h"
 #include "tests/haptics/servo/log_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The recording: what is written is what was, whole, cut off, damaged, or killed.
 #include <gtest/gtest.h>
 

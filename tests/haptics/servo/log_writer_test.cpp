@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The writing side of the recording: what happens when the disk is slow or full, and with all its threads at once.
 #include <gtest/gtest.h>
 #include <sys/resource.h>

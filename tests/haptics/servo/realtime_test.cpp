@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/realtime.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/servo_stats.h"
 
 #include <gtest/gtest.h>

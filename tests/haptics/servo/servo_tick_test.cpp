@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "haptics/servo/servo_tick.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A recording that begins and ends while the servo runs.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A program that is stopped (SIGSTOP) and goes on: the motors get zero in the first packet, and then the ramp.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a sender that looks some dozens of times a second learns of a force at 1 kHz: detents, contact, friction, of the real tick.
 #include "haptics/vibration/peak_detector.h"
 

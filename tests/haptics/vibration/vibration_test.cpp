@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The stated map, and what the sender asks of the runtime in which order. CATENA_PLOT=FILE.png draws the map with gnuplot.
 #include "haptics/vibration/vibration.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Projections, colours by another field and jitter on their way into the packet.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/extract/auto_camera.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which edges of a box carry the axes, for cameras whose answer is known; that nothing of them lies over the box.
 #include "render/extract/axis_edges.h"
 

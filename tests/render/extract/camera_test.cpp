@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/frame/camera.h"
 
 #include <gtest/gtest.h>

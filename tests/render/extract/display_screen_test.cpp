@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pictures for a screen that one looks through: where points land, in every eye, while the head moves.
 #include <gtest/gtest.h>
 

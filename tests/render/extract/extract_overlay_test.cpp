@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The scene's annotations as the picture's overlay: colours, ticks and words.
 #include <gtest/gtest.h>
 

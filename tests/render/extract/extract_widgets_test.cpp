@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Widgets as they are drawn: where closed forms put them, by mode and handle.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/extract/flatten.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Arrows in the packet against closed forms: where, which way, how long, of which colour; what has none; what they follow.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a packet says of label maps: their colours, the legend, what is hidden, which slice lies over which.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ranges that nobody states, in the packet: of colours, contours, lines and glyphs the same with an outlier as without.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A scene loaded a hundred times over, each time its own grids: the device and this process hold no more at the end.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // "visible": false hides what is drawn and nothing else.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What follows a widget, in the packet: wherever the hand carries it, the frame goes on.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The measure of pictures, on pictures whose error is known.
 #include "render/image/image_error.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/image/image.h"
 
 #include <gtest/gtest.h>

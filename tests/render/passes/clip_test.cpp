@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Clip planes: what they leave of volumes, surfaces and triangles, against closed forms.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Isosurfaces of cubic grids (field::Interpolation): their depths against the roots of the same field on the CPU, and against quadratics,
 // which a cubic repeats and a trilinear mix does not; their light, their colours, how often a ray crosses them.
 #include <algorithm>

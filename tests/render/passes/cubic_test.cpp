@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Slices, volumes and projections of cubic grids (field::Interpolation) against the same field on the CPU along each pixel's ray.
 #include <algorithm>
 #include <cmath>

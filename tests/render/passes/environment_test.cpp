@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Lights, fog and aids, against the formulas of shaders/lib/lighting.glsl and closed forms.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The driver fails at every call of a frame in turn: one sentence, nothing left over, no hang, and the picture comes back.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A picture does not depend on the unit of the field: densities of 1e24 a cubic metre look as those of 1.
 #include "tests/render/support/image_fixture.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Arrows of vectors in the picture: where they begin and end, how wide they are there, what covers and cuts them.
 #include <cmath>
 

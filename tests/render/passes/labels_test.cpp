@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Label maps in pictures: a colour that is no label's is nowhere, each by its own transform, slices in one plane in their order.
 #include <algorithm>
 #include <cmath>

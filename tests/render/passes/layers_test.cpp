@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Translucent layers among volumes and surfaces: layers made by hand, against the sum along the ray.
 #include <cmath>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A thousand frames, things coming and going: what the device and this process hold does not grow.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The memory budget: never exceeded; what does not fit is drawn coarser, in its place, and said.
 #include <gtest/gtest.h>
 

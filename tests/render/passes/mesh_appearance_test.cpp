@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Meshes: smooth shading, edges, colours by vertex.
 #include <cmath>
 

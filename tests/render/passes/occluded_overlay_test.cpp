@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The hand behind what hides it, against the blending formula of shaders/passes/compose.frag worked out by hand.
 #include <algorithm>
 #include <cmath>

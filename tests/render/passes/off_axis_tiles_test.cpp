@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Off-axis frusta and tiles: a window of the frustum shows the very pixels that the whole picture has there.
 #include "render/frame/camera.h"
 #include "tests/render/support/image_fixture.h"

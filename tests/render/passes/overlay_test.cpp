@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Text and flat shapes over the picture, against places and colours worked out apart. Pixels of text are only counted, never compared.
 #include "render/passes/passes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One pixel's depth and id: those of the whole images, and of an isosurface and a slice in closed form.
 #include <cmath>
 

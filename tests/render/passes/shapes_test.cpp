@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/passes/shapes.h"
 
 #include <gtest/gtest.h>

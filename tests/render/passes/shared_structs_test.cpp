@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One struct, two languages: the offsets that the shader compiler chose against those of C++.
 #include <gtest/gtest.h>
 

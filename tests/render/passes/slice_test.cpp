@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Slices: colours, lines, depths and ids against closed forms and an independent evaluation on the CPU.
 #include <fmt/format.h>
 

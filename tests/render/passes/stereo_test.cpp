@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stereo pictures: where a ball lands in each eye against the closed form, and every packing against the eyes' own pictures, pixel by
 /// pixel, by an implementation on the processor.
 #include <array>

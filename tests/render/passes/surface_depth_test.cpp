@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Depth truth: every pixel's depth of an opaque isosurface against an intersection that shares nothing with the shader: in double
 // precision, the ray is cut at all cell faces, the cubic of a cell is fitted through four samples of the trilinear interpolant, and
 // its first root is bisected between its extrema.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Translucent meshes and slices, by themselves, with each other, with volumes, isosurfaces and opaque things: against closed forms.
 #include <algorithm>
 #include <cmath>

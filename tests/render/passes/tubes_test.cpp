@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tubes that the vertex shader makes of rings: the picture of the triangles that add_tube makes, in a fraction of their memory.
 #include "render/passes/tubes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is drawn over a window's picture: known pixels, to 1/255.
 #include <gtest/gtest.h>
 

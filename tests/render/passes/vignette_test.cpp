@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The picture that narrows while the world moves: every pixel against the angle that it looks along, off the axis too.
 #include <cmath>
 

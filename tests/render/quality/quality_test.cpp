@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The estimate against the truth, and goals that are reached.
 #include "render/quality/quality.h"
 

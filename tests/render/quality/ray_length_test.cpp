@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The way of exact rays, told before they are drawn, where it is known: through a box of haze, into an opaque box, to a slab in empty
 /// space.
 #include "render/quality/ray_path_length.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The ladder, the times expected of it, and the pictures that a viewer is told to draw.
 #include "render/quality/refinement.h"
 

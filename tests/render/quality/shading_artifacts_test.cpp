@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What is seen sooner than its size tells: rings of exact rays and facets of the cell's gradient on what is lit may take half of the
 /// error; and of steps that cost the same the shortest is taken.
 #include "render/image/image_error.h"

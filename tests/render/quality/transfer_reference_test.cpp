@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stated errors against a marcher that shares no code with the renderer but the rays: in double precision, by cells, with the transfer
 /// function's own points. Random functions over ranges up to 1e6 with parts of all widths. CATENA_TRANSFER_FUNCTIONS=100 tries as many
 /// and prints them.

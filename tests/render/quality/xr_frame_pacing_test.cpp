@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Frames of a headset on a scripted machine and a scripted display: in time where that can be, at half rate where it cannot.
 #include "render/quality/xr_frame_pacing.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// While a cursor moves over a volume that stands still, only the tiles near it are marched again, and the picture is that of a new
 /// renderer, to the bit.
 #include <cmath>

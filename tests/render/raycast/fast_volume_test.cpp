@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The fast raycast: known pictures within 2/255 at every spacing, agreement with the exact one, opaque things inside the volume.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Fewer rays away from where the eye looks: as it would be without within the fovea, interpolated far from it.
 #include <cmath>
 

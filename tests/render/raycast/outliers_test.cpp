@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A voxel of 1e20 among values from 0 to 1 spoils its own cells, and not the picture: neither texels of 16 bits nor codes of 8 are scaled
 /// by it.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the fast raycast packs beside whole grids: grids with invalid cells, and large ones as bricks. Known pictures, and agreement with
 /// exact rays.
 #include <cmath>

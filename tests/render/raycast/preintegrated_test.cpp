@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/preintegrated.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Projections of a volume: the greatest, the least and the mean value along every ray, against dense sampling in double precision.
 #include <cmath>
 

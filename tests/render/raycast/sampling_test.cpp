@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The mirror against the truth: values that the GPU reads against those of the grid on the CPU, at 10,000 random points.
 #include <cmath>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/raycast/transfer_tables.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the exact raycast can do beyond one table: opacity by the gradient, colours by another field, jitter, plain bricks, transforms
 /// and clip planes of each volume, many surfaces. Against closed forms and sums in double precision.
 #include <cmath>

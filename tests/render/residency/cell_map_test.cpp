@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/cell_map.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // CellCache that a cubic may take a value in: none is left out that does, by dense sampling, and few are named that do not.
 #include "render/residency/cubic_cells.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/residency/half.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shaders compiled at run time, and watched.
 #include "render/shader_compiler/compile_shader.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Kooima's projection and a headset's tangents against their printed formulae and against where points must land.
 #include "render/stereo/stereo_views.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Eyes against closed forms: where a point lands in each of them, and the matrices of screens and headsets.
 #include "render/stereo/stereo_views.h"
 

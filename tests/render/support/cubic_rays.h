@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the tests of pictures of cubic grids share: rough grids, and the field itself along a pixel's ray.
 #pragma once
 #include <cmath>

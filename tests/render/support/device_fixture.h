@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A bare device with the validation layer on; what it said is a failure.
 #pragma once
 #include <gtest/gtest.h>

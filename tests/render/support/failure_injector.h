@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A driver that fails when it is told to: what vk::DeviceOptions::fail asks.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the picture tests share: small grids by formula, a renderer with validation, pictures kept in the build folder.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pictures read back by the libraries themselves, independently of how Catena wrote them.
 #pragma once
 #include <ImfChannelList.h>

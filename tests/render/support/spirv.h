@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Compiled shaders as the build folder holds them, and what they say about their structs.
 #pragma once
 #include <cstdint>

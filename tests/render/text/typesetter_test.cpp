@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Placed glyphs against the ink that they leave, and what happens without a font.
 #include "render/text/typesetter.h"
 

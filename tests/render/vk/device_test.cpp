@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/vk/device.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A Vulkan instance and device that somebody else makes and keeps: as a headset's runtime, or a program around Catena.
 #include <gtest/gtest.h>
 

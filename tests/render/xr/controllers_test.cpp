@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the hands do and feel: poses and buttons by the profile of the controller, vibration, and what is lost and found.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The head goes into a volume: from before its face to behind it in small steps, and onto the face itself. Every picture is what rays from
 /// that very eye see, so that there is neither a flash nor a hole on the way.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What goes to the runtime beside the pictures: depth, what the lenses hide, a panel.
 #include <gtest/gtest.h>
 

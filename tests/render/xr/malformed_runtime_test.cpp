@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A runtime that says what cannot be: poses that are no numbers, views without an angle, sizes of nothing, clocks that stand or go back.
 /// The picture that it is asked for is not drawn or is small, every frame that was begun is ended, and the next good one is shown.
 #include <gtest/gtest.h>

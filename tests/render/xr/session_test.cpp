@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The life of a session: every edge of the graph of its states, a failure of every call, many frames, and what the validating layer of
 /// OpenXR thinks of it all.
 #include <gtest/gtest.h>

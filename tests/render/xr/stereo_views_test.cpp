@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Both eyes of example scenes. CATENA_XR_PICTURES=DIR writes what they see. CATENA_XR_EYES=1 measures what the second one costs: processor
 /// time of pictures of one view and of two, the same scene and settings, one after the other, so that what else the machine does counts for
 /// both.

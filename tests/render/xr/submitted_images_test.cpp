@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the headset gets to show: a ball where it stands, for canted and asymmetric eyes at every depth, in the bytes that a window gets.
 #include <gtest/gtest.h>
 

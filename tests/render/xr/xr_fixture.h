@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A headset of the scripted runtime (tests/xr_runtime) behind the real loader, and a renderer on the device that it made: lavapipe, with
 /// the validation layer on.
 #pragma once

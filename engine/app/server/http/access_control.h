@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Decides who may see the page: a browser that has the token, which is printed and exchanged for a cookie, and that sends its requests
 /// from a page of this server. Three checks, each against one attack:
 ///   token, cookie   another user or program of this computer that can reach the port but has not read the terminal

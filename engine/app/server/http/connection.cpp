@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <boost/beast/core/bind_handler.hpp>
 #include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/parser.hpp>

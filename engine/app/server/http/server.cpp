@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/http/server.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Server serves one page over HTTP and exchanges messages with it over WebSockets: text messages come from the pages (viewers); text
 /// messages and frames go to them. It does not interpret them. A network thread of its own does all input and output; the functions here
 /// are called by one other thread, and only wait_for_events() waits, up to its time limit.

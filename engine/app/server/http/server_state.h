@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// State shared by the connections of a server. Only the network thread uses it, except `events` (under `mutex`) and `ready_viewers`
 /// (atomic). Private to engine/app/server/http, because it includes Boost.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/http/viewer_connection.h"
 
 #include <algorithm>

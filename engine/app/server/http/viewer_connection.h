@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// ViewerConnection is the WebSocket of one viewer. Network thread. Private to engine/app/server/http, because it includes Boost.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Statistical analysis of a study's trials: the paper's section 7.2 for any data folder. A pure function of the study, its analysis plan
 /// and the rows; the same input gives the same bits.
 ///

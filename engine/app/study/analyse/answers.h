@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The subjects' answers to the study's questions: choices are counted, free text is listed.
 #pragma once
 #include <string>

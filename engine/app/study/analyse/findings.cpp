@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tests each finding of the study file against the data. A finding over several tasks or conditions is supported where all of
 /// them support it; the numbers of each are given.
 #include <fmt/format.h>

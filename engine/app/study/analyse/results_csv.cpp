@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Writes the tables of results: a missing number is an empty cell, which R and Python read as missing.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Command `catena info --cost`: predicted cost of a scene, or of a data file as shown by `render`: loading, uploading, creating objects,
 /// evaluating a tick and rendering a frame, in bytes and expected time, and with --measure the measured values. Bytes are those that the
 /// allocating functions would allocate. Expected times are an operation count times a unit cost, or sums of parts, which are measured when

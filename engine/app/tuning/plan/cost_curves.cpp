@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cost curves of the haptics: links with open settings, agreement of a curve with a link's stated keys, and the tick time without these
 /// links.
 #include <algorithm>

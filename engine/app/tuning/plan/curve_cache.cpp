@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/plan/curve_cache.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cache of measured curves, so that the next run tunes without measuring: one file per key in $XDG_CACHE_HOME/catena/plans (else
 /// ~/.cache/catena/plans). Each file is a report of `catena tradeoff` (tradeoff/report), which can make a page of it. All files can be
 /// deleted at any time. A file that is damaged, foreign or of another key is rejected with one message; the settings of its points are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/plan/image_tuning.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Image tuning: the choice of render settings from measured curves of error against time.
 ///   error=E  the cheapest setting whose error is at most E, or at most the discretization error if that is larger
 ///   time=T   the setting of least error within T milliseconds

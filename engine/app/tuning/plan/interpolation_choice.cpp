@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/plan/interpolation_choice.h"
 
 #include "engine/base/json_edit.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Choice between linear and cubic interpolation in a tuning: which fields leave it open, and how a field becomes cubic. Not for the haptic
 /// thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tick tuning: the choice of the integration method of each streamline link from measured curves of error against time
 /// (tradeoff/measure/haptics).
 ///   max_proxy_error=E  for each link the cheapest setting whose error is at most E, or at most the discretization error if that is larger

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/plan/tracking_error.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Measured tracking error of tuned links: distance of their proxies from the converged streamlines. add() only records the proxies; the
 /// converged streamlines are traced when the error is requested. Not for the haptic thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/plan/tune.h"
 
 #include <fmt/format.h>

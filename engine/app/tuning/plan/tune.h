@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tuning from targets to settings: takes the curves from the cache or measures them with
 /// a progress line, and reports both to the user. `tell` receives one line per message.
 #pragma once

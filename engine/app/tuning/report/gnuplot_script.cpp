@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/report/gnuplot_script.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Helpers for gnuplot scripts that draw SVG plots for an HTML page. Black is replaced by the page's text color (report/html_page.h); the
 /// plot colors are legible on white and on black.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/report/html_page.h"
 
 #include <fmt/format.h>

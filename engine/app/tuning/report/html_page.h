@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Building blocks of a self-contained HTML report page (no network access, light and dark mode), shared by `tradeoff` and `study analyse`.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/report/results_dir.h"
 
 #include <fcntl.h>

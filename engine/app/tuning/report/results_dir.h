@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Output folder for the tables, plots and HTML page of a run, written atomically: the folder gets all of the files or none.
 /// The files are first written to a temporary folder inside it, DIR/tables.part<pid>-<random> (engine/base/output_file.h), and moved by
 /// commit(). A temporary folder that a killed run left behind is removed by the next run, which recognizes it by its released lock.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/report/system_info.h"
 
 #include <fmt/format.h>

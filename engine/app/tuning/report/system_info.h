@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Description of the system and the build that a report was made with.
 #pragma once
 #include <string>

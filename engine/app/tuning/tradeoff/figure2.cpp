@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Figure 2: a streamline of the field `circle` with a radius of 50 mm, followed at 1 kHz by a probe on it.
 ///   figure2-drift.csv   laps at three speeds, every method: distance of the proxy from the streamline
 ///   figure2-path.csv    path of the proxy of the linear method

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Figure 3: a penetrable surface (free above, releases at 0.05) and a curve that meets it at an angle. The probe moves along the
 /// curve, from the free side in, 0.2 m/s at 1 kHz.
 ///   flat    a line of the field `uniform` through the level set of the field `plane`

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Energy of a chain: the gain over a slow closed loop of the probe, by the angle between two links, by the paper's sum of pulls and by
 /// virtual work (haptics/chain/virtual_work.h). The loop is an ellipse near the intersection of the links; its speed does not matter. The
 /// work is a trapezoid rule over the loop, refined until half the step changes it by less than 1e-10 K gap^2; gap is the largest distance

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/figures.h"
 
 #include "engine/base/numbers.h"

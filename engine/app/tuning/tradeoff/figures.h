@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Figures of `catena tradeoff --figure N` and what they share.
 #pragma once
 #include <memory>

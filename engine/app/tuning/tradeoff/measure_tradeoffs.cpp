@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure_tradeoffs.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Command `catena tradeoff SCENE|FILE`: measures all curves of a scene and writes them as an HTML page, CSV tables and JSON.
 #pragma once
 #include <string>

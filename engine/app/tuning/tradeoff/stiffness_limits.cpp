@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Figure "stiffness": the largest spring stiffness that a device can render, against its damping, the servo's rate, the delay and the
 /// virtual damping. Measured with the actual tick and the simulated mechanism: a plane, a mass of 0.159 kg released 1 mm from it.
 ///   stiffness-damping.csv  the device's own damping, at 1, 2 and 4 kHz, and at 1 kHz with a period of delay

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Largest spring stiffness that a haptic device can render: derived, and simulated with the real tick on a plane. Not for the haptic
 /// thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Model of the chain panel: rows to show, and edits of the chain as JSON text for scene::Document. Independent of the GUI. Frame thread.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Edits of the scene by panels. An edit is recorded with its undo label and executed after the GUI of this frame is complete; until then
 /// nothing that a panel refers to changes, since every edit reads the scene again. An edit that is not possible is reported in one line and
 /// changes nothing. Pointers are RFC 6901, values JSON text (engine/scene/to_json.h).

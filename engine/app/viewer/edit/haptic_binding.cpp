@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/edit/haptic_binding.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Haptic binding (command "Feel"): creates the link of the chain that lies on a visible item, so that haptics and image agree.
 ///   isosurface    the same field and level (or the widget that states it); free on the side of the camera
 ///                 of a surface of several labels (engine/scene/labels.h): the picked label's surface, as an added field

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/edit/histogram_cache.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cache of field values for histograms: a sorted sample per field version, computed on a separate thread so that no frame waits. At most
 /// about 2 million floats per field; those of removed fields are discarded. Frame thread.
 #pragma once

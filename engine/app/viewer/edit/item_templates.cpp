@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/edit/item_templates.h"
 
 #include <algorithm>

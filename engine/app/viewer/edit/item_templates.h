@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Templates of new items: "show this field as ..", as JSON text with defaults that show something. Pure, any thread.
 #pragma once
 #include <string>

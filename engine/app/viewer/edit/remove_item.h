@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Removal of an item from a list of the scene, with everything that refers to it. Frame thread.
 ///   references to other items of the list by index   are renumbered
 ///   references to the item itself                    scalar bars are removed; glyphs on a slice stay on a plane equal to the slice's,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/edit/scene_items.h"
 
 #include <algorithm>

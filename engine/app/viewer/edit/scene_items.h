@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Items of the scene: their JSON pointers (RFC 6901) in the scene's text, and relations between them. Pure, any thread.
 #pragma once
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/edit/transfer_editing.h"
 
 #include <algorithm>

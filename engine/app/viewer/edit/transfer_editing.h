@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Operations of the transfer function editor on control points: find, add, move, remove. The values are strictly increasing after every
 /// operation: a point stays between its neighbors, the outermost ones within the plot. Pure, any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Moves the view by commands, held keys and the turntable, and keeps the scene's camera equal to it. Frame thread.
 #pragma once
 #include "engine/app/viewer/input/camera_motion.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Camera motion by itself or by held keys: flight and turntable. Pure functions of the elapsed time, so that the path is independent of
 /// the frame rate. World units, seconds, radians; any thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/input/commands.h"
 
 #define GLFW_INCLUDE_NONE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Commands of the window: everything that a user can trigger. Keys, menu entries, panel buttons and dropped files push a Command into one
 /// queue; Session::execute applies it, in order, after every key press and every GUI frame. A command without parameters is an Action,
 /// described in one row of the table in commands.cpp, which defines its menu entry, its keys and its line in the key list. To add one: a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/input/haptic_session.h"
 
 #include <fmt/format.h>

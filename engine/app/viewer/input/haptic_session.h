@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The haptic session of a window: owns the device that moves the probe (a haptic device, else the mouse), its servo, the recording, and
 /// the program that the servo runs. Device, program and recording can be replaced while the servo runs.
 /// The frame thread never waits for the servo, nor the servo for the frame thread. Frame thread.

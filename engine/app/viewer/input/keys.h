@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Key events as plain data, and the rules by which they are distributed to GUI frames. The actions of key presses are in commands.h. Frame
 /// thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Navigation with mouse and keys, independent of the window: plain input is converted to a new view and a new probe position.
 ///   orbit: left drag     pan: middle drag, or shift and left drag     zoom: wheel
 ///   probe: right drag, or control held: motion in the plane through the probe parallel to the image, wheel for depth

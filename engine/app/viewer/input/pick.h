@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Picking: the nearest opaque object under the pointer, or within volumes the point that their color comes from.
 ///   a ray through volumes: a(t) = 1 - exp(-integral of sigma), over all volumes; the point is the first t with a(t) >= 0.5, or if that is
 ///   never reached the t of the largest contribution, the largest d a/dt. A projection (maximum, minimum): the point of its value. If a

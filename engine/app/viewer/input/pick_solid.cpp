@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Intersection of a ray with the opaque items of a packet.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The part of a ray that lies within half spaces and a field's domain. Lengths along a unit direction, world units. Pure, any thread.
 #pragma once
 #include <algorithm>

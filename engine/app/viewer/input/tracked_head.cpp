@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/input/tracked_head.h"
 
 #include <fmt/format.h>

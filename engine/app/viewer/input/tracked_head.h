@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Head tracking, option "--head": the position of the user's head in front of a display screen of the scene, so that the window shows the
 /// scene behind it (fish tank VR).
 ///   FILE.csv, recorded:FILE.csv   t,x,y,z in world units, played in real time from the first row, as in `render --head`

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the chain: the links in their order, the status of each, and its keys.
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/panels/color_widgets.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Widgets shared by the panels for the appearance of the scene, in addition to property_widgets.h: color scales and histograms. Frame
 /// thread, between Gui::begin and end.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of points from tables and curves from files: one color, colors by direction or by value; and their plain keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the device: the device that moves the probe, the state of its servo, and the other available devices.
 #include <fmt/format.h>
 #include <imgui.h>

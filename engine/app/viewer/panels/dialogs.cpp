@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Modal dialogs: messages and questions above all other panels.
 #include <imgui.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the environment: background, visual aids, stereo, projection, title.
 #include <cstring>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of field values: under the pointer, at the probe, at the last proxy.
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the fields: description, histogram of the values, and buttons that show the field.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Dialogs Open and Save as: a folder, its files, and a path to type (Tab completes it).
 #include <imgui.h>
 

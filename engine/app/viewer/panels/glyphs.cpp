@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the arrow glyphs: vector field, positions, spacing, length, colors.
 #include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/app/viewer/panels/color_widgets.h"

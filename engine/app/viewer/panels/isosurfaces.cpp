@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the isosurfaces: level on the field's histogram, color, opacity. The link on a surface follows its level.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The menu bar at the top: entries that request the commands.
 #include <imgui.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the meshes: color and plain keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/color_widgets.h"

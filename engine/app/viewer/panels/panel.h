@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Panels of the GUI: their interface, the state they share, and the functions that draw the GUI outside the panels. Frame thread.
 #pragma once
 #include <deque>

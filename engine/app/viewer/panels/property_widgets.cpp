@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/panels/property_widgets.h"
 
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Widgets for numbers, colors and choices of the scene; a change by the user becomes an edit of the scene at `pointer`. The edits of one
 /// drag form one undo step. A new key that is a boolean, a choice, or a number within a range needs no line in its panel: edit_simple_keys
 /// draws everything in the component's schema. Another slider is one line:

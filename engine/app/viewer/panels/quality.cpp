@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the quality: image quality, frame time, GPU memory.
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the recording: starts and stops writing every tick of the session to a file.
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the slices: plane, colors, opacity, contours.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The status line at the bottom: the newest message or the point under the pointer, and the force on the device.
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the time steps: the step shown and the playback speed.
 #include <imgui.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the timings: recent frame times against their budget, histograms of frames and ticks on logarithmic scales.
 #include <fmt/format.h>
 #include <imgui.h>

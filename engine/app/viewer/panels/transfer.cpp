@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the volumes and their transfer functions: opacity points over the histogram, colors in a bar below, edited with the pointer.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the tuning: one slider between fast and exact, with predicted and measured error and cost.
 #include <fmt/format.h>
 #include <imgui.h>

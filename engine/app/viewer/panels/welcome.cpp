@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel shown when no scene is open: how to begin.
 #include <imgui.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Panel of the widgets that the probe can move: state, pose, and creation of new ones.
 #include <fmt/format.h>
 #include <imgui.h>

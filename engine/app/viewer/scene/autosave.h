@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Autosave: keeps the current text of the scene in a file while there are unsaved changes, so that they survive a killed program. The file
 /// SCENE.json.unsaved-<12 hex digits> is next to the scene; for a data file whose scene was never saved it is in the user's own folder
 /// (state_folder() in file_browser.h, unsaved/<hash of the path>-SCENE.json.unsaved-...), so that nothing is written next to data without

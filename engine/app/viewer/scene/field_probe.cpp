@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/scene/field_probe.h"
 
 #include <fmt/format.h>

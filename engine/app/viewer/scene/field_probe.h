@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Values of the scene's fields at a point: every loaded field, by name, with its unit. Frame thread.
 #pragma once
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Directory listings for the Open dialog, path completion, unused file names and the list of recent files. Lists only what the user may
 /// read; never throws. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/scene/scene_files.h"
 
 #include <fmt/format.h>

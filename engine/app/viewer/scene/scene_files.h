@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// File operations of the window: opening, adding, saving and closing the scene, and autosave. Loading runs in the background; a failure is
 /// reported in one line and leaves everything unchanged. Frame thread.
 #pragma once

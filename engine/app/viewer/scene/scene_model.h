@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The scene shown in the window together with the text it is read from. Edits change the text; the scene is then read again and takes over
 /// loaded data, haptic state and the camera. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/scene/time_playback.h"
 
 #include <algorithm>

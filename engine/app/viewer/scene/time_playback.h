@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Playback of a scene's time steps (engine/scene/time_steps.h), in a window or for a browser. Frame thread.
 #pragma once
 #include <cstdint>

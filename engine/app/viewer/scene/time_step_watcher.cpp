@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/scene/time_step_watcher.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Watches for new time steps in the background (engine/scene/follow_files.h), for a window or a browser: option `--follow`. If the newest
 /// step is shown, the view advances to the next one; any other step stays. Called on the frame thread; the search has a thread of its own.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/frame_builder.h"
 
 #include <algorithm>

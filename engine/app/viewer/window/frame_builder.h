@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Selects the next frame of the scene and makes its packet, independent of who renders it and where it is shown: a window (viewport.h) or
 /// a browser (engine/app/server). Remembers the packet of the last frame. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/gui.h"
 
 // ImGui's backend includes GLFW, which must not declare OpenGL

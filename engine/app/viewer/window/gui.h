@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The GUI (Dear ImGui): takes input events, produces triangles. Only this file's implementation and the panels include ImGui. Frame
 /// thread; one instance at a time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Layout of the window: the image area lies next to the panels, not under them. Window coordinates, y down. Pure, any thread.
 #pragma once
 #include <array>

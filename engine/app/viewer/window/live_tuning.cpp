@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/live_tuning.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tuning of the scene in a window or browser (engine/app/tuning/plan): targets, the cost curves of image and tick once measured, the
 /// measured tracking error, and the slider between fast and exact. The targets stated in the scene's text have precedence; the slider edits
 /// its "quality" and "coupling". Frame thread.

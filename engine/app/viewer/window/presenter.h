@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shows images in the window: owns renderer and swapchain. A lost device is recreated, once per image; a resized window gets a new
 /// swapchain; nothing is shown while minimized. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/progressive_scheduler.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Progressive rendering: selects the settings of the next frame, fast ones while something moves, better ones when idle. Pure logic,
 /// independent of window and clock.
 ///   interactive: the best setting whose expected time fits the frame budget (time=MS: MS, else kFrameBudgetMs); if even the cheapest

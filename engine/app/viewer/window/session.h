@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Main loop of an open window: input -> latest haptic state -> frame -> GUI. Processes key presses and executes commands; files are in
 /// scene_files.h, the image in viewport.h, the camera in camera_controller.h. Frame thread.
 #pragma once

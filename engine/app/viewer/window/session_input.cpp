@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Carries out commands: the only place that does so.
 #include <utility>
 

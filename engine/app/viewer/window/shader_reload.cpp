@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/shader_reload.h"
 
 #include <fmt/format.h>

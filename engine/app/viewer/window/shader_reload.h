@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shader reloading, option `--shaders DIR`: changed shaders are used without a restart. If one does not compile, the error is reported in
 /// one line and its last working version stays. Frame thread.
 #pragma once

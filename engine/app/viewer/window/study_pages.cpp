@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/window/study_pages.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Pages of a study, shown over the image: pages, questions, and one line while a trial waits. Nothing in them reveals the condition of a
 /// trial. Frame thread, between Gui::begin and end.
 #pragma once

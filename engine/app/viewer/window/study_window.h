@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Window of a live study session: processes key presses and probe motion, and shows the image of the trial with its pages. No panels, menu
 /// or edits; the camera is fixed by the scene. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// State shared by the parts of a window: loop (session.h), files (scene_files.h), viewport (viewport.h), camera (camera_controller.h), and
 /// read by the panels. Each part also has state of its own. Frame thread.
 #pragma once

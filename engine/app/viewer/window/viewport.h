@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The viewport: the image area of the window. Renders the image, shows it with the GUI on top, picks what is under the pointer, and writes
 /// image files. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The application window (GLFW): delivers input as plain data, and the factory of its Vulkan surface. GLFW is called only here and in
 /// ImGui's backend (gui.cpp). Frame thread (the process's main thread) only.
 #pragma once

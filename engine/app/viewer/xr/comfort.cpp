@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/xr/comfort.h"
 
 namespace catena::xr_interaction {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Comfort measures while the world moves around the user: snap turns and a vignette. Functions of their inputs; the state belongs to the
 /// frame thread.
 #pragma once

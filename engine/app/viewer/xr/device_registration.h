@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registration of a haptic device on the desk of a user who wears a headset. Three touched points determine where it stands
 /// (engine/app/viewer/xr/touch_registration.h); then positions in device meters map to tracking space, and from there to the world:
 ///   world = placement(tracking space),   tracking space = stage(origin + rotation device)     recentering does not move the stage space

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A panel in the tracking space, a rectangle showing an image of given pixel size, and a controller pointing at it.
 ///   panel   center c, orientation q: right is q x, up is q y, the readable side faces q z
 ///   ray     from the controller's aim pose along its -z; it hits the panel where (o + s d - c) . n = 0, s > 0, from the readable side

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registration of a haptic device in tracking space ("room") from three points touched with its grip, each known in device meters and in
 /// tracking space (for example with the controller's tip held to the grip).
 ///   room = R device + t, the rigid motion with the least sum of squared distances over the three points. Both triangles are planar: R

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/xr/touch_registration.h"
 
 #include <fmt/format.h>

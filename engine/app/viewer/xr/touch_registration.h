@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Collects three points that the user touches with the handle of a haptic device and with an XR controller, in either order, and computes
 /// from them where the device stands in tracking space (registration.h).
 ///   touch   a button is pressed, and the point is the mean over the next kHold_s; a touch is rejected with a message if the position moves

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/xr/world_grab.h"
 
 #include <fmt/format.h>

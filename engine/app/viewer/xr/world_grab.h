@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Moving the world with XR controllers: translation, rotation and scaling, and snap turns about the user. Meters in tracking space
 /// ("room"), y up. Pure functions and a small state of the frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/xr/xr_controllers.h"
 
 namespace catena::app {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Interpretation of the XR controllers, frame by frame: squeezing grabs the world (engine/app/viewer/xr/world_grab.h), the right
 /// thumbstick turns the user in steps, and the right controller is the probe, with contact rendered as vibration. While a controller grabs
 /// the world, the probe counts as lost, so that the force ramps up again after the release. Plain data, independent of OpenXR. Frame

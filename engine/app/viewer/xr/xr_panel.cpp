@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #ifdef CATENA_XR
 
 #include "engine/app/viewer/xr/xr_panel.h"

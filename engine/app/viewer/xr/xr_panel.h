@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// XR panel: the window shown in front of the user, toggled by the menu button, with the controller as a mouse on it. The prompts of a
 /// device registration open it, too. It uses the headset's session: call release() before that ends. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/viewer/xr/xr_session.h"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The headset session of `catena view --xr`: renders both eyes, while the window mirrors the first one. When the headset is lost, this is
 /// reported once, the window continues, and the session is retried immediately and then every kRetryIntervalS: the session, or the runtime
 /// (which may be gone for a while) with a new graphics device. Independent of OpenXR types (render/xr has those). Frame thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The page in a real browser, without a display. CATENA_SCREENSHOTS=FOLDER keeps what it looked like.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A headless Chromium, driven over its DevTools (https://chromedevtools.github.io/devtools-protocol).
 #pragma once
 #include <cctype>

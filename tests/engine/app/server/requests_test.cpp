@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/requests.h"
 
 #include <gtest/gtest.h>

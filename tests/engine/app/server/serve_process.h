@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena serve` as a program that runs beside a test.
 #pragma once
 #include <signal.h>

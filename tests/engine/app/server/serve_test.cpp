@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `catena serve` as a page sees it: pictures, the hand, what can be changed, who may change it.
 #include <gtest/gtest.h>
 

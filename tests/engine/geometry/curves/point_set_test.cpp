@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/curves/point_set.h"
 
 #include <gtest/gtest.h>

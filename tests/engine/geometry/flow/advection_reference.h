@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The advection function f_V of Eqs. 3-4 in the field's own time, as the paper prints it: one call carries p along V for a signed dt.
 ///   f_V(p, -dt) equals f_-V(p, dt) bit for bit (Eq. 4): every method only ever forms products h * v.
 /// The program itself integrates in arc length (engine/geometry/flow/flow.h); this tests its methods in another parameter.

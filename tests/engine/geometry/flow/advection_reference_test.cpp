@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/flow/flow.h"
 
 #include <gtest/gtest.h>

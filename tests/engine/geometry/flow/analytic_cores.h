@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Flows about cores that are known, with noise, and how well traced lines lie on them.
 #pragma once
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // StreamlineTracing through cubic cells: their own numbers, and how much nearer they are to the truth than lines through linear cells.
 #include <gtest/gtest.h>
 

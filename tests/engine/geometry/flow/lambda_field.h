@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A vector field from a lambda, for tests of the flow: v(p), inside everywhere unless the second lambda says otherwise.
 #pragma once
 #include <functional>

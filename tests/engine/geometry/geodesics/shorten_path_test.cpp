@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/geodesics/geodesics.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/geometry/mesh/isosurface.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/curves/load_curves.h"
 
 #include <gtest/gtest.h>

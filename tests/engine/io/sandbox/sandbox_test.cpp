@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the readers of foreign files can no longer do once they have shut themselves in: each is tried, in a process made for it.
 #include "engine/io/sandbox/sandbox.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Impl of grids: the values of the whole, nothing beyond, and of a .vdb nothing else read.
 #include "engine/io/volume/crop.h"
 

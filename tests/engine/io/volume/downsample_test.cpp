@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/io/volume/downsample.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What VTK's flags, masks and gaps leave of a file's data, in every form of grid.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Grids of n^3 unit cells in VTK's XML forms, with flags at points and cells, for the tests of what is data and what is not.
 #pragma once
 #include "tests/engine/io/vtk/files.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Collections of files with their times, .pvd and .series: what is read at each step, and what is refused.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Small DICOM files for tests: explicit VR, little- or big-endian, elements in any order.
 #pragma once
 #include <fmt/format.h>

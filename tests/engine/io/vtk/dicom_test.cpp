@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// DICOM files written here element by element, against the values and places that their headers state.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Small files of other programs' formats as text, for the tests of their readers.
 #pragma once
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// OpenFOAM cases, written here: by folder and by name, whole and decomposed, ascii and binary, in several regions.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Files of other programs, written here byte by byte as their formats say, against the numbers and places that went in.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Damaged files of the formats that catena-read-vtk and catena-read read: a grid or a mesh that can be sampled, or one line; never a
 /// reader that stays, never more memory than is allowed. Two bytes of three are changed in the first 2 kB, where the heads are.
 #include <gtest/gtest.h>

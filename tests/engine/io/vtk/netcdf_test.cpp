@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// NetCDF files made by its own library: holes and values as the attributes of each variable define them.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Files that end before their data do, as a copy that was broken off or a program that still writes leaves them: refused, never read as
 /// what the memory held.
 #include <fmt/format.h>

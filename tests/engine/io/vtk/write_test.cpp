@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What Catena writes as .vti and .nrrd, read again by VTK and ITK.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The statistics of a study against two independent packages: R 4.2.2 (t.test, cor.test, p.adjust, power.t.test with strict = TRUE, pt
 /// with ncp and uniroot, binom.test) and scipy 1.10.1 with numpy 1.24.2 (permutation_test, and where it says so). NumberArray as they
 /// printed them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A made-up boot stream of the C2000 form, for tests: the vendor's firmware may not be shipped.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The emulator's mechanism against golden values of the device, which pin the driver's kinematics too.
 #include "haptics/device/emulator/emulated_mechanism.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The emulated Falcon byte by byte, without libusb: the protocol's golden vectors, the boot ROM, homing, faults.
 #include "haptics/device/emulator/emulated_falcon.h"
 

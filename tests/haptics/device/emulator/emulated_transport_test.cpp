@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The type "emulated-falcon": the real driver over the emulator without libusb.
 #include "haptics/device/emulator/emulated_transport.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The Falcon driver over the unmodified libusb, on an emulated device on umockdev's bus: coming and going, stalls, time-outs,
 /// damaged frames, homing. Asserts counts, order and states, never a time.
 #include "haptics/device/usb/falcon.h"

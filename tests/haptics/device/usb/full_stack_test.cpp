@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The whole of the hand's side once through umockdev: libusb's own enumeration and events included.
 #include "tests/haptics/device/usbfs/full_stack_program.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The emulation itself, with a small client of libusb's own instead of the driver: what umockdev, the URB queues and the
 /// device make of bulk and control transfers, stalls, time-outs, hotplug and unplugging.
 #include "tests/haptics/device/usbfs/raw_client.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The program `catena` with a Falcon on umockdev's bus is killed and stopped at random moments: the motors' last packet is a zero. The
 /// device is this test's: it outlives the program, and keeps every packet that it gets. Asserts order and counts; the times that a
 /// force outlived its program are kept as properties.

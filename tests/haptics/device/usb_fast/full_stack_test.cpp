@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The whole of the hand's side over the unmodified libusb within one process: forces to within half a motor count, a hand that
 /// pushes into the surface and feels it.
 #include "tests/haptics/device/usbfs/full_stack_program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The watchdog's work (haptics/watchdog) and the driver's side of it, in one process: it runs on a thread here, and "the program stands
 /// still" is the driver's threads held in a signal handler, at any instruction outside the kernel, as SIGSTOP would hold them.
 /// Asserts order and counts.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The cutting plane in the hand, end to end: encoder counts and button bits over the unmodified libusb, the driver, the servo, the
 /// machine; poses against closed forms of where the grip is.
 #include "tests/haptics/device/usbfs/full_stack_widget_program.h"

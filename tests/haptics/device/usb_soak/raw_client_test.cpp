@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The in-process way of putting libusb before the emulated device, with a small client of libusb's own.
 #include "tests/haptics/device/usbfs/raw_client.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Servo, driver and the unmodified libusb for a long time within one process, with faults now and then: 20 000 ticks and frames,
 /// or CATENA_SOAK_TICKS=1000000. Four threads: servo, the driver's own, the bus's timer, this one.
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/haptics/device/usbfs/emulated_usbfs.h"
 
 #include <algorithm>

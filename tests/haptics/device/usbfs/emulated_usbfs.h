@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the kernel's usbdevfs does for one plugged-in device, with the emulated Falcon at the end of the wire: URBs are queued,
 /// completed, reaped, discarded. umockdev_bus.h and in_process_bus.h carry libusb's system calls here.
 /// An OUT URB is delivered at once; an IN URB waits for payload, or for the chip's latency timer (an idle packet of 2 bytes).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the tests of the driver on an emulated Falcon share, whichever bus carries the bytes: patience, homing, whole counts.
 #pragma once
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The ball of servo_rig.h as a scene's isosurface: all of the hand's side is the real one.
 #pragma once
 #include "haptics/build/build_program.h"

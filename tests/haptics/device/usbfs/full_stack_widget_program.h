@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A cutting plane in the hand's workspace (servo_rig.h): its sizes are those of L = 4.
 #pragma once
 #include "haptics/build/build_program.h"

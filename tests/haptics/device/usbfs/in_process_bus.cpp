@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/haptics/device/usbfs/in_process_bus.h"
 
 #include <dlfcn.h>

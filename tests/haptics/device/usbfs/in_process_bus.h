@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// libusb on the emulated Falcon within one process, in microseconds a round trip: this program's own ioctl, read and lseek
 /// stand before the C library's, and answer for one file descriptor; everything else passes through. The descriptor is the
 /// writing end of a pipe of one slot: full = nothing to reap, empty = POLLOUT, the other end closed = POLLERR.

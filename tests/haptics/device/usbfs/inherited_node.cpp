@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A library to preload before umockdev's, for two things that a kernel's usbfs does and umockdev's does not.
 //   A node that was inherited: umockdev knows one only where the process itself has opened it. catena-watchdog's descriptor 3 is opened
 //   again here, and its requests go to the new descriptor.

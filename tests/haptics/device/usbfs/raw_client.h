@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A small client of libusb's own: what the emulation does is tested with it before the driver stands on it.
 #pragma once
 #include <libusb.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A program on the hand's side over USB bytes: servo, Falcon driver, libusb, and the emulated mechanism that stands where its
 /// encoders say and feels what its motors are sent. For both buses. The program holds the hand out of a ball: |x| = 0.5 at
 /// 0.04 m a unit, around the device's (0, 0, 0.12) m: 20 mm in radius.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/haptics/device/usbfs/umockdev_bus.h"
 
 #include <pty.h>

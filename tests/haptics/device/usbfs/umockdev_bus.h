@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A USB bus of umockdev's with the emulated Falcon on it: sysfs, udev events and the device node are umockdev's, so the
 /// unmodified libusb enumerates, opens and loses the device as it would a real one. Needs `umockdev-wrapper` around the test.
 /// Every plug-in is a new device number with a new node. A node is a link to a PTY: its output stopped = nothing to reap,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The in-process bus as a driver's source: the one descriptor, wrapped by libusb at each open.
 #pragma once
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The headset's wait has a thread of its own: answers come in order and once each, patience ends, a late answer is not lost, and the end
 /// waits for a call that is under way.
 #include "render/xr/frame_waiter.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Curves of error against cost, as measured by `catena tradeoff SCENE`. One parameter of haptics or rendering is one curve; each of its
 /// settings is a point. Plain data: written as JSON and CSV, and read back for --compare.
 /// NaN denotes a value that was not measured or has no meaning for the curve.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure/discretization_error.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Discretization error: how far a grid of spacing h determines the field that it samples, estimated from the grid alone.
 ///   E(c h) ~ C (c h)^p;  the grid is subsampled to spacings 2 h and 4 h, whose errors can be measured; the observed order p gives E(h)
 /// The grid is first cropped to 4 k + 1 voxels per axis, so that all three spacings cover the same domain. Not for the haptic thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure/fetch_timing.h"
 
 #include <random>

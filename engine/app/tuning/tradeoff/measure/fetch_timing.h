@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cost of a field fetch: positions along random straight lines, distributed like the fetches of a probe, and a timed run (timing.h) over
 /// them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Numbers as text for the sentences of a report. Any thread.
 #pragma once
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure/pareto_choice.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Choice of a setting from measured points. Pure functions, any thread.
 ///   front   points that no other point beats in both error and cost, cheapest first; of equal points the first
 ///   floor   an error at or below the discretization error cannot be distinguished from it: the cheapest point that reaches it is chosen

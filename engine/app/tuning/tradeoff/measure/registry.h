@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Registry of the measurements of `catena tradeoff SCENE`. To add one, add a file in measure/data, measure/haptics or measure/rendering
 /// and a line in registry.cpp. A measurement returns one curve per item of the scene it applies to; none, with a sentence in
 /// Workload::skipped, if there is no such item. An Error is a failure of the system and omits that measurement.

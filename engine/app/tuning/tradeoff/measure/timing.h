@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Timing that is robust against load on the system: the settings of a curve run interleaved, each round starting with another one. The
 /// time of a setting is the median over its rounds, its spread the quartiles. Processor time where the processor does the work.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure/workload.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The workload that curves are measured on: one scene, prepared once, with the motion of the probe and the rendered image where it has
 /// them.
 #pragma once

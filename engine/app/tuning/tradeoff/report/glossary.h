@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Glossary for the end of a report page: terms that a reader may not know. A page lists only the terms that it uses.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Report of one run of `catena tradeoff SCENE`: its curves and their origin. One JSON file holds all of it; an HTML page is made of one
 /// report or two.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/server/http/access_control.h"
 
 #include <gtest/gtest.h>

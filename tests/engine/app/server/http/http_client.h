@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A client for tests: requests and WebSockets by hand, good and bad ones. Everything waits at most some seconds.
 #pragma once
 #include <boost/asio/connect.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The server against a client of its own: who is let in, what comes through, and what a hostile one can do.
 #include "engine/app/server/http/server.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stands before ITK's NRRD reader in a second catena-read-vtk: it answers with x and y of all axes turned round. In the space
 /// left-anterior-superior that is what an ITK that turns y to the back, as its documentation has it, would answer; ITK 5.2 turns x.
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Interpolation error, linear or cubic, on each grid of the scene: measured at every 4th and every 2nd voxel, and extrapolated to the grid
 /// itself. The last is the discretization error of haptics and rendering. For a formula that is sampled on a grid the true error is shown
 /// too.

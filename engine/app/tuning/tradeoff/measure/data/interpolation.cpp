@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Interpolation of each grid of the scene: linear or cubic.
 ///   error  root mean square of the interpolation's error, by the range of the values: measured at every 4th and every 2nd voxel and
 ///          extrapolated to the grid itself (discretization_error.h); for a formula that is sampled on a grid, against the formula

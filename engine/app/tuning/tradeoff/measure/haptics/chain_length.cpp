@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Cost of each link of the chain: the scene's chain truncated after 1, 2, ... links.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Accuracy of an isosurface link on the given grid and on coarser grids. The link has no setting of its own: it iterates
 /// until the remaining tangential distance is below 1e-8 L (haptics/constraints/isosurface).
 ///   error  root mean square of |s(p) - level| / |grad s| in the given field over the ticks in contact, by L

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure/haptics/link_replay.h"
 
 #include <memory>

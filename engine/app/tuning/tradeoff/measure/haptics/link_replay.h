@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs the real tick of a program along a path, to observe or to time it. Not for the haptic thread.
 #pragma once
 #include <functional>

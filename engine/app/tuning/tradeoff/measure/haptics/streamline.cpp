@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Methods of a streamline link: every integrator, the embedded ones at several tolerances, and the precomputed curve.
 ///   error  maximum distance of the proxy from the reference line, along the whole motion, by L
 ///   floor  discretization error: the lines through the same seed on the grid at 2 h and 4 h, extrapolated; a formula has none

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Integration settings of a streamline link and their measured curve, shared by `tradeoff` and the tick tuning. Not for the haptic thread.
 #pragma once
 #include <optional>

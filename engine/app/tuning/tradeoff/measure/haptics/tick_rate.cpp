@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Tick rate of the servo: the force compared with that of a servo of 10 kHz, and the largest spring stiffness that stays stable.
 #include <fmt/format.h>
 

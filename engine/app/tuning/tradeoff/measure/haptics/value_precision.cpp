@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Precision of the values of a grid: floats, half floats, and bytes between the minimum and the maximum value. An experiment on a
 /// copy with its own trilinear fetch; Catena's haptics reads floats and has no setting for it.
 ///   error  root mean square difference of a sample from that of floats, at points within the grid, by the range of the values

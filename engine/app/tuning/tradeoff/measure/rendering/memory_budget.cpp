@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Memory budget of the device: grids that do not fit are rendered at 1/2, 1/4 or 1/8 of their resolution.
 #include <fmt/format.h>
 

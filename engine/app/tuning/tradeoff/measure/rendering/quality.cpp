@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The values of --quality: draft, balanced, a step, a stated error, reference; with the flicker during a slow rotation.
 #include <fmt/format.h>
 

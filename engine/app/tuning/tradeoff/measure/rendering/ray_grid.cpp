@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Spacing of the ray grid: a ray at every pixel, every 2nd or every 4th in each direction, and its refinement.
 #include <fmt/format.h>
 

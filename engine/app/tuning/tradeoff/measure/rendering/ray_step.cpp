@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Sampling distance along a ray: the exact rays, plain and jittered, and the fast (pre-integrated) ones at every pixel.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "engine/app/tuning/tradeoff/measure/rendering/render_workload.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The rendered image of a workload and the measurement of its settings. Errors are those of render/image/image_error.h: over the covered
 /// pixels, in 1/255, against the reference image. Frame thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Samples of the image: fewer pixels, scaled up, and several samples per pixel, compared with 4 x 4 samples per pixel.
 #include <fmt/format.h>
 

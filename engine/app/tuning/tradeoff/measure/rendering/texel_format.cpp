@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Storage of the grids on the device: 16 or 32 bits per texel, dense or as bricks.
 #include <fmt/format.h>
 
