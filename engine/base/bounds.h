@@ -3,12 +3,13 @@
 #pragma once
 #include <limits>
 
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena {
 
 /// Axis-aligned box. A default-constructed box is empty: lo = infinity, hi = -infinity.
-struct Bounds {
+struct CATENA_EXPORT Bounds {
   Vec3 lo{std::numeric_limits<double>::infinity()};   ///< lowest corner, world units
   Vec3 hi{-std::numeric_limits<double>::infinity()};  ///< highest corner, world units
 

@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
+
 namespace catena {
 
 /// Display range of a set of values and its outliers.
@@ -45,15 +47,15 @@ struct DisplayRange {
 };
 
 /// Returns true for values that files commonly use for missing data: -999, -9999, -32768, 1e20, 9.96921e36 (NetCDF), the largest float, ...
-bool is_fill_value(float value);
+CATENA_EXPORT bool is_fill_value(float value);
 
 /// Returns the display range estimated from a sample, passed by value because it is sorted. `least` and `most` are the minimum and maximum
 /// of all values; the sample may have missed them. Sample values that are not finite or outside of least..most are ignored. Counts refer to
 /// the sample. Returns least..most without outliers when least < most does not hold.
-DisplayRange display_range(std::vector<float> sample, double least, double most);
+CATENA_EXPORT DisplayRange display_range(std::vector<float> sample, double least, double most);
 /// Refines the display range of a sample to the exact range and counts of all values. A value that the sample missed counts as an outlier
 /// when it is nearer to the outliers than to the displayed values, or more than 10 lengths of the range away from it.
-class RangeCounter {
+class CATENA_EXPORT RangeCounter {
  public:
   /// Starts with no values counted. `of_sample` is the display range of the sample.
   explicit RangeCounter(const DisplayRange& of_sample);
@@ -71,14 +73,14 @@ class RangeCounter {
 };
 
 /// Returns the exact display range of all finite values; 0 to 0 when there is none.
-DisplayRange display_range(std::span<const double> values);
+CATENA_EXPORT DisplayRange display_range(std::span<const double> values);
 /// The same for single precision.
-DisplayRange display_range(std::span<const float> values);
+CATENA_EXPORT DisplayRange display_range(std::span<const float> values);
 
 /// Returns the range as text, for example "0 .. 1 (1 value of 1e20 beyond)".
-std::string format_range(const DisplayRange& range);
+CATENA_EXPORT std::string format_range(const DisplayRange& range);
 /// Returns a note on the outliers, a sentence without a final period; empty when there are none. When many outliers share one value, the
 /// note states that it may stand for missing data.
-std::string outlier_note(const DisplayRange& range);
+CATENA_EXPORT std::string outlier_note(const DisplayRange& range);
 
 }  // namespace catena

@@ -3,13 +3,14 @@
 #pragma once
 #include <string>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 
 namespace catena {
 
 /// Exclusive lock on a folder, implemented by flock(2) on the folder itself. The lock ends with its process, however that ends, and leaves
 /// no file behind. On file systems without such locks (some network file systems) acquiring always succeeds.
-class FolderLock {
+class CATENA_EXPORT FolderLock {
  public:
   /// Acquires the lock without waiting. Error: another process or this one already has it ("FOLDER: another session writes to it; ..."), or
   /// the folder cannot be opened.

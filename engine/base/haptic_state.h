@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "engine/base/export.h"
 #include "engine/base/sample_status.h"
 #include "engine/base/vec.h"
 
@@ -24,7 +25,7 @@ enum class WidgetMode : std::uint8_t {
   drag        ///< the probe moves the widget by a handle
 };
 /// Returns the name of a mode: "away" (idle), "explore", "translate" and so on.
-const char* to_string(WidgetMode mode);
+CATENA_EXPORT const char* to_string(WidgetMode mode);
 
 /// Pose of a widget, world units.
 struct WidgetPose {
@@ -75,7 +76,7 @@ enum class LinkStatus : std::uint8_t {
   bad_probe    ///< the position of the probe is not finite
 };
 /// Returns OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE.
-const char* to_string(LinkStatus status);
+CATENA_EXPORT const char* to_string(LinkStatus status);
 
 /// Condition under which a tick ran, set by the servo from the clock and the device.
 enum class TickCondition : std::uint8_t {
@@ -85,7 +86,7 @@ enum class TickCondition : std::uint8_t {
   watchdog    ///< the watchdog has stopped the device
 };
 /// Returns NORMAL LATE NO_DEVICE WATCHDOG.
-const char* to_string(TickCondition condition);
+CATENA_EXPORT const char* to_string(TickCondition condition);
 
 /// State of the force limiter (haptics/chain/force_limiter.h).
 enum class ForceState : std::uint8_t {
@@ -97,7 +98,7 @@ enum class ForceState : std::uint8_t {
   stopped       ///< zero because of a fault
 };
 /// Returns ON OFF RAMPING_IN HELD RAMPING_OUT STOPPED.
-const char* to_string(ForceState state);
+CATENA_EXPORT const char* to_string(ForceState state);
 
 inline constexpr std::int32_t kUnknownCurve = -2;  ///< value of LinkReport::curve when it was not recorded
 

@@ -11,38 +11,39 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 
 namespace catena {
 
 /// Sets the limit in bytes; nullopt: three quarters of the free memory. `of_addresses`: the limit is what ulimit -v leaves of the process
 /// that started this one; the error messages then name it.
-void set_memory_limit(std::optional<std::uint64_t> bytes, bool of_addresses = false);
+CATENA_EXPORT void set_memory_limit(std::optional<std::uint64_t> bytes, bool of_addresses = false);
 /// Returns the limit that was set; nullopt: none. Any thread.
-std::optional<std::uint64_t> memory_limit();
+CATENA_EXPORT std::optional<std::uint64_t> memory_limit();
 /// Returns true when the address-space limit (ulimit -v) determines the available memory.
-bool memory_limit_is_address_space();
+CATENA_EXPORT bool memory_limit_is_address_space();
 /// Returns how often the functions below have refused memory.
-std::uint64_t memory_refusal_count();
+CATENA_EXPORT std::uint64_t memory_refusal_count();
 /// Returns the number of bytes that data may still allocate. Any thread.
-std::uint64_t available_memory();
+CATENA_EXPORT std::uint64_t available_memory();
 
 /// Checks that `bytes` are available; nothing is allocated or reserved. Error: "WHAT needs 274878 MB of memory, expected at most 15123 MB
 /// (--memory MB allows more)"; a system failure that names the limit when the address-space limit determines it. `bytes` may have any size.
-Outcome check_memory_available(const std::string& what, double bytes);
+CATENA_EXPORT Outcome check_memory_available(const std::string& what, double bytes);
 /// The same against `allowed`, an earlier result of available_memory().
-Outcome check_memory_available(const std::string& what, double bytes, std::uint64_t allowed);
+CATENA_EXPORT Outcome check_memory_available(const std::string& what, double bytes, std::uint64_t allowed);
 
 /// The same for texts and what is read from them. Less than 1 MB is never refused, so that a scene can be read and edited while data fill
 /// the limit.
-Outcome check_text_memory_available(const std::string& what, double bytes);
+CATENA_EXPORT Outcome check_text_memory_available(const std::string& what, double bytes);
 
 /// Lets the allocator retain up to 64 MB of freed memory instead of returning it to the system at once: a software renderer allocates and
 /// frees that much several times per image. To be called at the start of a program.
-void retain_freed_memory();
+CATENA_EXPORT void retain_freed_memory();
 
 /// Counts memory as reserved by data during the lifetime of the object.
-class MemoryReservation {
+class CATENA_EXPORT MemoryReservation {
  public:
   MemoryReservation() = default;
   /// Reserves `bytes`.

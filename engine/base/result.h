@@ -6,9 +6,11 @@
 #include <utility>
 #include <variant>
 
+#include "engine/base/export.h"
+
 namespace catena {
 /// Prints the failed expression with its file and line to stderr and aborts. Called by CATENA_ASSERT.
-[[noreturn]] void assertion_failed(const char* expression, const char* file, int line);
+[[noreturn]] CATENA_EXPORT void assertion_failed(const char* expression, const char* file, int line);
 }  // namespace catena
 
 /// Aborts with a message unless the expression holds, in every build type. For bugs in Catena only, never for invalid input.

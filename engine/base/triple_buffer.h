@@ -6,11 +6,13 @@
 #include <atomic>
 #include <type_traits>
 
+#include "engine/base/export.h"
+
 namespace catena {
 
 /// Three slots of T, exchanged without a lock.
 template <class T>
-class TripleBuffer {
+class CATENA_EXPORT TripleBuffer {
   static_assert(std::is_trivially_copyable_v<T>, "only plain data crosses threads");
   static_assert(std::atomic<unsigned>::is_always_lock_free);
 

@@ -22,37 +22,17 @@ if(CATENA_INSTALL)
   install(DIRECTORY assets/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets COMPONENT catena)
 endif()
 
-# ---- what can be seen of library and program: the names that the public headers declare ----
+# ---- the public headers, whose declarations with CATENA_EXPORT can be seen of library and program ----
 set(list engine/cmake/public_headers.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
 file(STRINGS ${list} CATENA_PUBLIC_HEADERS REGEX "^[^#]")
-set(patterns "")
 set(interface "")
 foreach(header ${CATENA_PUBLIC_HEADERS})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
   file(READ ${header} text)
   string(REGEX REPLACE "//[^\n]*" "" text "${text}")
   string(APPEND interface "${text}")
-  string(REGEX MATCHALL "namespace catena[a-z_:]* " spaces "${text}")
-  string(REGEX MATCHALL "(class|struct) [A-Z][A-Za-z0-9]*" types "${text}")
-  string(REGEX MATCHALL "[ *&][a-z][a-z0-9_]*\\(" functions "${text}")
-  list(REMOVE_DUPLICATES spaces)
-  foreach(space ${spaces})
-    string(REGEX REPLACE "namespace ([a-z_:]*) " "\\1" space ${space})
-    foreach(type ${types})
-      string(REGEX REPLACE ".* " "" type ${type})
-      list(APPEND patterns "${space}::${type}::*" "\"vtable for ${space}::${type}\"" "\"typeinfo for ${space}::${type}\""
-        "\"typeinfo name for ${space}::${type}\"")
-    endforeach()
-    foreach(function ${functions})
-      string(REGEX REPLACE "[ *&(]" "" function ${function})
-      list(APPEND patterns "${space}::${function}[!a-zA-Z0-9_]*")
-    endforeach()
-  endforeach()
 endforeach()
-list(SORT patterns)
-list(REMOVE_DUPLICATES patterns)
-string(REPLACE ";" ";\n    " patterns "${patterns}")
 
 # ---- plug-ins: the program has what they call (haptics/plugin/plugin.h), all that is in the modules of the constraints ----
 string(SHA256 interface "${interface}")
@@ -62,19 +42,17 @@ set_source_files_properties(haptics/plugin/load.cpp PROPERTIES COMPILE_DEFINITIO
 add_library(catena_part_plugin INTERFACE)
 add_library(catena::plugin ALIAS catena_part_plugin)
 set_target_properties(catena_part_plugin PROPERTIES EXPORT_NAME plugin)
-target_include_directories(catena_part_plugin INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/catena>)
+set(generated ${PROJECT_BINARY_DIR}/generated)
+target_include_directories(catena_part_plugin INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${generated}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/catena>)
 target_link_libraries(catena_part_plugin INTERFACE glm::glm)
 target_compile_features(catena_part_plugin INTERFACE cxx_std_20)
 target_compile_definitions(catena_part_plugin INTERFACE ${interface})
 target_compile_options(catena_part_plugin INTERFACE -ffp-contract=off)  # a tick repeats to the bit
-file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/program_exports.list CONTENT "{\n  extern \"C++\" {\n    ${patterns};\n  };\n};\n")
-target_link_options(catena PRIVATE -Wl,--dynamic-list=${PROJECT_BINARY_DIR}/program_exports.list)
 set(whole WHOLE_ARCHIVE)
 foreach(module base schema field geometry_mesh geometry_curves geometry_flow widget)
   string(APPEND whole ",catena_engine_${module}")
 endforeach()
-set_target_properties(catena PROPERTIES LINK_DEPENDS ${PROJECT_BINARY_DIR}/program_exports.list
-  LINK_LIBRARY_OVERRIDE "${whole},catena_haptics_chain,catena_haptics_constraints")
+set_target_properties(catena PROPERTIES ENABLE_EXPORTS ON LINK_LIBRARY_OVERRIDE "${whole},catena_haptics_chain,catena_haptics_constraints")
 
 if(NOT CATENA_LIBRARY OR CATENA_SANITIZE)
   return()
@@ -83,7 +61,7 @@ endif()
 # ---- the library ----
 set(node CATENA_${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/exports.map
-  CONTENT "${node} {\n  global:\n  extern \"C++\" {\n    ${patterns};\n  };\n  local: *;\n};\n")
+  CONTENT "${node} {\n  global:\n  extern \"C++\" {\n    catena::*;\n    \"vtable for catena::\"*;\n    \"typeinfo for catena::\"*;\n    \"typeinfo name for catena::\"*;\n  };\n  local: *;\n};\n")
 set(objects "")
 set(third_party "")
 get_property(modules GLOBAL PROPERTY CATENA_MODULES)
@@ -101,7 +79,7 @@ set_target_properties(catena_library PROPERTIES OUTPUT_NAME catena EXPORT_NAME l
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 target_link_options(catena_library PRIVATE -Wl,--version-script=${PROJECT_BINARY_DIR}/exports.map -Wl,--no-undefined -Wl,--as-needed
   -Wl,-z,relro,-z,now,-z,noexecstack)
-target_include_directories(catena_library INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/catena>)
+target_include_directories(catena_library INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${generated}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/catena>)
 target_compile_features(catena_library INTERFACE cxx_std_20)
 add_dependencies(catena_library ${helpers})
 
@@ -129,6 +107,7 @@ endif()
 # ---- what is installed of it ----
 install(TARGETS catena_library catena_part_plugin catena_part_field catena_part_flow catena_part_haptics catena_part_render EXPORT catena
   LIBRARY COMPONENT library NAMELINK_COMPONENT development)
+install(FILES ${generated}/engine/base/export.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/catena/engine/base COMPONENT development)
 foreach(header ${CATENA_PUBLIC_HEADERS})
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/catena/${folder} COMPONENT development)

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "engine/base/bounds.h"
+#include "engine/base/export.h"
 #include "engine/field/field.h"
 
 namespace catena::field {
@@ -23,10 +24,10 @@ using VectorFunction = std::function<Vec3(const Vec3& world)>;
 
 /// Makes a scalar field. `domain` must be non-empty and finite; anything else is a bug and asserts. `least` and `most`: range of the values
 /// over all space; an isosurface outside of it is refused.
-ScalarFieldPtr make_callable_field(std::string name, const Bounds& domain, ScalarFunction function,
-                                   double least = -std::numeric_limits<double>::infinity(),
-                                   double most = std::numeric_limits<double>::infinity());
+CATENA_EXPORT ScalarFieldPtr make_callable_field(std::string name, const Bounds& domain, ScalarFunction function,
+                                                 double least = -std::numeric_limits<double>::infinity(),
+                                                 double most = std::numeric_limits<double>::infinity());
 /// Makes a vector field; `domain` as above.
-VectorFieldPtr make_callable_field(std::string name, const Bounds& domain, VectorFunction function);
+CATENA_EXPORT VectorFieldPtr make_callable_field(std::string name, const Bounds& domain, VectorFunction function);
 
 }  // namespace catena::field

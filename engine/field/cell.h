@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena::field {
@@ -17,7 +18,7 @@ struct Index3 {
 };
 
 /// Cell of a scalar grid.
-struct ScalarCell {
+struct CATENA_EXPORT ScalarCell {
   Index3 base;                     ///< base voxel: index of corner 0
   bool valid = false;              ///< inside the domain, and all eight corners valid where the grid has a mask
   std::array<double, 8> corner{};  ///< values, corner[i + 2 j + 4 k]
@@ -33,7 +34,7 @@ struct ScalarCell {
 };
 
 /// Cell of a vector grid.
-struct VectorCell {
+struct CATENA_EXPORT VectorCell {
   Index3 base;                   ///< base voxel: index of corner 0
   bool valid = false;            ///< as in ScalarCell
   std::array<Vec3, 8> corner{};  ///< vectors in world axes, corner[i + 2 j + 4 k]

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/sample_status.h"
 #include "engine/base/vec.h"
 #include "engine/field/cell.h"
@@ -54,7 +55,7 @@ struct LineSample : LineAxis {
 enum class Interpolation { linear, nearest, cubic };
 
 /// Base of scalar and vector fields: name, version, and domain in the world.
-class Field {
+class CATENA_EXPORT Field {
  public:
   virtual ~Field() = default;
   Field() = default;
@@ -99,7 +100,7 @@ class ScalarGrid;
 class VectorGrid;
 
 /// Scalar field. Values have the unit of the data; positions are in world units.
-class ScalarField : public Field {
+class CATENA_EXPORT ScalarField : public Field {
  public:
   /// Returns value and gradient at a position: one evaluation. Any thread, each with its own Cursor; no allocation, lock or throw.
   virtual ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
@@ -114,7 +115,7 @@ class ScalarField : public Field {
 };
 
 /// Vector field, in world axes.
-class VectorField : public Field {
+class CATENA_EXPORT VectorField : public Field {
  public:
   /// Returns the vector at a position: one evaluation. Any thread, each with its own Cursor; no allocation, lock or throw.
   virtual VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
@@ -125,7 +126,7 @@ class VectorField : public Field {
 };
 
 /// Returns what the user can do when a surface is requested of a field with nearest interpolation, which has none; empty for other fields.
-std::string no_surface_hint(const ScalarField& field, const std::string& name);
+CATENA_EXPORT std::string no_surface_hint(const ScalarField& field, const std::string& name);
 
 /// Shared ownership of an immutable field.
 using ScalarFieldPtr = std::shared_ptr<const ScalarField>;

@@ -8,6 +8,7 @@
 #pragma once
 #include <array>
 
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena::field {
@@ -44,7 +45,7 @@ struct LineAxis {
 };
 
 /// Dyads of a cell as a trilinear polynomial, for evaluation at many positions in one cell.
-class DyadCell {
+class CATENA_EXPORT DyadCell {
  public:
   DyadCell() = default;
   /// From the vectors at the eight corners (order: cell.h).
@@ -58,10 +59,10 @@ class DyadCell {
 };
 
 /// Returns the eigenvector of the largest eigenvalue of a matrix that is positive semidefinite except for rounding.
-LineAxis leading_axis(const Dyad& m) noexcept;
+CATENA_EXPORT LineAxis leading_axis(const Dyad& m) noexcept;
 
 /// Returns the axis at the position f of a trilinear cell (corner order: cell.h; f may be outside of [0, 1]^3). Its sign agrees with the
 /// non-zero corner of largest weight. Corners that are not finite give no axis.
-LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept;
+CATENA_EXPORT LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept;
 
 }  // namespace catena::field

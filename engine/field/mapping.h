@@ -3,12 +3,13 @@
 /// shears. Analytic fields have J = 1, origin = 0.
 #pragma once
 #include "engine/base/bounds.h"
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena::field {
 
 /// Map from index space to the world and its inverse, computed once.
-struct Mapping {
+struct CATENA_EXPORT Mapping {
   Mat3 world_from_index_linear{1.0};  ///< J, world units per voxel
   Mat3 index_from_world_linear{1.0};  ///< J^-1
   Vec3 origin{0.0};                   ///< world position of index (0, 0, 0)
@@ -38,8 +39,8 @@ struct Box {
 };
 
 /// Returns the world position of corner number i + 2 j + 4 k of an index box, which may be oblique in the world.
-Vec3 world_corner(const Mapping& mapping, const Box& box, int i);
+CATENA_EXPORT Vec3 world_corner(const Mapping& mapping, const Box& box, int i);
 /// Returns the world-axis-aligned box that encloses all eight corners, world units.
-Bounds world_bounds(const Mapping& mapping, const Box& box);
+CATENA_EXPORT Bounds world_bounds(const Mapping& mapping, const Box& box);
 
 }  // namespace catena::field

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/json.h"
 #include "engine/scene/components.h"
 
@@ -57,6 +58,6 @@ struct Annotations {
 };
 
 /// Returns a scalar bar for the first colored object of the scene; nullopt if there is none.
-std::optional<ScalarBar> first_scalar_bar(const EntityStore& world);
+CATENA_EXPORT std::optional<ScalarBar> first_scalar_bar(const EntityStore& world);
 
 }  // namespace catena::scene

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "engine/base/color.h"
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 
 namespace catena::scene {
@@ -34,12 +35,12 @@ inline constexpr std::size_t kMaxLabelRows = 65536;  ///< Maximum number of rows
 inline constexpr double kMaxLabelValue = 1 << 24;    ///< Maximum |value| of a label: floats represent whole numbers exactly up to here
 
 /// Parses the text of a table; `file` is for messages. Error: "FILE:LINE: what; what was expected".
-Result<LabelTable> parse_label_table(std::string_view text, const std::string& file);
+CATENA_EXPORT Result<LabelTable> parse_label_table(std::string_view text, const std::string& file);
 /// Reads a table from a file.
-Result<LabelTable> read_label_table(const std::string& path);
+CATENA_EXPORT Result<LabelTable> read_label_table(const std::string& path);
 
 /// Returns the path of the label table beside a label map: the same name, with its extension replaced or followed by one of .txt, .ctbl,
 /// .label, .csv, .tsv, .lut, if it can be read as a table. Empty: none.
-std::string find_label_table(const std::string& path);
+CATENA_EXPORT std::string find_label_table(const std::string& path);
 
 }  // namespace catena::scene

@@ -3,6 +3,7 @@
 /// visible objects name, and traces their streamlines. Rendering and haptics then only read the scene. Frame thread.
 #pragma once
 #include "engine/base/bounds.h"
+#include "engine/base/export.h"
 #include "engine/base/haptic_state.h"
 #include "engine/scene/scene.h"
 
@@ -12,21 +13,21 @@ namespace catena::scene {
 enum class StreamlineTracing { immediate, deferred };
 
 /// Prepares the scene. Results are cached: an unchanged scene costs nothing. Errors have the scene file's name and line.
-Outcome prepare(Scene& scene, StreamlineTracing streamlines = StreamlineTracing::immediate);
+CATENA_EXPORT Outcome prepare(Scene& scene, StreamlineTracing streamlines = StreamlineTracing::immediate);
 
 /// Returns the bounds, in world units, of everything loaded and of the visible streamlines. Empty before prepare.
-Bounds scene_bounds(const Scene& scene);
+CATENA_EXPORT Bounds scene_bounds(const Scene& scene);
 
 // Systems: free functions over the entities, run once a frame, after the tick report is received and before the image is rendered.
 // Frame thread only.
 
 /// Writes the newest haptic state to the cursor: probe, proxies, which links are active, force (world axes, N). A state with a non-finite
 /// probe is ignored.
-void update_cursor(Scene& scene, const HapticState& state);
+CATENA_EXPORT void update_cursor(Scene& scene, const HapticState& state);
 
 /// Writes the tick report of each widget to its component: pose, value, mode, handle and planes. Ignores reports for another number of
 /// widgets, for a revision other than that of the pose set last, or with non-finite values. Returns whether a pose or value changed.
-bool update_widgets(Scene& scene, const HapticState& state);
+CATENA_EXPORT bool update_widgets(Scene& scene, const HapticState& state);
 
 /// What changed since the previous call of propagate_widgets.
 struct WidgetChanges {
@@ -40,6 +41,6 @@ struct WidgetChanges {
 
 /// Applies widget poses to the slices, planes of glyphs, clip planes, seeds and isosurfaces bound to them; a level is clamped to the values
 /// of the field that is rendered. Completes the widgets (resolve_widget). Widgets that have not moved cost nothing. Called by prepare.
-Result<WidgetChanges> propagate_widgets(Scene& scene);
+CATENA_EXPORT Result<WidgetChanges> propagate_widgets(Scene& scene);
 
 }  // namespace catena::scene

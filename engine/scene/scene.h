@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/geometry/flow/curve.h"
 #include "engine/scene/annotations.h"
@@ -72,21 +73,22 @@ struct FieldOverride {
 };
 
 /// Returns the targets of an image quality "error=E" or "time=MS"; none for the other qualities, which are fixed settings.
-TuningTargets image_targets(std::string_view quality);
+CATENA_EXPORT TuningTargets image_targets(std::string_view quality);
 
 /// Reads and checks a whole scene file. Fields are not loaded, but every file that the scene names must exist. Error: file, line and what
 /// was expected.
-Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
+CATENA_EXPORT Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// Same for a text; relative file names start at the folder of `path`, which also names the text in messages.
-Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
+CATENA_EXPORT Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// Creates the scene of a data file. Scalar grids are shown by the kind of data (default_visualization.h), vector grids as streamlines,
 /// triangle meshes as they are, curves in the colors of their directions, points as balls; the camera is fitted. `grid`: the grid to show;
 /// empty: the first usable scalar grid, else the first vector grid. `colors` may specify a color map and a range: a scalar grid is then a
 /// volume whose opacity follows the range, and lines are colored by speed. `step`: time step that is analyzed and shown.
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {}, int step = 0);
+CATENA_EXPORT Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {},
+                                           int step = 0);
 
 /// Same for a grid of the calling program, which becomes the field "field". Error: it is no grid, or has no finite value.
-Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
+CATENA_EXPORT Result<Scene> scene_for_field(const field::AnyField& grid, const NamedColors& colors = {});
 
 /// Description of a data file at a time step.
 struct FileSummary {
@@ -94,17 +96,17 @@ struct FileSummary {
   TimeSteps steps;                 ///< Time steps of the file or pattern
 };
 /// Returns the description; empty for a file that cannot be shown.
-FileSummary summarize_file(const std::string& path, const std::string& grid = {}, int step = 0);
+CATENA_EXPORT FileSummary summarize_file(const std::string& path, const std::string& grid = {}, int step = 0);
 
 /// How a data file is shown. If the file name extension allows several, the content decides: fields before surfaces, lines and points.
 /// For a pattern its first file counts.
 enum class FileKind { field, mesh, curves, points };
 /// Returns the kind of a file. Opens the file only if its extension allows several kinds.
-FileKind detect_file_kind(const std::string& path);
+CATENA_EXPORT FileKind detect_file_kind(const std::string& path);
 
 /// Returns the sections of the scene file (engine/schema), from which docs/reference/scene.md, the JSON Schema and the reader are made. The
 /// modules that read the links of "chain" and the keys of "device" describe them.
-const std::vector<schema::Section>& scene_components();
+CATENA_EXPORT const std::vector<schema::Section>& scene_components();
 
 /// Returns the entity of that name among those that own a T; none: an entity that is false.
 template <class T>
@@ -123,41 +125,41 @@ inline Entity find_mesh(const Scene& scene, std::string_view name) { return find
 inline Entity find_widget(const Scene& scene, std::string_view name) { return find_named<Widget>(scene, name); }
 
 /// Returns the field, loading it on first use. `where`: node that names the field, for messages. Error: it cannot be loaded.
-Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::Node& where);
+CATENA_EXPORT Result<field::AnyField> resolve_field(Scene& scene, Entity field, const json::Node& where);
 /// Same by name; an Error lists the known names.
-Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, const json::Node& where);
+CATENA_EXPORT Result<field::AnyField> resolve_field(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns the field as a grid for images; an analytic field is sampled once. Completes the colors and opacities of volumes over the field
 /// from its histogram (auto_transfer.h). Error: it cannot be loaded or sampled, or is too far from the origin.
-Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const json::Node& where);
+CATENA_EXPORT Result<field::AnyField> resolve_rendered_field(Scene& scene, Entity field, const json::Node& where);
 /// Returns the mesh, loading it on first use; rendering and haptics share it.
-Result<mesh::MeshPtr> resolve_mesh(Scene& scene, Entity mesh);
+CATENA_EXPORT Result<mesh::MeshPtr> resolve_mesh(Scene& scene, Entity mesh);
 /// Returns the field if it is loaded, else an empty one.
 inline const field::AnyField& loaded_field(const Scene& scene, Entity field) { return scene.entities.get<FieldSource>(field).loaded; }
 /// Returns the grid for images if it exists, else an empty one.
 inline const field::AnyField& rendered_field(const Scene& scene, Entity field) { return scene.entities.get<FieldSource>(field).rendered; }
 /// Returns the mesh of that name, loading it on first use.
-Result<mesh::MeshPtr> resolve_mesh(Scene& scene, const std::string& name, const json::Node& where);
+CATENA_EXPORT Result<mesh::MeshPtr> resolve_mesh(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns curves from a file, loading them on first use, or the vortex core curves of a field.
-Result<curves::CurveSetPtr> resolve_curves(Scene& scene, Entity curves);
+CATENA_EXPORT Result<curves::CurveSetPtr> resolve_curves(Scene& scene, Entity curves);
 /// Same by name.
-Result<curves::CurveSetPtr> resolve_curves(Scene& scene, const std::string& name, const json::Node& where);
+CATENA_EXPORT Result<curves::CurveSetPtr> resolve_curves(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns points from a table, loading them on first use.
-Result<curves::PointSetPtr> resolve_points(Scene& scene, Entity points);
+CATENA_EXPORT Result<curves::PointSetPtr> resolve_points(Scene& scene, Entity points);
 /// Same by name.
-Result<curves::PointSetPtr> resolve_points(Scene& scene, const std::string& name, const json::Node& where);
+CATENA_EXPORT Result<curves::PointSetPtr> resolve_points(Scene& scene, const std::string& name, const json::Node& where);
 /// Returns the streamline through a seed; `length`: maximum arc length in each direction, world units, 0: 10 L. While it is in use, all
 /// callers get the same object. Error, at `where`: the seed starts no line.
-Result<flow::CurvePtr> resolve_streamline(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where,
-                                          double length = 0);
+CATENA_EXPORT Result<flow::CurvePtr> resolve_streamline(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where,
+                                                        double length = 0);
 
 /// Returns the widget for the haptic program. Sizes that the scene does not specify are set from L, the longest edge of the domain boxes of
 /// all fields, meshes, curves and points that the scene renders or the widget names (if there are none: of the fields that links name;
 /// else 4). Loads the field of an isolevel and sets its value. `along_links` is left to the builder of the program. Computed once.
-Result<widget::Spec> resolve_widget(Scene& scene, Entity widget);
+CATENA_EXPORT Result<widget::Spec> resolve_widget(Scene& scene, Entity widget);
 
 /// Checks that a loaded field can have isosurfaces. Error: it uses nearest-voxel interpolation.
-Outcome check_surface(const Scene& scene, Entity field, const json::Node& where);
+CATENA_EXPORT Outcome check_surface(const Scene& scene, Entity field, const json::Node& where);
 /// Checks that a level lies within the field's values, so that it can be rendered and be in haptic contact.
-Outcome check_level(const field::ScalarField& field, double level, const json::Node& where);
+CATENA_EXPORT Outcome check_level(const field::ScalarField& field, double level, const json::Node& where);
 
 }  // namespace catena::scene

@@ -5,12 +5,14 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
 
 /// parse_scene() for the JSON text of the object; `name` stands for its path. Since the text has no lines that a user could look up, errors
 /// give the position by a JSON pointer: "NAME: /volumes/0/opacity: ...".
-Result<Scene> parse_scene_object(std::string_view text, const std::string& name, const std::vector<FieldOverride>& overrides = {});
+CATENA_EXPORT Result<Scene> parse_scene_object(std::string_view text, const std::string& name,
+                                               const std::vector<FieldOverride>& overrides = {});
 
 }  // namespace catena::scene

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena::scene {
@@ -29,13 +30,13 @@ enum class StereoMode {
 inline constexpr int kStereoModeCount = 13;  ///< Number of modes
 
 /// Returns the name of a mode: "side-by-side" and so on.
-std::string_view to_string(StereoMode mode);
+CATENA_EXPORT std::string_view to_string(StereoMode mode);
 /// Returns the mode of that name; nullopt: unknown.
-std::optional<StereoMode> parse_stereo_mode(std::string_view word);
+CATENA_EXPORT std::optional<StereoMode> parse_stereo_mode(std::string_view word);
 /// Returns all names, for messages: "mono, left, .. or checkerboard".
-std::string stereo_mode_names();
+CATENA_EXPORT std::string stereo_mode_names();
 /// Returns whether the mode requires exactly two views.
-bool needs_two_views(StereoMode mode);
+CATENA_EXPORT bool needs_two_views(StereoMode mode);
 
 /// A flat screen that shows the scene behind it as a window does. World units.
 struct DisplayScreen {

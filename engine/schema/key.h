@@ -15,6 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
+
 namespace catena::schema {
 
 /// Type of a value.
@@ -40,7 +42,7 @@ enum class ValueType {
 enum class Role { none, scalar_field, vector_field, any_field, mesh, curves, points, widget, level, file };
 
 /// Bounds of a number, or of each number of a vector. An open bound does not belong to the range.
-struct Limits {
+struct CATENA_EXPORT Limits {
   std::optional<double> lo, hi;           ///< lower and upper bound; nullopt: unbounded
   bool lo_open = false, hi_open = false;  ///< true: the bound itself is excluded
   /// Returns true when a number is in the range.
@@ -140,64 +142,64 @@ struct Key {
 using Keys = std::vector<Key>;
 
 /// Makes a key for a number; `unit` "" means none.
-Key number(const std::string& name, const std::string& unit, const std::string& help);
+CATENA_EXPORT Key number(const std::string& name, const std::string& unit, const std::string& help);
 /// Makes a key for an integer from `least` to `most`.
-Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
+CATENA_EXPORT Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
 /// Makes a key for true or false.
-Key boolean(const std::string& name, const std::string& help);
+CATENA_EXPORT Key boolean(const std::string& name, const std::string& help);
 /// Makes a key for any text.
-Key text(const std::string& name, const std::string& help);
+CATENA_EXPORT Key text(const std::string& name, const std::string& help);
 /// Makes a key for a name that other keys may refer to: [a-z][a-z0-9_]*.
-Key identifier(const std::string& name, const std::string& help);
+CATENA_EXPORT Key identifier(const std::string& name, const std::string& help);
 /// Makes a key for one of `words`.
-Key choice(const std::string& name, std::vector<std::string> words, const std::string& help);
+CATENA_EXPORT Key choice(const std::string& name, std::vector<std::string> words, const std::string& help);
 /// Makes a key for three numbers.
-Key vec3(const std::string& name, const std::string& unit, const std::string& help);
+CATENA_EXPORT Key vec3(const std::string& name, const std::string& unit, const std::string& help);
 /// Makes a key for a vector of any length except 0.
-Key direction(const std::string& name, const std::string& help);
+CATENA_EXPORT Key direction(const std::string& name, const std::string& help);
 /// Makes a key for `count` numbers.
-Key vector(const std::string& name, int count, const std::string& unit, const std::string& help);
+CATENA_EXPORT Key vector(const std::string& name, int count, const std::string& unit, const std::string& help);
 /// Makes a key for a color [r, g, b], 0 to 1.
-Key color(const std::string& name, const std::string& help);
+CATENA_EXPORT Key color(const std::string& name, const std::string& help);
 /// Makes a key for a list of numbers of any length.
-Key numbers(const std::string& name, const std::string& unit, const std::string& help);
+CATENA_EXPORT Key numbers(const std::string& name, const std::string& unit, const std::string& help);
 /// Makes a key for a list of strings.
-Key texts(const std::string& name, const std::string& help);
+CATENA_EXPORT Key texts(const std::string& name, const std::string& help);
 /// Makes a key for a list of at least one [x, y, z].
-Key points(const std::string& name, const std::string& unit, const std::string& help);
+CATENA_EXPORT Key points(const std::string& name, const std::string& unit, const std::string& help);
 /// Makes a key for a list of at least one row of `width` numbers.
-Key table(const std::string& name, int width, const std::string& unit, const std::string& help);
+CATENA_EXPORT Key table(const std::string& name, int width, const std::string& unit, const std::string& help);
 /// Makes a key for a rotation in a form that json::as_rotation reads.
-Key rotation(const std::string& name, const std::string& help);
+CATENA_EXPORT Key rotation(const std::string& name, const std::string& help);
 /// Makes the literal null, as one of several alternatives.
-Key null();
+CATENA_EXPORT Key null();
 /// Makes a key for an object with keys of its own.
-Key object(const std::string& name, Keys inner, const std::string& help);
+CATENA_EXPORT Key object(const std::string& name, Keys inner, const std::string& help);
 /// Makes a key that accepts several types; the first of `choices` is the usual one.
-Key any_of(const std::string& name, Keys choices, const std::string& help);
+CATENA_EXPORT Key any_of(const std::string& name, Keys choices, const std::string& help);
 /// Makes a key for the name of a field, mesh, curves, points or widget.
-Key reference(const std::string& name, Role role, const std::string& help);
+CATENA_EXPORT Key reference(const std::string& name, Role role, const std::string& help);
 /// Makes a key for a file name, relative to the folder of the scene file.
-Key file(const std::string& name, const std::string& help);
+CATENA_EXPORT Key file(const std::string& name, const std::string& help);
 /// Key for the criterion by which vortex core lines are found (engine/geometry/flow/vortex_cores.h).
-Key core_criterion_key();
+CATENA_EXPORT Key core_criterion_key();
 /// Key for the minimum length of a core line.
-Key core_length_key();
+CATENA_EXPORT Key core_length_key();
 /// Key for the minimum mean swirl of a core line, relative to that of the strongest one.
-Key core_swirl_key();
+CATENA_EXPORT Key core_swirl_key();
 /// Key "kind" of a vector field: vectors, or lines without a direction.
-Key line_kind_key();
+CATENA_EXPORT Key line_kind_key();
 
 /// Returns the key with a name; null: there is none.
-const Key* find(const Keys& keys, std::string_view name);
+CATENA_EXPORT const Key* find(const Keys& keys, std::string_view name);
 /// Returns the keys of `first`, followed by those of `second`.
-Keys concatenate(Keys first, const Keys& second);
+CATENA_EXPORT Keys concatenate(Keys first, const Keys& second);
 /// Returns the names of the keys, for json::check_known_keys.
-std::vector<std::string_view> key_names(const Keys& keys);
+CATENA_EXPORT std::vector<std::string_view> key_names(const Keys& keys);
 /// Returns the names of both lists in order.
-std::vector<std::string_view> key_names(const Keys& first, const Keys& second);
+CATENA_EXPORT std::vector<std::string_view> key_names(const Keys& first, const Keys& second);
 /// Returns the options of a choice, for json::get_choice.
-std::vector<std::string_view> option_names(const Key& key);
+CATENA_EXPORT std::vector<std::string_view> option_names(const Key& key);
 
 /// One of several kinds of items of a section: a streamline among links, a raw file among fields.
 struct Variant {

@@ -18,6 +18,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/geometry/flow/curve.h"
 #include "engine/study/study.h"
 
@@ -40,7 +41,7 @@ inline constexpr int kPathPoints = 513;
 
 /// Generates stimuli one at a time, and caches the last field of every task, so that a field that does not depend on the seed is loaded
 /// only for the first stimulus. Not thread-safe: one object per thread.
-class StimulusGenerator {
+class CATENA_EXPORT StimulusGenerator {
  public:
   /// `study` must outlive this object.
   explicit StimulusGenerator(const Study& study) : study_(study), field_cache_(study.tasks.size()) {}

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/json.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
@@ -21,7 +22,7 @@ namespace catena::study {
 /// end.
 enum class TaskKind { advection, tracing };
 /// "advection" or "tracing".
-const char* to_string(TaskKind kind);
+CATENA_EXPORT const char* to_string(TaskKind kind);
 
 /// What ends a trial: crossing the circle about the start through the path's end, crossing the horizontal plane through the path's end, or
 /// reaching the path's end.
@@ -126,11 +127,11 @@ struct Study {
 };
 
 /// Reads and checks a study file. Error: the first mistake, with the file's name and line.
-Result<Study> read_study(const std::string& path);
+CATENA_EXPORT Result<Study> read_study(const std::string& path);
 /// Parses and checks a study file's text. `path` is the file name in messages and the base of relative paths.
-Result<Study> parse_study(std::string_view text, const std::string& path);
+CATENA_EXPORT Result<Study> parse_study(std::string_view text, const std::string& path);
 
 /// The keys of the study file, for its schema and docs/reference/study.md.
-std::vector<schema::Section> study_components();
+CATENA_EXPORT std::vector<schema::Section> study_components();
 
 }  // namespace catena::study

@@ -11,6 +11,7 @@
 #pragma once
 #include <string>
 
+#include "engine/base/export.h"
 #include "engine/study/stimulus.h"
 
 namespace catena::study {
@@ -26,7 +27,7 @@ struct TrialResult {
 };
 
 /// Scores one trial. One thread.
-class TrialScorer {
+class CATENA_EXPORT TrialScorer {
  public:
   /// Phase of the trial. waiting: the cursor has not been at the start. ready: the cursor is at the start. running: the clock runs. ended:
   /// the result is complete.

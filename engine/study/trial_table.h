@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/folder_lock.h"
 #include "engine/study/session.h"
 #include "engine/study/trial_scorer.h"
@@ -38,41 +39,41 @@ struct TrialRow {
 };
 
 /// Makes the row of a trial of this study's design (make_session()); the study gives the names of task and condition. Any thread.
-TrialRow make_row(const Study& study, const Trial& trial, const TrialResult& measured);
+CATENA_EXPORT TrialRow make_row(const Study& study, const Trial& trial, const TrialResult& measured);
 
 /// The header row, with its line break: "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
-std::string table_header();
-std::string format_row(const TrialRow& row);  ///< One row, with its line break
+CATENA_EXPORT std::string table_header();
+CATENA_EXPORT std::string format_row(const TrialRow& row);  ///< One row, with its line break
 /// The header, then all rows.
-std::string format_table(const std::vector<TrialRow>& rows);
+CATENA_EXPORT std::string format_table(const std::vector<TrialRow>& rows);
 /// Parses a table with its header. `file`: name in error messages. `torn_end`: a partial last line is ignored instead of an error, and an
 /// empty text gives no rows. `whole`: receives the number of bytes of the complete lines. Error, "FILE:LINE: ...": another header, or a bad
 /// value.
-Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false,
-                                         std::size_t* whole = nullptr);
+CATENA_EXPORT Result<std::vector<TrialRow>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false,
+                                                       std::size_t* whole = nullptr);
 
 /// Path of a subject's rows: "DIR/subjects/007.csv".
-std::string subject_file(const std::string& folder, int subject);
+CATENA_EXPORT std::string subject_file(const std::string& folder, int subject);
 
 /// Path of the recordings: "DIR/recordings".
-std::string recordings_folder(const std::string& folder);
+CATENA_EXPORT std::string recordings_folder(const std::string& folder);
 /// Creates the folder with its parent folders.
-Outcome make_folder(const std::string& path);
+CATENA_EXPORT Outcome make_folder(const std::string& path);
 /// Path of a trial's recording: "DIR/recordings/007-012.catlog", with the numbers of subject and trial index.
-std::string recording_file(const std::string& folder, const Trial& trial);
+CATENA_EXPORT std::string recording_file(const std::string& folder, const Trial& trial);
 
 /// Returns the numbers of the subjects that have a file in a data folder, ascending. `notes`: if not null, receives a line for every other
 /// file in its subfolder "subjects".
-Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr);
+CATENA_EXPORT Result<std::vector<int>> list_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr);
 /// Reads the finished trials of a subject, in the order of the session; none if the subject has no file. A partial last line is ignored and
 /// reported in `notes`, if that is not null. Writes nothing. Error: names file and line.
-Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
+CATENA_EXPORT Result<std::vector<TrialRow>> read_rows(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
 
 /// Whether people or the human model do the trials of a data folder; a folder never holds both.
 enum class ParticipantKind { people, model };
 
 /// A data folder opened for writing. It is locked for other programs during the lifetime of this object. One thread.
-class DataFolder {
+class CATENA_EXPORT DataFolder {
  public:
   /// Opens the folder, and creates it if it does not exist. Error: it holds another study, another program writes to it, or it holds trials
   /// of the human model while `who` is people, or the reverse.
@@ -107,9 +108,9 @@ struct TrialTable {
   std::vector<std::string> notes;
 };
 /// Reads all rows of a data folder. Error: names file and line; or the folder has neither trials.csv nor rows in subjects/.
-Result<TrialTable> read_trial_table(const std::string& folder);
+CATENA_EXPORT Result<TrialTable> read_trial_table(const std::string& folder);
 
 /// Whether the human model did the trials of this data folder.
-bool is_simulated(const std::string& folder);
+CATENA_EXPORT bool is_simulated(const std::string& folder);
 
 }  // namespace catena::study

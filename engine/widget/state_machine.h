@@ -11,6 +11,7 @@
 #pragma once
 #include <span>
 
+#include "engine/base/export.h"
 #include "engine/widget/widget.h"
 
 namespace catena::widget {
@@ -27,7 +28,7 @@ struct TransitionInput {
 };
 
 /// Returns the next mode of a widget; all transitions are here.
-Mode next_mode(Kind kind, Mode mode, const TransitionInput& facts) noexcept;
+CATENA_EXPORT Mode next_mode(Kind kind, Mode mode, const TransitionInput& facts) noexcept;
 
 /// Returns whether the widget is grabbed.
 constexpr bool is_grabbed(Mode mode) noexcept { return mode == Mode::translate || mode == Mode::turn || mode == Mode::drag; }
@@ -42,18 +43,18 @@ struct TickInput {
 };
 
 /// Resets the state to the pose of the spec, in mode idle.
-void reset_state(const Spec& spec, State& state) noexcept;
+CATENA_EXPORT void reset_state(const Spec& spec, State& state) noexcept;
 /// Steps the modes of all widgets. Returns the index of the engaged widget; -1: none.
-int step_modes(std::span<const Spec> specs, std::span<State> states, const TickInput& input) noexcept;
+CATENA_EXPORT int step_modes(std::span<const Spec> specs, std::span<State> states, const TickInput& input) noexcept;
 /// Returns the chain that the engaged widget requests for this tick.
-ChainRequest plan_chain(const Spec& spec, State& state, const Vec3& probe) noexcept;
+CATENA_EXPORT ChainRequest plan_chain(const Spec& spec, State& state, const Vec3& probe) noexcept;
 /// Updates the pose of the engaged widget. `proxy`: last proxy of the chain that plan_chain requested.
-void update_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept;
+CATENA_EXPORT void update_pose(const Spec& spec, State& state, const Vec3& proxy) noexcept;
 
 /// Returns the report of a widget for the frame thread.
-Report make_report(const State& state) noexcept;
+CATENA_EXPORT Report make_report(const State& state) noexcept;
 
 /// Returns whether the state is valid, so that the state machine can index with it. For states read from a file; off the tick.
-bool is_valid_state(const Spec& spec, const State& state) noexcept;
+CATENA_EXPORT bool is_valid_state(const Spec& spec, const State& state) noexcept;
 
 }  // namespace catena::widget

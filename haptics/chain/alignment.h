@@ -14,6 +14,7 @@
 #pragma once
 #include <span>
 
+#include "engine/base/export.h"
 #include "haptics/chain/ramp.h"
 #include "haptics/chain/switching.h"
 
@@ -42,7 +43,8 @@ struct AlignmentStep {
 
 /// Steps the rotational chain, after the positional chain of this tick. Returns the torque requested by the links and the rotational
 /// damping; sets every link's orientation and torque in `out`.
-Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Quat& tool, const AlignmentStep& step,
-                 std::span<LinkState> links, std::span<LinkScratch> scratch, AlignmentState& state, HapticState& out) noexcept;
+CATENA_EXPORT Vec3 align_links(const HapticProgram& program, const LinkOrder& order, const Quat& tool, const AlignmentStep& step,
+                               std::span<LinkState> links, std::span<LinkScratch> scratch, AlignmentState& state,
+                               HapticState& out) noexcept;
 
 }  // namespace catena::haptics

@@ -11,6 +11,7 @@
 /// Weights do not rise at a switch: the step of the whole force is ramped (ramp.h).
 /// LinkState::proxy remains the constraint's own proxy. Haptic thread: no allocation, lock, throw or unbounded loop.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/switching.h"
 
 namespace catena::haptics {
@@ -32,7 +33,7 @@ struct SingleProxyState {
 };
 
 /// Input and output of one tick of a method, which computes p and sets `holding` and each link's status and residual.
-struct SingleProxyTick {
+struct CATENA_EXPORT SingleProxyTick {
   const HapticProgram& program;                 ///< program that runs
   const LinkOrder& order;                       ///< links that run
   Vec3 probe;                                   ///< position of the probe, world units
@@ -60,20 +61,20 @@ struct SingleProxyTick {
 };
 
 /// Moves state.proxy according to the probe. `same_order`: the link order is that of the last tick.
-void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept;
+CATENA_EXPORT void advance_single_proxy(SingleProxyTick& tick, bool same_order) noexcept;
 
 /// Returns p by the method pipe: the point at which the iteration converges, or ends after its maximum of passes.
-Vec3 solve_pipe(SingleProxyTick& tick) noexcept;
+CATENA_EXPORT Vec3 solve_pipe(SingleProxyTick& tick) noexcept;
 /// Returns p by the method balance.
-Vec3 solve_balance(SingleProxyTick& tick) noexcept;
+CATENA_EXPORT Vec3 solve_balance(SingleProxyTick& tick) noexcept;
 /// Returns p by the method closest.
-Vec3 solve_closest(SingleProxyTick& tick) noexcept;
+CATENA_EXPORT Vec3 solve_closest(SingleProxyTick& tick) noexcept;
 /// Returns p by the method linear.
-Vec3 solve_linear(SingleProxyTick& tick) noexcept;
+CATENA_EXPORT Vec3 solve_linear(SingleProxyTick& tick) noexcept;
 
 /// Linear equations of several primitives (at most three independent ones): the directions that they constrain, and the shortest step that
 /// satisfies all of them.
-class ConstrainedSubspace {
+class CATENA_EXPORT ConstrainedSubspace {
  public:
   /// Adds the equations of a primitive relative to the point `from`; equations that depend on earlier ones, or contradict them, are
   /// dropped.
@@ -91,6 +92,6 @@ class ConstrainedSubspace {
 };
 
 /// Returns the distance of a point from a primitive, world units.
-double distance_to(const Primitive& primitive, const Vec3& place) noexcept;
+CATENA_EXPORT double distance_to(const Primitive& primitive, const Vec3& place) noexcept;
 
 }  // namespace catena::haptics

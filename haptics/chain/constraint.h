@@ -9,6 +9,7 @@
 #include <new>
 #include <type_traits>
 
+#include "engine/base/export.h"
 #include "engine/base/haptic_state.h"
 #include "engine/base/result.h"
 #include "engine/field/field.h"
@@ -153,7 +154,7 @@ struct PulledBackForce {
 /// (haptics/constraints/registry.h) can be used in scenes. A Constraint object is the immutable specification, created off the tick; state
 /// that changes from tick to tick is in LinkState (plain data), caches that never change a result are in LinkScratch.
 /// `start` and `advance` run on the haptic thread: no allocation, lock, throw or unbounded loop; equal input gives bit-identical results.
-class Constraint {
+class CATENA_EXPORT Constraint {
  public:
   virtual ~Constraint() = default;
   Constraint() = default;

@@ -12,6 +12,7 @@
 /// drop to zero. The tick in which a ramp begins counts with its dt. If the clock stands still, a ramp out still ends within 1000 ticks.
 /// With default limits and normal ticks the force passes unchanged, bit for bit. Haptic thread.
 #pragma once
+#include "engine/base/export.h"
 #include "engine/base/haptic_state.h"
 #include "haptics/chain/constraint.h"
 
@@ -38,9 +39,9 @@ struct ForceLimiterInput {
 };
 
 /// Steps the limiter: sets state.force_n, torque_nm and force_state to the commanded force of this tick.
-void limit_force(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept;
+CATENA_EXPORT void limit_force(const DeviceLimits& limits, const ForceLimiterInput& input, ForceLimiterState& state) noexcept;
 
 /// Returns `v` shortened to the length `most` with the direction kept, or `v` itself if it is not longer. `v` must be finite.
-Vec3 clamp_norm(const Vec3& v, double most) noexcept;
+CATENA_EXPORT Vec3 clamp_norm(const Vec3& v, double most) noexcept;
 
 }  // namespace catena::haptics

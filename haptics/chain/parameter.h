@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/field/field.h"
 
 namespace catena::haptics {
@@ -32,7 +33,7 @@ struct HapticTransferFunction {
 };
 
 /// Constant, or haptic transfer function of a field. Immutable; any thread.
-class Parameter {
+class CATENA_EXPORT Parameter {
  public:
   /// Creates a constant parameter.
   Parameter(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor): a number is a parameter

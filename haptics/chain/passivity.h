@@ -29,6 +29,7 @@
 /// counted. The account is always kept; the controller acts only where limits.passivity_control is set. Haptic thread: no allocation, lock
 /// or throw.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/force_limiter.h"
 #include "haptics/chain/switching.h"
 
@@ -84,10 +85,10 @@ struct EnergyTick {
 
 /// Steps the energy account of one tick, after the force limiter; adds the controller's damping force to guard.force_n. `links` and `guard`
 /// are those of this tick.
-void step_passivity(const HapticProgram& program, const std::array<LinkState, kMaxLinks>& links, const EnergyTick& tick,
-                    ForceLimiterState& guard, PassivityState& state) noexcept;
+CATENA_EXPORT void step_passivity(const HapticProgram& program, const std::array<LinkState, kMaxLinks>& links, const EnergyTick& tick,
+                                  ForceLimiterState& guard, PassivityState& state) noexcept;
 
 /// Marks a tick without a probe: no force is sent, and the work since the last tick is unknown.
-void pause_passivity(PassivityState& state) noexcept;
+CATENA_EXPORT void pause_passivity(PassivityState& state) noexcept;
 
 }  // namespace catena::haptics

@@ -3,6 +3,7 @@
 /// section 2). The model is documented at ReleaseCue in program.h. The cues are triangle waves and linear ramps only, so that results are
 /// bit-identical everywhere. Haptic thread: no allocation, lock or throw.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/program.h"
 
 namespace catena::haptics {
@@ -17,7 +18,7 @@ struct ReleaseCueState {
 
 /// Sets the report's release_ratio and released from its gap; returns the force of the cue, newtons, world axes. `gap` = p_i - p_(i-1),
 /// world units.
-Vec3 update_release_cue(const ReleaseCue& indication, const LinkState& link, const Vec3& gap, double t_s, double dt_s,
-                        ReleaseCueState& state, LinkReport& report) noexcept;
+CATENA_EXPORT Vec3 update_release_cue(const ReleaseCue& indication, const LinkState& link, const Vec3& gap, double t_s, double dt_s,
+                                      ReleaseCueState& state, LinkReport& report) noexcept;
 
 }  // namespace catena::haptics

@@ -2,6 +2,7 @@
 /// Selects the links that run in a tick and their order: switches by button or by force, and the modes of operation (paper, section 6.2).
 /// Haptic thread: no allocation, lock or throw.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/program.h"
 
 namespace catena::haptics {
@@ -42,6 +43,7 @@ struct LinkOrder {
 
 /// Steps all switches from the present buttons and the magnitude of the last tick's chain force; returns the order of the scene's links
 /// that are on.
-LinkOrder step_switches(const HapticProgram& program, std::uint32_t buttons, double last_force_n, SwitchState& state) noexcept;
+CATENA_EXPORT LinkOrder step_switches(const HapticProgram& program, std::uint32_t buttons, double last_force_n,
+                                      SwitchState& state) noexcept;
 
 }  // namespace catena::haptics

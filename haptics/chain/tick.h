@@ -13,6 +13,7 @@
 /// A probe or time that is not finite, and a tick without device or stopped by the watchdog, hold all proxies and give zero force and
 /// BAD_PROBE. A clock that goes backward counts as dt = 0.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/alignment.h"
 #include "haptics/chain/baseline.h"
 #include "haptics/chain/force_limiter.h"
@@ -64,10 +65,11 @@ struct ChainScratch {
 };
 
 /// Runs one tick: advances `state` and sets all of `out` but what the servo writes. Haptic thread: no allocation, lock, throw.
-void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, HapticState& out) noexcept;
+CATENA_EXPORT void tick(const HapticProgram& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch,
+                        HapticState& out) noexcept;
 
 /// Adapts the state to a new program: links of the same name and spec_hash (or the same constraint object) keep their state, all others are
 /// re-initialized in the next tick. Widgets: widgets.h. Haptic thread: no allocation.
-void rebind_program(const HapticProgram& from, const HapticProgram& to, ChainState& state, ChainScratch& scratch) noexcept;
+CATENA_EXPORT void rebind_program(const HapticProgram& from, const HapticProgram& to, ChainState& state, ChainScratch& scratch) noexcept;
 
 }  // namespace catena::haptics

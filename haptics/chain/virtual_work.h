@@ -7,6 +7,7 @@
 /// forces) pass it on unchanged; torques (alignment.h) are the paper's. k_i is evaluated at the proxy of this tick, so that E is a function
 /// of x. Newtons, world axes. Haptic thread: no allocation, lock or throw.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/switching.h"
 
 namespace catena::haptics {
@@ -25,12 +26,14 @@ struct UnaccountedEnergy {
 };
 
 /// Returns F, after the links of this tick have advanced. `gaps` and `shares_n` are p_i - p_(i-1) (world units) and g_i (newtons) by link.
-PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder& order, const Vec3& probe,
-                                   const std::array<Vec3, kMaxLinks>& gaps, const std::array<Vec3, kMaxLinks>& shares_n,
-                                   std::array<LinkState, kMaxLinks>& links, std::array<LinkScratch, kMaxLinks>& scratch) noexcept;
+CATENA_EXPORT PulledBackForce virtual_work_force(const HapticProgram& program, const LinkOrder& order, const Vec3& probe,
+                                                 const std::array<Vec3, kMaxLinks>& gaps, const std::array<Vec3, kMaxLinks>& shares_n,
+                                                 std::array<LinkState, kMaxLinks>& links,
+                                                 std::array<LinkScratch, kMaxLinks>& scratch) noexcept;
 
 /// Adds the unaccounted energy of one tick. `force`: result of virtual_work_force; `energy_j`: E; `move_m`: probe travel of the tick,
 /// meters.
-void accumulate_unaccounted(UnaccountedEnergy& state, const PulledBackForce& force, double energy_j, const Vec3& move_m) noexcept;
+CATENA_EXPORT void accumulate_unaccounted(UnaccountedEnergy& state, const PulledBackForce& force, double energy_j,
+                                          const Vec3& move_m) noexcept;
 
 }  // namespace catena::haptics

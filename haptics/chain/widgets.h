@@ -8,6 +8,7 @@
 /// A tick without a probe changes no widget; state_machine.h describes how a grab continues afterwards. Haptic thread: no allocation, lock,
 /// throw.
 #pragma once
+#include "engine/base/export.h"
 #include "engine/widget/state_machine.h"
 #include "haptics/chain/switching.h"
 
@@ -32,17 +33,17 @@ struct WidgetsInput {
 
 /// Steps the modes of all widgets, before the chain; sets the shapes of their links. Returns the link order of this tick: the links of
 /// `scene` and of the engaged widget.
-LinkOrder engage_widgets(const HapticProgram& program, const WidgetsInput& input, const LinkOrder& scene, const SwitchState& switches,
-                         std::array<LinkState, kMaxLinks>& links, WidgetsState& state) noexcept;
+CATENA_EXPORT LinkOrder engage_widgets(const HapticProgram& program, const WidgetsInput& input, const LinkOrder& scene,
+                                       const SwitchState& switches, std::array<LinkState, kMaxLinks>& links, WidgetsState& state) noexcept;
 /// Updates the pose of the engaged widget, after the chain. `last_proxy`: last proxy of the chain, world units.
-void move_widgets(const HapticProgram& program, const Vec3& last_proxy, WidgetsState& state) noexcept;
+CATENA_EXPORT void move_widgets(const HapticProgram& program, const Vec3& last_proxy, WidgetsState& state) noexcept;
 /// Marks a tick without a probe.
-void pause_widgets(WidgetsState& state) noexcept;
+CATENA_EXPORT void pause_widgets(WidgetsState& state) noexcept;
 /// Sets the reports of all widgets in `out`.
-void report_widgets(const HapticProgram& program, const WidgetsState& state, HapticState& out) noexcept;
+CATENA_EXPORT void report_widgets(const HapticProgram& program, const WidgetsState& state, HapticState& out) noexcept;
 
 /// Adapts the state to a new program: a widget of the same name and kind keeps its state, unless its pose has been set from outside
 /// meanwhile (a higher Spec::revision); the others start as their Spec says.
-void rebind_widgets(const HapticProgram& from, const HapticProgram& to, WidgetsState& state) noexcept;
+CATENA_EXPORT void rebind_widgets(const HapticProgram& from, const HapticProgram& to, WidgetsState& state) noexcept;
 
 }  // namespace catena::haptics

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/json.h"
 #include "engine/geometry/curves/point_set.h"
 #include "engine/geometry/flow/curve.h"
@@ -17,7 +18,7 @@
 namespace catena::haptics {
 
 /// Scene data that a constraint may look up while it is built (off the tick). Errors name the file and line of the node `where`.
-struct BuildContext {
+struct CATENA_EXPORT BuildContext {
   /// Returns the loaded field of that name.
   std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;
   /// Returns the traced curve of (field, flow, seed): the same object that is rendered.
@@ -47,33 +48,33 @@ struct ConstraintType {
 };
 
 /// Returns all types, in the order of the documentation. Any thread, provided that all types are registered.
-const std::vector<ConstraintType>& constraint_types();
+CATENA_EXPORT const std::vector<ConstraintType>& constraint_types();
 /// Returns the type of that name; null: none.
-const ConstraintType* find_constraint_type(std::string_view type);
+CATENA_EXPORT const ConstraintType* find_constraint_type(std::string_view type);
 /// Adds a type, of a program that brings its own constraint. At start-up, before any scene is read.
-void register_constraint(ConstraintType type);
+CATENA_EXPORT void register_constraint(ConstraintType type);
 
 /// Returns the keys that every link accepts: name, type, stiffness, on, enabled, indicate, align, snap, release.
-const schema::Keys& common_keys();
+CATENA_EXPORT const schema::Keys& common_keys();
 /// Returns the schema of the scene's "chain": all types and the mode presets (presets/mode_presets.h).
-schema::Section chain_component();
+CATENA_EXPORT schema::Section chain_component();
 
 // keys that several types have
 /// Returns a required key that names a scalar field.
-schema::Key scalar_field_key(const std::string& name);
+CATENA_EXPORT schema::Key scalar_field_key(const std::string& name);
 /// Returns a required key that names a vector field.
-schema::Key vector_field_key(const std::string& name);
+CATENA_EXPORT schema::Key vector_field_key(const std::string& name);
 /// Returns the key `level`: a value of the field, or the isolevel widget that sets it.
-schema::Key level_key(const std::string& help);
+CATENA_EXPORT schema::Key level_key(const std::string& help);
 /// Returns a key for a length >= 0, in world units, that may follow a field.
-schema::Key length_key(const std::string& name, const std::string& help);
+CATENA_EXPORT schema::Key length_key(const std::string& name, const std::string& help);
 /// Returns the key `free`; `above` is the help text that names the side above.
-schema::Key free_key(const std::string& above);
+CATENA_EXPORT schema::Key free_key(const std::string& above);
 /// Returns the key `law` of modulated friction.
-schema::Key law_key(const std::string& help);
+CATENA_EXPORT schema::Key law_key(const std::string& help);
 
 /// Builds one link's constraint: looks up the type, rejects unknown keys, calls its build, wraps it where it snaps or releases. Off the
 /// tick; an Error names the line in the scene.
-Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);
+CATENA_EXPORT Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);
 
 }  // namespace catena::haptics

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
 
@@ -68,7 +69,7 @@ struct DeviceCapabilities {
 };
 
 /// A haptic device. Owned by the program; it outlives the servo.
-class Device {
+class CATENA_EXPORT Device {
  public:
   virtual ~Device() = default;
   /// Returns what the user must know or do, in one line ("Falcon: pull the grip fully out, then push it in"); empty: nothing. Frame thread.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/export.h"
 #include "engine/base/json.h"
 #include "engine/schema/key.h"
 #include "haptics/device/device.h"
@@ -14,7 +15,7 @@
 namespace catena::haptics {
 
 /// Settings as read. Plain data.
-struct DeviceSettings {
+struct CATENA_EXPORT DeviceSettings {
   json::Node node;            ///< the object in the scene, for the file and line of messages
   std::string type = "null";  ///< a type name of the registry
   double rate_hz = 1000;      ///< tick rate of the servo
@@ -52,8 +53,8 @@ struct DeviceSettings {
 };
 
 /// Returns the schema of the scene's "device" object: its keys with their units, ranges and defaults.
-schema::Section device_component();
+CATENA_EXPORT schema::Section device_component();
 /// Reads and checks the object; every Error names its line in the scene. Paths are relative to `scene_path`.
-Result<DeviceSettings> read_device_settings(const json::Node& node, const std::string& scene_path);
+CATENA_EXPORT Result<DeviceSettings> read_device_settings(const json::Node& node, const std::string& scene_path);
 
 }  // namespace catena::haptics

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "haptics/device/device_settings.h"
 
 namespace catena::haptics {
@@ -18,22 +19,22 @@ struct DeviceInfo {
 };
 
 /// Returns the TYPE of a name.
-std::string parse_device_type(const std::string& name);
+CATENA_EXPORT std::string parse_device_type(const std::string& name);
 /// Returns the path of the file that the device of this name writes; empty: none.
-std::string force_table_path(const std::string& name);
+CATENA_EXPORT std::string force_table_path(const std::string& name);
 /// Returns whether open_device() knows the type.
-bool is_device_type(const std::string& type);
+CATENA_EXPORT bool is_device_type(const std::string& type);
 /// Returns whether the type is a physical device, which may not be plugged in.
-bool is_hardware(const std::string& type);
+CATENA_EXPORT bool is_hardware(const std::string& type);
 /// Returns whether the device stands still on the desk, so that its workspace can be registered to the stage space of a headset.
-bool is_stationary(const std::string& type);
+CATENA_EXPORT bool is_stationary(const std::string& type);
 /// Returns "falcon, mouse, null, ...": for messages.
-std::string device_type_names();
+CATENA_EXPORT std::string device_type_names();
 /// Returns every device that could be used, available ones first. Scans the USB bus.
-std::vector<DeviceInfo> list_devices();
+CATENA_EXPORT std::vector<DeviceInfo> list_devices();
 /// Returns what a device of this type can do, before it is opened.
-DeviceCapabilities nominal_capabilities(const std::string& type);
+CATENA_EXPORT DeviceCapabilities nominal_capabilities(const std::string& type);
 /// Opens a device by name with `settings` (whose `type` is ignored). An Error says what to do.
-Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceSettings& settings);
+CATENA_EXPORT Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceSettings& settings);
 
 }  // namespace catena::haptics

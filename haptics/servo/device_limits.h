@@ -13,6 +13,7 @@
 /// A device that vibrates: the ramp in only, so that a controller that is tracked after a loss does not start at full strength.
 /// A device without either (mouse, null, recorded path): no limits but those of the settings.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/constraint.h"
 #include "haptics/device/device_settings.h"
 
@@ -20,10 +21,10 @@ namespace catena::haptics {
 
 /// Returns the device's mechanics with the values from the settings, in meters of probe travel (with the scale s of the device mapping:
 /// mass / s, damping / s, encoder step * s).
-Mechanics resolve_mechanics(const DeviceCapabilities& device, const DeviceSettings& settings);
+CATENA_EXPORT Mechanics resolve_mechanics(const DeviceCapabilities& device, const DeviceSettings& settings);
 /// Returns the maximum damping that the passivity controller may add, N s/m: m / (4 (T + t_d)).
-double max_added_damping(double mass_kg, double period_s, double delay_s);
+CATENA_EXPORT double max_added_damping(double mass_kg, double period_s, double delay_s);
 /// Returns the limits for build_program().
-DeviceLimits compute_device_limits(const DeviceCapabilities& device, const DeviceSettings& settings);
+CATENA_EXPORT DeviceLimits compute_device_limits(const DeviceCapabilities& device, const DeviceSettings& settings);
 
 }  // namespace catena::haptics

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
+
 namespace catena::haptics {
 
 /// Real-time properties that a servo's thread requests.
@@ -28,23 +30,23 @@ struct RealtimeReport {
 
 /// Gives the calling thread a fixed priority (SCHED_FIFO, not inherited by children). Returns false if not permitted, with a sentence added
 /// to `notes`.
-bool acquire_fifo_priority(int priority, std::vector<std::string>& notes);
+CATENA_EXPORT bool acquire_fifo_priority(int priority, std::vector<std::string>& notes);
 /// Limits how long this process may run at a fixed priority without blocking: after `soft_s` SIGXCPU, after `hard_s` SIGKILL, so that a
 /// tick that never ends does not lock up the machine. Never raises a limit. A servo that is merely too slow releases its priority earlier
 /// (servo.h).
-void limit_realtime_run(double soft_s, double hard_s) noexcept;
+CATENA_EXPORT void limit_realtime_run(double soft_s, double hard_s) noexcept;
 inline constexpr double kRealtimeSoftLimit_s = 2, kRealtimeHardLimit_s = 3;  ///< limits that a servo sets for its process, seconds
 
 /// Returns the calling thread to normal priority.
-void release_fifo_priority() noexcept;
+CATENA_EXPORT void release_fifo_priority() noexcept;
 
 /// Lets the calling thread run on all cores allowed to the process, although the thread that created it is bound to one.
-void reset_cpu_affinity() noexcept;
+CATENA_EXPORT void reset_cpu_affinity() noexcept;
 
 /// Prepares the calling thread before its first tick: fixed priority, core, locked memory with the stack touched. All memory of the process
 /// is locked (as pages are touched) if locking is unlimited; otherwise only the stack and `own`, as far as the limit allows, because a lock
 /// on all memory would make later allocations fail. The destructor undoes it, on the same thread.
-class RealtimeThread {
+class CATENA_EXPORT RealtimeThread {
  public:
   /// Prepares the calling thread; `own` is memory to lock if not all of it can be.
   RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes);

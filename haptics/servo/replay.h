@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "haptics/chain/state_hash.h"
 #include "haptics/chain/tick.h"
 
@@ -20,7 +21,7 @@ struct ReplayStats {
 };
 
 /// Collects the statistics of a replay, tick by tick.
-class ReplayMeter {
+class CATENA_EXPORT ReplayMeter {
  public:
   /// Reserves memory for this number of ticks.
   void reserve(std::size_t ticks);
@@ -37,6 +38,7 @@ class ReplayMeter {
 
 /// Runs the program over the path from a fresh state. `on_tick` is called after every tick, outside the timed part; if it returns false the
 /// replay ends.
-ReplayStats replay(const HapticProgram& program, std::span<const ProbeSample> path, const std::function<bool(const HapticState&)>& on_tick);
+CATENA_EXPORT ReplayStats replay(const HapticProgram& program, std::span<const ProbeSample> path,
+                                 const std::function<bool(const HapticState&)>& on_tick);
 
 }  // namespace catena::haptics

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/base/triple_buffer.h"
 #include "haptics/chain/state_hash.h"
@@ -19,7 +20,7 @@ namespace catena::haptics {
 /// Receiver of every tick, such as a recording (haptics/servo/log/). Called on the haptic thread after each tick, before the state is
 /// published: no allocation, lock or throw, no waiting. `begin` is called before the first `put` of a sink that is set while the servo
 /// runs.
-class TickSink {
+class CATENA_EXPORT TickSink {
  public:
   virtual ~TickSink() = default;
   /// Receives the state before the tick of the next `put`, when a running servo starts to use the sink.
@@ -57,7 +58,7 @@ struct ServoOptions {
 ///   LATE       the time of the tick is more than two periods after that of the last tick
 ///   NORMAL     else
 /// A paced servo whose ticks miss deadlines 1000 times in a row, or in every tick for 1 s, releases its fixed priority.
-class Servo {
+class CATENA_EXPORT Servo {
  public:
   /// Creates a servo. The device must outlive it. Nothing runs before start().
   Servo(Device& device, std::shared_ptr<const HapticProgram> program, const ServoOptions& options = {});

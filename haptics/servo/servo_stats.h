@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "haptics/servo/realtime.h"
 
 namespace catena::haptics {
@@ -28,7 +29,7 @@ struct HistogramSummary {
 };
 
 /// Histogram of durations. One writer, any number of readers.
-class Histogram {
+class CATENA_EXPORT Histogram {
  public:
   /// Adds a duration; a negative one counts as 0. Writer's thread.
   void add(std::int64_t ns) noexcept;
@@ -77,8 +78,8 @@ struct ServoStats {
 ///  "realtime": {"fifo", "locked", "cpu" (null: not bound), "notes"},
 ///  "period_us", "compute_us", "device_us": {"p50", "p99", "p999", "max", "count", "bins": [[from, count], ...]},
 ///  "state_hash"}
-std::string servo_json(const ServoStats& report, const std::string& device_name, std::uint64_t state_hash);
+CATENA_EXPORT std::string servo_json(const ServoStats& report, const std::string& device_name, std::uint64_t state_hash);
 /// Returns the statistics as a few lines of text for the user.
-std::string servo_summary(const ServoStats& report, const std::string& device_name);
+CATENA_EXPORT std::string servo_summary(const ServoStats& report, const std::string& device_name);
 
 }  // namespace catena::haptics

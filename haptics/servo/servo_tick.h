@@ -6,6 +6,7 @@
 #pragma once
 #include <memory>
 
+#include "engine/base/export.h"
 #include "haptics/chain/tick.h"
 #include "haptics/device/device.h"
 #include "haptics/servo/servo.h"
@@ -13,18 +14,18 @@
 namespace catena::haptics {
 
 /// Returns the position in the program's world, world units, of a position of the device, meters.
-Vec3 world_from_device(const HapticProgram& program, const Vec3& device_m) noexcept;
+CATENA_EXPORT Vec3 world_from_device(const HapticProgram& program, const Vec3& device_m) noexcept;
 /// Returns the position of the device, meters, of a position in the program's world, world units.
-Vec3 device_from_world(const HapticProgram& program, const Vec3& world) noexcept;
+CATENA_EXPORT Vec3 device_from_world(const HapticProgram& program, const Vec3& world) noexcept;
 /// Returns the input of the tick from the device's input, in the program's world. `t_s` is ignored for a recorded path, which has its own
 /// time. The caller sets the condition.
-ProbeSample make_probe_sample(const HapticProgram& program, const DeviceInput& input, double t_s) noexcept;
+CATENA_EXPORT ProbeSample make_probe_sample(const HapticProgram& program, const DeviceInput& input, double t_s) noexcept;
 /// Returns the device's output from the result of the tick, in the device's axes.
-DeviceOutput make_device_output(const HapticProgram& program, const HapticState& state, const ChainState& chain) noexcept;
+CATENA_EXPORT DeviceOutput make_device_output(const HapticProgram& program, const HapticState& state, const ChainState& chain) noexcept;
 
 /// Runs ticks one by one when the caller requests them, with equally spaced times from 0: the same device input and program give
 /// bit-identical results. One thread.
-class ServoStepper {
+class CATENA_EXPORT ServoStepper {
  public:
   /// Creates a stepper. All arguments must outlive it. `sink` receives every tick; null: none.
   ServoStepper(Device& device, const HapticProgram& program, double rate_hz, TickSink* sink = nullptr);

@@ -6,6 +6,7 @@
 #pragma once
 #include <cstdint>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
 #include "render/frame/camera.h"
@@ -15,32 +16,32 @@ namespace catena::render {
 
 /// Runs scene::prepare() and builds the render data: polylines, triangles, grids of vector magnitudes, ruler measurements. An Error gives
 /// the scene file's name and line: a missing field, a seed from which no line starts.
-Outcome prepare_frame(scene::Scene& scene);
+CATENA_EXPORT Outcome prepare_frame(scene::Scene& scene);
 /// Extracts the packet of a prepared scene. An Error, in the same form, for a field of the wrong kind or a level that no value attains.
-Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width, std::uint32_t height);
+CATENA_EXPORT Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width, std::uint32_t height);
 /// Calls prepare_frame() and extract_frame().
-Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
+CATENA_EXPORT Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
 
 /// Sets another view in the packet of this scene and updates what depends on the view (the eyes, the edges of the axes, the fog's range,
 /// widgets).
-void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
+CATENA_EXPORT void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
 
 /// Updates the cursors in the packet of this scene to the current device positions (late latching); everything else, including the cursor
 /// size, is unchanged.
-void update_cursors(const scene::Scene& scene, FramePacket& packet);
+CATENA_EXPORT void update_cursors(const scene::Scene& scene, FramePacket& packet);
 
 /// Returns an Error if the image is for a display screen and the packet's camera is not in front of it: it is then rendered as without the
 /// screen.
-Outcome check_screen_view(const FramePacket& packet, const scene::Stereo& stereo);
+CATENA_EXPORT Outcome check_screen_view(const FramePacket& packet, const scene::Stereo& stereo);
 
 /// Returns the world bounds of the data in the packet, independent of cursors: domains of grids, meshes. Empty if there are none.
-Bounds data_bounds(const FramePacket& packet);
+CATENA_EXPORT Bounds data_bounds(const FramePacket& packet);
 
 /// Returns the world bounds of all rendered items in the packet: data, tubes, cursors; not environment and widgets.
-Bounds packet_bounds(const FramePacket& packet);
+CATENA_EXPORT Bounds packet_bounds(const FramePacket& packet);
 
 /// Converts a transfer function to colors and extinctions; values that the file leaves out have been filled in by the scene.
 ///   opacity a over the length u (0: the smallest voxel edge) at a point:  sigma = -ln(1 - a) / u;  between points sigma is linear
-TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field);
+CATENA_EXPORT TransferTable make_transfer_table(const scene::TransferFunction& transfer, const field::ScalarField& field);
 
 }  // namespace catena::render

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "engine/base/bounds.h"
+#include "engine/base/export.h"
 #include "render/frame/frame_packet.h"
 
 namespace catena::render {
@@ -38,42 +39,42 @@ struct Ray {
 };
 
 /// Returns width / height of the view's symmetric frustum: View::aspect if it is set, else the aspect at which pixels are square.
-double frustum_aspect(const View& view, double width_px, double height_px);
+CATENA_EXPORT double frustum_aspect(const View& view, double width_px, double height_px);
 
 /// Returns the camera of `view` for an image of width_px x height_px (at least 1 x 1) with near and far enclosing `bounds`. If `up` is
 /// parallel to the view direction, another up is chosen; if the target coincides with the position, the camera looks along +y.
-Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
+CATENA_EXPORT Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
 
 /// Returns the transform from world to view axes.
-Mat4 view_from_world(const Camera& camera);
+CATENA_EXPORT Mat4 view_from_world(const Camera& camera);
 /// Returns the projection from view axes to Vulkan clip axes.
-Mat4 clip_from_view(const Camera& camera);
+CATENA_EXPORT Mat4 clip_from_view(const Camera& camera);
 /// Returns the transform from world to Vulkan clip axes.
-Mat4 clip_from_world(const Camera& camera);
+CATENA_EXPORT Mat4 clip_from_world(const Camera& camera);
 /// Returns the inverse of clip_from_world(), in closed form (not by elimination). The point (x, y, depth) in clip axes is at the product
 /// with (x, y, depth, 1), divided by its last component, in the world.
-Mat4 world_from_clip(const Camera& camera);
+CATENA_EXPORT Mat4 world_from_clip(const Camera& camera);
 
 /// Returns the ray through a pixel coordinate; it starts at the camera position (perspective) or in the camera plane (orthographic).
-Ray pixel_ray(const Camera& camera, double x_px, double y_px);
+CATENA_EXPORT Ray pixel_ray(const Camera& camera, double x_px, double y_px);
 /// Returns the pixel coordinates x, y and the view depth (distance along the view axis, world units) of a world point; nullopt at or behind
 /// the camera plane (perspective only).
-std::optional<Vec3> project(const Camera& camera, const Vec3& world);
+CATENA_EXPORT std::optional<Vec3> project(const Camera& camera, const Vec3& world);
 /// Inverse of project(): returns the world point at view depth `depth` behind the pixel coordinate.
-Vec3 unproject(const Camera& camera, double x_px, double y_px, double depth);
+CATENA_EXPORT Vec3 unproject(const Camera& camera, double x_px, double y_px, double depth);
 /// Returns the size of one pixel at the view depth, world units.
-double pixel_size(const Camera& camera, double depth);
+CATENA_EXPORT double pixel_size(const Camera& camera, double depth);
 /// Returns pixel_size() at the nearest corner of the box; corners in front of the near plane count as on it (perspective).
-double min_pixel_size(const Camera& camera, const Bounds& box);
+CATENA_EXPORT double min_pixel_size(const Camera& camera, const Bounds& box);
 /// Returns false only if no part of the sphere (world units) can be in the window, at any distance.
-bool may_be_visible(const Camera& camera, const Vec3& centre, double radius);
+CATENA_EXPORT bool may_be_visible(const Camera& camera, const Vec3& centre, double radius);
 
 /// Returns the unit direction from the scene towards the camera of the default view: oblique, with +z up.
-Vec3 default_view_direction();
+CATENA_EXPORT Vec3 default_view_direction();
 /// Returns a perspective view that fits the box: all its corners are inside the image, with a margin of 5 % of the distance. An empty box
 /// counts as -1..1. `towards_eye` (from the scene to the camera) and `up` need not be unit vectors.
-View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30,
-              const Vec3& up = Vec3(0.0, 0.0, 1.0));
+CATENA_EXPORT View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30,
+                            const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
 /// Point cloud to fit a view to.
 struct FitPoints {
@@ -85,27 +86,27 @@ struct FitPoints {
 /// through the camera position e, and so for y:
 ///   p_y - e_y <= t (e_z - p_z),  e_y - p_y <= t (e_z - p_z),   t = share tan(fovy / 2)
 /// The sums of these over the extreme points on either side give e_y and the minimum e_z. Without points, the box -1..1 is fitted.
-View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height,
-              const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30, const Vec3& up = Vec3(0.0, 0.0, 1.0));
+CATENA_EXPORT View fit_view(const std::vector<FitPoints>& clouds, double aspect, double width, double height,
+                            const Vec3& towards_eye = default_view_direction(), double fovy_deg = 30, const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
 /// Camera moves: orbit, zoom, view along an axis, refit. Angles in degrees. Pure functions, any thread.
 
 /// Raises the camera by `elevation` about the horizontal axis of the image, then turns it by `azimuth` about the axis `up` through its
 /// target (counter-clockwise seen from above). `up` turns with the camera, so the image never flips at a pole.
-View orbit_view(const View& view, double azimuth_deg, double elevation_deg);
+CATENA_EXPORT View orbit_view(const View& view, double azimuth_deg, double elevation_deg);
 
 /// Magnifies the center of the image: same camera position and projection, smaller field of view (or height).
 ///   tan(fovy' / 2) = tan(fovy / 2) / factor
-View zoom_view(const View& view, double factor);
+CATENA_EXPORT View zoom_view(const View& view, double factor);
 
 /// Returns the unit direction from the scene towards the camera for the name of a view direction: "+x", "-x", "+y", "-y", "+z" or "-z" (the
 /// direction in which the camera looks), or "iso" (camera at +x, -y, +z at equal angles). nullopt for any other text.
-std::optional<Vec3> axis_direction(std::string_view words);
+CATENA_EXPORT std::optional<Vec3> axis_direction(std::string_view words);
 
 /// Returns fit_view() along axis_direction(words), up +z (+y if the camera looks along z); nullopt for an unknown name.
-std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view words, double fovy_deg = 30);
+CATENA_EXPORT std::optional<View> axis_view(const Bounds& bounds, double aspect, std::string_view words, double fovy_deg = 30);
 
 /// Returns a view with the same direction, up, field of view and projection that fits the box.
-View refit_view(const View& view, const Bounds& bounds, double aspect);
+CATENA_EXPORT View refit_view(const View& view, const Bounds& bounds, double aspect);
 
 }  // namespace catena::render

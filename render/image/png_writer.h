@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 
 namespace catena::render {
@@ -21,7 +22,7 @@ struct PngFormat {
 };
 
 /// Writer of one file.
-class PngWriter {
+class CATENA_EXPORT PngWriter {
  public:
   /// Begins a temporary file. An Error gives the path.
   static Result<PngWriter> open(const std::string& path, const PngFormat& format);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <Imath/half.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "render/passes/renderer_impl.h"
-#include "render/residency/half.h"
 
 namespace catena::render {
 namespace {
@@ -200,9 +200,9 @@ Result<Image8> Renderer::sample_rays_once(const FramePacket& packet, const Rende
   const auto to_byte = [](float x) { return std::uint8_t(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); };
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel = spacing * (i / picture.width * packet.width + i % picture.width);
-    const float behind = opaque.empty() ? 1 : 1 - float_from_half(opaque[4 * pixel + 3]), through = 1 - volume[4 * i + 3];
+    const float behind = opaque.empty() ? 1 : 1 - imath_half_to_float(opaque[4 * pixel + 3]), through = 1 - volume[4 * i + 3];
     for (std::size_t c = 0; c < 3; ++c) {
-      const float sum = behind * packet.background[c] + (opaque.empty() ? 0 : float_from_half(opaque[4 * pixel + c]));
+      const float sum = behind * packet.background[c] + (opaque.empty() ? 0 : imath_half_to_float(opaque[4 * pixel + c]));
       picture.rgba[4 * i + c] = to_byte(volume[4 * i + c] + through * sum);
     }
     picture.rgba[4 * i + 3] = to_byte(1 - through * behind);

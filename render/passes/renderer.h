@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
 #include "render/frame/overlay_items.h"
@@ -53,14 +54,14 @@ struct RenderStats {
 };
 
 /// Returns whether any item of the packet is rendered by rays, so that the ray step matters.
-bool uses_raycast(const FramePacket& packet);
+CATENA_EXPORT bool uses_raycast(const FramePacket& packet);
 
 /// Returns the Error that draw() would fail with if the packet has items that rays cannot render together. Needs no device.
-Outcome check_ray_items(const FramePacket& packet);
+CATENA_EXPORT Outcome check_ray_items(const FramePacket& packet);
 
 /// Returns whether rays sample the same in both packets, so that their results can be reused; opaque items may differ
 /// (RenderSettings::reuse_rays).
-bool rays_match(const FramePacket& a, const FramePacket& b);
+CATENA_EXPORT bool rays_match(const FramePacket& a, const FramePacket& b);
 
 /// Id of the nearest opaque object at every pixel, 0: none.
 struct IdImage {
@@ -101,7 +102,7 @@ struct RenderedImage {
 /// Renders frame packets on one device. A successful draw() produces the last image; it is valid until the next draw(), sample_rays(),
 /// replace_shader() or restore_shaders(), or until a read-back fails. Reading, presenting or painting without a last image is a bug of the
 /// caller and aborts.
-class Renderer {
+class CATENA_EXPORT Renderer {
  public:
   /// Creates the device and the resources that all images need. A one-line Error if there is no suitable device.
   static Result<std::unique_ptr<Renderer>> create(const vk::DeviceOptions& options);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/export.h"
 #include "render/residency/resident_grid.h"
 #include "render/vk/resources.h"
 
@@ -66,10 +67,10 @@ struct RenderSettings {
   /// > 0: the rays of every n-th pixel in each direction are marched a second time, after the image, for Renderer::ray_depth().
   std::uint32_t ray_depth_spacing = 0;
 };
-RenderSettings draft_settings();  ///< every 4th pixel at step 2; where the fast raycast is not possible: step 2, jittered
+CATENA_EXPORT RenderSettings draft_settings();  ///< every 4th pixel at step 2; where the fast raycast is not possible: step 2, jittered
 /// Every 2nd pixel at step 1, every pixel where refinement requires it; where the fast raycast is not possible: step 1.
-RenderSettings balanced_settings();
-RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
+CATENA_EXPORT RenderSettings balanced_settings();
+CATENA_EXPORT RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
 
 /// Ray parameters and scene input besides grids.
 inline constexpr VkFormat kVolumeFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< format of what rays blend; premultiplied

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render/residency/cell_map.h"
 
+#include <Imath/half.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include "engine/base/threads.h"
 #include "render/residency/brick_map.h"
 #include "render/residency/cubic_cells.h"
-#include "render/residency/half.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -77,7 +77,8 @@ class CellMapBuilder {
     else
       grid_.read_block(origin, {kPaddedBrickSize, kPaddedBrickSize, kPaddedBrickSize}, values);
     if (halves_)
-      for (float& v : values) v = mirror_.offset + mirror_.scale * float_from_half(half_from_float((v - mirror_.offset) / mirror_.scale));
+      for (float& v : values)
+        v = mirror_.offset + mirror_.scale * imath_half_to_float(imath_float_to_half((v - mirror_.offset) / mirror_.scale));
     if (!valid.empty()) grid_.read_cell_validity(origin, {kPaddedBrickSize, kPaddedBrickSize, kPaddedBrickSize}, valid);
     Rows rows;
     std::array<std::uint8_t, kBrickSize * kBrickSize> cubic_rows{};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "render/residency/gradient_volume.h"
 
+#include <Imath/half.h>
 #include <cmath>
 #include <cstring>
 
-#include "render/residency/half.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -27,7 +27,7 @@ void write_gradient(const BlockGradient& g, double per_code, std::byte* out) {
   constexpr float kLongest = 6e4f;  // of half floats, with room for rounding
   const double codes = per_code > 0 ? 1 / per_code : 0, length = codes * double(g.length());
   const double scale = length > double(kLongest) ? codes * (double(kLongest) / length) : codes;
-  const auto half = [scale](float a) { return half_from_float(float(double(a) * scale)); };
+  const auto half = [scale](float a) { return imath_float_to_half(float(double(a) * scale)); };
   const std::uint16_t texel[4] = {half(g.x), half(g.y), half(g.z), 0};
   std::memcpy(out, texel, kGradientBytes);
 }

@@ -9,12 +9,13 @@
 #include <tuple>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "render/residency/resident_grid.h"
 
 namespace catena::render {
 
 /// Report on a grid that is rendered at reduced resolution because it does not fit into the memory budget.
-struct GridDownsampling {
+struct CATENA_EXPORT GridDownsampling {
   std::string grid;                                     ///< name of the grid
   int factor = 1;                                       ///< downsampling factor: 2, 4 or 8
   std::string size;                                     ///< size of the full grid: "256^3", "512 x 512 x 90"
@@ -24,7 +25,7 @@ struct GridDownsampling {
 };
 
 /// Owner of the resident grids. Frame thread.
-class ResidencyManager {
+class CATENA_EXPORT ResidencyManager {
  public:
   /// The device must outlive this object.
   explicit ResidencyManager(vk::Device& device) : device_(device) {}

@@ -18,6 +18,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/field/derived/box_downsample.h"
 #include "render/vk/resources.h"
 
@@ -74,16 +75,18 @@ struct ResidentGrid {
 
 /// Returns the bytes of the images that make_resident_grid() would create; reads only which leaves are constant. nullopt if the device does
 /// not support such images.
-std::optional<std::uint64_t> resident_image_bytes(vk::Device& device, const field::ScalarGrid& grid, const ResidencyOptions& options);
+CATENA_EXPORT std::optional<std::uint64_t> resident_image_bytes(vk::Device& device, const field::ScalarGrid& grid,
+                                                                const ResidencyOptions& options);
 
 /// Returns the bytes that make_resident_grid() and the maps of a volume or a surface need, including staging; nullopt if the device cannot
 /// store the grid whatever the budget.
-std::optional<std::uint64_t> resident_grid_bytes(vk::Device& device, const field::ScalarGrid& grid, const ResidencyOptions& options);
+CATENA_EXPORT std::optional<std::uint64_t> resident_grid_bytes(vk::Device& device, const field::ScalarGrid& grid,
+                                                               const ResidencyOptions& options);
 
 /// Builds the resident grid at full resolution. An Error if the device has no memory for it.
-Result<ResidentGrid> make_resident_grid(vk::Device& device, const field::ScalarGrid& grid, const ResidencyOptions& options);
+CATENA_EXPORT Result<ResidentGrid> make_resident_grid(vk::Device& device, const field::ScalarGrid& grid, const ResidencyOptions& options);
 /// Builds the resident grid of a grid downsampled by `factor` (2, 4, 8).
-Result<ResidentGrid> make_downsampled_resident_grid(vk::Device& device, const field::CoarseGrid& grid, int factor,
-                                                    const ResidencyOptions& options);
+CATENA_EXPORT Result<ResidentGrid> make_downsampled_resident_grid(vk::Device& device, const field::CoarseGrid& grid, int factor,
+                                                                  const ResidencyOptions& options);
 
 }  // namespace catena::render

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "render/residency/texel_encoder.h"
 
+#include <Imath/half.h>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
-
-#include "render/residency/half.h"
 
 namespace catena::render {
 
@@ -45,7 +44,7 @@ void TexelEncoder::write(const float* from, std::size_t count, std::byte* out) c
     if (float32) {
       std::memcpy(out + 4 * i, &value, 4);
     } else {
-      const std::uint16_t half = half_from_float((value - offset) / scale);
+      const std::uint16_t half = imath_float_to_half((value - offset) / scale);
       std::memcpy(out + 2 * i, &half, 2);
     }
   }
@@ -53,7 +52,7 @@ void TexelEncoder::write(const float* from, std::size_t count, std::byte* out) c
 
 BrickRange TexelEncoder::round_trip(const BrickRange& r) const {
   if (float32 || r.empty()) return r;
-  const auto back = [this](float v) { return offset + scale * float_from_half(half_from_float((v - offset) / scale)); };
+  const auto back = [this](float v) { return offset + scale * imath_half_to_float(imath_float_to_half((v - offset) / scale)); };
   return {back(r.min), back(r.max)};
 }
 

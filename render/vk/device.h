@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
 #include "render/vk/requirements.h"
@@ -28,7 +29,7 @@ class TimestampQueries;  ///< timestamp_query.h
 using Spirv = std::span<const std::uint32_t>;
 
 /// Replacements of embedded shaders, looked up by the embedded words themselves: code that creates pipelines is not affected. Frame thread.
-class ShaderReplacements {
+class CATENA_EXPORT ShaderReplacements {
  public:
   /// Makes pipelines created from here on use `words` in place of `embedded` (which must outlive this object).
   void replace(Spirv embedded, std::vector<std::uint32_t> words);
@@ -42,7 +43,7 @@ class ShaderReplacements {
 };
 
 /// Returns the binding numbers that a shader declares, sorted.
-std::vector<std::uint32_t> declared_bindings(Spirv words);
+CATENA_EXPORT std::vector<std::uint32_t> declared_bindings(Spirv words);
 
 /// Driver calls that can fail at any time; tests can inject failures into them.
 enum class DriverCall { allocate, submit, wait };
@@ -85,7 +86,7 @@ struct DeviceCounters {
 };
 
 /// Vulkan device. All handles belong to it or to the provider that lent them (VulkanProvider).
-class Device {
+class CATENA_EXPORT Device {
  public:
   /// Creates or borrows instance, device and queue. A one-line Error if no device meets the requirements.
   static Result<std::unique_ptr<Device>> create(const DeviceOptions& options);
@@ -189,6 +190,6 @@ class Device {
 };
 
 /// Returns one line per device: name, type, Vulkan version, driver.
-Result<std::vector<std::string>> list_devices();
+CATENA_EXPORT Result<std::vector<std::string>> list_devices();
 
 }  // namespace catena::render::vk

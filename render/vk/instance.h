@@ -10,14 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 
 namespace catena::render::vk {
 
 /// Returns the name of a result code, for instance "VK_ERROR_DEVICE_LOST".
-const char* result_name(VkResult result);
+CATENA_EXPORT const char* result_name(VkResult result);
 /// Returns an error "Vulkan could not WHAT: VK_ERROR_...".
-Error vulkan_error(VkResult result, const std::string& what);
+CATENA_EXPORT Error vulkan_error(VkResult result, const std::string& what);
 
 }  // namespace catena::render::vk
 
@@ -28,7 +29,7 @@ Error vulkan_error(VkResult result, const std::string& what);
 namespace catena::render::vk {
 
 /// Factory of a window's surface, set by the viewer; empty for headless programs.
-struct SurfaceFactory {
+struct CATENA_EXPORT SurfaceFactory {
   std::vector<std::string> instance_extensions;               ///< instance extensions that the surface requires
   std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;  ///< creates the surface for an instance
   /// Returns whether there is a window.
@@ -38,7 +39,7 @@ struct SurfaceFactory {
 /// Provider of Vulkan objects in place of Catena, for an XR runtime or a host application with a device of its own; it also defines the
 /// queue. Catena creates the objects whose function is empty. The extensions, layers and features in `wanted` are required; the provider
 /// may add others. A result other than VK_SUCCESS becomes the Error. Frame thread.
-struct VulkanProvider {
+struct CATENA_EXPORT VulkanProvider {
   /// Creates the instance, like vkCreateInstance.
   std::function<VkResult(const VkInstanceCreateInfo& wanted, VkInstance* made)> instance;
   /// Selects a physical device of the instance; it must still meet Catena's requirements.
@@ -54,7 +55,7 @@ struct VulkanProvider {
 };
 
 /// Warnings and errors reported by Vulkan. Thread-safe, as the driver may report from any thread.
-class Messages {
+class CATENA_EXPORT Messages {
  public:
   /// Adds a message.
   void add(std::string text);
@@ -70,7 +71,7 @@ class Messages {
 
 /// Vulkan instance of version 1.3, with the validation layer (including synchronization checks) if requested. Warnings and errors of the
 /// layer and the loader are counted and their texts kept; tests assert that there are none. Frame thread.
-class Instance {
+class CATENA_EXPORT Instance {
  public:
   /// Creates or borrows the instance. A one-line Error on failure.
   static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanProvider& maker = {});

@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
+
 namespace catena::render::vk {
 
 inline constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;  ///< version of the instance and of the device
 
 /// Feature chain for vkCreateDevice, to be passed as pNext = &core. Not movable, as it points into itself.
-struct DeviceFeatures {
+struct CATENA_EXPORT DeviceFeatures {
   VkPhysicalDeviceFeatures2 core{};        ///< start of the chain
   VkPhysicalDeviceVulkan12Features v12{};  ///< second in the chain
   VkPhysicalDeviceVulkan13Features v13{};  ///< last in the chain
@@ -23,11 +25,11 @@ struct DeviceFeatures {
 };
 
 /// Enables the features that Catena requires; features already enabled stay enabled.
-void enable_required(DeviceFeatures& features);
+CATENA_EXPORT void enable_required(DeviceFeatures& features);
 /// Returns the required device extensions. `presents`: Catena presents images in a window of its own.
-std::vector<const char*> required_extensions(bool presents = false);
+CATENA_EXPORT std::vector<const char*> required_extensions(bool presents = false);
 /// Returns the first requirement that the device does not meet, by its name such as "independentBlend"; empty: it meets all. `surface`:
 /// where images are presented; null for offscreen rendering.
-std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface = VK_NULL_HANDLE);
+CATENA_EXPORT std::string missing_requirement(VkPhysicalDevice physical, VkSurfaceKHR surface = VK_NULL_HANDLE);
 
 }  // namespace catena::render::vk

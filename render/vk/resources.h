@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "engine/base/export.h"
 #include "render/vk/device.h"
 
 namespace catena::render::vk {
@@ -14,7 +15,7 @@ namespace catena::render::vk {
 enum class Memory { device, upload, readback };
 
 /// Buffer with its memory. Frame thread.
-class Buffer {
+class CATENA_EXPORT Buffer {
  public:
   Buffer() = default;
   /// Creates a buffer. An Error if the budget or the device has no memory.
@@ -56,16 +57,16 @@ struct ImageInfo {
 };
 
 /// Returns the parameters of a 3D image that is uploaded once and read by shaders.
-ImageInfo volume_image_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z);
+CATENA_EXPORT ImageInfo volume_image_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z);
 
 /// Returns the bytes per texel of the formats that Catena uses.
-VkDeviceSize texel_bytes(VkFormat format);
+CATENA_EXPORT VkDeviceSize texel_bytes(VkFormat format);
 
 /// Returns the memory size of an image on this device, including padding by the driver; nullopt if the image is not supported.
-std::optional<VkDeviceSize> image_memory_bytes(const Device& device, const ImageInfo& info);
+CATENA_EXPORT std::optional<VkDeviceSize> image_memory_bytes(const Device& device, const ImageInfo& info);
 
 /// Image with its memory: one mip level, one layer, one view. Tracks its layout and last use, so that a barrier needs only the next use.
-class Image {
+class CATENA_EXPORT Image {
  public:
   Image() = default;
   /// Creates an image. An Error if the budget or the device has no memory.
@@ -109,14 +110,14 @@ class Image {
 };
 
 /// Re-creates `image` unless it has this format and size; by default as a color target that shaders read.
-Outcome ensure_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
-                     VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
+CATENA_EXPORT Outcome ensure_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
+                                   VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
 
 /// Filter between texels: nearest texel or linear interpolation.
 enum class Filter { nearest, linear };
 
 /// Sampler that clamps to the edge. Move-only.
-class Sampler {
+class CATENA_EXPORT Sampler {
  public:
   Sampler() = default;
   /// Creates a sampler. A one-line Error if the driver refuses.

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
 #include "engine/field/field.h"
@@ -29,14 +30,14 @@ struct AnalyticParameters {
 };
 
 /// Returns all names, in the order of the list above. Any thread.
-std::vector<std::string_view> analytic_names();
+CATENA_EXPORT std::vector<std::string_view> analytic_names();
 /// Returns true when make_analytic() accepts the name.
-bool is_analytic(std::string_view name);
+CATENA_EXPORT bool is_analytic(std::string_view name);
 /// Returns the names of the grids that `generate` writes for a formula: the name itself, or its parts.
-std::vector<std::string_view> analytic_parts(std::string_view name);
+CATENA_EXPORT std::vector<std::string_view> analytic_parts(std::string_view name);
 /// Makes a field that evaluates the formula exactly; it may be sampled from any thread. Error: an unknown name, or an invalid parameter for
 /// this formula.
-Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters = {});
+CATENA_EXPORT Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters = {});
 
 /// Scalar formula as a plain function, without the scale, which the field applies. This and all below is private to this module.
 struct ScalarFormula {
@@ -54,12 +55,12 @@ struct VectorFormula {
 };
 
 /// Returns the scalar formulas.
-std::span<const ScalarFormula> scalar_formulas();
+CATENA_EXPORT std::span<const ScalarFormula> scalar_formulas();
 /// Returns the vector formulas without parameters.
-std::span<const VectorFormula> vector_formulas();
+CATENA_EXPORT std::span<const VectorFormula> vector_formulas();
 
 /// Sum of random vortices in a uniform flow; free of divergence (analytic_vortices.cpp).
-class Vortices {
+class CATENA_EXPORT Vortices {
  public:
   /// Draws the vortices from the seed: the same seed gives the same ones. `dimensions`: 2 or 3.
   Vortices(int seed, int dimensions);
@@ -79,12 +80,12 @@ class Vortices {
 };
 
 /// Density of the left ventricle: 1 in the wall, falling to 0 around it. Formulas: analytic_formulas.cpp.
-double ventricle_density(const Vec3& p, Vec3& gradient);
+CATENA_EXPORT double ventricle_density(const Vec3& p, Vec3& gradient);
 /// Transmural depth in the left ventricle: 0 at the inner surface of the wall, 1 at the outer one, linear beyond them. `gradient` is per
 /// world unit.
-double ventricle_transmural(const Vec3& p, Vec3& gradient);
+CATENA_EXPORT double ventricle_transmural(const Vec3& p, Vec3& gradient);
 /// Direction of the muscle fiber in the wall of the left ventricle, unit length. Returns false and sets zero outside of the support of the
 /// density and on the long axis.
-bool ventricle_fiber(const Vec3& p, Vec3& fibre);
+CATENA_EXPORT bool ventricle_fiber(const Vec3& p, Vec3& fibre);
 
 }  // namespace catena::field

@@ -8,6 +8,7 @@
 /// invalid if at least half of the fine cells in it are. For a grid with nearest interpolation a coarse voxel is one of the fine voxels in
 /// it, so no new values appear. Blocks of a single value are preserved: a sparse grid stays sparse.
 #pragma once
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/field/grid/grid.h"
 
@@ -22,6 +23,6 @@ struct CoarseGrid {
 
 /// Downsamples a grid; `factor`: 2, 4 or 8. Error: no voxel can be averaged, the grid has too many blocks, or the memory
 /// budget is exceeded.
-Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor);
+CATENA_EXPORT Result<CoarseGrid> box_downsample(const ScalarGrid& grid, int factor);
 
 }  // namespace catena::field

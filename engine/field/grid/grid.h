@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/field/cubic.h"
 #include "engine/field/field.h"
@@ -22,7 +23,7 @@ struct GridStats {
 };
 
 /// Scalar grid: immutable and shared; every const function may be called from any thread.
-class ScalarGrid final : public ScalarField {
+class CATENA_EXPORT ScalarGrid final : public ScalarField {
  public:
   struct Storage;  ///< NanoVDB buffers
   struct Halo;     ///< halo samples of a cubic grid
@@ -88,7 +89,7 @@ class ScalarGrid final : public ScalarField {
 };
 
 /// Vector grid: immutable and shared; every const function may be called from any thread.
-class VectorGrid final : public VectorField {
+class CATENA_EXPORT VectorGrid final : public VectorField {
  public:
   struct Storage;
   struct Halo;
@@ -143,20 +144,21 @@ class VectorGrid final : public VectorField {
 /// Makes a grid from values in memory, by voxel, x fastest, for `size` voxels from index (0, 0, 0). `valid` (optional): 0 marks an invalid
 /// voxel. `cells` (optional, only with `valid`): one entry per cell, at the index of its base voxel; 0 makes a cell with valid corners
 /// invalid. Values that are not finite are stored and counted. A grid without a usable value is a bug and aborts.
-std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                   std::span<const float> values, std::span<const std::uint8_t> valid = {},
-                                                   std::span<const std::uint8_t> cells = {});
+CATENA_EXPORT std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
+                                                                 std::span<const float> values, std::span<const std::uint8_t> valid = {},
+                                                                 std::span<const std::uint8_t> cells = {});
 /// The same for vectors, three floats per voxel in world axes.
-std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
-                                                   std::span<const std::uint8_t> valid = {}, std::span<const std::uint8_t> cells = {});
+CATENA_EXPORT std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size,
+                                                                 std::span<const float> xyz, std::span<const std::uint8_t> valid = {},
+                                                                 std::span<const std::uint8_t> cells = {});
 
 /// Samples a field at `resolution` nodes along each axis, both ends included, over the cube lo..hi (the grid that `generate` writes). Nodes
 /// where the field is not inside are invalid.
-std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
+CATENA_EXPORT std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
 /// The same for vectors.
-std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
+CATENA_EXPORT std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
 /// The same for a request of the user. Error: no node is inside (the sampling is too coarse for the field's domain), a sample does not fit
 /// into a 32-bit float, the box is not usable, or the memory budget is exceeded.
-Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi);
+CATENA_EXPORT Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi);
 
 }  // namespace catena::field

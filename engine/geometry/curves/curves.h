@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
@@ -23,7 +24,7 @@ struct PointValues {
 };
 
 /// A set of polylines. Plain data.
-struct CurveSet {
+struct CATENA_EXPORT CurveSet {
   std::string name;               ///< File name.
   std::vector<glm::vec3> points;  ///< All points, line by line; neighboring points on a line differ.
   std::vector<std::uint32_t>
@@ -51,7 +52,7 @@ inline constexpr std::size_t kMaxPoints = 1'000'000'000;  ///< Files with more p
 
 /// Collects the lines that a reader or a tracer produces. A point equal to the previous one on its line is dropped, and so is a line of
 /// fewer than two points.
-class CurveSetBuilder {
+class CATENA_EXPORT CurveSetBuilder {
  public:
   /// Checks the memory budget for `most_points` points and reserves them. `name` begins every message. Returns an Error when there are more
   /// than kMaxPoints or too little memory.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/base/bounds.h"
+#include "engine/base/export.h"
 
 namespace catena::curves {
 
@@ -16,6 +17,6 @@ struct RobustBounds {
   std::size_t outliers = 0;  ///< Number of outliers.
 };
 /// Computes the bounding box without outliers; see the top of this file.
-RobustBounds compute_robust_bounds(std::span<const glm::vec3> points);
+CATENA_EXPORT RobustBounds compute_robust_bounds(std::span<const glm::vec3> points);
 
 }  // namespace catena::curves

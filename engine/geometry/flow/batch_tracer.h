@@ -10,6 +10,7 @@
 #pragma once
 #include <span>
 
+#include "engine/base/export.h"
 #include "engine/geometry/flow/curve.h"
 
 namespace catena::flow {
@@ -27,7 +28,7 @@ struct BatchOptions {
 class VelocityBricks;
 
 /// Caches what it has read of the grid between calls. trace() is safe from any thread.
-class BatchTracer {
+class CATENA_EXPORT BatchTracer {
  public:
   /// The field of `flow` must outlive this object.
   BatchTracer(const Flow& flow, const BatchOptions& options = {});
@@ -42,6 +43,6 @@ class BatchTracer {
 };
 
 /// Calls trace() for every seed, over all cores; the curves are bitwise equal to those of trace().
-std::vector<Result<CurvePtr>> trace_all(const Flow& flow, std::span<const Vec3> seeds, const TraceOptions& options = {});
+CATENA_EXPORT std::vector<Result<CurvePtr>> trace_all(const Flow& flow, std::span<const Vec3> seeds, const TraceOptions& options = {});
 
 }  // namespace catena::flow

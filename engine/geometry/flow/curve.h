@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/base/sample_status.h"
 #include "engine/base/vec.h"
@@ -45,7 +46,7 @@ double illinois_root(double a, double fa, double b, double fb, F&& f) noexcept {
 
 /// Cubic Hermite polynomial of one step, from position and rate at both ends: c(theta), theta in [0, 1]; exact at theta = 0. Does not
 /// allocate, lock or throw.
-struct Hermite {
+struct CATENA_EXPORT Hermite {
   Vec3 c0, c1, c2, c3;  ///< Coefficients of 1, theta, theta^2, theta^3; world units.
 
   /// Builds the cubic from q to q + displacement for a step of length h with rates w0 and w1 at its ends.
@@ -81,7 +82,7 @@ struct Knot {
 
 /// Why a line ends: at the domain boundary, at a critical point, at the maximum length, after a lap, or in an incoherent cell.
 enum class Termination { boundary, critical, length, lap, incoherent };
-const char* to_string(Termination end);  ///< One of BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT.
+CATENA_EXPORT const char* to_string(Termination end);  ///< One of BOUNDARY, CRITICAL, LENGTH, LAP, INCOHERENT.
 
 /// How a line ends, and the sample status there: boundary (box, mask or not_finite), critical (zero), incoherent, or ok.
 struct LineEnd {
@@ -97,7 +98,7 @@ struct LineEnd {
 /// A streamline as an arc-length curve: knots (s, position, unit tangent) with cubic Hermite dense output between them.
 /// The `trace` command writes these knots, the tubes render this object and the selected streamline link moves on it, so that rendering and
 /// haptics agree. Arc lengths and positions in world units. Immutable; any thread; reading does not allocate.
-class Curve {
+class CATENA_EXPORT Curve {
  public:
   /// Creates a curve from at least two knots with increasing s; `closed`: the last knot repeats the position of the first.
   Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length);
@@ -141,7 +142,7 @@ struct TraceOptions {
 /// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. The line ends at the domain boundary, at a
 /// critical point (or at min_speed), where a line field is incoherent, at the maximum length, or after one lap. Returns an Error when the
 /// seed is outside the domain, not finite, or at a zero (the caller adds file and line).
-Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options = {});
+CATENA_EXPORT Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options = {});
 
 inline constexpr int kMaxNearestWork = 512;  ///< Maximum number of tree boxes and curve intervals that find() examines.
 
@@ -158,7 +159,7 @@ struct NearestPoint {
 /// (around the Bezier hull of each Hermite interval), nearest box first. Stateless, so that the same point gives bitwise equal results. At
 /// most kMaxNearestWork boxes and intervals are examined; where many points are almost equally near (the center of a circle) one of them is
 /// returned. Built off the haptic thread; queries run on any thread and do not allocate.
-class NearestOnCurve {
+class CATENA_EXPORT NearestOnCurve {
  public:
   /// Builds the tree for one curve; off the haptic thread.
   explicit NearestOnCurve(CurvePtr curve) : NearestOnCurve(std::vector<CurvePtr>{std::move(curve)}) {}

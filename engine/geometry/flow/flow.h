@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/base/export.h"
 #include "engine/field/field.h"
 
 namespace catena::flow {
@@ -19,9 +20,9 @@ namespace catena::flow {
 ///   rkf34   order 3, Fehlberg 3(4), the method of the paper;  dp54  order 5, Dormand and Prince. Coefficients: runge_kutta.h
 enum class Method { linear, euler, rk2, rk3, rk4, rkf34, dp54 };
 /// Returns the method with that name, such as "rkf34"; nullopt for an unknown name.
-std::optional<Method> parse_method(std::string_view word);
+CATENA_EXPORT std::optional<Method> parse_method(std::string_view word);
 /// Name of a method, as in scene files.
-const char* to_string(Method method);
+CATENA_EXPORT const char* to_string(Method method);
 
 /// A direction field for integration: the vector field itself, or a line field (v ~ -v). Speeds at or below min_speed count as zero.
 struct Flow {
@@ -56,7 +57,7 @@ inline StopReason axis_direction(const field::LineAxis& line, double min_speed, 
 }
 
 /// Computes the unit direction u at the position p. `reference` is used by line fields only.
-StopReason direction_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::Cursor& cursor, Vec3& u) noexcept;
+CATENA_EXPORT StopReason direction_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::Cursor& cursor, Vec3& u) noexcept;
 
 /// Direction at a seed, where no previous tangent is known; for a line field on the side of the nearest voxel's vector.
 inline StopReason seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, Vec3& u) noexcept {

@@ -19,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/geometry/flow/curve.h"
 
 namespace catena::flow {
@@ -49,12 +50,13 @@ using VortexCoresPtr = std::shared_ptr<const VortexCores>;
 
 /// Returns the core lines of a field; results that are still referenced elsewhere are reused. Returns an Error when the memory budget is
 /// too small or there are too many lines. Calls from several threads run one after the other.
-Result<VortexCoresPtr> find_vortex_cores(const field::VectorFieldPtr& field, const CoreOptions& options);
+CATENA_EXPORT Result<VortexCoresPtr> find_vortex_cores(const field::VectorFieldPtr& field, const CoreOptions& options);
 
 /// Private to this module: fits a parabola to the `reach` points before and after each point and moves the point onto it.
-std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int reach);
+CATENA_EXPORT std::vector<Vec3> fair_points(const std::vector<Vec3>& places, bool closed, int reach);
 /// Private to this module: returns a spline through these points (vortex_core_splines.cpp); `closed`: the last point is joined to the
 /// first.
-CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last, double domain_length);
+CATENA_EXPORT CurvePtr spline_through(const std::vector<Vec3>& places, bool closed, const LineEnd& first, const LineEnd& last,
+                                      double domain_length);
 
 }  // namespace catena::flow

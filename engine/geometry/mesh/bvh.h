@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena::mesh {
@@ -29,7 +30,7 @@ struct alignas(64) BvhNode {
 static_assert(sizeof(BvhNode) == 64);
 
 /// The hierarchy. Traversals do not allocate and may run on the haptic thread.
-class Bvh {
+class CATENA_EXPORT Bvh {
  public:
   static constexpr int kStackSize = 64;  ///< Maximum number of pending nodes in a traversal.
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
 #include "engine/geometry/mesh/bvh.h"
@@ -45,7 +46,7 @@ struct Face {
 };
 
 /// A triangle mesh. Immutable and safe to read from any thread; nothing allocates after creation.
-class TriangleMesh {
+class CATENA_EXPORT TriangleMesh {
  public:
   /// Name used in messages and in the scene.
   const std::string& name() const { return name_; }
@@ -117,7 +118,7 @@ inline constexpr double kMinTriangleHeight = 1e-10;
 
 /// Welds vertices with equal coordinates, drops triangles without an area and builds the mesh. Returns an Error that begins with `name`
 /// when no triangle remains, a number is not finite, or the size is outside of 1e-100..1e100.
-Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name);
+CATENA_EXPORT Result<MeshPtr> make_mesh(TriangleSoup soup, const std::string& name);
 
 // ---- closest points, in the local frame; no allocation, lock or throw ----
 
@@ -150,7 +151,7 @@ void for_each_adjacent_face(const TriangleMesh& mesh, std::uint32_t face, int ed
 }
 
 /// Returns the point of one face that is closest to p; all in the local frame.
-ClosestPoint closest_point_on_face(const TriangleMesh& mesh, std::uint32_t face, const Vec3& p) noexcept;
+CATENA_EXPORT ClosestPoint closest_point_on_face(const TriangleMesh& mesh, std::uint32_t face, const Vec3& p) noexcept;
 
 /// Result of nearest_point().
 struct NearestResult {
@@ -161,11 +162,12 @@ struct NearestResult {
 
 /// Finds the point of the mesh closest to p within `radius` (local frame). `budget`: number of BVH nodes, counted down. `hint`: a face that
 /// may be near.
-NearestResult nearest_point(const TriangleMesh& mesh, const Vec3& p, double radius, int& budget, std::uint32_t hint = 0) noexcept;
+CATENA_EXPORT NearestResult nearest_point(const TriangleMesh& mesh, const Vec3& p, double radius, int& budget,
+                                          std::uint32_t hint = 0) noexcept;
 
 /// Returns the normal at a point, not unit: the face normal, the sum of the normals of the faces at its edge, or the vertex normal.
-Vec3 normal_at(const TriangleMesh& mesh, const ClosestPoint& at) noexcept;
+CATENA_EXPORT Vec3 normal_at(const TriangleMesh& mesh, const ClosestPoint& at) noexcept;
 /// Returns whether the point lies on an open edge, where the surface ends.
-bool is_on_boundary(const TriangleMesh& mesh, const ClosestPoint& at) noexcept;
+CATENA_EXPORT bool is_on_boundary(const TriangleMesh& mesh, const ClosestPoint& at) noexcept;
 
 }  // namespace catena::mesh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/io/sandbox/npy.h"
 
+#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,14 +56,6 @@ std::optional<std::vector<std::int64_t>> shape_of(std::string_view text) {
   return shape;
 }
 
-float from_half(std::uint16_t h) {
-  const int exponent = h >> 10 & 31, mantissa = h & 1023;
-  const float sign = (h & 0x8000) != 0 ? -1.f : 1.f;
-  if (exponent == 31) return mantissa != 0 ? std::nanf("") : sign * HUGE_VALF;
-  return sign *
-         (exponent == 0 ? std::ldexp(static_cast<float>(mantissa), -24) : std::ldexp(static_cast<float>(1024 + mantissa), exponent - 25));
-}
-
 Outcome read_type(std::string_view word, NpyHeader& head) {
   const auto unknown = [&] { return Error{fmt::format("holds {}, expected integers, floats or bools", in_quotes(word))}; };
   if (word.size() < 3) return unknown();
@@ -99,7 +92,7 @@ void decode_row(const NpyHeader& head, const std::byte* data, std::uint64_t firs
     } else {
       std::uint16_t half = 0;
       std::memcpy(&half, number.data(), sizeof half);
-      to = from_half(half);
+      to = imath_half_to_float(half);
     }
   }
 }

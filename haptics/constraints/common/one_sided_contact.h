@@ -14,6 +14,7 @@
 /// sheet and far from it, as on noisy data, the proxy glides to the probe at that rate, with status BUDGET.
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
+#include "engine/base/export.h"
 #include "haptics/chain/parameter.h"
 #include "haptics/constraints/registry.h"
 
@@ -47,7 +48,7 @@ struct SideSpec {
 };
 
 /// Reads `free` (if has_sides) and `release` (left at 0 where the link has `snap`, which then releases: snap.h).
-Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context);
+CATENA_EXPORT Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context);
 
 /// Value of the surface function at a point, relative to the level.
 struct SideValue {
@@ -66,7 +67,7 @@ struct SurfaceHold {
 };
 
 /// Interface of a surface for the contact rules. It keeps the point at which it holds the probe from tick to tick.
-class ContactSurface {
+class CATENA_EXPORT ContactSurface {
  public:
   virtual ~ContactSurface() = default;
   /// Returns on which side of the surface a point lies; the rules call it with the probe.
@@ -110,11 +111,13 @@ inline bool is_sane(const SideMemory& m) noexcept {
 }
 
 /// Returns how far the proxy may move in this tick, world units, where it is `gap` from its probe; infinity before the first tick.
-double max_proxy_travel(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) noexcept;
+CATENA_EXPORT double max_proxy_travel(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) noexcept;
 
 /// Runs the first tick: Constraint::start for a surface.
-void start_on_surface(ContactSurface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
+CATENA_EXPORT void start_on_surface(ContactSurface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory,
+                                    LinkState& state) noexcept;
 /// Runs one tick: Constraint::advance for a surface.
-void advance_on_surface(ContactSurface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
+CATENA_EXPORT void advance_on_surface(ContactSurface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory,
+                                      LinkState& state) noexcept;
 
 }  // namespace catena::haptics

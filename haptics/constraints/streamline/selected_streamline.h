@@ -6,6 +6,7 @@
 /// resumes in the next tick. While a link that snaps is released it seeks the nearest point of the whole curve
 /// (engine/geometry/flow/curve.h). Haptic thread: no allocation, lock or throw.
 #pragma once
+#include "engine/base/export.h"
 #include "engine/geometry/flow/curve.h"
 #include "haptics/chain/constraint.h"
 
@@ -13,7 +14,8 @@ namespace catena::haptics {
 
 /// Returns J^T f of the closest point of a traced curve, at s in the given interval: J = p' p'^T / (p' . p' - (x - p) . p''), of the cubic
 /// that it is on; 0 at an open end (common/pull_back.h).
-PulledBackForce pull_back_on_curve(const flow::Curve& curve, std::size_t interval, double s, const Vec3& probe, const Vec3& f) noexcept;
+CATENA_EXPORT PulledBackForce pull_back_on_curve(const flow::Curve& curve, std::size_t interval, double s, const Vec3& probe,
+                                                 const Vec3& f) noexcept;
 
 /// State of the link between ticks.
 struct SelectedStreamlineMemory {
@@ -23,6 +25,6 @@ struct SelectedStreamlineMemory {
 };
 
 /// Returns the constraint that holds its probe on a curve. Off the tick.
-std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve);
+CATENA_EXPORT std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve);
 
 }  // namespace catena::haptics

@@ -5,13 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "haptics/servo/log/format.h"
 
 namespace catena::haptics::log {
 
 /// Source of bytes with random access. One thread.
-class ByteSource {
+class CATENA_EXPORT ByteSource {
  public:
   virtual ~ByteSource() = default;
   /// Returns the number of bytes, as it was when the source was opened.
@@ -21,14 +22,14 @@ class ByteSource {
 };
 
 /// Opens a regular file. The Error names it.
-Result<std::unique_ptr<ByteSource>> open_file_source(const std::string& path);
+CATENA_EXPORT Result<std::unique_ptr<ByteSource>> open_file_source(const std::string& path);
 /// Returns a source of bytes in memory, which must outlive it.
-std::unique_ptr<ByteSource> make_memory_source(std::string_view bytes);
+CATENA_EXPORT std::unique_ptr<ByteSource> make_memory_source(std::string_view bytes);
 
 /// Writer of the blocks of a log: each whole block is written with one write(2) directly to the file under its final name, so that it
 /// survives the end of the process at any moment. `sync` (fdatasync) makes it survive a failure of the machine, too.
 /// The first error is kept; after it nothing is written. Owns the file descriptor. One thread.
-class BlockFile {
+class CATENA_EXPORT BlockFile {
  public:
   /// Creates the file, or replaces an existing one, and writes the preamble. An Error if the file is an input of this program, cannot be
   /// written, or is being recorded into by another process.
@@ -64,7 +65,7 @@ class BlockFile {
 
 /// Reader of the blocks of a log in order, which skips damaged ones (format.h). Every byte is read a bounded number of times, and no more
 /// memory is used than the block has bytes in the file. Off the tick.
-class BlockReader {
+class CATENA_EXPORT BlockReader {
  public:
   /// Creates a reader of a log whose preamble has been checked; it starts at the first block.
   explicit BlockReader(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "haptics/chain/tick.h"
 
 namespace catena::haptics::log {
@@ -32,7 +33,7 @@ struct LogHeader {
 
 /// Properties of a haptic program that its scene text does not contain or that may come from elsewhere (a fitted workspace, a ramp).
 /// Coupling::force is not stored; it comes from the scene text.
-struct LogProgram {
+struct CATENA_EXPORT LogProgram {
   /// Link of the program.
   struct Link {
     std::string name;             ///< name of the link
@@ -65,7 +66,7 @@ struct LogProgram {
 };
 
 /// Range of ticks that are missing in the log.
-struct LogGap {
+struct CATENA_EXPORT LogGap {
   /// Cause of the gap: the writer could not keep up with the ticks; the log is damaged there.
   enum class Cause { overrun, damaged };
   std::uint64_t first_tick = 0, ticks = 0;  ///< first missing tick and number of missing ticks
@@ -90,27 +91,27 @@ struct LogState {
 };
 
 /// Returns what the log stores of a program. `scene_text`: scene text of the program; none: the header's.
-LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text);
+CATENA_EXPORT LogProgram to_log_program(const HapticProgram& program, std::optional<std::string> scene_text);
 
 /// Returns the payload of the header block.
-std::string to_bytes(const LogHeader& header);
+CATENA_EXPORT std::string to_bytes(const LogHeader& header);
 /// Returns the payload of the program block.
-std::string to_bytes(const LogProgram& program);
+CATENA_EXPORT std::string to_bytes(const LogProgram& program);
 /// Returns the payload of the state block.
-std::string to_bytes(const ChainState& state);
+CATENA_EXPORT std::string to_bytes(const ChainState& state);
 /// Returns the payload of the gap block.
-std::string to_bytes(const LogGap& gap);
+CATENA_EXPORT std::string to_bytes(const LogGap& gap);
 /// Returns the payload of the end block.
-std::string to_bytes(const LogEnd& end);
+CATENA_EXPORT std::string to_bytes(const LogEnd& end);
 /// Parses the payload of a header block; returns nothing if the bytes are invalid.
-std::optional<LogHeader> parse_header(std::string_view bytes);
+CATENA_EXPORT std::optional<LogHeader> parse_header(std::string_view bytes);
 /// Parses the payload of a program block; returns nothing if the bytes are invalid.
-std::optional<LogProgram> parse_program(std::string_view bytes);
+CATENA_EXPORT std::optional<LogProgram> parse_program(std::string_view bytes);
 /// Parses the payload of a state block; returns nothing if the bytes are invalid.
-std::optional<LogState> parse_state(std::string_view bytes);
+CATENA_EXPORT std::optional<LogState> parse_state(std::string_view bytes);
 /// Parses the payload of a gap block; returns nothing if the bytes are invalid.
-std::optional<LogGap> parse_gap(std::string_view bytes);
+CATENA_EXPORT std::optional<LogGap> parse_gap(std::string_view bytes);
 /// Parses the payload of an end block; returns nothing if the bytes are invalid.
-std::optional<LogEnd> parse_end(std::string_view bytes);
+CATENA_EXPORT std::optional<LogEnd> parse_end(std::string_view bytes);
 
 }  // namespace catena::haptics::log

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "engine/base/vec.h"
 
 namespace catena::haptics::log {
@@ -17,7 +18,7 @@ namespace catena::haptics::log {
 enum class TrackedPart : std::size_t { head, left_hand, right_hand, gaze };
 inline constexpr std::size_t kTrackedPartCount = 4;  ///< number of tracked parts
 /// Returns head, left_hand, right_hand or gaze.
-const char* to_string(TrackedPart part);
+CATENA_EXPORT const char* to_string(TrackedPart part);
 
 /// Pose of a tracked part.
 struct TrackedPose {
@@ -38,13 +39,13 @@ struct LogPoses {
 };
 
 /// Returns the payload of a poses block.
-std::string to_bytes(const std::vector<LogPoses>& poses);
+CATENA_EXPORT std::string to_bytes(const std::vector<LogPoses>& poses);
 /// Parses the payload of a poses block; returns nothing if the bytes are invalid or a number is not finite.
-std::optional<std::vector<LogPoses>> parse_poses(std::string_view bytes);
+CATENA_EXPORT std::optional<std::vector<LogPoses>> parse_poses(std::string_view bytes);
 
 /// Returns the header line of the CSV table: tick, predicted_ns, then head_x,y,z,qw,qx,qy,qz and so on for each part.
-std::string poses_csv_header();
+CATENA_EXPORT std::string poses_csv_header();
 /// Appends one row with its line end; the columns of a part that is not tracked are empty.
-void append_poses_csv(std::string& line, const LogPoses& poses);
+CATENA_EXPORT void append_poses_csv(std::string& line, const LogPoses& poses);
 
 }  // namespace catena::haptics::log

@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 
+#include "engine/base/export.h"
 #include "haptics/servo/log/block_file.h"
 #include "haptics/servo/log/contents.h"
 #include "haptics/servo/log/poses.h"
@@ -23,7 +24,7 @@ enum class LogEvent {
 };
 
 /// Reader of a log. One thread.
-class LogReader {
+class CATENA_EXPORT LogReader {
  public:
   /// Opens a file and reads its header. An Error if it cannot be read, is no recording, or has another version or byte order or a damaged
   /// header.

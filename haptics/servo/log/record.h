@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/export.h"
 #include "haptics/chain/tick.h"
 #include "haptics/servo/log/format.h"
 
@@ -53,21 +54,21 @@ struct LogTick {
 };
 
 /// Writes the record of a tick to `words`, which has space for kMaxRecordWords. Returns the number of words written.
-int pack_tick(const ProbeSample& input, const HapticState& output, std::uint64_t* words) noexcept;
+CATENA_EXPORT int pack_tick(const ProbeSample& input, const HapticState& output, std::uint64_t* words) noexcept;
 
 /// Converts a record to a tick. Returns false if a word has a value that no tick can write, such as an unknown status; `tick` is then
 /// partly set. The caller sets output.tick and program_epoch, which are stored in the block.
-bool unpack_tick(const RecordWords& words, const RecordLayout& shape, LogTick& tick) noexcept;
+CATENA_EXPORT bool unpack_tick(const RecordWords& words, const RecordLayout& shape, LogTick& tick) noexcept;
 
 /// Returns the first difference between two records of the same layout in the input or result of the tick (timings are ignored), such as
 /// "force_x recorded 1, replayed 2"; empty if they are bit-identical.
-std::string first_difference(const RecordWords& recorded, const RecordWords& replayed, const std::vector<std::string>& link_names,
-                             const std::vector<std::string>& widget_names = {});
+CATENA_EXPORT std::string first_difference(const RecordWords& recorded, const RecordWords& replayed,
+                                           const std::vector<std::string>& link_names, const std::vector<std::string>& widget_names = {});
 
 /// Appends a record to `out` as a block stores it: the mask, then the words that differ from `before`. Copies `words` to `before`.
-void compress_record(std::span<const std::uint64_t> words, RecordWords& before, std::string& out);
+CATENA_EXPORT void compress_record(std::span<const std::uint64_t> words, RecordWords& before, std::string& out);
 /// Reads one record of `count` words from the start of `bytes` into `words`, which hold the preceding record. Returns the number of bytes
 /// read; 0 if `bytes` is too short or the mask refers to words beyond `count`.
-std::size_t decompress_record(std::string_view bytes, int count, RecordWords& words) noexcept;
+CATENA_EXPORT std::size_t decompress_record(std::string_view bytes, int count, RecordWords& words) noexcept;
 
 }  // namespace catena::haptics::log
