@@ -22,8 +22,8 @@
 #include "engine/base/helper_process.h"
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/data_files.h"
-#include "engine/io/volume/formats.h"
 
 namespace catena::field {
 namespace {

@@ -14,7 +14,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/field/field_display_range.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/default_points.h"
 #include "engine/scene/default_visualization.h"
@@ -43,8 +43,9 @@ LookedInto look_into(const std::string& name, int step = 0) {
   const field::LoadRequest request = request_at(name, step);
   LookedInto file{request.path, request.step, !is_pattern(request.path)};
   const std::string& path = file.path;
-  const bool field = field::is_field_file(path), mesh = mesh::is_mesh_file(path), curves = curves::is_curve_file(path),
-             points = curves::is_point_file(path);
+  const bool field = io::find_reader(path, io::DataKind::volume) != nullptr, mesh = io::find_reader(path, io::DataKind::mesh) != nullptr,
+             curves = io::find_reader(path, io::DataKind::curves) != nullptr,
+             points = io::find_reader(path, io::DataKind::points) != nullptr;
   if (!mesh && !curves && !points) return file;
   if (field && (!file.grids() || std::ranges::any_of(*file.grids(), &field::GridInfo::is_usable))) return file;
   file.kind = mesh ? FileKind::mesh : curves ? FileKind::curves : FileKind::points;
@@ -184,7 +185,7 @@ Result<DefaultScene> make_default_scene(const std::string& path, const std::stri
     bare.text = "{\n" + parts + ",\n" + default_mesh_background() + "\n}\n";
     return bare;
   }
-  if (field::needs_layout(path))
+  if (io::needs_layout(path))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(looked, bare.request));

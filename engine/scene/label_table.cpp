@@ -10,7 +10,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 
 namespace catena::scene {
 namespace {
@@ -234,7 +234,7 @@ std::string find_label_table(const std::string& path) {
     return true;
   };
   shorten(".gz");
-  const std::vector<std::string_view> endings = field::field_extensions();
+  const std::vector<std::string_view> endings = io::readable_extensions(io::DataKind::volume);
   (void)std::ranges::any_of(endings, shorten);
   for (const std::string& name : stems)
     for (const char* ending : {".txt", ".ctbl", ".label", ".csv", ".tsv", ".lut"}) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads "curves": polylines from a file, or the vortex core lines of a field, rendered as tubes.
+#include "engine/io/formats.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {
@@ -30,7 +31,7 @@ const Table<VortexCoreCurves>& cores_table() {
 
 const Table<CurvesItem>& curves_table() {
   static const auto table = [] {
-    Table<CurvesItem> t = make_file_table<CurvesSource>("curves", "The file", curves::curve_endings(), false);
+    Table<CurvesItem> t = make_file_table<CurvesSource>("curves", "The file", io::readable_extensions(io::DataKind::curves), false);
     t.custom(schema::object("vortex_cores", cores_table().keys(), "Or the core lines of the vortices of a field."),
              [](Scene& scene, const json::Node& item, CurvesItem& made) -> Outcome {
                const json::Node* cores = item.find("vortex_cores");

@@ -4,6 +4,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/unsupported_formats.h"
 #include "engine/scene/reader_bindings.h"
 
@@ -89,9 +90,10 @@ const Table<MeshItem>& mesh_table() {
                CATENA_TRY(mesh.name, read_new_name<MeshSource>(scene, item, "mesh"));
                return Done{};
              });
-    t.custom(schema::file("file", "The file: " + join_alternatives(mesh::mesh_endings()) + ".").required(),
+    t.custom(schema::file("file", "The file: " + join_alternatives(io::readable_extensions(io::DataKind::mesh)) + ".").required(),
              [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
-               CATENA_TRY(mesh.source.path, read_path(scene, item, "mesh", mesh.name, mesh::mesh_endings(), mesh.source.steps));
+               CATENA_TRY(mesh.source.path,
+                          read_path(scene, item, "mesh", mesh.name, io::readable_extensions(io::DataKind::mesh), mesh.source.steps));
                return Done{};
              });
     t.bind(

@@ -5,7 +5,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/readers.h"
 #include "engine/scene/time_steps.h"
@@ -21,7 +21,7 @@ constexpr int kMostSeed = (1 << 30) - 1;
 constexpr int kMaxNodes = 1024;  // along each axis of a sampled analytic field
 
 std::string field_fault(const std::string& path) {
-  return file_problem(path, field::is_field_file(path), field::describe_field_extensions(), true);
+  return file_problem(path, io::find_reader(path, io::DataKind::volume) != nullptr, io::describe_expected(io::DataKind::volume), true);
 }
 
 // ---- fields from files ----
@@ -34,8 +34,8 @@ Key unit_key() {
 
 Key file_key(bool with_layout) {
   std::vector<std::string_view> endings;
-  for (const std::string_view ending : field::field_extensions())
-    if (field::needs_layout(ending) == with_layout) endings.push_back(ending);
+  for (const std::string_view ending : io::readable_extensions(io::DataKind::volume))
+    if (io::needs_layout(ending) == with_layout) endings.push_back(ending);
   return schema::file("file", "The file with the data: " + join_alternatives(endings) +
                                   (with_layout ? "." : "; or a pattern of several, see `time`."))
       .required();
@@ -107,7 +107,7 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
     return json::error_at(*node.find("axes"), "\"axes\" is " + in_quotes(axes) + "; \"zyx\" or \"xyz\" was expected");
   request.axes_xyz = axes == "xyz";
   for (const char* key : {"axes", "spacing", "origin"})
-    if (node.find(key) != nullptr && !field::is_numpy_file(request.path))
+    if (node.find(key) != nullptr && !io::is_numpy_file(request.path))
       return json::error_at(*node.find(key), in_quotes(key) + " belongs to arrays of NumPy (.npy, .npz); this file says it itself");
   if (const json::Node* spacing = node.find("spacing")) {
     CATENA_TRY(request.spacing, json::as_vec3(*spacing, "spacing"));
@@ -140,8 +140,8 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
   request.path = resolve_path(scene_path, file);
-  if (!field::needs_layout(file)) CATENA_CHECK(read_series(node, scene_step, request, source));
-  if (field::needs_layout(file)) {
+  if (!io::needs_layout(file)) CATENA_CHECK(read_series(node, scene_step, request, source));
+  if (io::needs_layout(file)) {
     CATENA_CHECK(layout_table().read(scene_path, node, request.raw.emplace()));
   } else {
     CATENA_CHECK(json::check_known_keys(node, schema::key_names(grid_keys())));
@@ -292,9 +292,9 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
 
   FieldSource& source = source_named(scene, with.name);
   LoadRequest request = source.file.value_or(LoadRequest{});
-  if (field::needs_layout(with.file) && !request.raw)
+  if (io::needs_layout(with.file) && !request.raw)
     return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");
-  if (!field::needs_layout(with.file)) request.raw.reset();
+  if (!io::needs_layout(with.file)) request.raw.reset();
   request.path = with.file;
   request.mask_required = false;
   source.grid_is_optional = with.grid.empty();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Reads "points": positions from a table, rendered as spheres.
+#include "engine/io/formats.h"
 #include "engine/scene/reader_bindings.h"
 
 namespace catena::scene {
@@ -9,7 +10,7 @@ using PointsItem = FileItem<PointsSource>;
 
 const Table<PointsItem>& points_table() {
   static const auto table = [] {
-    Table<PointsItem> t = make_file_table<PointsSource>("points", "The table", curves::point_endings());
+    Table<PointsItem> t = make_file_table<PointsSource>("points", "The table", io::readable_extensions(io::DataKind::points));
     t.bind(
         schema::number("radius", "world", "Of all balls.").positive().with_default("the table's column `radius`, or fitted to the spacing"),
         [](auto& p) -> auto& { return p.item.radius; });

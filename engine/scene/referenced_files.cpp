@@ -6,7 +6,7 @@
 
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/scene/readers.h"
 
 namespace catena::scene {
@@ -74,8 +74,8 @@ Result<std::string> with_override(std::string text, const std::string& path, con
   const std::string pointer = "/fields/" + json::escape_pointer_token(with.name);
   const json::Node* field = json::find_value(root, pointer);
   const json::Node* file = field == nullptr ? nullptr : field->find("file");
-  const bool raw = file != nullptr && field::needs_layout(file->string);
-  if (file == nullptr || (raw && !field::needs_layout(name))) {
+  const bool raw = file != nullptr && io::needs_layout(file->string);
+  if (file == nullptr || (raw && !io::needs_layout(name))) {
     const std::string grid = with.grid.empty() ? "" : ", \"grid\": " + json::serialize_string(with.grid);
     return json::set_value(text, path, pointer, "{\"file\": " + json::serialize_string(name) + grid + "}");
   }

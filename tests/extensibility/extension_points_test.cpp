@@ -8,7 +8,7 @@
 #include "engine/app/cli/scene_schema.h"
 #include "engine/app/viewer/edit/chain_editing.h"
 #include "engine/base/text.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/scene/document.h"
 #include "engine/scene/ruler.h"
 #include "engine/schema/documents.h"
@@ -44,18 +44,14 @@ Result<field::AnyField> load_corners(const field::LoadRequest& request) {
   return field::load(like);
 }
 
-field::FileFormat corners_format() {
-  field::FileFormat format;
-  format.extensions = {".corners"};
-  format.load = load_corners;
-  format.describe = describe_corners;
-  return format;
+io::Format corners_format() {
+  return {.name = "Corners", .extensions = {".corners"}, .volume = {.load = load_corners, .describe = describe_corners}};
 }
 
 struct Registered {
   Registered() {
     register_constraint(level_ball_constraint());
-    field::register_format(corners_format());
+    io::register_format(corners_format());
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "engine/geometry/curves/point_set.h"
+#include "engine/io/curves/load_points.h"
 #include "tests/fuzz/mutate.h"
 
 namespace catena {

@@ -3,6 +3,7 @@
 // away.
 #include <openvdb/openvdb.h>
 
+#include "engine/io/curves/load_points.h"
 #include "tests/acceptance/chain_fixture.h"
 #include "tests/limits/limits_table.h"
 #include "tests/limits/probe_path.h"

@@ -7,7 +7,6 @@
 #include <atomic>
 
 #include "engine/base/text.h"
-#include "engine/geometry/curves/point_set.h"
 
 namespace catena::curves {
 
@@ -90,12 +89,6 @@ Result<CurveSet> CurveSetBuilder::finish() {
   set.version = next_version.fetch_add(1);
   set.memory_reservation = MemoryReservation(set.bytes());
   return std::move(set_);
-}
-
-const PointValues* PointSet::find_values(std::string_view wanted) const {
-  for (const PointValues& one : values)
-    if (one.name == wanted) return &one;
-  return nullptr;
 }
 
 }  // namespace catena::curves

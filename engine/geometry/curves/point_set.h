@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Points from a text table: .csv, .tsv, .xyz. The first line names the columns; x, y and z are required, in any order and case. Cells are
-/// separated by commas, semicolons or tabs, otherwise by blanks. A numeric column becomes point values under its name (an empty cell or
-/// "nan": no value); a column of text is left out. Points are world units in single precision; a compact set far from the world's origin is
-/// stored relative to its own origin, so that single precision still separates its points. Rejected with one line
-/// "FILE:LINE: what; what was expected": positions that are not finite or exceed 1e15, rows of another length, more than kMaxPoints points,
-/// more memory than the budget allows. Immutable after creation; reading is safe from any thread.
+/// Sets of points with values. Points are world units in single precision; a compact set far from the world's origin is stored relative to
+/// its own origin, so that single precision still separates its points. Immutable after creation; reading is safe from any thread.
 #pragma once
+#include "engine/base/export.h"
 #include "engine/geometry/curves/curves.h"
 #include "engine/geometry/curves/robust_bounds.h"
 
 namespace catena::curves {
 
 /// A set of points. Plain data.
-struct PointSet {
+struct CATENA_EXPORT PointSet {
   std::string name;                       ///< File name.
   Vec3 origin{0.0};                       ///< Origin of `points`, world units; 0 unless they are far from it and close together.
   std::vector<glm::vec3> points;          ///< Positions relative to `origin`.
@@ -36,16 +33,7 @@ struct PointSet {
 /// Shared, immutable set of points.
 using PointSetPtr = std::shared_ptr<const PointSet>;
 
-bool is_point_file(std::string_view path);  ///< By the file extension, any case.
-/// File extensions, in lower case with the dot.
-const std::vector<std::string_view>& point_endings();
-
-/// Loads the points of a file. `step`: time step, for a file with several. Returns an Error when the file is rejected (see above).
-Result<PointSetPtr> load_points(const std::string& path, int step = 0);
-/// Parses the contents of a text file; `name` begins every message.
-Result<PointSet> parse_points(std::string_view text, const std::string& name);
-/// Reads all points of a .vtp, .vtk or .ply file through the catena-read-vtk process, with the point array that is the default for
-/// coloring. Corners, bounds and spacing are not computed yet.
-Result<PointSet> read_points(const std::string& path, int step);
+/// Completes a set whose points and values are set: name, corners, bounds, spacing, version and memory.
+CATENA_EXPORT PointSet complete_points(PointSet set, const std::string& name);
 
 }  // namespace catena::curves

@@ -12,22 +12,19 @@
 #pragma once
 #include <string_view>
 
+#include "engine/base/export.h"
 #include "engine/geometry/curves/curves.h"
 
 namespace catena::curves {
 
-bool is_curve_file(std::string_view path);  ///< By the file extension, any case; .vtp, .vtk and .vtu may hold other data.
-/// File extensions, in lower case with the dot.
-const std::vector<std::string_view>& curve_endings();
-
 /// Loads a file in any of these formats. `step`: time step, for a file with several. Returns an Error when the file is rejected.
-Result<CurveSetPtr> load_curves(const std::string& path, int step = 0);
+CATENA_EXPORT Result<CurveSetPtr> load_curves(const std::string& path, int step = 0);
 
 /// Parses the contents of a .tck file; `name` begins every message.
-Result<CurveSet> parse_tck(std::string_view bytes, const std::string& name);
+CATENA_EXPORT Result<CurveSet> parse_tck(std::string_view bytes, const std::string& name);
 /// Parses the contents of a .trk file; `name` begins every message.
-Result<CurveSet> parse_trk(std::string_view bytes, const std::string& name);
+CATENA_EXPORT Result<CurveSet> parse_trk(std::string_view bytes, const std::string& name);
 /// Reads the lines of a file through catena-read-vtk, at a time step.
-Result<CurveSet> read_lines(const std::string& path, int step);
+CATENA_EXPORT Result<CurveSet> read_lines(const std::string& path, int step);
 
 }  // namespace catena::curves

@@ -2,20 +2,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/geometry/curves/point_set.h"
+#include "engine/io/curves/load_points.h"
+#include "engine/io/curves/write_polylines.h"
+#include "engine/io/format_rows.h"
+#include "engine/io/parse_file.h"
 
 namespace catena::curves {
 namespace {
 
-std::atomic<std::uint64_t> next_point_version{1};
 constexpr double kFarthestPoint = 1e15;
-constexpr std::size_t kMostColumns = 256, kSampled = 64;
+constexpr std::size_t kMostColumns = 256;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// Splits a line into cells at the separator; the separator ' ' stands for any run of blanks.
@@ -161,84 +162,38 @@ class TableReader {
   PointSet set_;
 };
 
-double spacing_of(const std::vector<glm::vec3>& points) {
-  std::vector<double> nearest;
-  const std::size_t step = 1 + points.size() / kSampled;
-  for (std::size_t i = 0; i < points.size(); i += step) {
-    float least = std::numeric_limits<float>::infinity();
-    for (const glm::vec3& p : points) {
-      const glm::vec3 e = p - points[i];
-      const float d = e.x * e.x + e.y * e.y + e.z * e.z;
-      if (d > 0 && d < least) least = d;
-    }
-    if (std::isfinite(least)) nearest.push_back(std::sqrt(static_cast<double>(least)));
-  }
-  return quantile(nearest, 0.5);
-}
-
 }  // namespace
 
-void PointSet::set_positions(const std::vector<Vec3>& places) {
-  // single precision resolves a coordinate to 1 in 2^24: at a distance of this many box edges that leaves 1 in 4096 of an edge
-  constexpr double kFarEdges = 4096;
-  Bounds box;
-  double reach = 0;
-  for (const Vec3& p : places) {
-    box.extend(p);
-    reach = std::max(reach, max_abs(p));
-  }
-  origin = reach > kFarEdges * max_abs(box.hi - box.lo) ? box.center() : Vec3(0.0);
-  points.clear();
-  points.reserve(places.size());
-  for (const Vec3& p : places) points.emplace_back(p - origin);
-}
-
-const std::vector<std::string_view>& point_endings() {
-  static const std::vector<std::string_view> endings{".csv", ".tsv", ".xyz", ".vtp", ".vtk", ".ply", ".pvd", ".series"};
-  return endings;
-}
-
-bool is_point_file(std::string_view path) {
-  return std::ranges::any_of(point_endings(), [&](std::string_view ending) { return has_extension(path, ending); });
-}
-
-namespace {
-
-Result<PointSet> completed(PointSet set, const std::string& name) {
-  set.name = name;
-  Bounds box;
-  for (std::size_t i = 0; i < set.points.size(); ++i) box.extend(set.position(i));
-  set.min_corner = box.lo;
-  set.max_corner = box.hi;
-  set.robust_bounds = compute_robust_bounds(set.points);
-  if (!(set.origin == Vec3(0.0)) && !set.robust_bounds.box.empty())
-    set.robust_bounds.box = {set.robust_bounds.box.lo + set.origin, set.robust_bounds.box.hi + set.origin};
-  set.median_spacing = spacing_of(set.points);
-  set.version = next_point_version.fetch_add(1);
-  set.memory_reservation = MemoryReservation(set.bytes());
-  return set;
-}
-
-bool is_text(std::string_view path) { return has_extension(path, ".csv") || has_extension(path, ".tsv") || has_extension(path, ".xyz"); }
-
-}  // namespace
+Result<PointSet> read_table(std::string_view text, const std::string& name) { return TableReader(text, name).read(); }
 
 Result<PointSet> parse_points(std::string_view text, const std::string& name) {
-  CATENA_TRY(PointSet set, TableReader(text, name).read());
-  return completed(std::move(set), name);
+  CATENA_TRY(PointSet set, read_table(text, name));
+  return complete_points(std::move(set), name);
 }
 
 Result<PointSetPtr> load_points(const std::string& path, int step) {
-  const std::string wanted = "a table of points (" + join_alternatives(point_endings()) + ")";
-  if (!is_point_file(path)) return Error{one_line(path + ": has an unknown kind; " + wanted + " was expected")};
-  if (!is_text(path)) {
-    CATENA_TRY(PointSet shape, read_points(path, step));
-    CATENA_TRY(PointSet made, completed(std::move(shape), path));
-    return PointSetPtr(std::make_shared<PointSet>(std::move(made)));
-  }
-  CATENA_TRY(const std::string text, read_text_file(path, wanted));
-  CATENA_TRY(PointSet set, parse_points(text, path));
-  return PointSetPtr(std::make_shared<PointSet>(std::move(set)));
+  const io::Format* format = io::find_reader(path, io::DataKind::points);
+  if (format == nullptr)
+    return Error{one_line(path + ": has an unknown kind; " + io::describe_expected(io::DataKind::points) + " was expected")};
+  CATENA_TRY(PointSet set, format->read_points(path, step));
+  return PointSetPtr(std::make_shared<PointSet>(complete_points(std::move(set), path)));
 }
 
 }  // namespace catena::curves
+
+namespace catena::io {
+
+Format csv_format() {
+  return {.name = "Comma-separated table",
+          .extensions = {".csv"},
+          .read_points = parse_file<curves::read_table, DataKind::points, 1>,
+          .write_curves = curves::write_polylines_csv};
+}
+
+Format table_format() {
+  return {.name = "Table with other separators",
+          .extensions = {".tsv", ".xyz"},
+          .read_points = parse_file<curves::read_table, DataKind::points, 1>};
+}
+
+}  // namespace catena::io

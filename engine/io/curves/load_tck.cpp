@@ -10,6 +10,8 @@
 #include "engine/base/text.h"
 #include "engine/geometry/curves/byte_order.h"
 #include "engine/io/curves/load_curves.h"
+#include "engine/io/format_rows.h"
+#include "engine/io/parse_file.h"
 
 namespace catena::curves {
 namespace {
@@ -96,3 +98,11 @@ Result<CurveSet> parse_tck(std::string_view bytes, const std::string& name) {
 }
 
 }  // namespace catena::curves
+
+namespace catena::io {
+
+Format tck_format() {
+  return {.name = "MRtrix tractogram", .extensions = {".tck"}, .read_curves = parse_file<curves::parse_tck, DataKind::curves, 8>};
+}
+
+}  // namespace catena::io

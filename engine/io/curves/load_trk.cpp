@@ -7,6 +7,8 @@
 #include "engine/base/text.h"
 #include "engine/geometry/curves/byte_order.h"
 #include "engine/io/curves/load_curves.h"
+#include "engine/io/format_rows.h"
+#include "engine/io/parse_file.h"
 
 namespace catena::curves {
 namespace {
@@ -202,3 +204,11 @@ Result<CurveSet> parse_trk(std::string_view bytes, const std::string& name) {
 }
 
 }  // namespace catena::curves
+
+namespace catena::io {
+
+Format trk_format() {
+  return {.name = "TrackVis tractogram", .extensions = {".trk"}, .read_curves = parse_file<curves::parse_trk, DataKind::curves, 8>};
+}
+
+}  // namespace catena::io

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Loads lines and points read by the program catena-read-vtk: VTK polylines, and vertices of any VTK data.
 #include "engine/base/text.h"
-#include "engine/geometry/curves/point_set.h"
 #include "engine/io/client.h"
 #include "engine/io/curves/load_curves.h"
+#include "engine/io/curves/load_points.h"
 
 namespace catena::curves {
 namespace {

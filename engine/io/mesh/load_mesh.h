@@ -7,15 +7,12 @@
 #pragma once
 #include <string_view>
 
+#include "engine/base/export.h"
 #include "engine/geometry/mesh/mesh.h"
 
 namespace catena::mesh {
 
 inline constexpr std::size_t kMaxTriangles = 20'000'000;  ///< Meshes with more triangles are rejected.
-
-bool is_mesh_file(std::string_view path);  ///< By the file extension, any case; .vtk, .vtu and .vtm may hold fields.
-/// File extensions, in lower case with the dot.
-const std::vector<std::string_view>& mesh_endings();
 
 /// Placement of a mesh: world = scale * file + offset.
 struct MeshTransform {
@@ -26,14 +23,14 @@ struct MeshTransform {
 
 /// Loads a file in any of these formats and creates the mesh. `step`: time step, for a file with several. Returns an Error when the file
 /// is rejected.
-Result<MeshPtr> load_mesh(const std::string& path, const MeshTransform& placement = {}, int step = 0);
+CATENA_EXPORT Result<MeshPtr> load_mesh(const std::string& path, const MeshTransform& placement = {}, int step = 0);
 
 /// Parses the contents of an .stl file; `name` begins every message.
-Result<TriangleSoup> parse_stl(std::string_view bytes, const std::string& name);
+CATENA_EXPORT Result<TriangleSoup> parse_stl(std::string_view bytes, const std::string& name);
 /// Parses the contents of an .obj file; `name` begins every message.
-Result<TriangleSoup> parse_obj(std::string_view text, const std::string& name);
+CATENA_EXPORT Result<TriangleSoup> parse_obj(std::string_view text, const std::string& name);
 
 /// Reads the surface of a file through catena-read-vtk. Returns an Error with a complete message when there is none.
-Result<TriangleSoup> read_surface(const std::string& path, int step);
+CATENA_EXPORT Result<TriangleSoup> read_surface(const std::string& path, int step);
 
 }  // namespace catena::mesh

@@ -7,7 +7,10 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/geometry/mesh/checked_growth.h"
+#include "engine/io/format_rows.h"
 #include "engine/io/mesh/load_mesh.h"
+#include "engine/io/mesh/write_mesh.h"
+#include "engine/io/parse_file.h"
 
 namespace catena::mesh {
 namespace {
@@ -141,3 +144,14 @@ Result<TriangleSoup> parse_obj(std::string_view text, const std::string& name) {
 }
 
 }  // namespace catena::mesh
+
+namespace catena::io {
+
+Format obj_format() {
+  return {.name = "Wavefront OBJ",
+          .extensions = {".obj"},
+          .read_mesh = parse_file<mesh::parse_obj, DataKind::mesh, 4>,
+          .write_mesh = mesh::write_obj};
+}
+
+}  // namespace catena::io

@@ -8,7 +8,10 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/geometry/mesh/checked_growth.h"
+#include "engine/io/format_rows.h"
 #include "engine/io/mesh/load_mesh.h"
+#include "engine/io/mesh/write_mesh.h"
+#include "engine/io/parse_file.h"
 
 namespace catena::mesh {
 namespace {
@@ -165,3 +168,15 @@ Result<TriangleSoup> parse_stl(std::string_view bytes, const std::string& name) 
 }
 
 }  // namespace catena::mesh
+
+namespace catena::io {
+
+Format stl_format() {
+  return {.name = "STL",
+          .extensions = {".stl"},
+          .read_mesh = parse_file<mesh::parse_stl, DataKind::mesh, 4>,
+          .write_mesh = mesh::write_stl,
+          .has_float_positions = true};
+}
+
+}  // namespace catena::io

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/field/grid/dense.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/write_box.h"
 
 namespace catena::field {

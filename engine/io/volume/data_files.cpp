@@ -8,7 +8,7 @@
 
 #include "engine/base/text.h"
 #include "engine/io/client.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 
 namespace catena::field {
 namespace {
@@ -32,9 +32,8 @@ bool is_like(std::string_view name, std::string_view pattern) {
 
 /// Whether a file is a text that names other files.
 bool names_files(const std::string& path) {
-  return std::ranges::any_of(std::initializer_list<std::string_view>{".case", ".encas", ".pvd", ".series", ".vtm", ".vtmb", ".pvti",
-                                                                     ".pvtu", ".pvtr", ".pvts", ".pvtp", ".nhdr", ".mhd"},
-                             [&](std::string_view ending) { return has_extension(path, ending); });
+  const io::Format* format = io::find_format(path);
+  return format != nullptr && format->layout == io::FileLayout::index;
 }
 
 /// All words and quoted strings of a text, each of which may be a file name.
@@ -144,10 +143,9 @@ std::string openfoam_case_folder(const std::string& path) {
 }
 
 bool has_companion_files(const std::string& path) {
-  constexpr const char* kWhole[] = {".vdb", ".npy", ".npz", ".nii", ".nii.gz", ".raw", ".nc",  ".cdf", ".ply", ".vti", ".vtr", ".vts",
-                                    ".vtu", ".vtp", ".vtk", ".stl", ".obj",    ".trk", ".tck", ".csv", ".tsv", ".xyz", ".json"};
-  if (std::any_of(std::begin(kWhole), std::end(kWhole), [&](const char* ending) { return has_extension(path, ending); })) return false;
-  return is_field_file(path) || has_extension(path, ".gii") || has_extension(path, ".pvtp");
+  const io::Format* format = io::find_format(path);
+  if (format == nullptr && !has_extension(path, ".json")) format = io::find_reader(path, io::DataKind::volume);
+  return format != nullptr && format->layout != io::FileLayout::single;
 }
 
 }  // namespace catena::field

@@ -9,7 +9,7 @@
 
 #include "engine/field/field_display_range.h"
 #include "engine/field/grid/dense.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/write_box.h"
 
 namespace catena::field {

@@ -10,15 +10,16 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <new>
 
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
 #include "engine/field/field_display_range.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/crop.h"
 #include "engine/io/volume/downsample.h"
-#include "engine/io/volume/formats.h"
 #include "engine/io/volume/unsupported_formats.h"
 
 namespace catena::field {
@@ -67,7 +68,7 @@ std::string absurd_sizes(const AnyField& field) {
 Error unknown_kind(const std::string& path) {
   if (const std::string conversion = conversion_hint(path); !conversion.empty())
     return Error{fmt::format("{}: this is {}", path, conversion)};
-  return Error{fmt::format("{}: unknown kind of file, expected {}", path, describe_field_extensions())};
+  return Error{fmt::format("{}: unknown kind of file, expected {}", path, io::describe_expected(io::DataKind::volume))};
 }
 
 }  // namespace
@@ -109,15 +110,15 @@ Result<std::vector<GridInfo>> describe_by_loading(const std::string& path, int s
   LoadRequest request;
   request.path = path;
   request.step = step;
-  const FileFormat* format = find_format(path);
+  const VolumeReader& reader = io::find_reader(path, io::DataKind::volume)->volume;
   std::string type;
   Result<AnyField> loaded = Error{};
-  if (format->open != nullptr) {
-    CATENA_TRY(const DenseFile file, format->open(request));
+  if (reader.open != nullptr) {
+    CATENA_TRY(const DenseFile file, reader.open(request));
     type = file.type;
     loaded = load_dense(file);
   } else {
-    loaded = format->load(request);
+    loaded = reader.load(request);
   }
   CATENA_TRY(const AnyField field, std::move(loaded));
   const Field& any = *field.get();
@@ -135,32 +136,56 @@ Result<std::vector<GridInfo>> describe_by_loading(const std::string& path, int s
   return std::vector<GridInfo>{info};
 }
 
+bool has_dicom_magic(std::string_view path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return false;
+  char head[132] = {};
+  std::ifstream(std::string(path), std::ios::binary).read(head, sizeof head);
+  return std::string_view(head + 128, 4) == "DICM";
+}
+
+Result<std::uint64_t> readable_file_size(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return Error{fmt::format("{}: there is no such file", path)};
+  if (std::filesystem::is_directory(status)) return Error{fmt::format("{}: this is a folder, expected a file", path)};
+  if (!std::filesystem::is_regular_file(status)) return Error{fmt::format("{}: this is not a regular file", path)};
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  errno = 0;
+  if (error || !std::ifstream(path, std::ios::binary)) {
+    const int why = errno;
+    return Error{fmt::format("{}: cannot be opened ({})", path, describe_errno(why)), is_system_failure(why)};
+  }
+  if (size == 0) return Error{fmt::format("{}: the file is empty", path)};
+  return size;
+}
+
 void count_file() { ++files; }
 void count_grid() { ++grids; }
 void count_mask() { ++masks; }
 LoadCounters load_counters() { return {files, grids, masks}; }
 
-/// The format of the file; nullptr for a folder with a known extension (Zarr).
-static const FileFormat* format_to_read(const std::string& path) {
-  std::string_view ending;
-  const FileFormat* format = find_format(path, &ending);
-  return format != nullptr && ending.empty() && !conversion_hint(path).empty() ? nullptr : format;
+/// Returns the reader of the file; nullptr for a folder with the extension of a format that is not read (Zarr).
+static const VolumeReader* reader_of(const std::string& path) {
+  const io::Format* format = io::find_reader(path, io::DataKind::volume);
+  const bool by_contents = format != nullptr && io::find_format(path) == nullptr;
+  return format == nullptr || (by_contents && !conversion_hint(path).empty()) ? nullptr : &format->volume;
 }
 
 Result<AnyField> load(const LoadRequest& request) {
-  const FileFormat* format = format_to_read(request.path);
-  if (request.raw && (format == nullptr || !format->needs_layout))
+  const VolumeReader* reader = reader_of(request.path);
+  if (request.raw && (reader == nullptr || !reader->needs_layout))
     return Error{fmt::format("{}: shape, spacing, origin and type belong to .raw files only", request.path)};
   return guarded<AnyField>(request.path, [&]() -> Result<AnyField> {
-    if (format == nullptr) {
+    if (reader == nullptr) {
       if (!std::filesystem::is_directory(request.path)) CATENA_CHECK(readable_file_size(request.path));
       return unknown_kind(request.path);
     }
     Result<AnyField> field = Error{};
-    if (format->load != nullptr) {
-      field = format->load(request);
+    if (reader->load != nullptr) {
+      field = reader->load(request);
     } else {
-      CATENA_TRY(const DenseFile file, format->open(request));
+      CATENA_TRY(const DenseFile file, reader->open(request));
       field = load_dense(file);
     }
     if (field && !has_finite_box(*field->get()))
@@ -185,9 +210,9 @@ Result<AnyField> load(const LoadRequest& request) {
 }
 
 Result<std::vector<GridInfo>> describe_grids(const std::string& path, int step) {
-  const FileFormat* format = format_to_read(path);
+  const VolumeReader* reader = reader_of(path);
   return guarded<std::vector<GridInfo>>(path, [&]() -> Result<std::vector<GridInfo>> {
-    if (format != nullptr) return format->describe(path, step);
+    if (reader != nullptr) return reader->describe(path, step);
     if (!std::filesystem::is_directory(path)) CATENA_CHECK(readable_file_size(path));
     return unknown_kind(path);
   });

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/display_range.h"
+#include "engine/base/export.h"
 #include "engine/base/result.h"
 #include "engine/field/grid/grid.h"
 
@@ -44,7 +45,7 @@ struct LoadRequest {
 };
 
 /// Loads one grid (and its mask), nothing else of the file. Any thread; blocks.
-Result<AnyField> load(const LoadRequest& request);
+CATENA_EXPORT Result<AnyField> load(const LoadRequest& request);
 
 /// Voxels per axis, 64-bit: the index range in a file may exceed 32 bits.
 struct Size3 {
@@ -60,7 +61,7 @@ struct Size3 {
 /// What the values of a grid belong to: its voxels, or the points or cells of a mesh from which it is resampled.
 enum class ElementKind : std::uint8_t { voxels, points, cells };
 /// Returns "voxels", "points" or "cells".
-std::string_view to_string(ElementKind counted);
+CATENA_EXPORT std::string_view to_string(ElementKind counted);
 
 /// Description of a grid in a file, without loading it.
 struct GridInfo {
@@ -78,17 +79,17 @@ struct GridInfo {
   std::int32_t image_count = 0;                    ///< Number of images in a DICOM volume; 0: not counted.
 };
 /// Describes every grid of a file, at a time step.
-Result<std::vector<GridInfo>> describe_grids(const std::string& path, int step = 0);
+CATENA_EXPORT Result<std::vector<GridInfo>> describe_grids(const std::string& path, int step = 0);
 
 /// Kinds of geometry, besides points, in a file read by catena-read-vtk.
 struct PrimitiveKinds {
   bool triangles = false, lines = false;  ///< Whether the file has triangles, and lines.
 };
 /// Returns nullopt when the file cannot be read.
-std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path);
+CATENA_EXPORT std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path);
 
 /// Times of the steps in a file read by catena-read-vtk; empty: none, or a file of another format.
-std::vector<double> read_times(const std::string& path);
+CATENA_EXPORT std::vector<double> read_times(const std::string& path);
 
 /// A grid to be written to a .vdb.
 struct NamedGrid {
@@ -97,16 +98,16 @@ struct NamedGrid {
 };
 /// Writes grids to a .vdb through a temporary file, renamed when it is complete: the write is atomic. An Error names the file; an
 /// existing file is then unchanged.
-Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items);
+CATENA_EXPORT Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items);
 
 /// Converts one grid to a .vdb; raw and NIfTI files slice by slice, without a grid in the memory of this process. Returns the name of the
 /// grid in the output: `name`, else its own, else the file's.
-Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name);
+CATENA_EXPORT Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name);
 
 /// Called about once a second while a reader process reads a file, with the seconds elapsed, and a last time with `ended`. Any thread.
 using ReadProgress = std::function<void(const std::string& path, double seconds, bool ended)>;
 /// Sets the callback. Call it once, before anything is read.
-void set_read_progress(ReadProgress called);
+CATENA_EXPORT void set_read_progress(ReadProgress called);
 
 /// Counts what has been loaded, so that tests can show that nothing is loaded but what the scene names.
 struct LoadCounters {
@@ -114,6 +115,6 @@ struct LoadCounters {
   std::uint64_t masks = 0;             ///< `valid` grids loaded with them.
 };
 /// Counts since program start. Any thread.
-LoadCounters load_counters();
+CATENA_EXPORT LoadCounters load_counters();
 
 }  // namespace catena::field

@@ -15,7 +15,8 @@
 #include "engine/base/input_files.h"
 #include "engine/base/text.h"
 #include "engine/field/number_type.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/format_rows.h"
+#include "engine/io/volume/write_box.h"
 
 namespace catena::field {
 namespace {
@@ -221,7 +222,7 @@ Result<Header> read_header(const std::string& path) {
 }  // namespace
 
 static Result<DenseFile> open_nifti(const LoadRequest& request) {
-  const std::string &path = request.path, name = file_stem(request.path);
+  const std::string &path = request.path, name = io::file_stem(request.path);
   if (!request.grid.empty() && request.grid != name)
     return Error{fmt::format("{}: there is no grid \"{}\", a NIfTI file holds one, \"{}\"", path, request.grid, name)};
   if (request.mask_required) return Error{fmt::format("{}: a NIfTI file holds no mask", path)};
@@ -271,8 +272,16 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
   return file;
 }
 
-FileFormat nifti_format() {
-  return {.extensions = {".nii", ".nii.gz"}, .open = open_nifti, .describe = describe_by_loading, .units = read_nifti_units};
+}  // namespace catena::field
+
+namespace catena::io {
+
+Format nifti_format() {
+  return {.name = "NIfTI-1",
+          .extensions = {".nii", ".nii.gz"},
+          .volume = {.open = field::open_nifti, .describe = field::describe_by_loading, .units = field::read_nifti_units},
+          .write_volume = field::write_box<field::write_nifti>,
+          .has_float_positions = true};
 }
 
-}  // namespace catena::field
+}  // namespace catena::io

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/field/number_type.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/format_rows.h"
 
 namespace catena::field {
 
@@ -74,7 +74,7 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
   for (int a = 0; a < 3; ++a)
     if (!(raw.spacing[a] > 0) || !std::isfinite(raw.spacing[a]))
       return Error{fmt::format("{}: spacing is {}, expected positive numbers", path, raw.spacing[a])};
-  const std::string name = file_stem(path);
+  const std::string name = io::file_stem(path);
   if (!request.grid.empty() && request.grid != name)
     return Error{fmt::format("{}: there is no grid \"{}\", a .raw file holds one, \"{}\"", path, request.grid, name)};
   if (request.mask_required) return Error{fmt::format("{}: a .raw file holds no mask", path)};
@@ -106,6 +106,14 @@ static Result<std::vector<GridInfo>> describe_raw(const std::string& path, int) 
       ": a .raw file says nothing about itself; name it in a scene with shape, spacing, origin and type, or give import its --shape"};
 }
 
-FileFormat raw_format() { return {.extensions = {".raw"}, .needs_layout = true, .open = open_raw, .describe = describe_raw}; }
-
 }  // namespace catena::field
+
+namespace catena::io {
+
+Format raw_format() {
+  return {.name = "Raw numbers",
+          .extensions = {".raw"},
+          .volume = {.open = field::open_raw, .describe = field::describe_raw, .needs_layout = true}};
+}
+
+}  // namespace catena::io

@@ -5,7 +5,8 @@
 #include "engine/field/grid/grid_factory.h"
 #include "engine/field/nanovdb/nano_statistics.h"
 #include "engine/io/client.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/format_rows.h"
+#include "engine/io/volume/write_field.h"
 
 namespace catena::field {
 namespace {
@@ -45,9 +46,7 @@ Result<std::shared_ptr<const Grid>> grid_of(const std::string& path, const Mappe
   return made;
 }
 
-}  // namespace
-
-static Result<AnyField> load_vdb(const LoadRequest& request) {
+Result<AnyField> load_vdb(const LoadRequest& request) {
   CATENA_TRY(const MappedResponse answer, run_reader(ReadMode::load, request));
   AnyField field;
   if (answer.response.is_vector) {
@@ -58,6 +57,21 @@ static Result<AnyField> load_vdb(const LoadRequest& request) {
   return field;
 }
 
-FileFormat vdb_format() { return {.extensions = {".vdb"}, .load = load_vdb, .describe = describe_with_reader, .units = read_vdb_units}; }
+Outcome write_one_grid(const std::string& path, const AnyField& field, const std::string& name, const Units&) {
+  return write_vdb(path, {{field, name}});
+}
 
+}  // namespace
 }  // namespace catena::field
+
+namespace catena::io {
+
+Format vdb_format() {
+  return {.name = "OpenVDB",
+          .extensions = {".vdb"},
+          .volume = {.load = field::load_vdb, .describe = field::describe_with_reader, .units = field::read_vdb_units},
+          .write_volume = field::write_one_grid,
+          .has_cell_mask = true};
+}
+
+}  // namespace catena::io

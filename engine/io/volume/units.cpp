@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "engine/io/client.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 
 namespace catena::field {
 
@@ -92,8 +92,8 @@ Units read_units(const std::string& path, const std::string& grid) {
   if (found != known.end() && found->second.at == at) return found->second.units;
   constexpr std::size_t kMost = 256;
   if (known.size() >= kMost) known.clear();
-  const FileFormat* format = find_format(path);
-  Units units = format != nullptr && format->units != nullptr ? format->units(path, grid) : Units{};
+  const io::Format* format = io::find_reader(path, io::DataKind::volume);
+  Units units = format != nullptr && format->volume.units != nullptr ? format->volume.units(path, grid) : Units{};
   known[{path, grid}] = {at, units};
   return units;
 }

@@ -17,7 +17,7 @@
 #include "engine/base/helper_process.h"
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 
 namespace catena::field {
 namespace {

@@ -40,6 +40,16 @@ class VoxelBox {
   Index3 first_index_;
 };
 
+/// Writes the header and the slices of a volume as a VolumeWriter (engine/io/formats.h). Error: the box does not fit the memory budget,
+/// which whoever reads the file needs for it.
+Outcome write_box_with(Outcome (*write)(const std::string& path, const VoxelBox& box), const std::string& path, const AnyField& field,
+                       const std::string& name, const Units& units);
+/// write_box_with() as a function of its own.
+template <Outcome (*Write)(const std::string& path, const VoxelBox& box)>
+Outcome write_box(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
+  return write_box_with(Write, path, field, name, units);
+}
+
 /// Writes a VTK XML image file; see write_field.h.
 Outcome write_vti(const std::string& path, const VoxelBox& box);
 /// Writes an NRRD file.

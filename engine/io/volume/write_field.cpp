@@ -11,24 +11,11 @@
 #include "engine/base/text.h"
 #include "engine/field/grid/grid_storage.h"
 #include "engine/field/nanovdb/nano_nodes.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/formats.h"
 #include "engine/io/volume/write_box.h"
 
 namespace catena::field {
 namespace {
-
-struct Writer {
-  std::string_view ending;
-  Outcome (*write)(const std::string& path, const VoxelBox& box);  ///< nullptr: .vdb, which holds more than a box
-};
-constexpr std::array kWriters{Writer{".vdb", nullptr}, Writer{".vti", write_vti}, Writer{".nrrd", write_nrrd}, Writer{".nii", write_nifti},
-                              Writer{".nii.gz", write_nifti}};
-
-const Writer* writer_of(std::string_view path) {
-  for (const Writer& writer : kWriters)
-    if (has_extension(path, writer.ending)) return &writer;
-  return nullptr;
-}
 
 /// Applies `use` to the storage of a scalar or a vector grid.
 template <class Use>
@@ -39,9 +26,6 @@ auto with_storage(const AnyField& field, const Use& use) {
 const NanoMask* mask_of(const AnyField& field) {
   return with_storage(field, [](const auto& storage) { return storage.valid_voxels; });
 }
-
-/// Whether the format stores a cell mask.
-bool holds_cells(std::string_view path) { return has_extension(path, ".vdb") || has_extension(path, ".vti"); }
 
 }  // namespace
 
@@ -108,19 +92,10 @@ void VoxelBox::read_values_or_nan(std::int32_t z, std::span<float> out) const {
     if (valid[i] == 0) std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i * n), n, std::numeric_limits<float>::quiet_NaN());
 }
 
-bool is_writable_format(std::string_view path) { return writer_of(path) != nullptr; }
-
-std::string writable_extensions() {
-  std::vector<std::string_view> endings;
-  for (const Writer& writer : kWriters) endings.push_back(writer.ending);
-  return join_alternatives(endings);
-}
-
-/// Note if the single precision of NIfTI's axes and origin displaces voxels far from the origin; empty if none moves by more than a
-/// hundredth of its edge.
-static std::string moved_in(const std::string& path, const VoxelBox& box) {
+/// Note if single precision of axes and origin displaces voxels far from the origin; empty if none moves by more than a hundredth of its
+/// edge.
+static std::string rounding_note(const VoxelBox& box) {
   constexpr double kTold = 0.01;
-  if (!has_extension(path, ".nii") && !has_extension(path, ".nii.gz")) return {};
   const Mapping& exact = box.mapping;
   const auto rounded = [&](const Vec3& index) {
     Vec3 at(glm::vec3(exact.origin));
@@ -138,9 +113,11 @@ static std::string moved_in(const std::string& path, const VoxelBox& box) {
 }
 
 std::string lost_mask_note(const std::string& path, const AnyField& field) {
+  const io::Format* format = io::find_writer(path, io::DataKind::volume);
+  if (format == nullptr) return {};
   const VoxelBox box(field, {}, {});
-  std::string moved = moved_in(path, box);
-  if (!box.has_cell_mask || holds_cells(path)) return moved;
+  std::string moved = format->has_float_positions ? rounding_note(box) : "";
+  if (!box.has_cell_mask || format->has_cell_mask) return moved;
   // invalid cells between valid voxels
   std::vector<std::uint8_t> below(box.layer_voxels()), above(box.layer_voxels()), cells(box.layer_voxels());
   const int step[3] = {box.size.x > 1, box.size.y > 1, box.size.z > 1};
@@ -169,28 +146,33 @@ std::string lost_mask_note(const std::string& path, const AnyField& field) {
 }
 
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
-  const Writer* writer = writer_of(path);
-  if (writer == nullptr) return Error{path + ": expected an output that ends in " + writable_extensions()};
-  if (writer->write == nullptr) return write_vdb(path, {{field, name}});
+  const io::Format* format = io::find_writer(path, io::DataKind::volume);
+  if (format == nullptr) return Error{path + ": expected an output that ends in " + io::writable_extensions(io::DataKind::volume)};
+  return format->write_volume(path, field, name, units);
+}
+
+Outcome write_box_with(Outcome (*write)(const std::string& path, const VoxelBox& box), const std::string& path, const AnyField& field,
+                       const std::string& name, const Units& units) {
   const VoxelBox box(field, name, units);
-  // whoever reads the file has to hold the whole box
   CATENA_CHECK(
       check_memory_available(fmt::format("{}: the whole box of the grid, {} x {} x {} voxels,", path, box.size.x, box.size.y, box.size.z),
                              box.voxels() * (box.components * static_cast<double>(sizeof(float)) + (box.has_mask ? 1 : 0))));
-  return writer->write(path, box);
+  return write(path, box);
 }
 
 Result<std::string> convert_file(const LoadRequest& request, const std::string& path, const std::string& name,
                                  std::vector<std::string>* notes) {
-  const Writer* writer = writer_of(path);
-  const bool as_vdb = writer == nullptr || writer->write == nullptr;
-  // slice by slice if the format supports it
-  if (const FileFormat* format = find_format(request.path); as_vdb && (format == nullptr || format->open != nullptr))
-    return import_as_vdb(request, path, name);
+  // import writes a .vdb under any other extension, too
+  const bool as_vdb = has_extension(path, ".vdb") || io::find_writer(path, io::DataKind::volume) == nullptr;
+  if (as_vdb) {
+    // slice by slice if the format supports it
+    const io::Format* format = io::find_reader(request.path, io::DataKind::volume);
+    if (format == nullptr || format->volume.open != nullptr) return import_as_vdb(request, path, name);
+  }
   CATENA_TRY(const AnyField field, load(request));
   if (notes != nullptr) *notes = field.notes;
   const std::string own = field.get()->name();
-  const std::string chosen = !name.empty() ? name : !own.empty() ? own : file_stem(request.path);
+  const std::string chosen = !name.empty() ? name : !own.empty() ? own : io::file_stem(request.path);
   if (as_vdb) {
     CATENA_CHECK(write_vdb(path, {{field, chosen}}));
   } else {

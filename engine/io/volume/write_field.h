@@ -17,9 +17,6 @@
 
 namespace catena::field {
 
-bool is_writable_format(std::string_view path);  ///< By the file extension.
-std::string writable_extensions();               ///< Returns ".vdb, .vti, .nrrd, .nii or .nii.gz".
-
 /// Writes a grid. The length unit and the patient space in `units` are stored if the format supports them. Returns an Error for an unknown
 /// extension, too little memory or a failed write.
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units);

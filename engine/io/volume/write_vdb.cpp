@@ -8,8 +8,8 @@
 #include "engine/base/result.h"
 #include "engine/field/grid/grid_storage.h"
 #include "engine/field/nanovdb/nano_nodes.h"
+#include "engine/io/formats.h"
 #include "engine/io/protocol.h"
-#include "engine/io/volume/formats.h"
 #include "engine/io/volume/vdb_stream.h"
 
 namespace catena::field {
@@ -153,15 +153,15 @@ Outcome write_vdb(const std::string& path, const std::vector<NamedGrid>& items) 
 }
 
 Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name) {
-  const FileFormat* format = find_format(request.path);
-  const auto name_or = [&](const std::string& own) { return !name.empty() ? name : !own.empty() ? own : file_stem(request.path); };
-  if (format == nullptr || format->open == nullptr) {
+  const io::Format* format = io::find_reader(request.path, io::DataKind::volume);
+  const auto name_or = [&](const std::string& own) { return !name.empty() ? name : !own.empty() ? own : io::file_stem(request.path); };
+  if (format == nullptr || format->volume.open == nullptr) {
     CATENA_TRY(const AnyField field, load(request));
     const std::string chosen = name_or(field.get()->name());
     CATENA_CHECK(write_vdb(path, {{field, chosen}}));
     return chosen;
   }
-  CATENA_TRY(const DenseFile file, format->open(request));
+  CATENA_TRY(const DenseFile file, format->volume.open(request));
   CATENA_CHECK(check_volume(path, file.mapping));
   CATENA_TRY(VdbStreamWriter out, VdbStreamWriter::open(path));
   const std::string chosen = name_or(file.name);

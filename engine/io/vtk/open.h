@@ -52,7 +52,14 @@ struct Source {
 };
 
 /// Openers, one per family of formats. Errors have complete messages.
-Result<ImportedData> open_with_vtk(const Source& source);
+/// Opens VTK's XML files.
+Result<ImportedData> open_vtk_xml(const Source& source);
+/// Opens VTK's XML files of several blocks; an Error if a block index is too large.
+Result<ImportedData> open_vtk_blocks(const Source& source);
+Result<ImportedData> open_vtk_legacy(const Source& source);
+Result<ImportedData> open_ensight(const Source& source);
+Result<ImportedData> open_cgns(const Source& source);
+Result<ImportedData> open_netcdf(const Source& source);
 Result<ImportedData> open_with_itk(const Source& source);
 /// Whether the file has "DICM" after the preamble.
 bool is_dicom_file(const std::string& path);
@@ -67,7 +74,7 @@ Result<ImportedData> open_foam(const Source& source);
 /// Opens a file that lists other files and their times: .pvd, .series.
 Result<ImportedData> open_collection(const Source& source);
 
-/// Selects the opener by the file extension, or because the path is a folder.
+/// Selects the opener by the file extension (formats.cpp), or because the path is a folder.
 Result<ImportedData> open_any(const Source& source);
 
 /// Returns the first error that VTK's readers have reported since the last call, as a message fragment; empty: none.

@@ -229,7 +229,7 @@ void make_image(Block& block) {
 
 }  // namespace
 
-vtkSmartPointer<vtkAlgorithm> open_netcdf(const Source& source) {
+vtkSmartPointer<vtkAlgorithm> make_netcdf_reader(const Source& source) {
   const auto reader = vtkSmartPointer<NetcdfReader>::New();
   reader->SetFileName(source.path.c_str());
   reader->SphericalCoordinatesOff();  // degrees stay degrees: a map, not a globe

@@ -9,10 +9,10 @@
 namespace catena::vtk {
 
 /// Creates the VTK reader for a file.
-vtkSmartPointer<vtkAlgorithm> open_netcdf(const Source& source);
+vtkSmartPointer<vtkAlgorithm> make_netcdf_reader(const Source& source);
 
 /// Selects the variables to read: those of the requested grid, else those with most dimensions; others are listed in a note. Call it before
-/// the data are read; does nothing for readers that open_netcdf() has not created.
+/// the data are read; does nothing for readers that make_netcdf_reader() has not created.
 void choose_netcdf_variables(vtkAlgorithm* reader, const Source& source, ImportedData& opened);
 
 /// Call it after the data have been read: sets units and notes, applies the scale of coordinates, and converts evenly spaced grids to

@@ -33,56 +33,6 @@
 namespace catena::vtk {
 namespace {
 
-using Reader = vtkSmartPointer<vtkAlgorithm>;
-
-template <class R>
-Reader named(const Source& source) {
-  const auto reader = vtkSmartPointer<R>::New();
-  reader->SetFileName(source.path.c_str());
-  return reader;
-}
-
-/// Reads all arrays of a legacy file; by default VTK reads only the first of several SCALARS.
-Reader open_legacy(const Source& source) {
-  const auto reader = vtkSmartPointer<vtkGenericDataObjectReader>::New();
-  reader->SetFileName(source.path.c_str());
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  return reader;
-}
-
-Reader open_ensight(const Source& source) {
-  const auto reader = vtkSmartPointer<vtkGenericEnSightReader>::New();
-  reader->SetCaseFileName(source.path.c_str());
-  reader->ReadAllVariablesOn();
-  return reader;
-}
-
-Reader open_cgns(const Source& source) {
-  const auto reader = vtkSmartPointer<vtkCGNSReader>::New();
-  reader->SetFileName(source.path.c_str());
-  reader->UpdateInformation();
-  reader->EnableAllBases();
-  reader->EnableAllPointArrays();
-  reader->EnableAllCellArrays();
-  return reader;
-}
-
-struct Format {
-  std::string_view ending;
-  Reader (*open)(const Source& source);
-};
-constexpr Format kFormats[] = {
-    {".vtk", open_legacy}, {".case", open_ensight}, {".encas", open_ensight},
-    {".cgns", open_cgns},  {".nc", open_netcdf},    {".cdf", open_netcdf},
-};
-
-Reader reader_of(const Source& source) {
-  for (const Format& format : kFormats)
-    if (has_extension(source.path, format.ending)) return format.open(source);
-  return named<vtkXMLGenericDataObjectReader>(source);
-}
-
 void keep_units(vtkDataSetAttributes* arrays, ImportedData& opened) {
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) {
     vtkDataArray* array = arrays->GetArray(i);
@@ -130,12 +80,46 @@ void add_block(vtkDataObject* object, ImportedData& opened) {
 
 }  // namespace
 
-Result<ImportedData> open_with_vtk(const Source& source) {
-  if (has_extension(source.path, ".vtm") || has_extension(source.path, ".vtmb")) CATENA_CHECK(check_indices(source));
-  const bool netcdf = has_extension(source.path, ".nc") || has_extension(source.path, ".cdf");
-  if (const auto whole = netcdf ? check_netcdf_size(source.path) : Outcome(Done{}); !whole)
+Result<ImportedData> open_vtk_xml(const Source& source) {
+  const vtkNew<vtkXMLGenericDataObjectReader> reader;
+  reader->SetFileName(source.path.c_str());
+  return read_with_reader(*reader, source);
+}
+
+Result<ImportedData> open_vtk_blocks(const Source& source) {
+  CATENA_CHECK(check_indices(source));
+  return open_vtk_xml(source);
+}
+
+Result<ImportedData> open_vtk_legacy(const Source& source) {
+  const vtkNew<vtkGenericDataObjectReader> reader;
+  reader->SetFileName(source.path.c_str());
+  reader->ReadAllScalarsOn();  // by default VTK reads only the first of several SCALARS
+  reader->ReadAllVectorsOn();
+  return read_with_reader(*reader, source);
+}
+
+Result<ImportedData> open_ensight(const Source& source) {
+  const vtkNew<vtkGenericEnSightReader> reader;
+  reader->SetCaseFileName(source.path.c_str());
+  reader->ReadAllVariablesOn();
+  return read_with_reader(*reader, source);
+}
+
+Result<ImportedData> open_cgns(const Source& source) {
+  const vtkNew<vtkCGNSReader> reader;
+  reader->SetFileName(source.path.c_str());
+  reader->UpdateInformation();
+  reader->EnableAllBases();
+  reader->EnableAllPointArrays();
+  reader->EnableAllCellArrays();
+  return read_with_reader(*reader, source);
+}
+
+Result<ImportedData> open_netcdf(const Source& source) {
+  if (const Outcome whole = check_netcdf_size(source.path); !whole)
     return Error{one_line(source.display_name + ": " + whole.error().message)};
-  return read_with_reader(*reader_of(source), source);
+  return read_with_reader(*make_netcdf_reader(source), source);
 }
 
 Result<ImportedData> read_with_reader(vtkAlgorithm& algorithm, const Source& source, const std::set<double>& no_steps) {

@@ -193,7 +193,7 @@ TEST(MeshOnDemand, BadMeshesAreRefusedWithTheirLine) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
   refused(R"({"name": "a", "file": "none.stl"})",
-          "does not exist; a .stl, .obj, .ply, .gii, .vtp, .vtk, .vtu, .vtm, .pvd or .series file was expected");
+          "does not exist; a .stl, .obj, .vtu, .vtp, .vtm, .vtmb, .pvtp, .vtk, .pvd, .series, .ply or .gii file was expected");
   refused(R"({"name": "a", "file": "quad.x3q"})", "unknown kind");
   refused(R"({"name": "A", "file": "quad.obj"})", "is not allowed");
   refused(R"({"name": "a", "file": "quad.obj", "opacity": 1.5})", "\"opacity\" is 1.5; a number from 0 to 1 was expected");

@@ -5,6 +5,7 @@
 #include <limits>
 #include "tests/support/curve_files.h"
 
+#include "engine/io/curves/load_points.h"
 #include "tests/engine/geometry/flow/lambda_field.h"
 #include "tests/haptics/constraints/constraint_fixture.h"
 #include "tests/support/mesh_shapes.h"

@@ -11,11 +11,11 @@
 #include "engine/base/output_file.h"
 #include "engine/base/system_failure.h"
 #include "engine/base/text.h"
-#include "engine/geometry/curves/point_set.h"
 #include "engine/io/curves/load_curves.h"
+#include "engine/io/curves/load_points.h"
+#include "engine/io/formats.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/volume/data_files.h"
-#include "engine/io/volume/formats.h"
 #include "engine/scene/time_steps.h"
 
 namespace catena::app {
@@ -36,10 +36,8 @@ bool is_scene_path(const std::string& path) { return has_extension(path, ".json"
 const std::vector<std::string_view>& openable_extensions() {
   static const std::vector<std::string_view> endings = [] {
     std::vector<std::string_view> all{".json"};
-    // one file extension may hold items of several kinds
-    for (const auto& kind : {field::field_extensions(true), mesh::mesh_endings(), curves::curve_endings(), curves::point_endings()})
-      for (const std::string_view ending : kind)
-        if (std::ranges::find(all, ending) == all.end()) all.push_back(ending);
+    for (const io::Format& format : io::formats())
+      if (!format.volume.needs_layout) all.insert(all.end(), format.extensions.begin(), format.extensions.end());
     return all;
   }();
   return endings;

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "engine/base/memory_limit.h"
+#include "engine/io/formats.h"
 #include "tests/support/curve_files.h"
 #include "tests/support/support.h"
 
@@ -191,10 +192,11 @@ TEST(CurveFiles, ByTheirEnding) {
   const auto set = load_curves(folder / "a.TCK");
   ASSERT_TRUE(set);
   EXPECT_EQ((*set)->line_count(), 2u);
-  EXPECT_TRUE(is_curve_file("x.trk"));
-  EXPECT_FALSE(is_curve_file("x.obj"));
+  EXPECT_NE(io::find_reader("x.trk", io::DataKind::curves), nullptr);
+  EXPECT_EQ(io::find_reader("x.obj", io::DataKind::curves), nullptr);
   const auto none = load_curves(folder / "none.trk");
-  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtp, .vtk, .vtu, .pvd or .series) was expected"), std::string::npos)
+  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtu, .vtp, .pvtp, .vtk, .pvd or .series) was expected"),
+            std::string::npos)
       << none.error().message;
 }
 

@@ -9,9 +9,9 @@
 #include <numbers>
 
 #include "engine/base/helper_process.h"
-#include "engine/geometry/curves/point_set.h"
 #include "engine/io/client.h"
 #include "engine/io/curves/load_curves.h"
+#include "engine/io/curves/load_points.h"
 #include "engine/io/mesh/load_mesh.h"
 #include "engine/io/volume/data_files.h"
 #include "engine/io/volume/load_field.h"

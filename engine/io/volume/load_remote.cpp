@@ -9,8 +9,14 @@
 
 #include "engine/base/text.h"
 #include "engine/io/client.h"
+#include "engine/io/curves/load_curves.h"
+#include "engine/io/curves/load_points.h"
+#include "engine/io/curves/write_polylines.h"
+#include "engine/io/format_rows.h"
+#include "engine/io/mesh/load_mesh.h"
+#include "engine/io/mesh/write_mesh.h"
 #include "engine/io/volume/data_files.h"
-#include "engine/io/volume/formats.h"
+#include "engine/io/volume/write_box.h"
 
 namespace catena::field {
 namespace {
@@ -27,7 +33,7 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   const Index3 n{static_cast<int>(dense.size.x), static_cast<int>(dense.size.y), static_cast<int>(dense.size.z)};
   const int components = reply.is_vector ? 3 : 1;
   Mapping mapping = reply.mapping;
-  if (is_numpy_file(path)) {
+  if (io::is_numpy_file(path)) {
     Mat3 linear(0.0);
     for (int a = 0; a < 3; ++a) linear[a][a] = request.spacing[a];
     mapping = Mapping::from_linear(linear, request.origin);
@@ -83,6 +89,14 @@ Units units_answered(const std::string& path, const std::string& grid) {
   return units;
 }
 
+std::vector<double> times_answered(const std::string& path) {
+  const std::optional<ReadResponse> file = read_file_metadata(path);
+  return file ? file->times : std::vector<double>();
+}
+
+constexpr VolumeReader kRemoteVolume{
+    .load = load_answered, .describe = describe_with_reader, .units = units_answered, .times = times_answered};
+
 }  // namespace
 
 std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path) {
@@ -91,24 +105,77 @@ std::optional<PrimitiveKinds> read_primitive_kinds(const std::string& path) {
 }
 
 std::vector<double> read_times(const std::string& path) {
-  const std::vector<std::string_view> endings = vtk_format().extensions;
-  if (openfoam_case_folder(path).empty() &&
-      std::ranges::none_of(endings, [&](std::string_view ending) { return has_extension(path, ending); }))
-    return {};
-  const std::optional<ReadResponse> file = read_file_metadata(path);
-  return file ? file->times : std::vector<double>();
-}
-
-/// .npy: a single array, which is described by loading it.
-FileFormat npy_format() { return {.extensions = {".npy"}, .load = load_answered, .describe = describe_by_loading}; }
-
-FileFormat vtk_format() {
-  return {.extensions = {".vti", ".vtr", ".vts", ".vtu",  ".vtm",  ".vtmb",  ".vtk",  ".pvti", ".pvtr", ".pvts", ".pvtu", ".nrrd",  ".nhdr",
-                         ".mha", ".mhd", ".dcm", ".foam", ".case", ".encas", ".cgns", ".nc",   ".cdf",  ".npz",  ".pvd",  ".series"},
-          .load = load_answered,
-          .describe = describe_with_reader,
-          .units = units_answered,
-          .reads_folders = true};
+  const io::Format* format = io::find_format(path);
+  if (format == nullptr && !openfoam_case_folder(path).empty()) return times_answered(path);
+  return format != nullptr && format->volume.times != nullptr ? format->volume.times(path) : std::vector<double>();
 }
 
 }  // namespace catena::field
+
+namespace catena::io {
+
+Format npy_format() {
+  return {.name = "NumPy array", .extensions = {".npy"}, .volume = {.load = field::load_answered, .describe = field::describe_by_loading}};
+}
+
+std::vector<Format> remote_formats() {
+  constexpr auto kVolume = field::kRemoteVolume;
+  field::VolumeReader dicom = kVolume;
+  dicom.reads_folders = true;
+  constexpr auto kMesh = mesh::read_surface;
+  constexpr auto kCurves = curves::read_lines;
+  constexpr auto kPoints = curves::read_points;
+  constexpr auto kCompanions = FileLayout::companions;
+  constexpr auto kIndex = FileLayout::index;
+  return {
+      {.name = "VTK XML image data",
+       .extensions = {".vti"},
+       .volume = kVolume,
+       .write_volume = field::write_box<field::write_vti>,
+       .has_cell_mask = true},
+      {.name = "VTK XML rectilinear grid", .extensions = {".vtr"}, .volume = kVolume},
+      {.name = "VTK XML structured grid", .extensions = {".vts"}, .volume = kVolume},
+      {.name = "VTK XML unstructured grid", .extensions = {".vtu"}, .volume = kVolume, .read_mesh = kMesh, .read_curves = kCurves},
+      {.name = "VTK XML polygonal data",
+       .extensions = {".vtp"},
+       .read_mesh = kMesh,
+       .read_curves = kCurves,
+       .read_points = kPoints,
+       .write_mesh = mesh::write_vtp,
+       .write_curves = curves::write_polylines_vtp},
+      {.name = "VTK XML multi-block data", .extensions = {".vtm", ".vtmb"}, .volume = kVolume, .read_mesh = kMesh, .layout = kIndex},
+      {.name = "VTK XML parallel data", .extensions = {".pvti", ".pvtr", ".pvts", ".pvtu"}, .volume = kVolume, .layout = kIndex},
+      {.name = "VTK XML parallel polygonal data",
+       .extensions = {".pvtp"},
+       .read_mesh = kMesh,
+       .read_curves = kCurves,
+       .read_points = kPoints,
+       .layout = kIndex},
+      {.name = "VTK legacy", .extensions = {".vtk"}, .volume = kVolume, .read_mesh = kMesh, .read_curves = kCurves, .read_points = kPoints},
+      {.name = "ParaView collection, file series",
+       .extensions = {".pvd", ".series"},
+       .volume = kVolume,
+       .read_mesh = kMesh,
+       .read_curves = kCurves,
+       .read_points = kPoints,
+       .layout = kIndex},
+      {.name = "NRRD",
+       .extensions = {".nrrd"},
+       .volume = kVolume,
+       .write_volume = field::write_box<field::write_nrrd>,
+       .layout = kCompanions},
+      {.name = "NRRD header with separate data", .extensions = {".nhdr"}, .volume = kVolume, .layout = kIndex},
+      {.name = "MetaImage", .extensions = {".mha"}, .volume = kVolume, .layout = kCompanions},
+      {.name = "MetaImage header with separate data", .extensions = {".mhd"}, .volume = kVolume, .layout = kIndex},
+      {.name = "DICOM", .extensions = {".dcm"}, .volume = dicom, .layout = kCompanions},
+      {.name = "OpenFOAM case", .extensions = {".foam"}, .volume = kVolume, .layout = kCompanions},
+      {.name = "EnSight Gold case", .extensions = {".case", ".encas"}, .volume = kVolume, .layout = kIndex},
+      {.name = "CGNS", .extensions = {".cgns"}, .volume = kVolume, .layout = kCompanions},
+      {.name = "NetCDF", .extensions = {".nc", ".cdf"}, .volume = kVolume},
+      {.name = "NumPy archive", .extensions = {".npz"}, .volume = kVolume},
+      {.name = "PLY", .extensions = {".ply"}, .read_mesh = kMesh, .read_points = kPoints, .write_mesh = mesh::write_ply},
+      {.name = "GIFTI surface", .extensions = {".gii"}, .read_mesh = kMesh, .layout = kCompanions},
+  };
+}
+
+}  // namespace catena::io

@@ -12,7 +12,7 @@
 #include "engine/base/output_file.h"
 #include "engine/geometry/mesh/mesh.h"
 
-namespace catena::app {
+namespace catena::mesh {
 
 /// One named array with values at the points of a mesh.
 struct PointValues {
@@ -24,18 +24,19 @@ struct PointValues {
 /// The mesh to write.
 struct MeshExport {
   std::vector<Vec3> points, normals;  ///< One normal per point, or no normals
-  std::vector<mesh::Triangle> triangles;
+  std::vector<Triangle> triangles;
   std::vector<PointValues> values{};  ///< Written to .vtp only
 };
 
-/// Whether the path has one of the extensions above.
-bool is_mesh_export_path(std::string_view path);
-/// The extensions for messages: ".vtp, .ply, .stl or .obj".
-std::string mesh_export_extensions();
-/// Writes the file atomically. Error: another extension, or the file cannot be written.
-Outcome write_mesh_file(const std::string& path, const MeshExport& surface);
+void write_vtp(OutputFile& out, const MeshExport& surface);
+void write_ply(OutputFile& out, const MeshExport& surface);
+void write_stl(OutputFile& out, const MeshExport& surface);
+void write_obj(OutputFile& out, const MeshExport& surface);
+
+/// Writes the file atomically, in the format of its extension. Error: another extension, or the file cannot be written.
+Outcome write_mesh(const std::string& path, const MeshExport& surface);
 /// Describes a loss of precision in the file's format, for a note (a clause without a full stop); empty: none that matters. Reported for
 /// .stl, whose 32-bit coordinates far from the origin merge corners in more than 1 % of the triangles.
 std::string describe_precision_loss(const std::string& path, const MeshExport& surface);
 
-}  // namespace catena::app
+}  // namespace catena::mesh

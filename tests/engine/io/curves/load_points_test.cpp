@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/geometry/curves/point_set.h"
+#include "engine/io/curves/load_points.h"
 
 #include <gtest/gtest.h>
 

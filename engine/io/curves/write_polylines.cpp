@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/app/cli/polyline_writer.h"
+#include "engine/io/curves/write_polylines.h"
 
 #include <fmt/core.h>
 
@@ -8,7 +8,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/vtk_xml_writer.h"
 
-namespace catena::app {
+namespace catena::curves {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr const char* kTypeWord = std::is_same_v<T, double> ? "Float64" : "Int64
 
 }  // namespace
 
-void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves) {
+void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField&) {
   out.write("line,s,x,y,z,tx,ty,tz\n");
   std::string row;
   for (std::size_t line = 0; line < curves.size(); ++line)
@@ -84,4 +84,4 @@ void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& cur
   file.finish();
 }
 
-}  // namespace catena::app
+}  // namespace catena::curves

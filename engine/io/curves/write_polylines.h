@@ -10,10 +10,10 @@
 #include "engine/field/field.h"
 #include "engine/geometry/flow/curve.h"
 
-namespace catena::app {
+namespace catena::curves {
 
-/// World units.
-void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves);
+/// Writes lines traced in `field`, world units.
+void write_polylines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field);
 void write_polylines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field);
 
-}  // namespace catena::app
+}  // namespace catena::curves

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/app/cli/mesh_writer.h"
+#include "engine/io/mesh/write_mesh.h"
 
 #include <fmt/core.h>
 
@@ -10,10 +10,9 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/base/vtk_xml_writer.h"
+#include "engine/io/formats.h"
 
-namespace catena::app {
-
-namespace {
+namespace catena::mesh {
 
 void write_vtp(OutputFile& out, const MeshExport& s) {
   const auto doubles = [](const std::string& name, int components, const double* data, std::size_t count) {
@@ -29,7 +28,7 @@ void write_vtp(OutputFile& out, const MeshExport& s) {
   const auto numbers = [&](const std::string& name, std::size_t count, auto&& number) {
     return AppendedArray{"Int64", name, 1, count * sizeof(std::int64_t), [&s, number](OutputFile& to) {
                            std::int64_t n = 0;
-                           for (const mesh::Triangle& t : s.triangles) number(to, t, n);
+                           for (const Triangle& t : s.triangles) number(to, t, n);
                          }};
   };
   VtkXmlWriter file(out, "PolyData", "",
@@ -39,11 +38,11 @@ void write_vtp(OutputFile& out, const MeshExport& s) {
   file.add_section("Points", "", {vectors("Points", s.points)});
   file.add_section("Polys", "",
                    {numbers("connectivity", 3 * s.triangles.size(),
-                            [](OutputFile& to, const mesh::Triangle& t, std::int64_t&) {
+                            [](OutputFile& to, const Triangle& t, std::int64_t&) {
                               const std::array<std::int64_t, 3> corners{t[0], t[1], t[2]};
                               write_bytes(to, corners.data(), sizeof corners);
                             }),
-                    numbers("offsets", s.triangles.size(), [](OutputFile& to, const mesh::Triangle&, std::int64_t& end) {
+                    numbers("offsets", s.triangles.size(), [](OutputFile& to, const Triangle&, std::int64_t& end) {
                       end += 3;
                       write_bytes(to, &end, sizeof end);
                     })});
@@ -60,7 +59,7 @@ void write_ply(OutputFile& out, const MeshExport& s) {
     write_bytes(out, &s.points[i], sizeof(Vec3));
     if (!s.normals.empty()) write_bytes(out, &s.normals[i], sizeof(Vec3));
   }
-  for (const mesh::Triangle& t : s.triangles) {
+  for (const Triangle& t : s.triangles) {
     const std::uint8_t corners = 3;
     write_bytes(out, &corners, 1);
     write_bytes(out, t.data(), sizeof t);
@@ -73,7 +72,7 @@ void write_stl(OutputFile& out, const MeshExport& s) {
   write_bytes(out, header, sizeof header);
   const auto count = static_cast<std::uint32_t>(s.triangles.size());
   write_bytes(out, &count, sizeof count);
-  for (const mesh::Triangle& t : s.triangles) {
+  for (const Triangle& t : s.triangles) {
     const Vec3 &a = s.points[t[0]], &b = s.points[t[1]], &c = s.points[t[2]];
     float numbers[12];
     int n = 0;
@@ -91,41 +90,19 @@ void write_obj(OutputFile& out, const MeshExport& s) {
   };
   lines("v", s.points);
   lines("vn", s.normals);
-  for (const mesh::Triangle& t : s.triangles) {
+  for (const Triangle& t : s.triangles) {
     std::string line = "f";
     for (const std::uint32_t corner : t) line += s.normals.empty() ? fmt::format(" {}", corner + 1) : fmt::format(" {0}//{0}", corner + 1);
     out.write(line + "\n");
   }
 }
 
-struct SurfaceFormat {
-  std::string_view ending;
-  void (*write)(OutputFile&, const MeshExport&);
-};
-constexpr std::array kSurfaceFormats{SurfaceFormat{".vtp", write_vtp}, SurfaceFormat{".ply", write_ply}, SurfaceFormat{".stl", write_stl},
-                                     SurfaceFormat{".obj", write_obj}};
-
-const SurfaceFormat* surface_format_of(std::string_view path) {
-  for (const SurfaceFormat& format : kSurfaceFormats)
-    if (has_extension(path, format.ending)) return &format;
-  return nullptr;
-}
-
-}  // namespace
-
-bool is_mesh_export_path(std::string_view path) { return surface_format_of(path) != nullptr; }
-
-std::string mesh_export_extensions() {
-  std::vector<std::string_view> endings;
-  for (const SurfaceFormat& format : kSurfaceFormats) endings.push_back(format.ending);
-  return join_alternatives(endings);
-}
-
 std::string describe_precision_loss(const std::string& path, const MeshExport& surface) {
   constexpr double kTold = 0.01;  // fraction of degenerate triangles that is reported: isosurfaces always have some slivers
-  if (!has_extension(path, ".stl")) return {};
+  const io::Format* format = io::find_writer(path, io::DataKind::mesh);
+  if (format == nullptr || !format->has_float_positions) return {};
   const auto rounded = [&](std::uint32_t n) { return glm::vec3(surface.points[n]); };
-  const auto flat = std::ranges::count_if(surface.triangles, [&](const mesh::Triangle& t) {
+  const auto flat = std::ranges::count_if(surface.triangles, [&](const Triangle& t) {
     const auto same = [&](int a, int b) { return surface.points[t[a]] != surface.points[t[b]] && rounded(t[a]) == rounded(t[b]); };
     return same(0, 1) || same(1, 2) || same(2, 0);
   });
@@ -136,12 +113,12 @@ std::string describe_precision_loss(const std::string& path, const MeshExport& s
       flat, surface.triangles.size());
 }
 
-Outcome write_mesh_file(const std::string& path, const MeshExport& surface) {
-  const SurfaceFormat* format = surface_format_of(path);
-  if (format == nullptr) return Error{path + ": expected an output that ends in " + mesh_export_extensions()};
+Outcome write_mesh(const std::string& path, const MeshExport& surface) {
+  const io::Format* format = io::find_writer(path, io::DataKind::mesh);
+  if (format == nullptr) return Error{path + ": expected an output that ends in " + io::writable_extensions(io::DataKind::mesh)};
   CATENA_TRY(OutputFile out, OutputFile::open(path));
-  format->write(out, surface);
+  format->write_mesh(out, surface);
   return out.commit();
 }
 
-}  // namespace catena::app
+}  // namespace catena::mesh

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// For implementers of volume formats: this module, and programs that register their own (engine/io/formats.h). Any thread.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/field/grid/dense.h"
+#include "engine/field/number_type.h"
+#include "engine/io/volume/load_field.h"
+#include "engine/io/volume/units.h"
+
+namespace catena::field {
+
+/// An opened file that contains one dense array: the layout has been validated and fits the memory budget.
+struct DenseFile {
+  std::string name;    ///< Name of the grid.
+  std::string type;    ///< Number type, as printed by `info`.
+  std::string prefix;  ///< Beginning of messages about the values: "x.raw: the data ".
+  Mapping mapping;
+  int components = 1;                ///< 1 or 3.
+  DenseSource source;                ///< Reads the values; holds the file open.
+  std::vector<double> times{};       ///< See AnyField::times.
+  std::string time_unit{};           ///< See AnyField::time_unit.
+  std::int64_t newest_mtime_ns = 0;  ///< See AnyField::newest_mtime_ns.
+  std::vector<std::string> notes{};
+  std::shared_ptr<const RoundingLoss> rounding{};  ///< Accumulated rounding loss of reading the values; null: not reported.
+};
+
+/// Functions that read the volumes of a format. `open` is set (the file contains one dense array), or `load` (loads one grid of the file).
+struct VolumeReader {
+  Result<DenseFile> (*open)(const LoadRequest& request) = nullptr;
+  Result<AnyField> (*load)(const LoadRequest& request) = nullptr;
+  Result<std::vector<GridInfo>> (*describe)(const std::string& path, int step) = nullptr;
+  Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< Null: the format has no units.
+  std::vector<double> (*times)(const std::string& path) = nullptr;             ///< Null: the format has one time step.
+  bool needs_layout = false;   ///< The file does not describe itself: LoadRequest::raw is required.
+  bool reads_folders = false;  ///< Reads folders and DICOM files without an extension, too.
+};
+
+/// Loads the values of a dense file into a grid.
+Result<AnyField> load_dense(const DenseFile& file);
+/// Returns the grid with cubic interpolation; other fields are returned unchanged. An Error begins with `path`.
+Result<AnyField> with_cubic_interpolation(AnyField field, const std::string& path);
+/// For a format that holds one grid: loads it and describes the result.
+Result<std::vector<GridInfo>> describe_by_loading(const std::string& path, int step);
+
+/// DICOM files often have no extension: recognized by "DICM" after 128 bytes.
+bool has_dicom_magic(std::string_view path);
+/// Size of a regular, readable, non-empty file, bytes; otherwise an Error that names it.
+Result<std::uint64_t> readable_file_size(const std::string& path);
+
+/// Units in the header of a NIfTI file.
+Units read_nifti_units(const std::string& path, const std::string& grid);
+/// Units in the metadata of a VDB file.
+Units read_vdb_units(const std::string& path, const std::string& grid);
+
+/// Counters of load_counters(): a loaded file, grid or mask.
+void count_file();
+void count_grid();
+void count_mask();
+
+}  // namespace catena::field
